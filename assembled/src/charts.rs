@@ -1,0 +1,211 @@
+//! The partition of the careful form: from the root to the leaves, one 4×4 system in a body's Euler parameters.
+//!
+//! Which Euler parameter of a body is special follows the rule of [`gyro_sim::charts`]. A parent is corrected before its
+//! children look at it, so the block-triangular system needs no coupling blocks, and point rows are met in closed form.
+
+use crate::careful::{Hinge, Hold, Link, Side};
+use crate::lowered::{Constrained, Dot, Lowered, Motion};
+use crate::number::{Number, number, resolvable};
+use crate::textbook::{angular_velocity, p_dot, rotated_gradient, rotation};
+use gyro_model::JointKind;
+use gyro_sim::charts;
+use nalgebra::{Matrix4, Vector3, Vector4};
+
+/// The best chart of each body.
+pub(crate) fn best<T: Number>(lowered: &Lowered<T>, links: &[Link], y: &[T]) -> Vec<u8> {
+    let chart =
+        |link: &Link| deciding_vector(lowered, link, y).map_or(0, |vector| charts::best(&[vector])[0]);
+    links.iter().map(chart).collect()
+}
+
+/// Switches the charts that have become poor; returns the number of switches.
+pub(crate) fn follow<T: Number>(lowered: &Lowered<T>, links: &[Link], y: &[T], choice: &mut [u8]) -> u32 {
+    let mut switches = 0;
+    for (link, chart) in links.iter().zip(choice) {
+        if let Some(vector) = deciding_vector(lowered, link, y) {
+            let mut followed = [*chart];
+            switches += charts::follow(&[vector], &mut followed);
+            *chart = followed[0];
+        }
+    }
+    switches
+}
+
+/// One Newton step of each body in turn.
+pub(crate) fn newton_step<T: Number>(
+    lowered: &Lowered<T>,
+    links: &[Link],
+    choice: &[u8],
+    y: &mut [T],
+) -> Result<(), T> {
+    for (link, &chart) in links.iter().zip(choice) {
+        match &link.hold {
+            Hold::Constrained(index) => restore(&lowered.constrained[*index], y),
+            Hold::Free => {
+                let step = parameter_step(lowered, link.slot, &[], chart, y)?;
+                set_p(y, link.slot, &(lowered.p(y, link.slot) + step));
+            }
+            Hold::Joint(hinge) => {
+                let (facing, parent) = facing_dots(lowered, hinge, y);
+                let n_dots = lowered.joints[hinge.joint].dots.len();
+                let step = parameter_step(lowered, link.slot, &facing[..n_dots], chart, y)?;
+                let p = lowered.p(y, link.slot) + step;
+                set_p(y, link.slot, &p);
+                let (parent_end, child_end) = hinge.ends(&lowered.joints[hinge.joint]);
+                let r = parent.r + parent.a * parent_end.point - rotation(&p) * child_end.point; // eq. (7)
+                y[7 * link.slot..7 * link.slot + 3].copy_from_slice(r.as_slice());
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Eq. (19) of each body in turn.
+pub(crate) fn solve_velocities<T: Number>(
+    lowered: &Lowered<T>,
+    links: &[Link],
+    choice: &[u8],
+    integrated: &[T],
+    y: &mut [T],
+) -> Result<(), T> {
+    for (link, &chart) in links.iter().zip(choice) {
+        let slot = link.slot;
+        let kept = p_dot(&lowered.p(integrated, slot), &lowered.w(integrated, slot));
+        let (s, w) = match &link.hold {
+            Hold::Constrained(_) => (Vector3::zeros(), Vector3::zeros()),
+            Hold::Free => {
+                (lowered.s(integrated, slot), parameter_rates(lowered, slot, &[], chart, &kept, y)?)
+            }
+            Hold::Joint(hinge) => {
+                let joint = &lowered.joints[hinge.joint];
+                let (facing, parent) = facing_dots(lowered, hinge, y);
+                let w = parameter_rates(lowered, slot, &facing[..joint.dots.len()], chart, &kept, y)?;
+                let (parent_end, child_end) = hinge.ends(joint);
+                let tip_velocity = parent.s + parent.a * parent.w.cross(&parent_end.point);
+                (tip_velocity - rotation(&lowered.p(y, slot)) * w.cross(&child_end.point), w)
+            }
+        };
+        let at = lowered.n_q() + 6 * slot;
+        y[at..at + 3].copy_from_slice(s.as_slice());
+        y[at + 3..at + 6].copy_from_slice(w.as_slice());
+    }
+    Ok(())
+}
+
+/// A dot-1 row as the child sees it.
+#[derive(Clone, Copy)]
+struct Facing<T> {
+    /// The parent's vector and its rate, global.
+    parent: Vector3<T>,
+    parent_dot: Vector3<T>,
+    /// The child's vector, body frame.
+    child: Vector3<T>,
+}
+
+/// The vector whose largest component decides the chart; none where no rotation is free.
+fn deciding_vector<T: Number>(lowered: &Lowered<T>, link: &Link, y: &[T]) -> Option<[T; 4]> {
+    let p = lowered.p(y, link.slot);
+    let Hold::Joint(hinge) = &link.hold else {
+        return matches!(link.hold, Hold::Free).then(|| p.into());
+    };
+    let joint = &lowered.joints[hinge.joint];
+    match joint.kind {
+        // The tangent ½ Gᵀ h'.
+        JointKind::Revolute => Some(p_dot(&p, &hinge.ends(joint).1.h).into()),
+        JointKind::Spherical => Some(p.into()),
+        JointKind::Fixed => None,
+    }
+}
+
+/// The dot-1 rows of a joint (the first so many of the three), with the motion of the parent.
+fn facing_dots<T: Number>(lowered: &Lowered<T>, hinge: &Hinge, y: &[T]) -> ([Facing<T>; 3], Motion<T>) {
+    let joint = &lowered.joints[hinge.joint];
+    let parent = lowered.motion(y, &hinge.ends(joint).0.place);
+    let facing = |dot: &Dot<T>| {
+        let (own, child) = match hinge.child {
+            Side::First => (dot.b, dot.a),
+            Side::Second => (dot.a, dot.b),
+        };
+        Facing { parent: parent.a * own, parent_dot: parent.a * parent.w.cross(&own), child }
+    };
+    let zero = Vector3::zeros();
+    let none = Facing { parent: zero, parent_dot: zero, child: zero };
+    (std::array::from_fn(|k| joint.dots.get(k).map_or(none, facing)), parent)
+}
+
+/// The Newton step of a body's Euler parameters.
+fn parameter_step<T: Number>(
+    lowered: &Lowered<T>,
+    slot: usize,
+    facing: &[Facing<T>],
+    chart: u8,
+    y: &[T],
+) -> Result<Vector4<T>, T> {
+    let p = lowered.p(y, slot);
+    let a = rotation(&p);
+    let mut right = Vector4::zeros();
+    for (k, facing) in facing.iter().enumerate() {
+        right[k] = -facing.parent.dot(&(a * facing.child));
+    }
+    right[facing.len()] = T::one() - p.norm_squared();
+    solve(&matrix(&p, facing, chart), &right)
+}
+
+/// The body's w' from the rates of its Euler parameters.
+fn parameter_rates<T: Number>(
+    lowered: &Lowered<T>,
+    slot: usize,
+    facing: &[Facing<T>],
+    chart: u8,
+    kept: &Vector4<T>,
+    y: &[T],
+) -> Result<Vector3<T>, T> {
+    let p = lowered.p(y, slot);
+    let a = rotation(&p);
+    let mut right = Vector4::zeros();
+    for (k, facing) in facing.iter().enumerate() {
+        right[k] = -facing.parent_dot.dot(&(a * facing.child));
+    }
+    for (row, k) in (facing.len() + 1..4).zip(independent(facing.len(), chart)) {
+        right[row] = kept[k];
+    }
+    Ok(angular_velocity(&p, &solve(&matrix(&p, facing, chart), &right)?))
+}
+
+/// Dot-1 rows, the normalisation, and a unit row for each independent parameter.
+fn matrix<T: Number>(p: &Vector4<T>, facing: &[Facing<T>], chart: u8) -> Matrix4<T> {
+    let mut matrix = Matrix4::zeros();
+    for (k, facing) in facing.iter().enumerate() {
+        matrix.set_row(k, &(facing.parent.transpose() * rotated_gradient(p, &facing.child)));
+    }
+    matrix.set_row(facing.len(), &(p.transpose() * number::<T>(2.0)));
+    for (row, k) in (facing.len() + 1..4).zip(independent(facing.len(), chart)) {
+        matrix[(row, k)] = T::one();
+    }
+    matrix
+}
+
+/// The independent Euler parameters: the special one where one rotation is free, all others where all three are.
+fn independent(n_dots: usize, chart: u8) -> impl Iterator<Item = usize> {
+    let special = usize::from(chart & 3);
+    (0..4).filter(move |&k| (k == special) == (n_dots > 0))
+}
+
+fn solve<T: Number>(matrix: &Matrix4<T>, right: &Vector4<T>) -> Result<Vector4<T>, T> {
+    let lu = matrix.lu();
+    let pivot = resolvable((0..4).map(|k| lu.lu_internal()[(k, k)]))?;
+    lu.solve(right).ok_or(pivot)
+}
+
+/// Puts a constrained body back, with the sign of its Euler parameters as it is.
+fn restore<T: Number>(body: &Constrained<T>, y: &mut [T]) {
+    let at = 7 * body.slot;
+    let p = Vector4::from_column_slice(&y[at + 3..at + 7]);
+    let sign = if p.dot(&body.p0) < T::zero() { -T::one() } else { T::one() };
+    y[at..at + 3].copy_from_slice(body.r0.as_slice());
+    set_p(y, body.slot, &(body.p0 * sign));
+}
+
+fn set_p<T: Number>(y: &mut [T], slot: usize, p: &Vector4<T>) {
+    y[7 * slot + 3..7 * slot + 7].copy_from_slice(p.as_slice());
+}

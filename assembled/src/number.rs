@@ -1,0 +1,28 @@
+//! The number type of the twin.
+
+use gyro_sim::Real;
+use nalgebra::RealField;
+
+/// A number on which both the solvers of `gyro-sim` and the matrices of `nalgebra` can work: `f32` and `f64`.
+pub trait Number: Real + RealField {}
+impl<T: Real + RealField> Number for T {}
+
+/// The constant nearest to `value`.
+pub(crate) fn number<T: Number>(value: f64) -> T {
+    <T as gyro_sim::Scalar>::constant(value)
+}
+
+/// Absolute value; both traits have one.
+pub(crate) fn abs<T: Number>(value: T) -> T {
+    <T as Real>::abs(value)
+}
+
+/// A pivot below this many roundings counts as zero, in matrices whose entries are of order one.
+const SINGULAR_EPSILONS: f64 = 16.0;
+
+/// The smallest of the pivots; an error if it counts as zero or is not a number.
+pub(crate) fn resolvable<T: Number>(pivots: impl Iterator<Item = T>) -> Result<T, T> {
+    let smaller = |least: T, pivot: T| if least <= pivot { least } else { pivot };
+    let pivot = pivots.map(abs).fold(T::one(), smaller);
+    if pivot > T::EPSILON * number(SINGULAR_EPSILONS) { Ok(pivot) } else { Err(pivot) }
+}

@@ -1,0 +1,142 @@
+//! The partition of the paper's section 5 by dense full pivoting of the whole constraint Jacobian.
+//!
+//! Lengths are measured in units of the mechanism's size, in rows and columns alike, so that pivots compare.
+
+use crate::lowered::Lowered;
+use crate::number::{Number, abs, number, resolvable};
+use crate::textbook::{angular_velocity, p_dot};
+use nalgebra::{DMatrix, DVector, Dyn, LU, RowDVector, Vector4};
+
+/// The coordinates are chosen anew once the volume |det Φ_u| has fallen below this fraction of the best choice's.
+///
+/// The ratio of two such volumes is the ratio of the volumes that the two sets of independent coordinates span on the
+/// tangent space, whatever the basis. A new choice starts at ratio one and every exchange doubles the volume, so
+/// choosing anew cannot flicker.
+const POOR_VOLUME: f64 = 0.5;
+
+/// The best choice that full pivoting finds.
+pub(crate) struct Choice<T> {
+    /// Columns, ascending.
+    pub(crate) independent: Vec<usize>,
+    log_volume: T,
+}
+
+/// Full pivoting takes as many pivots as there are constraints; the columns left over are independent.
+pub(crate) fn best<T: Number>(lowered: &Lowered<T>, y: &[T]) -> Choice<T> {
+    let lu = jacobian(lowered, y).full_piv_lu();
+    let mut columns = RowDVector::from_iterator(lowered.n_q(), 0..lowered.n_q());
+    lu.q().permute_columns(&mut columns);
+    let n_dependent = n_constraints(lowered);
+    let mut independent = columns.as_slice()[n_dependent..].to_vec();
+    independent.sort_unstable();
+    Choice { independent, log_volume: log_volume(lu.lu_internal()) }
+}
+
+/// Replaces a choice whose volume is poor; returns how many coordinates were exchanged.
+pub(crate) fn follow<T: Number>(lowered: &Lowered<T>, y: &[T], choice: &mut Vec<usize>) -> u32 {
+    let best = best(lowered, y);
+    let present = factorise(&jacobian(lowered, y), choice);
+    let threshold = best.log_volume + number::<T>(POOR_VOLUME.ln());
+    // Of a state that is not finite nothing can be told: the choice is kept.
+    let poor = log_volume(present.lu_internal()) < threshold;
+    if !poor {
+        return 0;
+    }
+    let kept = best.independent.iter().filter(|column| choice.contains(column)).count();
+    let exchanged = best.independent.len() - kept;
+    *choice = best.independent;
+    u32::try_from(exchanged).unwrap_or(u32::MAX)
+}
+
+/// `Φ_u Δu = −Φ`.
+pub(crate) fn newton_step<T: Number>(lowered: &Lowered<T>, choice: &[usize], y: &mut [T]) -> Result<(), T> {
+    let mut right = DVector::zeros(n_constraints(lowered));
+    lowered.phi(y, right.as_mut_slice());
+    right.iter_mut().enumerate().for_each(|(row, phi)| *phi = -*phi * row_scale(lowered, row));
+    let step = solve(&jacobian(lowered, y), choice, right)?;
+    for (column, step) in dependent(lowered, choice).zip(step.iter()) {
+        y[column] += *step * column_scale(lowered, column);
+    }
+    Ok(())
+}
+
+/// `Φ_u u̇ = ν − Φ_v v̇`, eq. (19), with q̇ = (s, ½ Gᵀ w') of the integrated state as v̇; then w' = 2 G ṗ.
+pub(crate) fn solve_velocities<T: Number>(
+    lowered: &Lowered<T>,
+    choice: &[usize],
+    integrated: &[T],
+    y: &mut [T],
+) -> Result<(), T> {
+    let jacobian = jacobian(lowered, y);
+    let mut q_dot = scaled_q_dot(lowered, integrated);
+    dependent(lowered, choice).for_each(|column| q_dot[column] = T::zero());
+    let solution = solve(&jacobian, choice, -(&jacobian * &q_dot))?;
+    dependent(lowered, choice).zip(solution.iter()).for_each(|(column, value)| q_dot[column] = *value);
+    for slot in 0..lowered.n_bodies() {
+        let (from, to) = (7 * slot, lowered.n_q() + 6 * slot);
+        (0..3).for_each(|k| y[to + k] = q_dot[from + k] * lowered.size);
+        let p_dot: Vector4<T> = q_dot.fixed_rows::<4>(from + 3).into_owned();
+        let w = angular_velocity(&lowered.p(y, slot), &p_dot);
+        y[to + 3..to + 6].copy_from_slice(w.as_slice());
+    }
+    Ok(())
+}
+
+fn n_constraints<T: Number>(lowered: &Lowered<T>) -> usize {
+    lowered.n_rows() + lowered.n_bodies()
+}
+
+fn dependent<T: Number>(lowered: &Lowered<T>, choice: &[usize]) -> impl Iterator<Item = usize> {
+    (0..lowered.n_q()).filter(|column| choice.binary_search(column).is_err())
+}
+
+/// What the row is multiplied by.
+fn row_scale<T: Number>(lowered: &Lowered<T>, row: usize) -> T {
+    let is_length = lowered.rows.get(row).is_some_and(|row| row.is_length);
+    if is_length { T::one() / lowered.size } else { T::one() }
+}
+
+/// The unit of the column's coordinate.
+fn column_scale<T: Number>(lowered: &Lowered<T>, column: usize) -> T {
+    if column % 7 < 3 { lowered.size } else { T::one() }
+}
+
+/// The scaled Φ_q, normalisations included: 25×28 for the paper's gyroscope.
+fn jacobian<T: Number>(lowered: &Lowered<T>, y: &[T]) -> DMatrix<T> {
+    let mut jacobian = DMatrix::zeros(n_constraints(lowered), lowered.n_q());
+    lowered.phi_q(y, |row, column, value| {
+        jacobian[(row, column)] = value * row_scale(lowered, row) * column_scale(lowered, column);
+    });
+    jacobian
+}
+
+fn scaled_q_dot<T: Number>(lowered: &Lowered<T>, y: &[T]) -> DVector<T> {
+    let mut q_dot = DVector::zeros(lowered.n_q());
+    for slot in 0..lowered.n_bodies() {
+        q_dot.fixed_rows_mut::<3>(7 * slot).copy_from(&(lowered.s(y, slot) / lowered.size));
+        q_dot.fixed_rows_mut::<4>(7 * slot + 3).copy_from(&p_dot(&lowered.p(y, slot), &lowered.w(y, slot)));
+    }
+    q_dot
+}
+
+fn factorise<T: Number>(jacobian: &DMatrix<T>, choice: &[usize]) -> LU<T, Dyn, Dyn> {
+    let columns: Vec<usize> = (0..jacobian.ncols()).filter(|c| choice.binary_search(c).is_err()).collect();
+    jacobian.select_columns(&columns).lu()
+}
+
+/// Solves with Φ_u; fails with its smallest pivot.
+fn solve<T: Number>(jacobian: &DMatrix<T>, choice: &[usize], right: DVector<T>) -> Result<DVector<T>, T> {
+    let lu = factorise(jacobian, choice);
+    let pivot = resolvable(pivots(lu.lu_internal()))?;
+    lu.solve(&right).ok_or(pivot)
+}
+
+/// The logarithm of the product of all pivots.
+fn log_volume<T: Number>(lu: &DMatrix<T>) -> T {
+    pivots(lu).fold(T::zero(), |sum, pivot| sum + abs(pivot).ln())
+}
+
+/// The diagonal of a matrix that need not be square.
+fn pivots<T: Number>(lu: &DMatrix<T>) -> impl Iterator<Item = T> {
+    (0..lu.nrows()).map(|k| lu[(k, k)])
+}

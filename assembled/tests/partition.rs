@@ -1,0 +1,93 @@
+//! The partition of both forms: it restores the constraints, keeps the independent coordinates and follows the motion.
+
+mod support;
+
+use gyro_assembled::{Careful, Dense};
+use gyro_sim::{Mechanism, Ode, Partition, Partitioned};
+use support::{Random, assert_close, max_norm, model, models, phi, state_near, velocity_residual};
+
+/// Sixteen roundings, as the solver asks, with room for lengths that are divided by the mechanism's size.
+const RESTORED: f64 = 1e-13;
+
+fn check_restored<M: Partition<Scalar = f64, State = Vec<f64>>>(what: &str, mechanism: &M, seed: u64) {
+    let mut random = Random(seed);
+    for state in 0..20 {
+        let what = format!("{what} state {state}");
+        let drifted = state_near(mechanism, 0.02, &mut random);
+        let mut y = drifted.clone();
+        let mut solver = Partitioned::new(mechanism, &y);
+        solver.correct(mechanism, 0.0, &mut y).unwrap_or_else(|error| panic!("{what}: {error}"));
+        assert!(max_norm(&phi(mechanism, &y)) <= RESTORED, "{what}: {:e}", max_norm(&phi(mechanism, &y)));
+        let scale = max_norm(&y[7 * mechanism.n_bodies()..]).max(1.0);
+        let residual = max_norm(&velocity_residual(mechanism, &y));
+        assert!(residual <= RESTORED * scale, "{what}: {residual:e}");
+        // A correction is of the order of what it corrects.
+        let moved: Vec<f64> =
+            y.iter().zip(&drifted).take(7 * mechanism.n_bodies()).map(|(y, d)| y - d).collect();
+        assert!(max_norm(&moved) < 0.5, "{what}: {:e}", max_norm(&moved));
+    }
+}
+
+#[test]
+fn a_correction_restores_positions_and_velocities() {
+    for (seed, model) in (0..).zip(models()) {
+        check_restored(&model.name, &Dense::<f64>::new(&model).expect("it has a start"), seed);
+        check_restored(&model.name, &Careful::<f64>::new(&model).expect("it has a start"), seed);
+    }
+}
+
+#[test]
+fn the_dense_partition_keeps_independent_positions_and_rates() {
+    for model in models() {
+        let mechanism = Dense::<f64>::new(&model).expect("it has a start");
+        let drifted = state_near(&mechanism, 0.02, &mut Random(7));
+        let (mut y, mut solver) = (drifted.clone(), Partitioned::new(&mechanism, &drifted));
+        solver.correct(&mechanism, 0.0, &mut y).expect("it can be corrected");
+        let n_q = 7 * mechanism.n_bodies();
+        assert_eq!(solver.independent().len(), n_q - mechanism.constraints().len(), "{}", model.name);
+        let rates = |y: &Vec<f64>| {
+            let mut rates = y.clone();
+            mechanism.derivative(0.0, y, &mut rates);
+            rates
+        };
+        let (before, after) = (rates(&drifted), rates(&y));
+        for &column in solver.independent() {
+            assert_eq!(drifted[column], y[column], "{}", model.name);
+            assert_close(&model.name, &[after[column]], &[before[column]], 10.0, 1e-12);
+        }
+    }
+}
+
+#[test]
+fn a_consistent_state_is_left_alone() {
+    for model in models() {
+        let dense = Dense::<f64>::new(&model).expect("it has a start");
+        let mut y = dense.start();
+        Partitioned::new(&dense, &y).correct(&dense, 0.0, &mut y).expect("it is consistent");
+        assert_close(&model.name, &y, &dense.start(), 1.0, 1e-13);
+        let careful = Careful::<f64>::new(&model).expect("it has a start");
+        let mut y = careful.start();
+        Partitioned::new(&careful, &y).correct(&careful, 0.0, &mut y).expect("it is consistent");
+        assert_close(&model.name, &y, &careful.start(), 1.0, 1e-13);
+    }
+}
+
+/// The rotor turns 1.6 times in 0.1 s: the choice must follow it, and no more often than it needs to.
+fn check_switches<M: Partition<Scalar = f64, State = Vec<f64>>>(
+    mechanism: &M,
+    switches: std::ops::Range<u64>,
+) {
+    let mut y = mechanism.start();
+    let mut solver = Partitioned::new(mechanism, &y);
+    for interval in 0..200 {
+        solver.advance(mechanism, f64::from(interval) * 5e-4, 1e-4, 5, &mut y).expect("it runs");
+    }
+    assert!(switches.contains(&solver.switches()), "{} switches", solver.switches());
+}
+
+#[test]
+fn the_choice_follows_the_rotor_without_flicker() {
+    let model = model("gyroscope");
+    check_switches(&Dense::<f64>::new(&model).expect("it has a start"), 3..15);
+    check_switches(&Careful::<f64>::new(&model).expect("it has a start"), 3..15);
+}

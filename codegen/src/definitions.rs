@@ -1,0 +1,73 @@
+//! Named intermediate quantities, and the pass that replaces them by what they stand for.
+//!
+//! Rotation matrices stay symbols while Φ is built and differentiated, because their derivatives along a rotation have a
+//! rule of their own (`A' = A ẽ`); afterwards [`Definitions::expand`] puts in A(p) — of the state's p, or of a corrected
+//! one, so that a Jacobian derived once can be evaluated anywhere.
+
+use crate::graph::{ExprId, Graph, Node};
+use crate::symbol::Symbol;
+use std::collections::HashMap;
+
+/// What symbols stand for.
+#[derive(Debug, Default)]
+pub struct Definitions(HashMap<Symbol, ExprId>);
+
+impl Definitions {
+    pub fn insert(&mut self, symbol: Symbol, expression: ExprId) {
+        self.0.insert(symbol, expression);
+    }
+
+    pub fn get(&self, symbol: Symbol) -> Option<ExprId> {
+        self.0.get(&symbol).copied()
+    }
+}
+
+/// Replaces symbols: first by the values given here, which are final, else by their definitions, which are expanded in turn.
+#[derive(Debug)]
+pub struct Expansion<'a> {
+    definitions: &'a Definitions,
+    values: HashMap<Symbol, ExprId>,
+    memo: HashMap<ExprId, ExprId>,
+}
+
+impl<'a> Expansion<'a> {
+    pub fn new(definitions: &'a Definitions) -> Self {
+        Self::with_values(definitions, HashMap::new())
+    }
+
+    pub fn with_values(definitions: &'a Definitions, values: HashMap<Symbol, ExprId>) -> Self {
+        Self { definitions, values, memo: HashMap::new() }
+    }
+
+    pub fn of(&mut self, graph: &mut Graph, root: ExprId) -> ExprId {
+        for id in graph.reachable(&[root]) {
+            if !self.memo.contains_key(&id) {
+                let expanded = self.node(graph, id);
+                self.memo.insert(id, expanded);
+            }
+        }
+        self.memo[&root]
+    }
+
+    pub fn all(&mut self, graph: &mut Graph, roots: &[ExprId]) -> Vec<ExprId> {
+        roots.iter().map(|&root| self.of(graph, root)).collect()
+    }
+
+    fn node(&mut self, graph: &mut Graph, id: ExprId) -> ExprId {
+        match graph.node(id).clone() {
+            Node::Constant(_) => id,
+            Node::Symbol(symbol) => match (self.values.get(&symbol), self.definitions.get(symbol)) {
+                (Some(&value), _) => value,
+                (None, Some(definition)) => self.of(graph, definition),
+                (None, None) => id,
+            },
+            Node::Add(a, b) => graph.add(self.memo[&a], self.memo[&b]),
+            Node::Mul(a, b) => graph.mul(self.memo[&a], self.memo[&b]),
+            Node::Neg(a) => graph.neg(self.memo[&a]),
+            Node::Recip(a) => graph.recip(self.memo[&a]),
+            Node::Sqrt(a) => graph.sqrt(self.memo[&a]),
+            Node::Sin(a) => graph.sin(self.memo[&a]),
+            Node::Cos(a) => graph.cos(self.memo[&a]),
+        }
+    }
+}

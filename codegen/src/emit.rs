@@ -1,0 +1,206 @@
+//! A straight-line program as Rust tokens.
+
+use crate::graph::{ExprId, Graph, Node};
+use crate::schedule::Program;
+use crate::symbol::Symbol;
+use proc_macro2::{Ident, Literal, Span, TokenStream};
+use quote::quote;
+use std::cell::Cell;
+use std::collections::{BTreeSet, HashMap};
+
+/// The statements of a function and the values of its roots.
+#[derive(Debug)]
+pub struct Body {
+    /// Bindings of literals, variables and shared expressions.
+    pub statements: TokenStream,
+    /// One expression for each root.
+    pub values: Vec<TokenStream>,
+    /// Variables that the program reads.
+    pub symbols: BTreeSet<Symbol>,
+}
+
+/// Where the variables of a module come from.
+pub trait Variables {
+    /// Name of a variable and the expression that reads it; `None` for the expression where it needs no binding.
+    fn variable(&self, symbol: Symbol) -> (TokenStream, Option<TokenStream>);
+}
+
+/// Statements in one block: rustc opens a scope for each `let` and recurses over them, so long functions are cut into
+/// blocks that hand on what is still needed.
+const CHUNK: usize = 200;
+
+/// How strongly an expression binds, for parentheses.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Binding {
+    Sum,
+    Product,
+    Unary,
+}
+
+/// Writes the program that computes `roots`.
+pub fn body(graph: &Graph, variables: &impl Variables, roots: &[ExprId]) -> Body {
+    let program = Program::new(graph, roots);
+    let names =
+        program.temporaries.iter().enumerate().map(|(n, &id)| (id, ident(&format!("t{n}")))).collect();
+    let writer = Writer { graph, variables, program: &program, names, has_literals: Cell::new(false) };
+    let symbols: BTreeSet<_> = program.uses.order.iter().filter_map(|&id| writer.as_symbol(id)).collect();
+    let bindings = symbols.iter().filter_map(|&symbol| match variables.variable(symbol) {
+        (name, Some(source)) => Some(quote! { let #name = #source; }),
+        (_, None) => None,
+    });
+    let values: Vec<_> = roots.iter().map(|&root| writer.expression(root, Binding::Sum)).collect();
+    let temporaries = writer.temporaries(roots);
+    let literal = writer.has_literals.get().then(|| quote! { let k = T::constant; });
+    let statements = quote! { #literal #(#bindings)* #temporaries };
+    Body { statements, values, symbols }
+}
+
+/// A literal that reads back as the same number.
+pub fn float(value: f64) -> TokenStream {
+    format!("{value:?}").parse().expect("a float prints as a literal")
+}
+
+pub fn ident(name: &str) -> Ident {
+    Ident::new(name, Span::call_site())
+}
+
+pub fn index(value: usize) -> Literal {
+    Literal::usize_unsuffixed(value)
+}
+
+struct Writer<'a, V> {
+    graph: &'a Graph,
+    variables: &'a V,
+    program: &'a Program,
+    names: HashMap<ExprId, Ident>,
+    /// Set when a literal is written.
+    has_literals: Cell<bool>,
+}
+
+impl<V: Variables> Writer<'_, V> {
+    fn as_symbol(&self, id: ExprId) -> Option<Symbol> {
+        if let Node::Symbol(symbol) = self.graph.node(id) { Some(*symbol) } else { None }
+    }
+
+    fn temporaries(&self, roots: &[ExprId]) -> TokenStream {
+        let temporaries = &self.program.temporaries;
+        if temporaries.len() <= CHUNK {
+            return temporaries.iter().map(|&id| self.binding(id)).collect();
+        }
+        let last_use = self.last_uses(roots);
+        let chunks = temporaries.chunks(CHUNK).enumerate().map(|(n, chunk)| {
+            let end = (n + 1) * CHUNK;
+            let live: Vec<_> =
+                chunk.iter().filter(|id| last_use[id] >= end).map(|id| &self.names[id]).collect();
+            let bindings = chunk.iter().map(|&id| self.binding(id));
+            quote! { let (#(#live,)*) = { #(#bindings)* (#(#live,)*) }; }
+        });
+        chunks.collect()
+    }
+
+    /// For each temporary the position of the last one that reads it; beyond all for a root.
+    fn last_uses(&self, roots: &[ExprId]) -> HashMap<ExprId, usize> {
+        let temporaries = &self.program.temporaries;
+        let mut last = HashMap::new();
+        for (position, &id) in temporaries.iter().enumerate() {
+            for operand in self.graph.node(id).operands() {
+                self.mark(operand, position, &mut last);
+            }
+        }
+        for &root in roots {
+            self.mark(root, usize::MAX, &mut last);
+        }
+        last
+    }
+
+    fn mark(&self, id: ExprId, position: usize, last: &mut HashMap<ExprId, usize>) {
+        if self.names.contains_key(&id) {
+            let entry = last.entry(id).or_insert(position);
+            *entry = position.max(*entry);
+            return;
+        }
+        for operand in self.graph.node(id).operands() {
+            self.mark(operand, position, last);
+        }
+    }
+
+    fn binding(&self, id: ExprId) -> TokenStream {
+        let name = &self.names[&id];
+        let (value, _) = self.operation(id);
+        quote! { let #name = #value; }
+    }
+
+    /// An expression by its name if it has one, in parentheses if it binds less strongly than needed.
+    fn expression(&self, id: ExprId, needed: Binding) -> TokenStream {
+        if let Some(name) = self.names.get(&id) {
+            return quote! { #name };
+        }
+        let (tokens, binding) = self.operation(id);
+        if binding < needed {
+            quote! { (#tokens) }
+        } else {
+            tokens
+        }
+    }
+
+    fn operation(&self, id: ExprId) -> (TokenStream, Binding) {
+        match self.graph.node(id) {
+            Node::Constant(value) => (self.literal(value.to_f64()), Binding::Unary),
+            Node::Symbol(symbol) => (self.variables.variable(*symbol).0, Binding::Unary),
+            Node::Add(a, b) => (self.sum(*a, *b), Binding::Sum),
+            Node::Mul(a, b) => (self.product(*a, *b), Binding::Product),
+            Node::Neg(a) => self.negation(*a),
+            Node::Recip(a) => {
+                let (one, a) = (self.literal(1.0), self.expression(*a, Binding::Unary));
+                (quote! { #one / #a }, Binding::Product)
+            }
+            Node::Sqrt(a) => self.function("sqrt", *a),
+            Node::Sin(a) => self.function("sin", *a),
+            Node::Cos(a) => self.function("cos", *a),
+        }
+    }
+
+    fn sum(&self, a: ExprId, b: ExprId) -> TokenStream {
+        let first = self.expression(a, Binding::Sum);
+        if let Node::Neg(subtracted) = self.graph.node(b) {
+            let second = self.expression(*subtracted, Binding::Product);
+            return quote! { #first - #second };
+        }
+        let second = self.expression(b, Binding::Product);
+        quote! { #first + #second }
+    }
+
+    fn product(&self, a: ExprId, b: ExprId) -> TokenStream {
+        if let Some((numerator, denominator)) = self.program.uses.quotient(self.graph, a, b) {
+            let numerator = self.expression(numerator, Binding::Product);
+            let denominator = self.expression(denominator, Binding::Unary);
+            return quote! { #numerator / #denominator };
+        }
+        let (a, b) = (self.expression(a, Binding::Product), self.expression(b, Binding::Unary));
+        quote! { #a * #b }
+    }
+
+    /// A difference that is not needed elsewhere is turned round instead of negated.
+    fn negation(&self, a: ExprId) -> (TokenStream, Binding) {
+        if let Node::Add(x, y) = self.graph.node(a)
+            && let Node::Neg(y) = self.graph.node(*y)
+            && !self.names.contains_key(&a)
+        {
+            let (first, second) = (self.expression(*y, Binding::Sum), self.expression(*x, Binding::Product));
+            return (quote! { #first - #second }, Binding::Sum);
+        }
+        let a = self.expression(a, Binding::Unary);
+        (quote! { -#a }, Binding::Unary)
+    }
+
+    fn literal(&self, value: f64) -> TokenStream {
+        self.has_literals.set(true);
+        let value = float(value);
+        quote! { k(#value) }
+    }
+
+    fn function(&self, name: &str, a: ExprId) -> (TokenStream, Binding) {
+        let (name, a) = (ident(name), self.expression(a, Binding::Unary));
+        (quote! { #a.#name() }, Binding::Unary)
+    }
+}

@@ -1,0 +1,37 @@
+//! For the tests of the passes: the value of an expression, by a walk that shares nothing with simplification.
+
+use crate::graph::{ExprId, Graph, Node};
+use crate::symbol::Symbol;
+use std::collections::HashMap;
+
+/// The values of some roots, each symbol having the value that `value` gives it.
+pub fn evaluate(graph: &Graph, roots: &[ExprId], value: impl Fn(Symbol) -> f64) -> Vec<f64> {
+    let mut values: HashMap<ExprId, f64> = HashMap::new();
+    for id in graph.reachable(roots) {
+        let result = match graph.node(id) {
+            Node::Constant(constant) => constant.to_f64(),
+            Node::Symbol(symbol) => value(*symbol),
+            Node::Add(a, b) => values[a] + values[b],
+            Node::Mul(a, b) => values[a] * values[b],
+            Node::Neg(a) => -values[a],
+            Node::Recip(a) => 1.0 / values[a],
+            Node::Sqrt(a) => values[a].sqrt(),
+            Node::Sin(a) => values[a].sin(),
+            Node::Cos(a) => values[a].cos(),
+        };
+        values.insert(id, result);
+    }
+    roots.iter().map(|root| values[root]).collect()
+}
+
+/// A reproducible value between −1 and 1 for each symbol.
+pub fn sample(seed: u64) -> impl Fn(Symbol) -> f64 {
+    use std::hash::{DefaultHasher, Hash, Hasher};
+    move |symbol| {
+        let mut hasher = DefaultHasher::new();
+        (seed, symbol).hash(&mut hasher);
+        #[expect(clippy::cast_precision_loss, reason = "a random fraction")]
+        let fraction = (hasher.finish() >> 11) as f64 / (1u64 << 53) as f64;
+        2.0 * fraction - 1.0
+    }
+}

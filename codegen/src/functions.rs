@@ -1,0 +1,65 @@
+//! The functions of a generated module: which expressions each of them computes.
+
+use crate::equations::{Equations, Sparse};
+use crate::graph::ExprId;
+
+/// The roots of each function that computes something.
+#[derive(Debug)]
+pub struct Functions {
+    pub phi: Vec<ExprId>,
+    pub phi_q: Vec<ExprId>,
+    pub phi_pi: Vec<ExprId>,
+    pub nu: Vec<ExprId>,
+    pub gamma: Vec<ExprId>,
+    pub velocity_residual: Vec<ExprId>,
+    pub applied_force: Vec<ExprId>,
+    pub accelerations: Vec<ExprId>,
+    pub derivative: Vec<ExprId>,
+    pub energy: Vec<ExprId>,
+    pub read_joints: Vec<ExprId>,
+    pub chart_vectors: Vec<ExprId>,
+    pub newton_step: Vec<ExprId>,
+    pub solve_velocities: Vec<ExprId>,
+}
+
+impl Functions {
+    pub fn of(equations: &Equations) -> Self {
+        let values = |sparse: &Sparse| sparse.iter().map(|entry| entry.2).collect::<Vec<_>>();
+        Self {
+            phi: equations.phi.clone(),
+            phi_q: values(&equations.phi_q),
+            phi_pi: values(&equations.phi_pi),
+            nu: equations.nu.clone(),
+            gamma: equations.gamma.clone(),
+            velocity_residual: equations.velocity_residual.clone(),
+            applied_force: equations.applied_force.clone(),
+            accelerations: equations.accelerations.iter().chain(&equations.lambda).copied().collect(),
+            derivative: equations.derivative.clone(),
+            energy: vec![equations.kinetic, equations.potential],
+            read_joints: equations.readings.clone(),
+            chart_vectors: equations.chart_vectors.clone(),
+            newton_step: equations.newton_positions.clone(),
+            solve_velocities: equations.solved_velocities.clone(),
+        }
+    }
+
+    /// Name and roots of each, in the order of the data sheet.
+    pub fn list(&self) -> [(&'static str, &'static str, &[ExprId]); 14] {
+        [
+            ("phi", "Φ", &self.phi),
+            ("phi_q", "Φ_q, non-zeros in (r, p)", &self.phi_q),
+            ("phi_pi", "(Φ_r, Φ_π'), non-zeros", &self.phi_pi),
+            ("nu", "ν", &self.nu),
+            ("gamma", "γ", &self.gamma),
+            ("velocity_residual", "Φ_r s + Φ_π' w' − ν", &self.velocity_residual),
+            ("applied_force", "(f, n' − w̃'J'w')", &self.applied_force),
+            ("accelerations", "(s̈, ẇ') and λ, eq. (17)", &self.accelerations),
+            ("derivative", "ẏ: eqs. (14), (16), (17)", &self.derivative),
+            ("energy", "T and V", &self.energy),
+            ("read_joints", "joint coordinates and rates", &self.read_joints),
+            ("chart vectors", "for the choice of independent coordinates", &self.chart_vectors),
+            ("newton_step", "dependent positions, one Newton step", &self.newton_step),
+            ("solve_velocities", "dependent velocities, eq. (19)", &self.solve_velocities),
+        ]
+    }
+}

@@ -1,0 +1,121 @@
+//! From the description of a mechanism to unrolled Rust.
+//!
+//! [`generate`] is a pure function: the text of a model page in, the text of a module out, byte for byte the same each time.
+//! It does no I/O, so a `build.rs` can call it as well as `cargo xtask generate`:
+//!
+//! ```
+//! let page = r#"
+//! format = 1
+//! name = "pendulum"
+//! gravity = [0, -9.81, 0]
+//!
+//! [[body]]
+//! name = "wall"
+//! fixed = true
+//!
+//! [[body]]
+//! name = "rod"
+//! mass = 1
+//! inertia = [1e-4, 0.08, 0.08]
+//!
+//! [[joint]]
+//! name = "hinge"
+//! kind = "revolute"
+//! axis = [0, 0, 1]
+//! zero = [1, 0, 0]
+//! first = { body = "wall" }
+//! second = { body = "rod", point = [-0.5, 0, 0] }
+//! "#;
+//! let module = gyro_codegen::generate("pendulum.toml", page)?;
+//! assert_eq!(module.type_name, "Pendulum");
+//! assert!(module.code.contains("pub struct Pendulum<T>"));
+//! # Ok::<(), gyro_codegen::Error>(())
+//! ```
+//!
+//! The pipeline, one file an arrow: `system` lowers the model to poses and frames, `constraints` writes Φ, `kinematics`
+//! differentiates it (`differentiate`), `dynamics` adds masses and forces, `definitions` expands, `saddle` and `partition`
+//! solve, `schedule` orders, `emit` and `module` write.
+#![deny(missing_docs)]
+
+mod constant;
+mod constraints;
+mod definitions;
+mod differentiate;
+mod dynamics;
+mod emit;
+mod equations;
+#[cfg(test)]
+mod evaluate;
+mod functions;
+mod graph;
+mod kinematics;
+mod linear;
+mod module;
+mod partition;
+mod saddle;
+mod schedule;
+mod sheet;
+mod symbol;
+mod system;
+
+use gyro_model::{AssemblyError, Diagnostics, Model};
+use std::fmt;
+
+/// A generated module.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Module {
+    /// Name of the module: the model's, in `snake_case`.
+    pub name: String,
+    /// Name of the mechanism's type, in `PascalCase`.
+    pub type_name: String,
+    /// The text of the module's file.
+    pub code: String,
+}
+
+impl Module {
+    /// The module as one item, `pub mod name { ... }`, for `include!` (which admits no inner documentation outside a module).
+    pub fn as_item(&self) -> String {
+        format!("/// Generated from a model page.\npub mod {} {{\n{}}}\n", self.name, self.code)
+    }
+}
+
+/// Why a page gives no module.
+#[derive(Clone, Debug)]
+pub enum Error {
+    /// Mistakes on the page.
+    Page(Diagnostics),
+    /// No consistent start exists.
+    Start(AssemblyError),
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Page(diagnostics) => diagnostics.fmt(f),
+            Self::Start(error) => error.fmt(f),
+        }
+    }
+}
+
+impl std::error::Error for Error {}
+
+/// Writes the module of a model page. `file_name` is the page's name in messages and in the module's first line.
+///
+/// # Errors
+/// All mistakes on the page at once, or why no consistent start exists.
+pub fn generate(file_name: &str, text: &str) -> Result<Module, Error> {
+    let model = gyro_model::read(file_name, text).map_err(Error::Page)?;
+    generate_model(file_name, &model)
+}
+
+/// Writes the module of a model that was read already.
+///
+/// # Errors
+/// Why no consistent start exists.
+pub fn generate_model(file_name: &str, model: &Model) -> Result<Module, Error> {
+    let start = model.assemble().map_err(Error::Start)?;
+    let equations = equations::Equations::derive(model);
+    let type_name = module::type_name(&model.name);
+    let code = module::write(file_name, &type_name, &equations, &start);
+    Ok(Module { name: model.name.clone(), type_name, code })
+}

@@ -1,0 +1,64 @@
+//! The mechanism's type, its default and its parameters.
+
+use super::ModuleWriter;
+use crate::emit::{float, ident, index};
+use proc_macro2::TokenStream;
+use quote::quote;
+
+impl ModuleWriter<'_> {
+    /// The type, its default and its parameters.
+    pub fn definition(&self) -> TokenStream {
+        let name = ident(self.type_name);
+        let doc = format!(" The mechanism `{}`.", self.equations.model.name);
+        let parameters = &self.equations.model.parameters;
+        let names: Vec<_> = parameters.iter().map(|p| ident(&p.name)).collect();
+        let strings = parameters.iter().map(|p| &p.name);
+        let values: Vec<_> = parameters.iter().map(|p| float(gyro_model::to_f64(&p.value))).collect();
+        let docs =
+            parameters.iter().map(|p| format!(" Parameter; default {:?}.", gyro_model::to_f64(&p.value)));
+        let (count, positions) = (index(parameters.len()), (0..parameters.len()).map(index));
+        let (marker, marker_value) = if parameters.is_empty() {
+            let doc = " The model has no parameters.";
+            (
+                quote! { #[doc = #doc] scalar: core::marker::PhantomData<T>, },
+                quote! { scalar: core::marker::PhantomData, },
+            )
+        } else {
+            (quote! {}, quote! {})
+        };
+        let value = if parameters.is_empty() {
+            quote! { _value }
+        } else {
+            quote! { value }
+        };
+        quote! {
+            #[doc = #doc]
+            #[derive(Clone, Copy, Debug, PartialEq)]
+            pub struct #name<T> {
+                #(#[doc = #docs] pub #names: T,)*
+                #marker
+            }
+
+            impl<T: Scalar> Default for #name<T> {
+                fn default() -> Self {
+                    Self { #(#names: T::constant(#values),)* #marker_value }
+                }
+            }
+
+            impl<T> #name<T> {
+                /// Names of the parameters.
+                pub const PARAMETERS: [&'static str; #count] = [#(#strings),*];
+
+                /// Sets a parameter by its place in [`Self::PARAMETERS`]; returns whether there is one.
+                pub fn set_parameter(&mut self, index: usize, #value: T) -> bool {
+                    match index {
+                        #(#positions => self.#names = value,)*
+                        _ => return false,
+                    }
+                    #[allow(unreachable_code)]
+                    true
+                }
+            }
+        }
+    }
+}

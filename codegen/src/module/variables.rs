@@ -1,0 +1,53 @@
+//! Where the variables of a module come from: the state and other arguments.
+
+use super::ModuleWriter;
+use crate::emit::{Variables, ident, index};
+use crate::symbol::Symbol;
+use proc_macro2::TokenStream;
+use quote::quote;
+
+/// `y`, the buffers of the partition, and `self`.
+impl Variables for ModuleWriter<'_> {
+    fn variable(&self, symbol: Symbol) -> (TokenStream, Option<TokenStream>) {
+        const AXES: [&str; 3] = ["x", "y", "z"];
+        let positions = 7 * self.equations.n_slots();
+        let body = |slot: usize| &self.equations.model.bodies[self.slots()[slot]].name;
+        let bound = |name: String, buffer: &str, at: usize| {
+            let (name, buffer, at) = (ident(&name), ident(buffer), index(at));
+            (quote! { #name }, Some(quote! { #buffer[#at] }))
+        };
+        let velocity = |slot: usize, k: usize| positions + 6 * slot + k;
+        match symbol {
+            Symbol::Time => (quote! { t }, None),
+            Symbol::Position { slot, k } => bound(format!("{}_r{}", body(slot), AXES[k]), "y", 7 * slot + k),
+            Symbol::Euler { slot, k } => bound(format!("{}_e{k}", body(slot)), "y", 7 * slot + 3 + k),
+            Symbol::Velocity { slot, k } => {
+                bound(format!("{}_s{}", body(slot), AXES[k]), "y", velocity(slot, k))
+            }
+            Symbol::Spin { slot, k } => {
+                bound(format!("{}_w{}", body(slot), AXES[k]), "y", velocity(slot, k + 3))
+            }
+            Symbol::IntegratedEuler { slot, k } => {
+                bound(format!("{}_integrated_e{k}", body(slot)), "integrated", 7 * slot + 3 + k)
+            }
+            Symbol::IntegratedVelocity { slot, k } => {
+                bound(format!("{}_integrated_s{}", body(slot), AXES[k]), "integrated", velocity(slot, k))
+            }
+            Symbol::IntegratedSpin { slot, k } => {
+                bound(format!("{}_integrated_w{}", body(slot), AXES[k]), "integrated", velocity(slot, k + 3))
+            }
+            Symbol::Chart { chart, k } => {
+                let (name, chart, k) = (ident(&format!("chart{chart}_{k}")), index(chart), index(k));
+                (quote! { #name }, Some(quote! { charts[#chart][#k] }))
+            }
+            Symbol::Parameter(parameter) => {
+                let name = ident(&self.equations.model.parameters[parameter].name);
+                (quote! { self.#name }, None)
+            }
+            Symbol::Rotation { .. }
+            | Symbol::Relative { .. }
+            | Symbol::RotationRate { .. }
+            | Symbol::RelativeRate { .. } => unreachable!("rotations are expanded before they are written"),
+        }
+    }
+}

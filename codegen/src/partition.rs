@@ -1,0 +1,259 @@
+//! The coordinate partition of a tree, unrolled: charts, one Newton step of the dependent positions, and the solve of
+//! eq. (19) for the dependent velocities.
+//!
+//! Both solves are block-triangular from root to leaf: once a body's parent is corrected, the body's own joint rows determine
+//! its dependent coordinates. The Jacobian of a block is the body's part of Φ_π', derived once and evaluated at the
+//! corrected parent and the body's own unit p by expansion. Of a revolute joint one Euler parameter is independent, so a third row holds it; of a
+//! spherical joint or a free body three are, so the fourth follows from the normalisation.
+
+use crate::definitions::Expansion;
+use crate::dynamics::needs_chart;
+use crate::graph::{ExprId, Graph};
+use crate::kinematics::Kinematics;
+use crate::linear::{Mat3, Vec3, Vec4, ZERO3};
+use crate::symbol::Symbol;
+use crate::system::System;
+use gyro_model::{Attachment, JointKind, Link};
+use std::array::from_fn;
+use std::collections::HashMap;
+
+/// What `gyro_sim::Partition` asks of a generated tree.
+#[derive(Debug)]
+pub struct Partition {
+    /// For each chart the vector whose largest component is the special Euler parameter: see `gyro_sim::charts`.
+    pub chart_vectors: Vec<Vec4>,
+    /// Positions (r, p) of each slot after one Newton step.
+    pub positions: Vec<ExprId>,
+    /// Velocities (s, w') of each slot that satisfy eq. (19).
+    pub velocities: Vec<ExprId>,
+}
+
+/// Symbol and final expression.
+type Values = HashMap<Symbol, ExprId>;
+
+impl Partition {
+    pub fn derive(system: &mut System, kinematics: &Kinematics) -> Self {
+        let links = system.tree.links.clone();
+        let mut blocks = Vec::new();
+        for link in links {
+            blocks.push(Block::new(system, link, blocks.len()));
+        }
+        let n_slots = system.slots.len();
+        let (mut positions, mut velocities) = (Values::new(), Values::new());
+        for block in &blocks {
+            block.correct_positions(system, kinematics, &mut positions);
+            block.solve_velocities(system, kinematics, &mut velocities);
+        }
+        let position =
+            |slot, k| if k < 3 { Symbol::Position { slot, k } } else { Symbol::Euler { slot, k: k - 3 } };
+        let velocity =
+            |slot, k| if k < 3 { Symbol::Velocity { slot, k } } else { Symbol::Spin { slot, k: k - 3 } };
+        let charted = blocks.iter().filter(|block| block.chart.is_some());
+        Self {
+            chart_vectors: charted.map(|block| block.chart_vector(system)).collect(),
+            positions: (0..7 * n_slots).map(|k| positions[&position(k / 7, k % 7)]).collect(),
+            velocities: (0..6 * n_slots).map(|k| velocities[&velocity(k / 6, k % 6)]).collect(),
+        }
+    }
+}
+
+/// One body with what holds it.
+#[derive(Debug)]
+struct Block {
+    slot: usize,
+    attachment: Attachment,
+    /// Rows of its joint among the joint rows: three of the point, then dot-1 rows.
+    rows: std::ops::Range<usize>,
+    /// The chart, as symbols.
+    chart: Option<Vec4>,
+}
+
+impl Block {
+    fn new(system: &mut System, link: Link, index: usize) -> Self {
+        let earlier = &system.tree.links[..index];
+        let chart = earlier.iter().filter(|l| needs_chart(system, l.attachment)).count();
+        let graph = &mut system.graph;
+        let symbols = from_fn(|k| graph.symbol(Symbol::Chart { chart, k }));
+        let rows = match link.attachment {
+            Attachment::Joint { joint, .. } => system.model.joint_rows(joint),
+            Attachment::Free | Attachment::Constrained => 0..0,
+        };
+        Self {
+            slot: system.slot_of(link.body).expect("links have coordinates"),
+            attachment: link.attachment,
+            rows,
+            chart: needs_chart(system, link.attachment).then_some(symbols),
+        }
+    }
+
+    fn joint_kind(&self, system: &System) -> Option<JointKind> {
+        match self.attachment {
+            Attachment::Joint { joint, .. } => Some(system.joints[joint].kind),
+            Attachment::Free | Attachment::Constrained => None,
+        }
+    }
+
+    /// Revolute: the tangent G(p)ᵀ h'; otherwise the normal p.
+    fn chart_vector(&self, system: &mut System) -> Vec4 {
+        let p = system.poses[system.slots[self.slot]].p;
+        match (self.attachment, self.joint_kind(system)) {
+            (Attachment::Joint { joint, reversed, .. }, Some(JointKind::Revolute)) => {
+                let frames = system.joints[joint];
+                let axis = if reversed { frames.first.h } else { frames.second.h };
+                let g = system.graph.g_matrix(&p);
+                from_fn(|k| system.graph.dot(&[g[0][k], g[1][k], g[2][k]], &axis))
+            }
+            _ => p,
+        }
+    }
+
+    /// One Newton step: adds this body's corrected r and p to those of the bodies nearer to the root.
+    fn correct_positions(&self, system: &mut System, kinematics: &Kinematics, corrected: &mut Values) {
+        let slot = self.slot;
+        let pose = system.poses[system.slots[slot]];
+        let (r, p) = match (self.attachment, self.joint_kind(system)) {
+            (Attachment::Constrained, _) => {
+                let given = system.fixed_pose(system.slots[slot]);
+                (given.r, given.p)
+            }
+            (_, Some(JointKind::Revolute | JointKind::Fixed)) => {
+                (ZERO3, self.correct_rotation(system, kinematics, corrected))
+            }
+            _ => {
+                let chart = self.chart.expect("free and spherical orientations have a chart");
+                let r = if self.rows.is_empty() { pose.r } else { ZERO3 };
+                (r, normalise_along(&mut system.graph, &pose.p, &chart))
+            }
+        };
+        corrected.extend((0..4).map(|k| (Symbol::Euler { slot, k }, p[k])));
+        corrected.extend((0..3).map(|k| (Symbol::Position { slot, k }, r[k])));
+        if !self.rows.is_empty() {
+            // The point rows are r plus or minus a rotation's arm: with p corrected they give r in closed form.
+            let residual = self.point_rows(system, &kinematics.phi, corrected);
+            let r = system.graph.sub_vec(&r, &residual);
+            corrected.extend((0..3).map(|k| (Symbol::Position { slot, k }, r[k])));
+        }
+    }
+
+    /// The body's corrected p from its dot-1 rows and its chart.
+    fn correct_rotation(&self, system: &mut System, kinematics: &Kinematics, corrected: &Values) -> Vec4 {
+        let p = system.poses[system.slots[self.slot]].p;
+        let unit = unit_step(&mut system.graph, &p);
+        let mut values = corrected.clone();
+        values.extend((0..4).map(|k| (Symbol::Euler { slot: self.slot, k }, unit[k])));
+        let (mut jacobian, mut residuals) = (Vec::new(), Vec::new());
+        let mut expansion = Expansion::with_values(&system.definitions, values);
+        for row in self.rows.clone().skip(3) {
+            jacobian.push(self.own_rotation(kinematics, row).map(|e| expansion.of(&mut system.graph, e)));
+            residuals.push(expansion.of(&mut system.graph, kinematics.phi[row]));
+        }
+        let graph = &mut system.graph;
+        let mut rhs: Vec<_> = residuals.iter().map(|&phi| graph.neg(phi)).collect();
+        if let Some(chart) = self.chart {
+            // The special Euler parameter keeps the value that it has in p, not in the unit p.
+            jacobian.push(chart_row(graph, &unit, &chart));
+            let gained = graph.sub_vec(&p, &unit);
+            rhs.push(graph.dot(&chart, &gained));
+        }
+        let rotation = graph.solve3(&as_mat3(&jacobian), &as_vec3(&rhs));
+        let change = graph.euler_rate(&unit, &rotation);
+        graph.add_vec(&unit, &change)
+    }
+
+    /// Adds this body's s and w' to those of the bodies nearer to the root.
+    fn solve_velocities(&self, system: &mut System, kinematics: &Kinematics, solved: &mut Values) {
+        let slot = self.slot;
+        let w = self.solve_spin(system, kinematics, solved);
+        solved.extend((0..3).map(|k| (Symbol::Spin { slot, k }, w[k])));
+        let s = match self.attachment {
+            Attachment::Free => system.poses[system.slots[slot]].s,
+            Attachment::Constrained | Attachment::Joint { .. } => ZERO3,
+        };
+        solved.extend((0..3).map(|k| (Symbol::Velocity { slot, k }, s[k])));
+        if !self.rows.is_empty() {
+            let residual = self.point_rows(system, &kinematics.velocity_residual, solved);
+            let s = system.graph.sub_vec(&s, &residual);
+            solved.extend((0..3).map(|k| (Symbol::Velocity { slot, k }, s[k])));
+        }
+    }
+
+    fn solve_spin(&self, system: &mut System, kinematics: &Kinematics, solved: &Values) -> Vec3 {
+        match (self.attachment, self.joint_kind(system)) {
+            (Attachment::Constrained, _) => ZERO3,
+            (_, Some(JointKind::Revolute | JointKind::Fixed)) => {
+                self.constrained_spin(system, kinematics, solved)
+            }
+            // Three components of ṗ are independent, and pᵀṗ = 0 holds for every w': it keeps its integrated value.
+            _ => system.poses[system.slots[self.slot]].w,
+        }
+    }
+
+    /// w' from the body's dot-1 rows; the rate of its special Euler parameter keeps its integrated value.
+    fn constrained_spin(&self, system: &mut System, kinematics: &Kinematics, solved: &Values) -> Vec3 {
+        let mut values = solved.clone();
+        values.extend((0..3).map(|k| (Symbol::Spin { slot: self.slot, k }, Graph::ZERO)));
+        let mut expansion = Expansion::with_values(&system.definitions, values);
+        let (mut jacobian, mut rhs) = (Vec::new(), Vec::new());
+        for row in self.rows.clone().skip(3) {
+            jacobian.push(self.own_rotation(kinematics, row).map(|e| expansion.of(&mut system.graph, e)));
+            let carried = expansion.of(&mut system.graph, kinematics.velocity_residual[row]);
+            rhs.push(system.graph.neg(carried));
+        }
+        if let Some(chart) = self.chart {
+            let pose = system.poses[system.slots[self.slot]];
+            let row = chart_row(&mut system.graph, &pose.p, &chart);
+            jacobian.push(row);
+            rhs.push(system.graph.dot(&row, &pose.w));
+        }
+        system.graph.solve3(&as_mat3(&jacobian), &as_vec3(&rhs))
+    }
+
+    /// Columns π' of this body in a row of Φ_π'.
+    fn own_rotation(&self, kinematics: &Kinematics, row: usize) -> Vec3 {
+        from_fn(|k| kinematics.phi_pi[row][6 * self.slot + 3 + k])
+    }
+
+    /// The joint's point rows of Φ or Φ̇ at the given values, with the sign that this body's own r or s has in them.
+    fn point_rows(&self, system: &mut System, rows: &[ExprId], values: &Values) -> Vec3 {
+        let mut expansion = Expansion::with_values(&system.definitions, values.clone());
+        let rows = from_fn(|k| expansion.of(&mut system.graph, rows[self.rows.start + k]));
+        let reversed = matches!(self.attachment, Attachment::Joint { reversed: true, .. });
+        if reversed { system.graph.neg_vec(&rows) } else { rows }
+    }
+}
+
+/// One Newton step of pᵀp = 1 along p itself, to first order: `p (3 − pᵀp) / 2`.
+fn unit_step(graph: &mut Graph, p: &Vec4) -> Vec4 {
+    let square = graph.dot(p, p);
+    let (three, half) = (graph.integer(3), graph.fraction(1, 2));
+    let difference = graph.sub(three, square);
+    let factor = graph.mul(half, difference);
+    graph.scale_vec(factor, p)
+}
+
+/// One Newton step of pᵀp = 1 in the special Euler parameter alone.
+fn normalise_along(graph: &mut Graph, p: &Vec4, chart: &Vec4) -> Vec4 {
+    let (square, special) = (graph.dot(p, p), graph.dot(p, chart));
+    let (residual, two) = (graph.sub(Graph::ONE, square), graph.integer(2));
+    let slope = graph.mul(two, special);
+    let step = graph.div(residual, slope);
+    let change = graph.scale_vec(step, chart);
+    graph.add_vec(p, &change)
+}
+
+/// The special component of `½ Gᵀ π'` as a row in π'.
+fn chart_row(graph: &mut Graph, p: &Vec4, chart: &Vec4) -> Vec3 {
+    let (g, half) = (graph.g_matrix(p), graph.fraction(1, 2));
+    g.map(|row| {
+        let component = graph.dot(&row, chart);
+        graph.mul(half, component)
+    })
+}
+
+fn as_mat3(rows: &[Vec3]) -> Mat3 {
+    rows.try_into().expect("dot-1 rows and chart make three rows")
+}
+
+fn as_vec3(rows: &[ExprId]) -> Vec3 {
+    rows.try_into().expect("dot-1 rows and chart make three rows")
+}

@@ -1,0 +1,126 @@
+//! From a set of expressions to a straight-line program: what gets a name, in which order, and what it costs.
+
+use crate::graph::{ExprId, Graph, Node};
+use std::collections::HashMap;
+use std::fmt;
+
+/// Arithmetic operations of a program. A negation is free; a product with a reciprocal that nobody else uses is one division.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Operations {
+    pub additions: usize,
+    pub multiplications: usize,
+    pub divisions: usize,
+    pub functions: usize,
+}
+
+impl Operations {
+    /// Counts each shared expression once.
+    pub fn count(graph: &Graph, roots: &[ExprId]) -> Self {
+        let uses = Uses::count(graph, roots);
+        let mut operations = Self::default();
+        for &id in &uses.order {
+            match graph.node(id) {
+                Node::Constant(_) | Node::Symbol(_) | Node::Neg(_) => {}
+                Node::Add(..) => operations.additions += 1,
+                Node::Mul(a, b) if uses.quotient(graph, *a, *b).is_some() => {}
+                Node::Mul(..) => operations.multiplications += 1,
+                Node::Recip(_) => operations.divisions += 1,
+                Node::Sqrt(_) | Node::Sin(_) | Node::Cos(_) => operations.functions += 1,
+            }
+        }
+        operations
+    }
+
+    /// + − × ÷, one each; functions apart.
+    pub fn total(&self) -> usize {
+        self.additions + self.multiplications + self.divisions
+    }
+}
+
+impl fmt::Display for Operations {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { additions, multiplications, divisions, functions } = self;
+        write!(f, "{} operations ({additions} ±, {multiplications} ×, {divisions} ÷)", self.total())?;
+        if *functions > 0 {
+            write!(f, " and {functions} functions")?;
+        }
+        Ok(())
+    }
+}
+
+/// How often each reachable expression is used.
+#[derive(Debug)]
+pub struct Uses {
+    /// Operands before their users.
+    pub order: Vec<ExprId>,
+    counts: HashMap<ExprId, usize>,
+}
+
+impl Uses {
+    /// A negation is written where it is used, so its uses are uses of what it negates.
+    pub fn count(graph: &Graph, roots: &[ExprId]) -> Self {
+        let order = graph.reachable(roots);
+        let mut counts: HashMap<ExprId, usize> = HashMap::new();
+        for &root in roots {
+            *counts.entry(root).or_default() += 1;
+        }
+        for &id in order.iter().rev() {
+            let weight = if matches!(graph.node(id), Node::Neg(_)) { counts[&id] } else { 1 };
+            for operand in graph.node(id).operands() {
+                *counts.entry(operand).or_default() += weight;
+            }
+        }
+        Self { order, counts }
+    }
+
+    pub fn of(&self, id: ExprId) -> usize {
+        self.counts.get(&id).copied().unwrap_or(0)
+    }
+
+    /// Numerator and denominator of a product that is better written as a quotient.
+    pub fn quotient(&self, graph: &Graph, a: ExprId, b: ExprId) -> Option<(ExprId, ExprId)> {
+        let denominator = |id| match graph.node(id) {
+            Node::Recip(x) if self.of(id) == 1 => Some(*x),
+            _ => None,
+        };
+        denominator(b).map(|x| (a, x)).or_else(|| denominator(a).map(|x| (b, x)))
+    }
+}
+
+/// Expressions with more operations than this get a name even if they are used once: for the reader.
+const MAX_INLINE_OPERATIONS: usize = 6;
+
+/// A straight-line program.
+#[derive(Debug)]
+pub struct Program {
+    pub uses: Uses,
+    /// Expressions that get a name, in order.
+    pub temporaries: Vec<ExprId>,
+}
+
+impl Program {
+    pub fn new(graph: &Graph, roots: &[ExprId]) -> Self {
+        let uses = Uses::count(graph, roots);
+        let mut inline_size: HashMap<ExprId, usize> = HashMap::new();
+        let mut temporaries = Vec::new();
+        for &id in &uses.order {
+            let own = match graph.node(id) {
+                Node::Constant(_) | Node::Symbol(_) => 0,
+                node => {
+                    let free = matches!(node, Node::Neg(_));
+                    usize::from(!free) + node.operands().map(|o| inline_size[&o]).sum::<usize>()
+                }
+            };
+            let shared = uses.of(id) > 1 && !matches!(graph.node(id), Node::Neg(_));
+            // A reciprocal that is used once is written as a quotient.
+            let long =
+                own > MAX_INLINE_OPERATIONS && !matches!(graph.node(id), Node::Recip(_) | Node::Neg(_));
+            let named = own > 0 && (shared || long);
+            if named {
+                temporaries.push(id);
+            }
+            inline_size.insert(id, if named { 0 } else { own });
+        }
+        Self { uses, temporaries }
+    }
+}

@@ -1,0 +1,63 @@
+//! Generated multibody dynamics at run time: `no_std`, no allocation, no `unsafe`, no panic on numerical input.
+//!
+//! A mechanism is a type that implements [`Mechanism`]: either a module that `gyro-codegen` wrote from a page of bodies
+//! and joints (this crate ships some in [`generated`]) or anything else that keeps the same contract. The two
+//! algorithms of Gruzman and Sarzeto's section 5 run on it: *direct integration* and *coordinate partitioning*
+//! ([`Partitioned`]).
+//!
+//! # Conventions
+//! Stated once, here, and followed everywhere:
+//! * SI units; angles in radians.
+//! * A body's frame has its origin at the mass centre. `r` is its position in the global frame, `p = (e0, e1, e2, e3)`
+//!   its Euler parameters, scalar first, `A(p)` (eq. (3)) maps body components to global ones.
+//! * Velocities are `s = ṙ` in the global frame and the angular velocity `w'` in the *body* frame; `ṗ = ½ G(p)ᵀ w'`
+//!   (eq. (14)).
+//! * The state is one flat buffer: seven positions `(r, p)` for each body, then six velocities `(s, w')` for each body,
+//!   then, in mechanisms with non-conservative forces only, the work that these have done.
+//! * The constraint rows are those of the joints, in the order of the model page, and then one normalisation
+//!   `pᵀp − 1` (eq. (12)) for each body. Functions that speak of velocities or accelerations have the joint rows only.
+//! * `Φ_r s + Φ_π' w' = ν` with `ν = −Φ_t`, and `Φ_r s̈ + Φ_π' ẇ' = γ`. The multipliers λ are those of eq. (17), where
+//!   `Φ_qᵀ λ` stands on the left: the reaction on a body is `−Φ_qᵀ λ`.
+//! * `p` is a unit vector wherever `w'` or `π'` is used.
+//!
+//! # Example
+//! The paper's gyroscope, one second at the paper's settings:
+//! ```
+//! use gyro_sim::{Mechanism, Ode, Partitioned, generated::gyroscope::Gyroscope};
+//!
+//! let gyroscope = Gyroscope::<f64>::default();
+//! let mut state = gyroscope.start();
+//! let mut solver = Partitioned::new(&gyroscope, &state);
+//! for interval in 0..2000 {
+//!     let t = f64::from(interval) * 5e-4;
+//!     solver.advance(&gyroscope, t, 1e-4, 5, &mut state)?;
+//! }
+//! assert!((gyroscope.energy(&state).total() - 0.05).abs() < 1e-12);
+//! # Ok::<(), gyro_sim::Error>(())
+//! ```
+#![no_std]
+#![forbid(unsafe_code)]
+#![deny(missing_docs)]
+
+// Generated modules name this crate from outside and from within alike.
+extern crate self as gyro_sim;
+
+pub mod charts;
+mod error;
+pub mod generated;
+mod mechanism;
+mod partition;
+mod rk4;
+mod scalar;
+mod turns;
+mod violation;
+
+pub use error::Error;
+pub use mechanism::{
+    Coordinate, Energy, Equations, JointInfo, Mechanism, Ode, Owner, Partition, RowInfo, Storage,
+};
+pub use partition::{Direct, Partitioned};
+pub use rk4::Rk4;
+pub use scalar::{Real, Scalar};
+pub use turns::{JointCoordinate, Turns};
+pub use violation::{Violation, violation};

@@ -1,0 +1,206 @@
+//! The contract between a mechanism and the solvers.
+//!
+//! The mechanism is constant; every buffer is the caller's, and its size is in its type. Generated mechanisms use
+//! arrays, the runtime-assembled twin heap-backed vectors: both implement all of these traits.
+
+use crate::{Error, Real, Scalar};
+use core::fmt::Debug;
+
+/// A buffer of scalars of a fixed length: an array, or a boxed slice.
+pub trait Storage<T>: Clone + Debug + AsRef<[T]> + AsMut<[T]> {}
+impl<T, B: Clone + Debug + AsRef<[T]> + AsMut<[T]>> Storage<T> for B {}
+
+/// A first-order system `ẏ = f(t, y)`: all that an explicit integrator needs.
+pub trait Ode {
+    /// The number type.
+    type Scalar: Scalar;
+    /// The state y; for mechanisms `(q, v [, work])`, see the crate's conventions.
+    type State: Storage<Self::Scalar>;
+
+    /// The state at the start.
+    fn start(&self) -> Self::State;
+    /// Writes `f(t, y)`.
+    fn derivative(&self, t: Self::Scalar, y: &Self::State, dy: &mut Self::State);
+}
+
+/// A mechanism in maximal coordinates, as its solvers and observers see it.
+pub trait Mechanism: Ode {
+    /// One scalar for each joint row.
+    type Rows: Storage<Self::Scalar>;
+    /// One scalar for each joint row, then one for each body's normalisation.
+    type Constraints: Storage<Self::Scalar>;
+    /// Raw joint coordinates, joint after joint: see [`Coordinate`].
+    type Readings: Storage<Self::Scalar>;
+
+    /// Zeroed buffer.
+    fn rows(&self) -> Self::Rows;
+    /// Zeroed buffer.
+    fn constraints(&self) -> Self::Constraints;
+    /// Zeroed buffer.
+    fn readings(&self) -> Self::Readings;
+
+    /// Writes Φ: joint rows, eqs. (5) to (10), then normalisations, eq. (12).
+    fn phi(&self, t: Self::Scalar, y: &Self::State, out: &mut Self::Constraints);
+    /// Writes `Φ_r s + Φ_π' w' − ν`, the residual of eq. (18).
+    fn velocity_residual(&self, t: Self::Scalar, y: &Self::State, out: &mut Self::Rows);
+    /// Kinetic and potential energy, J.
+    fn energy(&self, y: &Self::State) -> Energy<Self::Scalar>;
+    /// Writes the raw joint coordinates and rates.
+    fn read_joints(&self, y: &Self::State, out: &mut Self::Readings);
+
+    /// Number of bodies with coordinates.
+    fn n_bodies(&self) -> usize;
+    /// Number of joints.
+    fn n_joints(&self) -> usize;
+    /// Name of a body with coordinates.
+    fn body_name(&self, body: usize) -> &str;
+    /// Name and coordinate of a joint.
+    fn joint(&self, joint: usize) -> JointInfo<'_>;
+    /// What a joint row measures.
+    fn row(&self, row: usize) -> RowInfo;
+    /// A length typical of the mechanism, m, by which violations of length rows are divided.
+    fn size(&self) -> Self::Scalar;
+    /// The work done so far by non-conservative forces and drivers, J; zero where there are none.
+    fn work(&self, y: &Self::State) -> Self::Scalar;
+}
+
+/// The steps of the coordinate partition, eqs. (18) to (20): positions and velocities are split into independent ones,
+/// which keep their integrated values, and dependent ones, which follow from the constraints.
+pub trait Partition: Mechanism<Scalar: Real> {
+    /// Which coordinates are independent.
+    type Independent: Clone + Debug + PartialEq;
+
+    /// The best choice at a state.
+    fn independent(&self, t: Self::Scalar, y: &Self::State) -> Self::Independent;
+    /// Follows the motion: replaces the choice where it has become a poor one. Returns the number of switches.
+    fn follow(&self, t: Self::Scalar, y: &Self::State, choice: &mut Self::Independent) -> u32;
+    /// One Newton step of the dependent positions towards Φ(q, t) = 0.
+    ///
+    /// # Errors
+    /// [`Error::Singular`] if the choice cannot be solved for.
+    fn newton_step(
+        &self,
+        t: Self::Scalar,
+        choice: &Self::Independent,
+        y: &mut Self::State,
+    ) -> Result<(), Error>;
+    /// Solves eq. (19) for the dependent velocities; the independent ones (components of ṙ and ṗ) keep the values that
+    /// they have in `integrated`.
+    ///
+    /// # Errors
+    /// [`Error::Singular`] if the choice cannot be solved for.
+    fn solve_velocities(
+        &self,
+        t: Self::Scalar,
+        choice: &Self::Independent,
+        integrated: &Self::State,
+        y: &mut Self::State,
+    ) -> Result<(), Error>;
+}
+
+/// The equations of motion term by term, for inspection, tests and other solvers.
+pub trait Equations: Mechanism {
+    /// One scalar for each velocity: `(s, w')` body after body.
+    type Velocities: Storage<Self::Scalar>;
+    /// The non-zeros of Φ_q with respect to (r, p), normalisation rows included.
+    type PhiQ: Storage<Self::Scalar>;
+    /// The non-zeros of (Φ_r, Φ_π').
+    type PhiPi: Storage<Self::Scalar>;
+
+    /// Zeroed buffer.
+    fn velocities(&self) -> Self::Velocities;
+    /// Zeroed buffer.
+    fn phi_q_values(&self) -> Self::PhiQ;
+    /// Zeroed buffer.
+    fn phi_pi_values(&self) -> Self::PhiPi;
+    /// Row and column of each non-zero of Φ_q, row by row.
+    fn phi_q_pattern(&self) -> &[(u16, u16)];
+    /// Row and column of each non-zero of (Φ_r, Φ_π'), row by row.
+    fn phi_pi_pattern(&self) -> &[(u16, u16)];
+
+    /// Writes the non-zeros of Φ_q, joint rows and normalisations, columns `(r, p)` body after body.
+    fn phi_q(&self, t: Self::Scalar, y: &Self::State, out: &mut Self::PhiQ);
+    /// Writes the non-zeros of (Φ_r, Φ_π'), joint rows, columns `(r, π')` body after body.
+    fn phi_pi(&self, t: Self::Scalar, y: &Self::State, out: &mut Self::PhiPi);
+    /// Writes ν = −Φ_t.
+    fn nu(&self, t: Self::Scalar, y: &Self::State, out: &mut Self::Rows);
+    /// Writes γ, the right-hand side of `Φ_r s̈ + Φ_π' ẇ' = γ`.
+    fn gamma(&self, t: Self::Scalar, y: &Self::State, out: &mut Self::Rows);
+    /// Writes `(f, n' − w̃'J'w')`, body after body.
+    fn applied_force(&self, t: Self::Scalar, y: &Self::State, out: &mut Self::Velocities);
+    /// Solves eq. (17): accelerations `(s̈, ẇ')` and multipliers λ.
+    fn accelerations(
+        &self,
+        t: Self::Scalar,
+        y: &Self::State,
+        out: &mut Self::Velocities,
+        lambda: &mut Self::Rows,
+    );
+}
+
+/// Energy of a state, J.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Energy<T> {
+    /// ½ Σ (sᵀ m s + w'ᵀ J' w').
+    pub kinetic: T,
+    /// −Σ m gᵀ r.
+    pub potential: T,
+}
+
+impl<T: Scalar> Energy<T> {
+    /// The sum of both.
+    pub fn total(&self) -> T {
+        self.kinetic + self.potential
+    }
+}
+
+/// Name and coordinate of a joint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct JointInfo<'a> {
+    /// The name on the model page.
+    pub name: &'a str,
+    /// What its readings are.
+    pub coordinate: Coordinate,
+}
+
+/// What the readings of a joint are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Coordinate {
+    /// Three readings: proportional to the sine and cosine of the angle by the same positive factor, and the rate,
+    /// rad/s.
+    Angle,
+    /// Seven readings: Euler parameters of the second body's frame in the first's, and the second body's angular
+    /// velocity relative to the first, in the second body's frame, rad/s.
+    Orientation,
+    /// No readings.
+    None,
+}
+
+impl Coordinate {
+    /// Number of raw readings.
+    pub const fn n_readings(self) -> usize {
+        match self {
+            Self::Angle => 3,
+            Self::Orientation => 7,
+            Self::None => 0,
+        }
+    }
+}
+
+/// What a joint row measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RowInfo {
+    /// The owner of the row.
+    pub owner: Owner,
+    /// Whether the row is a length, m; a pure number otherwise.
+    pub is_length: bool,
+}
+
+/// The owner of a constraint row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Owner {
+    /// A body's own constraint, by the index of the body.
+    Body(u16),
+    /// A joint, by its index.
+    Joint(u16),
+}

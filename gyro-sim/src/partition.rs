@@ -1,0 +1,154 @@
+//! The paper's two algorithms: direct integration and coordinate partitioning.
+
+use crate::{Error, Ode, Owner, Partition, Real, Rk4, Scalar, Storage, violation};
+
+/// *Direct integration*: eq. (17) alone. Violations of the constraints grow, as the paper says.
+#[derive(Clone, Debug)]
+pub struct Direct<S> {
+    rk4: Rk4<S>,
+}
+
+impl<S: Clone> Direct<S> {
+    /// A solver for states like this one.
+    pub fn new(state: &S) -> Self {
+        Self { rk4: Rk4::new(state) }
+    }
+
+    /// Advances `y` from `t` by `n_steps` steps of length `h`.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`] if the state is not finite afterwards.
+    pub fn advance<O>(
+        &mut self,
+        system: &O,
+        t: O::Scalar,
+        h: O::Scalar,
+        n_steps: u32,
+        y: &mut S,
+    ) -> Result<(), Error>
+    where
+        O: Ode<State = S, Scalar: Real>,
+        S: Storage<O::Scalar>,
+    {
+        for step in 0..n_steps {
+            self.rk4.step(system, t + h * O::Scalar::constant(f64::from(step)), h, y);
+        }
+        check_finite(t + h * O::Scalar::constant(f64::from(n_steps)), y.as_ref())
+    }
+}
+
+/// *Coordinate partitioning*: after a number of steps the dependent positions are corrected by Newton–Raphson and the
+/// dependent velocities by eq. (19). The choice of independent coordinates follows the motion.
+#[derive(Clone, Debug)]
+pub struct Partitioned<M: Partition> {
+    direct: Direct<M::State>,
+    independent: M::Independent,
+    integrated: M::State,
+    phi: M::Constraints,
+    switches: u64,
+}
+
+/// Newton–Raphson converges quadratically from the drift of a few steps: one or two iterations. Ten mean that it does not.
+const MAX_ITERATIONS: u32 = 10;
+
+/// The positions count as corrected when no row exceeds this many roundings of one.
+const CONVERGED_EPSILONS: f64 = 16.0;
+
+impl<M: Partition> Partitioned<M> {
+    /// A solver that starts with the best choice of independent coordinates at `state`.
+    pub fn new(mechanism: &M, state: &M::State) -> Self {
+        Self::with_independent(mechanism, state, mechanism.independent(M::Scalar::constant(0.0), state))
+    }
+
+    /// A solver that starts with the given choice of independent coordinates.
+    pub fn with_independent(mechanism: &M, state: &M::State, independent: M::Independent) -> Self {
+        let (direct, phi) = (Direct::new(state), mechanism.constraints());
+        Self { direct, independent, integrated: state.clone(), phi, switches: 0 }
+    }
+
+    /// Advances `y` from `t` by `n_steps` steps of length `h` and corrects it.
+    ///
+    /// # Errors
+    /// [`Error`], with `y` as it was when the failure was noticed.
+    pub fn advance(
+        &mut self,
+        mechanism: &M,
+        t: M::Scalar,
+        h: M::Scalar,
+        n_steps: u32,
+        y: &mut M::State,
+    ) -> Result<(), Error> {
+        self.direct.advance(mechanism, t, h, n_steps, y)?;
+        self.correct(mechanism, t + h * M::Scalar::constant(f64::from(n_steps)), y)
+    }
+
+    /// Chooses the independent coordinates and corrects the dependent ones.
+    ///
+    /// # Errors
+    /// [`Error`], with `y` as it was when the failure was noticed.
+    pub fn correct(&mut self, mechanism: &M, t: M::Scalar, y: &mut M::State) -> Result<(), Error> {
+        self.switches += u64::from(mechanism.follow(t, y, &mut self.independent));
+        self.correct_with_current_choice(mechanism, t, y)
+    }
+
+    /// Corrects the dependent coordinates without looking whether the choice is still a good one: to show what a fixed
+    /// choice does, or to choose by other means.
+    ///
+    /// # Errors
+    /// [`Error`], with `y` as it was when the failure was noticed.
+    pub fn correct_with_current_choice(
+        &mut self,
+        mechanism: &M,
+        t: M::Scalar,
+        y: &mut M::State,
+    ) -> Result<(), Error> {
+        self.integrated.clone_from(y);
+        self.correct_positions(mechanism, t, y)?;
+        mechanism.solve_velocities(t, &self.independent, &self.integrated, y)?;
+        check_finite(t, y.as_ref())
+    }
+
+    /// How often the choice of independent coordinates has changed, counted joint by joint.
+    pub fn switches(&self) -> u64 {
+        self.switches
+    }
+
+    /// The present choice of independent coordinates.
+    pub fn independent(&self) -> &M::Independent {
+        &self.independent
+    }
+
+    fn correct_positions(&mut self, mechanism: &M, t: M::Scalar, y: &mut M::State) -> Result<(), Error> {
+        let tolerance = M::Scalar::EPSILON * M::Scalar::constant(CONVERGED_EPSILONS);
+        for _ in 0..MAX_ITERATIONS {
+            mechanism.newton_step(t, &self.independent, y)?;
+            if self.worst(mechanism, t, y).0 <= tolerance {
+                return Ok(());
+            }
+        }
+        let (value, owner) = self.worst(mechanism, t, y);
+        Err(Error::NoConvergence { t: t.to_f64(), violation: value.to_f64(), owner })
+    }
+
+    /// The worst row of Φ, normalisations included, and its owner.
+    fn worst(&mut self, mechanism: &M, t: M::Scalar, y: &M::State) -> (M::Scalar, Owner) {
+        mechanism.phi(t, y, &mut self.phi);
+        let phi = self.phi.as_ref();
+        let (joint_rows, normalisations) = phi.split_at(phi.len() - mechanism.n_bodies());
+        let joints = violation(mechanism, joint_rows);
+        let mut worst = (joints.value, joints.owner.unwrap_or(Owner::Body(0)));
+        for (body, row) in (0u16..).zip(normalisations) {
+            if !(row.abs() <= worst.0) && worst.0.is_finite() {
+                worst = (row.abs(), Owner::Body(body));
+            }
+        }
+        worst
+    }
+}
+
+fn check_finite<T: Real>(t: T, state: &[T]) -> Result<(), Error> {
+    match (0u16..).zip(state).find(|(_, x)| !x.is_finite()) {
+        Some((index, _)) => Err(Error::NotFinite { t: t.to_f64(), index }),
+        None => Ok(()),
+    }
+}

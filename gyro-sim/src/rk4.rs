@@ -1,0 +1,90 @@
+//! The classical fourth-order Runge–Kutta method (Kutta 1901; Hairer, Nørsett and Wanner, *Solving ODEs I*, table II.1.2).
+
+use crate::{Ode, Scalar, Storage};
+
+/// Work space of the method for states of type `S`.
+#[derive(Clone, Debug)]
+pub struct Rk4<S> {
+    slope: S,
+    stage: S,
+    sum: S,
+}
+
+impl<S: Clone> Rk4<S> {
+    /// Work space for states like this one.
+    pub fn new(state: &S) -> Self {
+        Self { slope: state.clone(), stage: state.clone(), sum: state.clone() }
+    }
+
+    /// Advances `y` from `t` to `t + h`.
+    pub fn step<O>(&mut self, system: &O, t: O::Scalar, h: O::Scalar, y: &mut S)
+    where
+        O: Ode<State = S>,
+        S: Storage<O::Scalar>,
+    {
+        let half = h * O::Scalar::constant(0.5);
+        let (sixth, third) = (h / O::Scalar::constant(6.0), h / O::Scalar::constant(3.0));
+        system.derivative(t, y, &mut self.slope);
+        add_scaled(&mut self.sum, y, sixth, &self.slope);
+        add_scaled(&mut self.stage, y, half, &self.slope);
+        system.derivative(t + half, &self.stage, &mut self.slope);
+        accumulate(&mut self.sum, third, &self.slope);
+        add_scaled(&mut self.stage, y, half, &self.slope);
+        system.derivative(t + half, &self.stage, &mut self.slope);
+        accumulate(&mut self.sum, third, &self.slope);
+        add_scaled(&mut self.stage, y, h, &self.slope);
+        system.derivative(t + h, &self.stage, &mut self.slope);
+        add_scaled(y, &self.sum, sixth, &self.slope);
+    }
+}
+
+/// `out = y + factor · slope`.
+#[inline]
+fn add_scaled<T: Scalar, S: Storage<T>>(out: &mut S, y: &S, factor: T, slope: &S) {
+    for ((out, y), slope) in out.as_mut().iter_mut().zip(y.as_ref()).zip(slope.as_ref()) {
+        *out = *y + factor * *slope;
+    }
+}
+
+/// `sum = sum + factor · slope`.
+#[inline]
+fn accumulate<T: Scalar, S: Storage<T>>(sum: &mut S, factor: T, slope: &S) {
+    for (sum, slope) in sum.as_mut().iter_mut().zip(slope.as_ref()) {
+        *sum = *sum + factor * *slope;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// ẏ = (y₁, −y₀): a circle.
+    struct Oscillator;
+
+    impl Ode for Oscillator {
+        type Scalar = f64;
+        type State = [f64; 2];
+        fn start(&self) -> [f64; 2] {
+            [1.0, 0.0]
+        }
+        fn derivative(&self, _: f64, y: &[f64; 2], dy: &mut [f64; 2]) {
+            *dy = [y[1], -y[0]];
+        }
+    }
+
+    fn error_at_one(steps: u32) -> f64 {
+        let mut y = Oscillator.start();
+        let mut rk4 = Rk4::new(&y);
+        let h = 1.0 / f64::from(steps);
+        for step in 0..steps {
+            rk4.step(&Oscillator, f64::from(step) * h, h, &mut y);
+        }
+        (y[0] - libm::cos(1.0)).abs().max((y[1] + libm::sin(1.0)).abs())
+    }
+
+    #[test]
+    fn halving_the_step_divides_the_error_by_sixteen() {
+        let ratio = error_at_one(50) / error_at_one(100);
+        assert!((ratio - 16.0).abs() < 0.5, "{ratio}");
+    }
+}

@@ -1,0 +1,103 @@
+//! Names: what may be one, and which one may have been meant.
+
+/// Words that Rust keeps for itself: a module or a field cannot have such a name.
+const KEYWORDS: [&str; 51] = [
+    "abstract", "as", "async", "await", "become", "box", "break", "const", "continue", "crate", "do", "dyn",
+    "else", "enum", "extern", "false", "final", "fn", "for", "gen", "if", "impl", "in", "let", "loop",
+    "macro", "match", "mod", "move", "mut", "override", "priv", "pub", "ref", "return", "self", "static",
+    "struct", "super", "trait", "true", "try", "type", "typeof", "unsafe", "unsized", "use", "virtual",
+    "where", "while", "yield",
+];
+
+/// Whether a name is in `snake_case`: a lowercase letter, then lowercase letters, digits and underscores.
+pub(super) fn is_snake_case(name: &str) -> bool {
+    name.starts_with(|c: char| c.is_ascii_lowercase())
+        && name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_')
+}
+
+pub(super) fn is_keyword(name: &str) -> bool {
+    KEYWORDS.contains(&name)
+}
+
+/// A name in `snake_case` made of what was written.
+pub(super) fn snake_case(written: &str) -> String {
+    let mut name = String::new();
+    for c in written.chars() {
+        if c.is_ascii_uppercase()
+            && !name.is_empty()
+            && !name.ends_with('_')
+            && !name.ends_with(char::is_numeric)
+        {
+            name.push('_');
+        }
+        match c.to_ascii_lowercase() {
+            c if c.is_ascii_alphanumeric() => name.push(c),
+            _ if name.is_empty() || name.ends_with('_') => {}
+            _ => name.push('_'),
+        }
+    }
+    let name = name.trim_end_matches('_');
+    if is_snake_case(name) { name.to_owned() } else { format!("a{name}") }
+}
+
+/// The known name that differs least from what was written, if it is near enough to have been meant.
+pub(super) fn nearest<'n>(written: &str, known: &[&'n str]) -> Option<&'n str> {
+    let written = written.to_lowercase();
+    let distance = |name: &str| strsim::damerau_levenshtein(&written, &name.to_lowercase());
+    let letters = |name: &str| {
+        let mut letters: Vec<char> = name.chars().collect();
+        letters.sort_unstable();
+        letters
+    };
+    // Of equally near names, one of the same letters.
+    let best = known.iter().min_by_key(|name| (distance(name), letters(name) != letters(&written)))?;
+    let length = written.chars().count().max(best.chars().count());
+    (distance(best) <= length.div_ceil(3)).then_some(best)
+}
+
+/// What to write instead of an unknown name.
+pub(super) fn instead(written: &str, known: &[&str]) -> String {
+    let only = known.first().copied().filter(|_| known.len() == 1);
+    match nearest(written, known).or(only) {
+        Some(name) => format!("write `{name}`"),
+        None => format!("write one of {}", list(known)),
+    }
+}
+
+/// Names in backquotes, separated by commas.
+pub(super) fn list(names: &[&str]) -> String {
+    names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn near_names_are_offered_and_far_ones_are_not() {
+        let check = |written: &str, expected: Option<&str>| {
+            assert_eq!(nearest(written, &["mass", "inertia", "angular_velocity"]), expected, "{written}");
+        };
+        check("mas", Some("mass"));
+        check("Mass", Some("mass"));
+        check("interia", Some("inertia"));
+        check("angular-velocity", Some("angular_velocity"));
+        check("colour", None);
+        assert_eq!(nearest("zx", &["xx", "zz", "xz"]), Some("xz"));
+        check("", None);
+    }
+
+    #[test]
+    fn suggested_names_are_names() {
+        let check = |written: &str, expected: &str| {
+            assert_eq!(snake_case(written), expected);
+            assert!(is_snake_case(expected));
+        };
+        check("outer-ring", "outer_ring");
+        check("OuterRing", "outer_ring");
+        check("Outer Ring", "outer_ring");
+        check("2nd ring", "a2nd_ring");
+        check("", "a");
+        check("é", "a");
+    }
+}

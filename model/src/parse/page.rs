@@ -1,0 +1,182 @@
+//! The page as a whole: format, name, gravity, parameters and simulation.
+
+use std::ops::Range;
+
+use num_traits::One;
+use toml::Spanned;
+use toml::de::{DeString, DeTable, DeValue};
+
+use super::names;
+use super::numbers::{plain_number, positive};
+use super::reader::Reader;
+use super::section::{Item, Section, not_a_name};
+use super::{bodies, joints};
+use crate::diagnostics::Related;
+use crate::validate::{Owner, Place};
+use crate::{Method, Model, Parameter, Rational, Simulation, to_f64};
+
+const KEYS: [&str; 7] = ["format", "name", "gravity", "simulation", "parameters", "body", "joint"];
+const SIMULATION_KEYS: [&str; 5] = ["t_end", "step", "correct_every", "sample_every", "method"];
+const METHODS: [(&str, Method); 2] = [("partitioned", Method::Partitioned), ("direct", Method::Direct)];
+
+/// Reads everything. Where something is wrong the reader knows, and a default stands in the model.
+pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
+    reader.mark(Place { owner: Owner::Page, key: "" }, 0..0);
+    let page = Section::open(reader, Owner::Page, "the page", table, &KEYS);
+    format(reader, &page);
+    let name = name(reader, &page);
+    let parameters = page.get("parameters").map(|item| parameters(reader, item)).unwrap_or_default();
+    let gravity = page.vector_or(reader, "gravity", [0; 3]);
+    let simulation = simulation(reader, &page);
+    let bodies = bodies::read(reader, &page);
+    let joints = joints::read(reader, &page);
+    Model { name, gravity, parameters, bodies, joints, simulation }
+}
+
+fn format(reader: &mut Reader<'_>, page: &Section<'_>) {
+    let Some(item) = page.require(reader, "format", "the page", "format = 1 on top") else { return };
+    let version = plain_number(reader, item);
+    if version.is_some_and(|version| !version.is_one()) {
+        let words = ["this format is not known", "this reader knows format 1", "write format = 1"];
+        item.wrong(reader, words.map(str::to_owned));
+    }
+}
+
+fn name(reader: &mut Reader<'_>, page: &Section<'_>) -> String {
+    let example = "name = \"some_name\", the name of the generated module";
+    let Some(item) = page.require(reader, "name", "the page", example) else { return String::new() };
+    let name = item.name(reader).unwrap_or_default();
+    if names::is_keyword(name) {
+        item.wrong(reader, keyword(name));
+    }
+    name.to_owned()
+}
+
+fn keyword(name: &str) -> [String; 3] {
+    [
+        format!("`{name}` is a word of the Rust language"),
+        "cannot name a module or a field".to_owned(),
+        format!("write another name, such as `{name}_0`"),
+    ]
+}
+
+/// The parameters in the order of the page. All names are known before any number refers to one.
+fn parameters(reader: &mut Reader<'_>, item: Item<'_>) -> Vec<Parameter> {
+    let Some(table) = item.table(reader, "[parameters] on a line of its own, then name = number") else {
+        return Vec::new();
+    };
+    let mut entries: Vec<_> = table.iter().collect();
+    entries.sort_by_key(|(key, _)| key.span().start);
+    let parameters: Vec<Parameter> = entries
+        .iter()
+        .enumerate()
+        .map(|(index, (key, value))| parameter(reader, index, key, value))
+        .collect();
+    reader.parameters = parameters.iter().map(|p| p.name.clone()).collect();
+    parameters
+}
+
+fn parameter(
+    reader: &mut Reader<'_>,
+    index: usize,
+    key: &Spanned<DeString<'_>>,
+    value: &Spanned<DeValue<'_>>,
+) -> Parameter {
+    let place = Place { owner: Owner::Parameter(index), key: "" };
+    let name = key.get_ref().as_ref();
+    reader.mark(place, value.span());
+    if !names::is_snake_case(name) {
+        reader.wrong(place, key.span(), not_a_name(name));
+    } else if names::is_keyword(name) {
+        reader.wrong(place, key.span(), keyword(name));
+    }
+    let value = plain_number(reader, Item { place: Place { key: "value", ..place }, value });
+    Parameter { name: name.to_owned(), value: value.unwrap_or_else(Rational::one) }
+}
+
+/// The simulation settings with their defaults: one second in steps of a millisecond, a correction every five steps.
+fn simulation(reader: &mut Reader<'_>, page: &Section<'_>) -> Simulation {
+    let example = "[simulation] on a line of its own, then t_end = 1";
+    let empty = DeTable::new();
+    let table = page.get("simulation").and_then(|item| item.table(reader, example)).unwrap_or(&empty);
+    let section = Section::open(reader, Owner::Simulation, "[simulation]", table, &SIMULATION_KEYS);
+    let ratio = |numerator: i64, denominator: i64| Rational::new(numerator.into(), denominator.into());
+    let t_end = positive(reader, &section, "t_end").unwrap_or_else(Rational::one);
+    let step = positive(reader, &section, "step").unwrap_or_else(|| ratio(1, 1000));
+    let correct_every = positive(reader, &section, "correct_every").unwrap_or_else(|| &step * ratio(5, 1));
+    let sample_every = positive(reader, &section, "sample_every").unwrap_or_else(|| &t_end * ratio(1, 1000));
+    Simulation {
+        t_end: to_f64(&t_end),
+        step: to_f64(&step),
+        correct_every: to_f64(&correct_every),
+        sample_every: to_f64(&sample_every),
+        method: method(reader, &section),
+    }
+}
+
+fn method(reader: &mut Reader<'_>, section: &Section<'_>) -> Method {
+    let Some(item) = section.get("method") else { return Method::Partitioned };
+    let Some(written) = item.text(reader, "method = \"partitioned\"") else { return Method::Partitioned };
+    let method = METHODS.iter().find(|(name, _)| *name == written);
+    if method.is_none() {
+        let help = names::instead(written, &METHODS.map(|(name, _)| name));
+        item.wrong(reader, [format!("unknown method `{written}`"), "not a method".to_owned(), help]);
+    }
+    method.map_or(Method::Partitioned, |(_, method)| *method)
+}
+
+/// The tables of `[[body]]` or `[[joint]]`, with the span of each.
+pub(super) fn tables<'t>(
+    reader: &mut Reader<'_>,
+    page: &Section<'t>,
+    key: &'static str,
+) -> Vec<(Range<usize>, &'t DeTable<'t>)> {
+    let Some(item) = page.get(key) else { return Vec::new() };
+    let example = format!("[[{key}]] on a line of its own above each {key}");
+    let Some(elements) = item.value.get_ref().as_array() else {
+        item.wrong_type(reader, "an array of tables", &example);
+        return Vec::new();
+    };
+    let mut tables = Vec::new();
+    for value in elements.iter() {
+        if let Some(table) = (Item { place: item.place, value }).table(reader, &example) {
+            tables.push((value.span(), table));
+        }
+    }
+    tables
+}
+
+/// Reads the names of all bodies or joints and reports those that are missing, repeated or no names.
+pub(super) fn names(
+    reader: &mut Reader<'_>,
+    tables: &[(Range<usize>, &DeTable<'_>)],
+    owner: fn(usize) -> Owner,
+    what: &str,
+) -> Vec<Option<String>> {
+    let mut seen: Vec<(Option<String>, Range<usize>)> = Vec::new();
+    for (index, (header, table)) in tables.iter().enumerate() {
+        let place = Place { owner: owner(index), key: "name" };
+        let value = table.get("name");
+        let span = value.map_or(header.clone(), Spanned::span);
+        reader.mark(Place { key: "", ..place }, span.clone());
+        let name = match value {
+            Some(value) => Item { place, value }.name(reader),
+            None => no_name(reader, place, what, index),
+        };
+        let earlier = seen.iter().find(|(other, _)| name.is_some() && name == other.as_deref());
+        if let (Some(name), Some((_, first))) = (name, earlier) {
+            let related = Related { span: first.clone(), label: "first used here".to_owned() };
+            let help = "write another name".to_owned();
+            let words = [format!("{what} `{name}` is written twice"), "used again".to_owned(), help];
+            reader.clash(place, span.clone(), related, words);
+        }
+        seen.push((name.map(str::to_owned), span));
+    }
+    seen.into_iter().map(|(name, _)| name).collect()
+}
+
+fn no_name(reader: &mut Reader<'_>, place: Place, what: &str, index: usize) -> Option<&'static str> {
+    let help = format!("write name = \"{what}_{}\"", index + 1);
+    reader.missing(place, [format!("{what} {} has no `name`", index + 1), "needs `name`".to_owned(), help]);
+    None
+}

@@ -1,0 +1,150 @@
+//! What is found while a page is walked: mistakes, and the place of everything in the text.
+
+use std::collections::{HashMap, HashSet};
+use std::ops::Range;
+
+use crate::diagnostics::{Diagnostic, Related};
+use crate::validate::{Owner, Place, Problem};
+
+/// The state of a walk.
+pub(super) struct Reader<'t> {
+    text: &'t str,
+    mistakes: Vec<Mistake>,
+    spans: HashMap<Place, Range<usize>>,
+    broken: HashSet<Place>,
+    /// Names of the page's parameters; numbers may refer to them.
+    pub(super) parameters: Vec<String>,
+    /// Names of the page's bodies; joints refer to them.
+    pub(super) bodies: Vec<Option<String>>,
+}
+
+struct Mistake {
+    nature: Nature,
+    diagnostic: Diagnostic,
+}
+
+/// How sure one can be of a mistake while the page has syntax errors.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Nature {
+    /// Something written is wrong.
+    Written,
+    /// Something is missing or does not fit; a line that could not be read may be the cause.
+    Absent,
+}
+
+impl<'t> Reader<'t> {
+    pub(super) fn new(text: &'t str) -> Self {
+        Self {
+            text,
+            mistakes: Vec::new(),
+            spans: HashMap::new(),
+            broken: HashSet::new(),
+            parameters: Vec::new(),
+            bodies: Vec::new(),
+        }
+    }
+
+    /// Notes where a place is.
+    pub(super) fn mark(&mut self, place: Place, span: Range<usize>) {
+        self.spans.insert(place, span);
+    }
+
+    /// Reports that something written is wrong, and keeps its place from being judged again.
+    pub(super) fn wrong(&mut self, place: Place, span: Range<usize>, [message, label, help]: [String; 3]) {
+        self.broken.insert(place);
+        self.push(Nature::Written, Diagnostic { span, message, label, help, related: Vec::new() });
+    }
+
+    /// Reports a key that nothing knows.
+    pub(super) fn unknown(&mut self, span: Range<usize>, [message, label, help]: [String; 3]) {
+        self.push(Nature::Written, Diagnostic { span, message, label, help, related: Vec::new() });
+    }
+
+    /// Keeps a place from being judged: a part of it had a mistake.
+    pub(super) fn doubt(&mut self, place: Place) {
+        self.broken.insert(place);
+    }
+
+    /// The same as [`Self::wrong`], with a second place in the text.
+    pub(super) fn clash(&mut self, place: Place, span: Range<usize>, related: Related, words: [String; 3]) {
+        self.wrong(place, span, words);
+        if let Some(last) = self.mistakes.last_mut() {
+            last.diagnostic.related.push(related);
+        }
+    }
+
+    /// Reports that something is missing, at the place that should have it.
+    pub(super) fn missing(&mut self, place: Place, [message, label, help]: [String; 3]) {
+        self.broken.insert(place);
+        let span = self.span(place);
+        self.push(Nature::Absent, Diagnostic { span, message, label, help, related: Vec::new() });
+    }
+
+    /// Reports problems, save at places with a mistake of their own.
+    pub(super) fn add_problems(&mut self, problems: Vec<Problem>) {
+        for Problem { place, also, message, label, help } in problems {
+            if self.is_broken(place) || also.as_ref().is_some_and(|(place, _)| self.is_broken(*place)) {
+                continue;
+            }
+            let related = also.map(|(place, label)| Related { span: self.span(place), label });
+            let related = related.into_iter().collect();
+            let span = self.span(place);
+            self.push(Nature::Absent, Diagnostic { span, message, label, help, related });
+        }
+    }
+
+    /// Whether the bodies' names or the joints' references to them are in doubt, so that nothing can be said of how
+    /// the bodies hang together.
+    pub(super) fn names_are_broken(&self) -> bool {
+        let names_bodies = |place: &Place| match place.owner {
+            Owner::Page => matches!(place.key, "body" | "joint"),
+            Owner::Body(_) => matches!(place.key, "name" | "fixed" | "free"),
+            Owner::Joint(_) => matches!(place.key, "first" | "second" | "kind"),
+            Owner::End(..) => place.key == "body",
+            Owner::Simulation | Owner::Parameter(_) => false,
+        };
+        self.broken.iter().any(names_bodies)
+    }
+
+    /// Whether a place had a mistake of its own.
+    pub(super) fn is_doubted(&self, place: Place) -> bool {
+        self.broken.contains(&place)
+    }
+
+    pub(super) fn is_clean(&self) -> bool {
+        self.mistakes.is_empty()
+    }
+
+    /// The mistakes of a page without syntax errors.
+    pub(super) fn into_mistakes(self) -> Vec<Diagnostic> {
+        self.mistakes.into_iter().map(|m| m.diagnostic).collect()
+    }
+
+    /// Syntax errors, with those mistakes that they cannot have caused: written ones on other lines.
+    pub(super) fn into_certain(self, syntax: Vec<Diagnostic>) -> Vec<Diagnostic> {
+        let line = |at: usize| self.text.bytes().take(at).filter(|&b| b == b'\n').count();
+        let bad: HashSet<usize> = syntax.iter().map(|d| line(d.span.start)).collect();
+        let certain = self.mistakes.iter().filter(|m| {
+            let span = &m.diagnostic.span;
+            m.nature == Nature::Written && !(line(span.start)..=line(span.end)).any(|l| bad.contains(&l))
+        });
+        let certain: Vec<Diagnostic> = certain.map(|m| m.diagnostic.clone()).collect();
+        syntax.into_iter().chain(certain).collect()
+    }
+
+    fn push(&mut self, nature: Nature, diagnostic: Diagnostic) {
+        self.mistakes.push(Mistake { nature, diagnostic });
+    }
+
+    /// Where a place is, or the nearest thing around it that the page has.
+    fn span(&self, place: Place) -> Range<usize> {
+        let around = std::iter::successors(Some(place), |p| p.fallback());
+        around.filter_map(|p| self.spans.get(&p)).next().cloned().unwrap_or_default()
+    }
+
+    /// Whether a place, or what stands for it, has a mistake of its own.
+    fn is_broken(&self, place: Place) -> bool {
+        let around = std::iter::successors(Some(place), |p| p.fallback());
+        around.take_while(|p| !p.key.is_empty() || *p == place).any(|p| self.broken.contains(&p))
+    }
+}

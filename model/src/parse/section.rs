@@ -1,0 +1,171 @@
+//! A table of the page under the eye of the reader: its known keys, and a complaint about any other.
+
+use std::ops::Range;
+
+use toml::Spanned;
+use toml::de::{DeString, DeTable, DeValue};
+
+use super::names;
+use super::reader::Reader;
+use crate::validate::{Owner, Place};
+
+/// A table with the keys that it may have.
+#[derive(Clone, Copy)]
+pub(super) struct Section<'t> {
+    pub(super) owner: Owner,
+    table: &'t DeTable<'t>,
+}
+
+/// The value of a key.
+#[derive(Clone, Copy)]
+pub(super) struct Item<'t> {
+    pub(super) place: Place,
+    pub(super) value: &'t Spanned<DeValue<'t>>,
+}
+
+impl<'t> Section<'t> {
+    /// Marks the places of all known keys and reports the unknown ones. `title` says what the table is.
+    pub(super) fn open(
+        reader: &mut Reader<'_>,
+        owner: Owner,
+        title: &str,
+        table: &'t DeTable<'t>,
+        known: &[&'static str],
+    ) -> Self {
+        for (key, value) in table {
+            match known.iter().find(|name| **name == key.get_ref().as_ref()) {
+                Some(name) => reader.mark(Place { owner, key: name }, value.span()),
+                None => unknown_key(reader, owner, title, key, known),
+            }
+        }
+        Self { owner, table }
+    }
+
+    pub(super) fn place(&self, key: &'static str) -> Place {
+        Place { owner: self.owner, key }
+    }
+
+    pub(super) fn get(&self, key: &'static str) -> Option<Item<'t>> {
+        self.table.get(key).map(|value| Item { place: self.place(key), value })
+    }
+
+    pub(super) fn has(&self, key: &'static str) -> bool {
+        self.table.contains_key(key)
+    }
+
+    /// The value of a key that must be there; `title` says what should have it and `example` what to write.
+    pub(super) fn require(
+        &self,
+        reader: &mut Reader<'_>,
+        key: &'static str,
+        title: &str,
+        example: &str,
+    ) -> Option<Item<'t>> {
+        let item = self.get(key);
+        if item.is_none() && !reader.is_doubted(self.place(key)) {
+            let words =
+                [format!("{title} has no `{key}`"), format!("needs `{key}`"), format!("write {example}")];
+            reader.missing(self.place(key), words);
+        }
+        item
+    }
+
+    /// Refuses a key that is known but out of place here.
+    pub(super) fn refuse(&self, reader: &mut Reader<'_>, key: &'static str, message: &str, help: &str) {
+        if let Some(item) = self.get(key) {
+            item.wrong(reader, [message.to_owned(), "out of place".to_owned(), help.to_owned()]);
+        }
+    }
+}
+
+impl<'t> Item<'t> {
+    pub(super) fn span(&self) -> Range<usize> {
+        self.value.span()
+    }
+
+    pub(super) fn key(&self) -> &'static str {
+        self.place.key
+    }
+
+    pub(super) fn wrong(&self, reader: &mut Reader<'_>, words: [String; 3]) {
+        reader.wrong(self.place, self.span(), words);
+    }
+
+    /// Reports that something of another type was expected.
+    pub(super) fn wrong_type(&self, reader: &mut Reader<'_>, expected: &str, example: &str) {
+        let words = [
+            format!("`{}` must be {expected}", self.key()),
+            format!("found {}", found(self.value.get_ref())),
+            format!("write {example}"),
+        ];
+        self.wrong(reader, words);
+    }
+
+    pub(super) fn text(&self, reader: &mut Reader<'_>, example: &str) -> Option<&'t str> {
+        let text = self.value.get_ref().as_str();
+        if text.is_none() {
+            self.wrong_type(reader, "a text", example);
+        }
+        text
+    }
+
+    pub(super) fn table(&self, reader: &mut Reader<'_>, example: &str) -> Option<&'t DeTable<'t>> {
+        let table = self.value.get_ref().as_table();
+        if table.is_none() {
+            self.wrong_type(reader, "a table", example);
+        }
+        table
+    }
+
+    /// A name in `snake_case`.
+    pub(super) fn name(&self, reader: &mut Reader<'_>) -> Option<&'t str> {
+        let name = self.text(reader, &format!("{} = \"some_name\"", self.key()))?;
+        if !names::is_snake_case(name) {
+            reader.wrong(self.place, self.span(), not_a_name(name));
+        }
+        Some(name)
+    }
+}
+
+/// The words for a text that cannot be a name.
+pub(super) fn not_a_name(name: &str) -> [String; 3] {
+    [
+        format!("`{name}` is not a name"),
+        "a name is a lowercase letter, then lowercase letters, digits and `_`".to_owned(),
+        format!("write `{}`", names::snake_case(name)),
+    ]
+}
+
+/// What a value is, with its article.
+pub(super) fn found(value: &DeValue<'_>) -> String {
+    match value {
+        DeValue::String(text) => format!("the text {text:?}"),
+        DeValue::Integer(number) => format!("the number {number}"),
+        DeValue::Float(number) => format!("the number {number}"),
+        DeValue::Boolean(value) => format!("the truth value {value}"),
+        DeValue::Datetime(_) => "a date or time".to_owned(),
+        DeValue::Array(elements) => format!("an array of {}", elements.len()),
+        DeValue::Table(_) => "a table".to_owned(),
+    }
+}
+
+fn unknown_key(
+    reader: &mut Reader<'_>,
+    owner: Owner,
+    title: &str,
+    key: &Spanned<DeString<'_>>,
+    known: &[&'static str],
+) {
+    let written = key.get_ref();
+    let nearest = names::nearest(written, known).and_then(|name| known.iter().find(|k| **k == name));
+    let help = match nearest {
+        Some(name) => format!("write `{name}`"),
+        None => format!("its keys are {}", names::list(known)),
+    };
+    if let Some(key) = nearest {
+        // The key that was meant is not reported as missing, too.
+        reader.doubt(Place { owner, key });
+    }
+    let words = [format!("unknown key `{written}` in {title}"), "not known here".to_owned(), help];
+    reader.unknown(key.span(), words);
+}

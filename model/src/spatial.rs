@@ -1,0 +1,235 @@
+//! Vectors and Euler parameters in `f64`: just what the assembly of the start needs.
+
+use std::ops::{Add, Mul, Neg, Sub};
+
+use num_traits::{Signed, Zero};
+
+use crate::{Rational, to_f64};
+
+/// A vector of three components.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Vector(pub [f64; 3]);
+
+/// Euler parameters `(e0, e1, e2, e3)`, scalar first, paper section 2.
+///
+/// A unit quaternion `p` turns components in a body's frame into components in the frame that `p` is measured in, by
+/// the matrix `A(p)` of paper eq. (3); `A(p) A(q) = A(p q)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quaternion(pub [f64; 4]);
+
+impl Vector {
+    /// The null vector.
+    pub const ZERO: Self = Self([0.0; 3]);
+
+    /// The unit vector along an exact direction of any length; `None` if that length is zero.
+    ///
+    /// The scaling is exact, so no direction is too long or too short for it.
+    pub fn unit(direction: &[Rational; 3]) -> Option<Self> {
+        scaled(direction).map(|v| Self(v).normalised())
+    }
+
+    /// Scalar product.
+    pub fn dot(self, other: Self) -> f64 {
+        let ([a, b, c], [x, y, z]) = (self.0, other.0);
+        a * x + b * y + c * z
+    }
+
+    /// Vector product.
+    pub fn cross(self, other: Self) -> Self {
+        let ([a, b, c], [x, y, z]) = (self.0, other.0);
+        Self([b * z - c * y, c * x - a * z, a * y - b * x])
+    }
+
+    /// Euclidean length.
+    pub fn norm(self) -> f64 {
+        self.dot(self).sqrt()
+    }
+
+    /// The vector of length one in the same direction; not a number if the length is zero.
+    pub fn normalised(self) -> Self {
+        let norm = self.norm();
+        Self(self.0.map(|x| x / norm))
+    }
+}
+
+impl Add for Vector {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self(std::array::from_fn(|k| self.0[k] + other.0[k]))
+    }
+}
+
+impl Sub for Vector {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        Self(std::array::from_fn(|k| self.0[k] - other.0[k]))
+    }
+}
+
+impl Neg for Vector {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self(self.0.map(|x| -x))
+    }
+}
+
+impl Mul<f64> for Vector {
+    type Output = Self;
+
+    fn mul(self, factor: f64) -> Self {
+        Self(self.0.map(|x| x * factor))
+    }
+}
+
+impl Quaternion {
+    /// No rotation.
+    pub const IDENTITY: Self = Self([1.0, 0.0, 0.0, 0.0]);
+
+    /// The unit quaternion along exact Euler parameters of any length; `None` if that length is zero.
+    pub fn unit(parameters: &[Rational; 4]) -> Option<Self> {
+        scaled(parameters).map(|p| Self(p).normalised())
+    }
+
+    /// Rotation by an angle (rad) about the frame's own z axis.
+    pub fn about_z(angle: f64) -> Self {
+        let (sin, cos) = (0.5 * angle).sin_cos();
+        Self([cos, 0.0, 0.0, sin])
+    }
+
+    /// The orientation of a right-handed frame of unit vectors `(f, g, h)`: `A(p) = [f g h]`.
+    ///
+    /// The largest of the four parameters comes from the diagonal of `A`, the others from sums and differences of its
+    /// off-diagonal elements, so nothing cancels.
+    pub fn from_frame(f: Vector, g: Vector, h: Vector) -> Self {
+        let ([a00, a10, a20], [a01, a11, a21], [a02, a12, a22]) = (f.0, g.0, h.0);
+        // Four times the squares of e0 to e3: paper, eq. (3).
+        let squares =
+            [1.0 + a00 + a11 + a22, 1.0 + a00 - a11 - a22, 1.0 - a00 + a11 - a22, 1.0 - a00 - a11 + a22];
+        let largest = (0..4).fold(0, |best, k| if squares[k] > squares[best] { k } else { best });
+        let row = match largest {
+            0 => [squares[0], a21 - a12, a02 - a20, a10 - a01],
+            1 => [a21 - a12, squares[1], a01 + a10, a02 + a20],
+            2 => [a02 - a20, a01 + a10, squares[2], a12 + a21],
+            _ => [a10 - a01, a02 + a20, a12 + a21, squares[3]],
+        };
+        Self(row).normalised()
+    }
+
+    /// The same rotation backwards.
+    pub fn conjugate(self) -> Self {
+        let [a, b, c, d] = self.0;
+        Self([a, -b, -c, -d])
+    }
+
+    /// Scalar product of the four parameters.
+    pub fn dot(self, other: Self) -> f64 {
+        self.0.iter().zip(other.0).map(|(a, b)| a * b).sum()
+    }
+
+    /// The same direction at length one; not a number if the length is zero.
+    pub fn normalised(self) -> Self {
+        let norm = self.dot(self).sqrt();
+        Self(self.0.map(|e| e / norm))
+    }
+
+    /// Of the two quaternions of this rotation, the one nearer to another.
+    ///
+    /// Equally near ones are told apart by their first element that is not zero, which is made positive.
+    pub fn nearest(self, other: Self) -> Self {
+        let side = self.dot(other);
+        let first = self.0.into_iter().find(|&e| e != 0.0).unwrap_or(1.0);
+        if side < 0.0 || (side == 0.0 && first < 0.0) { Self(self.0.map(|e| -e)) } else { self }
+    }
+
+    /// The matrix `A(p)`, paper eq. (3), by rows.
+    pub fn matrix(self) -> [[f64; 3]; 3] {
+        let [a, b, c, d] = self.0;
+        [
+            [2.0 * (a * a + b * b - 0.5), 2.0 * (b * c - a * d), 2.0 * (b * d + a * c)],
+            [2.0 * (b * c + a * d), 2.0 * (a * a + c * c - 0.5), 2.0 * (c * d - a * b)],
+            [2.0 * (b * d - a * c), 2.0 * (c * d + a * b), 2.0 * (a * a + d * d - 0.5)],
+        ]
+    }
+
+    /// `A(p) v`: from the body's frame to the frame that `p` is measured in.
+    pub fn rotate(self, v: Vector) -> Vector {
+        Vector(self.matrix().map(|row| Vector(row).dot(v)))
+    }
+
+    /// `A(p)ᵀ v`: from the frame that `p` is measured in to the body's frame.
+    pub fn rotate_back(self, v: Vector) -> Vector {
+        self.conjugate().rotate(v)
+    }
+}
+
+/// Quaternion product: first the right rotation, then the left one.
+impl Mul for Quaternion {
+    type Output = Self;
+
+    fn mul(self, other: Self) -> Self {
+        let ([a, b, c, d], [w, x, y, z]) = (self.0, other.0);
+        Self([
+            a * w - b * x - c * y - d * z,
+            a * x + b * w + c * z - d * y,
+            a * y - b * z + c * w + d * x,
+            a * z + b * y - c * x + d * w,
+        ])
+    }
+}
+
+/// The elements rounded; divided exactly by the largest of them before that if their squares would leave `f64`.
+fn scaled<const N: usize>(exact: &[Rational; N]) -> Option<[f64; N]> {
+    let largest = exact.iter().map(Signed::abs).max().filter(|m| !m.is_zero())?;
+    if (1e-100..=1e100).contains(&to_f64(&largest)) {
+        return Some(exact.each_ref().map(to_f64));
+    }
+    Some(exact.each_ref().map(|x| to_f64(&(x / &largest))))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rounding of a dozen operations on numbers of order one.
+    const TOLERANCE: f64 = 4e-16;
+
+    fn samples() -> Vec<Quaternion> {
+        let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.3, -0.5, 0.8]];
+        let turn = |axis: [f64; 3], half: f64| {
+            let [x, y, z] = (Vector(axis).normalised() * half.sin()).0;
+            Quaternion([half.cos(), x, y, z])
+        };
+        axes.iter().flat_map(|&axis| (-6..=6).map(move |k| turn(axis, 0.25 * f64::from(k)))).collect()
+    }
+
+    #[test]
+    fn a_frame_gives_back_its_quaternion() {
+        for p in samples() {
+            let columns = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|e| p.rotate(Vector(e)));
+            let back = Quaternion::from_frame(columns[0], columns[1], columns[2]).nearest(p);
+            for k in 0..4 {
+                assert!((back.0[k] - p.0[k]).abs() <= TOLERANCE, "{p:?} came back as {back:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_product_turns_as_its_factors_do() {
+        let v = Vector([0.2, -0.7, 0.4]);
+        for p in samples() {
+            for q in samples() {
+                let difference = (p * q).rotate(v) - p.rotate(q.rotate(v));
+                assert!(difference.norm() <= 4.0 * TOLERANCE, "{p:?} {q:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_matrix_of_a_quarter_turn_about_z_takes_x_to_y() {
+        let p = Quaternion::about_z(std::f64::consts::FRAC_PI_2);
+        assert!((p.rotate(Vector([1.0, 0.0, 0.0])) - Vector([0.0, 1.0, 0.0])).norm() <= TOLERANCE);
+    }
+}

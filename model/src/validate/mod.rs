@@ -1,0 +1,92 @@
+//! What must hold of a model beyond its syntax. Problems name places of the page; only the parser knows their spans.
+
+mod numbers;
+mod topology;
+
+pub(crate) use numbers::problems as number_problems;
+pub(crate) use topology::problems as topology_problems;
+
+use crate::{Model, Rational, to_f64};
+
+/// A place of the page: a key of something, or the thing itself where the key is empty.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct Place {
+    pub(crate) owner: Owner,
+    pub(crate) key: &'static str,
+}
+
+/// What a key belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Owner {
+    Page,
+    Simulation,
+    Parameter(usize),
+    Body(usize),
+    Joint(usize),
+    End(usize, Side),
+}
+
+/// One of the two ends of a joint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Side {
+    First,
+    Second,
+}
+
+/// Something that must not be.
+#[derive(Clone, Debug)]
+pub(crate) struct Problem {
+    pub(crate) place: Place,
+    /// Another place that has to do with it, with a few words to print there.
+    pub(crate) also: Option<(Place, String)>,
+    pub(crate) message: String,
+    pub(crate) label: String,
+    pub(crate) help: String,
+}
+
+impl Place {
+    pub(crate) fn body(index: usize, key: &'static str) -> Self {
+        Self { owner: Owner::Body(index), key }
+    }
+
+    pub(crate) fn joint(index: usize, key: &'static str) -> Self {
+        Self { owner: Owner::Joint(index), key }
+    }
+
+    pub(crate) fn end(joint: usize, side: Side, key: &'static str) -> Self {
+        Self { owner: Owner::End(joint, side), key }
+    }
+
+    /// Where to look next if the page does not have this place: the joint for its end, the whole for its key.
+    pub(crate) fn fallback(self) -> Option<Self> {
+        match (self.owner, self.key) {
+            (Owner::Page, "") => None,
+            (Owner::End(joint, _), "axis" | "zero" | "point") => Some(Self::joint(joint, self.key)),
+            (Owner::End(joint, _), "") => Some(Self::joint(joint, "")),
+            (_, "") => Some(Self { owner: Owner::Page, key: "" }),
+            (owner, _) => Some(Self { owner, key: "" }),
+        }
+    }
+}
+
+impl Side {
+    pub(crate) const BOTH: [Self; 2] = [Self::First, Self::Second];
+
+    /// The key of this end in a joint.
+    pub(crate) fn key(self) -> &'static str {
+        match self {
+            Self::First => "first",
+            Self::Second => "second",
+        }
+    }
+}
+
+/// The first thing that the numbers of a model make unphysical.
+pub(crate) fn physical(model: &Model) -> Option<String> {
+    number_problems(model).into_iter().next().map(|p| format!("{} ({}): {}", p.message, p.label, p.help))
+}
+
+/// A number as a message shows it.
+fn shown(value: &Rational) -> String {
+    format!("{:?}", to_f64(value))
+}

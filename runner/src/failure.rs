@@ -1,0 +1,104 @@
+//! Failures in words, with names instead of indices.
+
+use gyro_sim::{Error, Mechanism, Owner};
+use std::{fmt, io};
+
+/// Why a run has ended early.
+#[derive(Debug)]
+pub enum Failure {
+    /// The run itself, in words: time, joint or body, number, and what to try.
+    Run(String),
+    /// The samples could not be handed on.
+    Output(io::Error),
+}
+
+impl From<io::Error> for Failure {
+    fn from(error: io::Error) -> Self {
+        Self::Output(error)
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Run(words) => f.write_str(words),
+            Self::Output(error) => write!(f, "samples cannot be written: {error}"),
+        }
+    }
+}
+
+impl std::error::Error for Failure {}
+
+/// An error of the solvers in words: when, whose and how much, and what to try.
+pub fn describe<M: Mechanism>(mechanism: &M, error: &Error) -> String {
+    match error {
+        Error::NotFinite { t, index } => format!(
+            "at t = {t} s {} is no longer finite; try a smaller --step or --correct-every",
+            element(mechanism, usize::from(*index))
+        ),
+        Error::NoConvergence { t, violation, owner } => format!(
+            "at t = {t} s the constraints of {} cannot be met: {violation:e} remains after Newton's iterations; \
+             try a smaller --step or --correct-every",
+            name(mechanism, *owner)
+        ),
+        Error::Singular { t, pivot } => format!(
+            "at t = {t} s the dependent coordinates cannot be solved for: a pivot is {pivot:e}; the mechanism is in \
+             a singular pose, or the step is too large: try a smaller --step or --correct-every"
+        ),
+    }
+}
+
+fn name<M: Mechanism>(mechanism: &M, owner: Owner) -> String {
+    match owner {
+        Owner::Body(body) => format!("body `{}`", mechanism.body_name(usize::from(body))),
+        Owner::Joint(joint) => format!("joint `{}`", mechanism.joint(usize::from(joint)).name),
+    }
+}
+
+/// What an element of the state is: `(r, p)` of each body, `(s, w')` of each body, work.
+fn element<M: Mechanism>(mechanism: &M, index: usize) -> String {
+    let positions = 7 * mechanism.n_bodies();
+    let velocities = positions + 6 * mechanism.n_bodies();
+    let (body, what) = if index < positions {
+        (index / 7, if index % 7 < 3 { "position" } else { "orientation" })
+    } else if index < velocities {
+        let k = index - positions;
+        (k / 6, if k % 6 < 3 { "velocity" } else { "angular velocity" })
+    } else {
+        return "the work done".to_owned();
+    };
+    format!("the {what} of body `{}`", mechanism.body_name(body))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::spinner::Spinner;
+
+    #[test]
+    fn errors_name_time_part_and_number() {
+        let spinner = Spinner { rate: 1.0 };
+        for (error, words) in [
+            (
+                Error::NotFinite { t: 0.25, index: 5 },
+                "at t = 0.25 s the orientation of body `rotor` is no longer",
+            ),
+            (
+                Error::NotFinite { t: 0.25, index: 9 },
+                "at t = 0.25 s the velocity of body `rotor` is no longer",
+            ),
+            (
+                Error::NoConvergence { t: 0.5, violation: 3e-3, owner: Owner::Joint(0) },
+                "at t = 0.5 s the constraints of joint `axle` cannot be met: 3e-3 remains",
+            ),
+            (
+                Error::Singular { t: 1.0, pivot: 0.0 },
+                "at t = 1 s the dependent coordinates cannot be solved for",
+            ),
+        ] {
+            let found = describe(&spinner, &error);
+            assert!(found.starts_with(words), "{found}");
+            assert!(found.ends_with("try a smaller --step or --correct-every"), "{found}");
+        }
+    }
+}

@@ -1,0 +1,27 @@
+//! Runs a mechanism to a schedule and streams samples: the loop that both engines share.
+//!
+//! [`run`] takes any [`gyro_sim::Partition`] from its start to the end of the run and hands out a [`Sample`] at each
+//! sample time. The command line calls it in its own process for the runtime-assembled twin; for generated code it
+//! compiles a small program around [`child::main`] and speaks with it in the words of [`protocol`].
+//!
+//! ```text
+//! settings ─schedule─▶ segments ─run─▶ samples ─summary─▶ worst violations, energy drift
+//! ```
+#![deny(missing_docs)]
+
+pub mod child;
+mod failure;
+pub mod protocol;
+mod run;
+mod sample;
+mod schedule;
+mod summary;
+
+pub use failure::{Failure, describe};
+pub use run::{Event, Start, run};
+pub use sample::{BodySample, JointSample, Sample};
+pub use schedule::{Impossible, Schedule, Segment, Settings};
+pub use summary::{Summary, Tracker, energy_error};
+
+#[cfg(test)]
+mod spinner;

@@ -1,0 +1,292 @@
+//! How the command line and the program that it compiles speak with each other: lines of words and numbers.
+//!
+//! Numbers are printed with as many digits as it takes to read the same number back. The command line writes one
+//! [`Request`] to the program's standard input; the program answers with [`Reply`] lines on its standard output.
+
+use crate::{BodySample, JointSample, Sample, Settings, Start, Summary};
+use std::fmt::Write as _;
+use std::str::{FromStr, SplitAsciiWhitespace};
+
+/// A run to be made.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Request {
+    /// When to step, correct and sample.
+    pub settings: Settings,
+    /// Values of the mechanism's parameters, in their order.
+    pub parameters: Vec<f64>,
+    /// Where to start.
+    pub start: Start,
+}
+
+/// One line of an answer.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Reply {
+    /// The mechanism at a sample time.
+    Sample(Sample),
+    /// The run has reached this time, s.
+    Progress(f64),
+    /// The run is complete.
+    Done(Summary),
+    /// The run has failed: why, in words.
+    Failed(String),
+}
+
+/// A line that does not belong to the protocol.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Garbled(pub String);
+
+impl std::fmt::Display for Garbled {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "a line makes no sense: `{}`", self.0)
+    }
+}
+
+impl std::error::Error for Garbled {}
+
+impl Request {
+    /// The request as text.
+    pub fn to_text(&self) -> String {
+        let Settings { t_end, step, correct_every, sample_every } = self.settings;
+        let mut text = format!("settings {t_end:?} {step:?} {sample_every:?}\n");
+        if let Some(every) = correct_every {
+            let _ = writeln!(text, "correct_every {every:?}");
+        }
+        line(&mut text, "parameters", &self.parameters);
+        line(&mut text, "positions", &self.start.positions);
+        line(&mut text, "velocities", &self.start.velocities);
+        line(&mut text, "angles", &self.start.angles);
+        line(&mut text, "observe", &self.start.observed_bodies);
+        text
+    }
+
+    /// Reads a request.
+    ///
+    /// # Errors
+    /// The line that is not understood.
+    pub fn parse(text: &str) -> Result<Self, Garbled> {
+        let settings = Settings { t_end: 0.0, step: 0.0, correct_every: None, sample_every: 0.0 };
+        let mut request = Self { settings, parameters: Vec::new(), start: Start::default() };
+        for line in text.lines() {
+            request.take(line).ok_or_else(|| Garbled(line.to_owned()))?;
+        }
+        Ok(request)
+    }
+
+    fn take(&mut self, line: &str) -> Option<()> {
+        let (key, values) = line.split_once(' ').unwrap_or((line, ""));
+        match key {
+            "settings" => {
+                let [t_end, step, sample_every] = list(values)?.try_into().ok()?;
+                self.settings = Settings { t_end, step, sample_every, ..self.settings };
+            }
+            "correct_every" => self.settings.correct_every = Some(values.parse().ok()?),
+            "parameters" => self.parameters = list(values)?,
+            "positions" => self.start.positions = list(values)?,
+            "velocities" => self.start.velocities = list(values)?,
+            "angles" => self.start.angles = list(values)?,
+            "observe" => self.start.observed_bodies = list(values)?,
+            _ => return None,
+        }
+        Some(())
+    }
+}
+
+impl Reply {
+    /// The reply as one line, without its end.
+    pub fn to_line(&self) -> String {
+        match self {
+            Self::Sample(sample) => sample_line(sample),
+            Self::Progress(t) => format!("progress {t:?}"),
+            Self::Done(s) => format!(
+                "done {} {} {:?} {:?} {:?} {:?}",
+                s.steps,
+                s.chart_switches,
+                s.position_violation,
+                s.velocity_violation,
+                s.energy_drift,
+                s.run_time_s
+            ),
+            Self::Failed(words) => format!("failed {}", words.replace('\n', " ")),
+        }
+    }
+
+    /// Reads a line.
+    ///
+    /// # Errors
+    /// The line, if it is not a reply.
+    pub fn parse(line: &str) -> Result<Self, Garbled> {
+        Self::understand(line).ok_or_else(|| Garbled(line.to_owned()))
+    }
+
+    fn understand(line: &str) -> Option<Self> {
+        let (key, rest) = line.split_once(' ')?;
+        let mut words = Words(rest.split_ascii_whitespace());
+        let reply = match key {
+            "sample" => Self::Sample(words.sample()?),
+            "progress" => Self::Progress(words.next()?),
+            "done" => Self::Done(words.summary()?),
+            "failed" => return Some(Self::Failed(rest.to_owned())),
+            _ => return None,
+        };
+        words.0.next().is_none().then_some(reply)
+    }
+}
+
+/// The words of a line, read one by one.
+struct Words<'a>(SplitAsciiWhitespace<'a>);
+
+impl Words<'_> {
+    fn next<T: FromStr>(&mut self) -> Option<T> {
+        self.0.next()?.parse().ok()
+    }
+
+    fn array<const N: usize>(&mut self) -> Option<[f64; N]> {
+        let mut array = [0.0; N];
+        for value in &mut array {
+            *value = self.next()?;
+        }
+        Some(array)
+    }
+
+    fn summary(&mut self) -> Option<Summary> {
+        Some(Summary {
+            steps: self.next()?,
+            chart_switches: self.next()?,
+            position_violation: self.next()?,
+            velocity_violation: self.next()?,
+            energy_drift: self.next()?,
+            run_time_s: self.next()?,
+        })
+    }
+
+    fn sample(&mut self) -> Option<Sample> {
+        let mut sample = Sample {
+            t: self.next()?,
+            kinetic: self.next()?,
+            potential: self.next()?,
+            work: self.next()?,
+            position_violation: self.next()?,
+            velocity_violation: self.next()?,
+            chart_switches: self.next()?,
+            joints: Vec::new(),
+            bodies: Vec::new(),
+        };
+        while let Some(kind) = self.0.next() {
+            match kind {
+                "angle" => {
+                    sample.joints.push(JointSample::Angle { position: self.next()?, rate: self.next()? });
+                }
+                "orientation" => {
+                    let (position, rate) = (self.array()?, self.array()?);
+                    sample.joints.push(JointSample::Orientation { position, rate });
+                }
+                "none" => sample.joints.push(JointSample::None),
+                "body" => sample.bodies.push(BodySample { pose: self.array()?, velocity: self.array()? }),
+                _ => return None,
+            }
+        }
+        Some(sample)
+    }
+}
+
+/// One sample as a reply line, without its end.
+pub(crate) fn sample_line(sample: &Sample) -> String {
+    let Sample { t, kinetic, potential, work, position_violation, velocity_violation, .. } = sample;
+    let mut text = format!(
+        "sample {t:?} {kinetic:?} {potential:?} {work:?} {position_violation:?} {velocity_violation:?} {}",
+        sample.chart_switches
+    );
+    for joint in &sample.joints {
+        match joint {
+            JointSample::Angle { position, rate } => words(&mut text, " angle", &[*position, *rate]),
+            JointSample::Orientation { position, rate } => {
+                words(&mut text, " orientation", position);
+                words(&mut text, "", rate);
+            }
+            JointSample::None => text.push_str(" none"),
+        }
+    }
+    for body in &sample.bodies {
+        words(&mut text, " body", &body.pose);
+        words(&mut text, "", &body.velocity);
+    }
+    text
+}
+
+fn words<T: std::fmt::Debug>(text: &mut String, key: &str, values: &[T]) {
+    text.push_str(key);
+    for value in values {
+        let _ = write!(text, " {value:?}");
+    }
+}
+
+fn line<T: std::fmt::Debug>(text: &mut String, key: &str, values: &[T]) {
+    words(text, key, values);
+    text.push('\n');
+}
+
+fn list<T: FromStr>(text: &str) -> Option<Vec<T>> {
+    text.split_ascii_whitespace().map(|word| word.parse().ok()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const AWKWARD: [f64; 7] = [0.1, -1.0 / 3.0, 5e-324, -0.0, f64::MAX, 1e-300, 0.300_000_000_000_000_04];
+
+    #[test]
+    fn a_request_comes_back_bit_by_bit() {
+        for correct_every in [None, Some(5e-4)] {
+            let request = Request {
+                settings: Settings { t_end: 0.1 + 0.2, step: 1e-4, correct_every, sample_every: 1.0 / 3.0 },
+                parameters: vec![1.0 / 7.0],
+                start: Start {
+                    positions: AWKWARD.to_vec(),
+                    velocities: AWKWARD[..6].to_vec(),
+                    angles: vec![],
+                    observed_bodies: vec![0, 12],
+                },
+            };
+            assert_eq!(Request::parse(&request.to_text()).unwrap(), request);
+        }
+    }
+
+    #[test]
+    fn replies_come_back_bit_by_bit() {
+        let joints = vec![
+            JointSample::Angle { position: AWKWARD[0], rate: AWKWARD[1] },
+            JointSample::None,
+            JointSample::Orientation { position: [0.5; 4], rate: [AWKWARD[2]; 3] },
+        ];
+        let sample = Sample {
+            t: 0.1 + 0.2,
+            joints,
+            bodies: vec![BodySample { pose: AWKWARD, velocity: [AWKWARD[6]; 6] }],
+            kinetic: 1.0,
+            potential: -2.0 / 3.0,
+            work: -0.0,
+            position_violation: 1e-17,
+            velocity_violation: 0.0,
+            chart_switches: 7,
+        };
+        let summary =
+            Summary { steps: 10_000, chart_switches: 32, energy_drift: 1e-14, ..Default::default() };
+        for reply in [
+            Reply::Sample(sample),
+            Reply::Progress(0.25),
+            Reply::Done(summary),
+            Reply::Failed("at t = 1 s the end".to_owned()),
+        ] {
+            assert_eq!(Reply::parse(&reply.to_line()).unwrap(), reply);
+        }
+    }
+
+    #[test]
+    fn other_lines_are_refused() {
+        for line in ["", "sample", "sample 1 2", "progress 1 2", "done 1", "thread 'main' panicked"] {
+            assert_eq!(Reply::parse(line), Err(Garbled(line.to_owned())));
+        }
+        assert_eq!(Request::parse("positions 1 x"), Err(Garbled("positions 1 x".to_owned())));
+    }
+}

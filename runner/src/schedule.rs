@@ -1,0 +1,256 @@
+//! When to step, to correct and to sample.
+
+use std::fmt;
+
+/// How a run is to be made; all times in seconds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// Length of the run.
+    pub t_end: f64,
+    /// Largest step of the integrator.
+    pub step: f64,
+    /// Interval between corrections of the coordinate partition; `None` for direct integration.
+    pub correct_every: Option<f64>,
+    /// Interval between samples.
+    pub sample_every: f64,
+}
+
+/// Why settings cannot be followed.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Impossible {
+    /// A setting is not a positive number.
+    NotPositive {
+        /// Name of the setting.
+        setting: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// The run would take more steps, corrections or samples than anyone can wait for or store.
+    TooMany {
+        /// What there are too many of.
+        what: &'static str,
+        /// Their number.
+        number: f64,
+        /// The largest that is accepted.
+        most: f64,
+    },
+}
+
+/// A stretch of equal steps between two events.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Segment {
+    /// Where it starts, s.
+    pub from: f64,
+    /// Where it ends, s.
+    pub to: f64,
+    /// Number of equal steps.
+    pub n_steps: u64,
+    /// Whether the dependent coordinates are corrected at its end.
+    pub corrects: bool,
+    /// Whether a sample is taken at its end, after the correction.
+    pub samples: bool,
+}
+
+/// The segments of a run in their order. The sample at time zero belongs to none.
+#[derive(Clone, Debug)]
+pub struct Schedule {
+    settings: Settings,
+    now: f64,
+    next_sample: u64,
+    next_correction: u64,
+}
+
+/// A year of steps at a microsecond each is 3e13.
+const MOST_STEPS: f64 = 1e13;
+
+/// Samples are kept in memory: ten million take a few gigabytes.
+const MOST_SAMPLES: f64 = 1e7;
+
+/// Times closer than this part of a step are one; an interval that is longer by this part of a step than whole steps
+/// takes no further step.
+const COINCIDENT: f64 = 1e-9;
+
+impl Settings {
+    /// Says why the settings cannot be followed, if so.
+    ///
+    /// # Errors
+    /// [`Impossible`], for the first setting that cannot be followed.
+    pub fn check(&self) -> Result<(), Impossible> {
+        positive("t_end", self.t_end)?;
+        positive("step", self.step)?;
+        positive("sample_every", self.sample_every)?;
+        at_most("samples", self.t_end / self.sample_every, MOST_SAMPLES)?;
+        at_most("steps", self.t_end / self.step, MOST_STEPS)?;
+        let Some(correct_every) = self.correct_every else { return Ok(()) };
+        positive("correct_every", correct_every)?;
+        at_most("corrections", self.t_end / correct_every, MOST_STEPS)
+    }
+}
+
+impl Schedule {
+    /// The schedule of checked settings.
+    pub fn new(settings: &Settings) -> Self {
+        Self { settings: *settings, now: 0.0, next_sample: 1, next_correction: 1 }
+    }
+
+    /// How near two times count as one: part of a step, or what rounding makes of `k · interval` late in a long run.
+    fn tolerance(&self, t: f64) -> f64 {
+        (COINCIDENT * self.settings.step).max(4.0 * f64::EPSILON * t)
+    }
+
+    fn n_steps(&self, to: f64) -> u64 {
+        let length = to - self.now;
+        let spare = (COINCIDENT * length).max(self.tolerance(to));
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a count from one to 1e13"
+        )]
+        let n_steps = ((length - spare) / self.settings.step).ceil().max(1.0) as u64;
+        n_steps
+    }
+}
+
+impl Iterator for Schedule {
+    type Item = Segment;
+
+    fn next(&mut self) -> Option<Segment> {
+        let Settings { t_end, correct_every, sample_every, .. } = self.settings;
+        if self.now >= t_end {
+            return None;
+        }
+        let sample = multiple(self.next_sample, sample_every);
+        let correction = correct_every.map_or(f64::INFINITY, |every| multiple(self.next_correction, every));
+        let earliest = sample.min(correction).min(t_end);
+        let is_due = |t: f64| t - earliest <= self.tolerance(earliest);
+        let (ends, samples, corrects) = (is_due(t_end), is_due(sample), is_due(correction));
+        let to = match (ends, samples) {
+            (true, _) => t_end,
+            (false, true) => sample,
+            (false, false) => correction,
+        };
+        let segment =
+            Segment { from: self.now, to, n_steps: self.n_steps(to), corrects, samples: samples || ends };
+        self.next_sample += u64::from(samples);
+        self.next_correction += u64::from(corrects);
+        self.now = to;
+        Some(segment)
+    }
+}
+
+impl fmt::Display for Impossible {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotPositive { setting, value } => {
+                write!(f, "{setting} is {value:?}: a positive number of seconds was expected")
+            }
+            Self::TooMany { what, number, most } => {
+                write!(f, "the run would have {number:.3e} {what}: at most {most:e} are accepted")
+            }
+        }
+    }
+}
+
+impl std::error::Error for Impossible {}
+
+/// Times are multiples, never sums, so that rounding does not accumulate.
+#[expect(clippy::cast_precision_loss, reason = "indices of events stay below 2⁵³")]
+fn multiple(index: u64, interval: f64) -> f64 {
+    index as f64 * interval
+}
+
+fn positive(setting: &'static str, value: f64) -> Result<(), Impossible> {
+    if value > 0.0 && value.is_finite() { Ok(()) } else { Err(Impossible::NotPositive { setting, value }) }
+}
+
+fn at_most(what: &'static str, number: f64, most: f64) -> Result<(), Impossible> {
+    if number <= most { Ok(()) } else { Err(Impossible::TooMany { what, number, most }) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn segments(t_end: f64, step: f64, correct_every: Option<f64>, sample_every: f64) -> Vec<Segment> {
+        Schedule::new(&Settings { t_end, step, correct_every, sample_every }).collect()
+    }
+
+    #[test]
+    fn the_paper_takes_five_steps_and_corrects_for_hours() {
+        let settings = Settings { t_end: 7200.0, step: 1e-4, correct_every: Some(5e-4), sample_every: 1e-3 };
+        let mut count = 0_u64;
+        for segment in Schedule::new(&settings) {
+            assert!(segment.n_steps == 5 && segment.corrects, "{segment:?}");
+            count += 1;
+            assert_eq!(segment.samples, count.is_multiple_of(2), "{segment:?}");
+        }
+        assert_eq!(count, 14_400_000);
+    }
+
+    #[test]
+    fn a_step_is_a_maximum_and_the_end_is_always_sampled() {
+        let segments = segments(1.0, 0.4, Some(0.5), 0.3);
+        let shown: Vec<_> = segments.iter().map(|s| (s.to, s.n_steps, s.corrects, s.samples)).collect();
+        let thrice = 3.0 * 0.3;
+        assert_eq!(
+            shown,
+            [
+                (0.3, 1, false, true),
+                (0.5, 1, true, false),
+                (0.6, 1, false, true),
+                (thrice, 1, false, true),
+                (1.0, 1, true, true)
+            ]
+        );
+    }
+
+    #[test]
+    fn the_end_is_corrected_only_if_its_turn_has_come() {
+        let last = *segments(1.0, 0.1, Some(0.4), 10.0).last().unwrap();
+        assert!(last.samples && !last.corrects && last.to == 1.0 && last.n_steps == 2, "{last:?}");
+    }
+
+    #[test]
+    fn direct_integration_has_no_corrections() {
+        let segments = segments(1.0, 0.1, None, 1.0);
+        assert_eq!(segments, [Segment { from: 0.0, to: 1.0, n_steps: 10, corrects: false, samples: true }]);
+    }
+
+    #[test]
+    fn steps_longer_than_the_intervals_are_shortened() {
+        let segments = segments(1.0, 5.0, Some(0.25), 0.5);
+        assert!(segments.iter().all(|s| s.n_steps == 1 && s.corrects), "{segments:?}");
+        assert_eq!(segments.len(), 4);
+    }
+
+    #[test]
+    fn segments_join_up_for_any_settings() {
+        for (t_end, step, correct, sample) in
+            [(0.7, 1e-3, 0.007, 0.03), (3.1, 0.017, 0.1, 0.3), (1e-3, 1e-4, 1e-9, 1e-4), (0.1, 1.0, 1.0, 1.0)]
+        {
+            let mut now = 0.0;
+            for segment in segments(t_end, step, Some(correct), sample) {
+                assert!(segment.from == now && segment.to > now, "{segment:?}");
+                assert!((segment.to - segment.from) / segment.n_steps as f64 <= step * (1.0 + 2e-9));
+                now = segment.to;
+            }
+            assert_eq!(now, t_end);
+        }
+    }
+
+    #[test]
+    fn impossible_settings_are_named() {
+        let good = Settings { t_end: 1.0, step: 1e-4, correct_every: Some(5e-4), sample_every: 1e-3 };
+        assert_eq!(good.check(), Ok(()));
+        for (settings, message) in [
+            (Settings { step: -1.0, ..good }, "step is -1.0: a positive number of seconds was expected"),
+            (Settings { t_end: f64::NAN, ..good }, "t_end is NaN: a positive number of seconds was expected"),
+            (Settings { correct_every: Some(0.0), ..good }, "correct_every is 0.0: a positive number"),
+            (Settings { sample_every: 1e-9, ..good }, "the run would have 1.000e9 samples"),
+            (Settings { step: 1e-300, ..good }, "the run would have 1.000e300 steps"),
+        ] {
+            let found = settings.check().unwrap_err().to_string();
+            assert!(found.starts_with(message), "{found}");
+        }
+    }
+}

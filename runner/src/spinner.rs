@@ -1,0 +1,122 @@
+//! A rotor on an axle along x, turning at a constant rate: the smallest mechanism, for the tests of this crate.
+
+use crate::Start;
+use gyro_sim::{Coordinate, Energy, Error, JointInfo, Mechanism, Ode, Owner, Partition, RowInfo, charts};
+
+/// State: r, p, s, w'.
+#[derive(Debug)]
+pub(crate) struct Spinner {
+    pub(crate) rate: f64,
+}
+
+impl Spinner {
+    pub(crate) fn initial(&self) -> Start {
+        let state = self.start();
+        Start {
+            positions: state[..7].to_vec(),
+            velocities: state[7..].to_vec(),
+            angles: vec![0.0],
+            observed_bodies: vec![0],
+        }
+    }
+
+    /// The tangent ½ p∘(1, 0, 0).
+    fn tangent([_, _, _, e0, e1, e2, e3, ..]: &[f64; 13]) -> [[f64; 4]; 1] {
+        [[-0.5 * e1, 0.5 * e0, 0.5 * e3, -0.5 * e2]]
+    }
+}
+
+impl Ode for Spinner {
+    type Scalar = f64;
+    type State = [f64; 13];
+
+    fn start(&self) -> [f64; 13] {
+        let mut state = [0.0; 13];
+        (state[3], state[10]) = (1.0, self.rate);
+        state
+    }
+
+    fn derivative(&self, _: f64, y: &[f64; 13], dy: &mut [f64; 13]) {
+        *dy = [0.0; 13];
+        for (rate, tangent) in dy[3..7].iter_mut().zip(Self::tangent(y)[0]) {
+            *rate = tangent * y[10];
+        }
+    }
+}
+
+impl Mechanism for Spinner {
+    type Rows = [f64; 5];
+    type Constraints = [f64; 6];
+    type Readings = [f64; 3];
+
+    fn rows(&self) -> [f64; 5] {
+        [0.0; 5]
+    }
+    fn constraints(&self) -> [f64; 6] {
+        [0.0; 6]
+    }
+    fn readings(&self) -> [f64; 3] {
+        [0.0; 3]
+    }
+    fn phi(&self, _: f64, y: &[f64; 13], out: &mut [f64; 6]) {
+        let norm: f64 = y[3..7].iter().map(|e| e * e).sum();
+        *out = [y[0], y[1], y[2], y[5], y[6], norm - 1.0];
+    }
+    fn velocity_residual(&self, _: f64, y: &[f64; 13], out: &mut [f64; 5]) {
+        *out = [y[7], y[8], y[9], y[11], y[12]];
+    }
+    fn energy(&self, y: &[f64; 13]) -> Energy<f64> {
+        Energy { kinetic: 0.5 * y[10] * y[10], potential: 0.0 }
+    }
+    fn read_joints(&self, y: &[f64; 13], out: &mut [f64; 3]) {
+        *out = [2.0 * y[3] * y[4], y[3] * y[3] - y[4] * y[4], y[10]];
+    }
+    fn n_bodies(&self) -> usize {
+        1
+    }
+    fn n_joints(&self) -> usize {
+        1
+    }
+    fn body_name(&self, _: usize) -> &str {
+        "rotor"
+    }
+    fn joint(&self, _: usize) -> JointInfo<'_> {
+        JointInfo { name: "axle", coordinate: Coordinate::Angle }
+    }
+    fn row(&self, row: usize) -> RowInfo {
+        RowInfo { owner: Owner::Joint(0), is_length: row < 3 }
+    }
+    fn size(&self) -> f64 {
+        1.0
+    }
+    fn work(&self, _: &[f64; 13]) -> f64 {
+        0.0
+    }
+}
+
+impl Partition for Spinner {
+    type Independent = charts::Charts<1>;
+
+    fn independent(&self, _: f64, y: &[f64; 13]) -> Self::Independent {
+        charts::best(&Self::tangent(y))
+    }
+    fn follow(&self, _: f64, y: &[f64; 13], choice: &mut Self::Independent) -> u32 {
+        charts::follow(&Self::tangent(y), choice)
+    }
+    fn newton_step(&self, _: f64, choice: &Self::Independent, y: &mut [f64; 13]) -> Result<(), Error> {
+        (y[5], y[6]) = (0.0, 0.0);
+        let (independent, dependent) = if choice[0] == 0 { (3, 4) } else { (4, 3) };
+        y[dependent] = (1.0 - y[independent] * y[independent]).sqrt().copysign(y[dependent]);
+        Ok(())
+    }
+    fn solve_velocities(
+        &self,
+        _: f64,
+        _: &Self::Independent,
+        _: &[f64; 13],
+        y: &mut [f64; 13],
+    ) -> Result<(), Error> {
+        (y[11], y[12]) = (0.0, 0.0);
+        Ok(())
+    }
+}

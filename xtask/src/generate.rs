@@ -1,0 +1,284 @@
+//! `cargo xtask generate`: one function with two modes, write and check.
+
+use crate::args::GenerateArgs;
+use crate::failure::Failure;
+use crate::words::count;
+use crate::{files, scene};
+use similar::TextDiff;
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::{fs, io};
+
+/// Writes the modules of the models, or checks that they are fresh.
+pub(crate) fn generate(args: &GenerateArgs) -> Result<(), Failure> {
+    let outputs = outputs(args, &Places::of_workspace())?;
+    if args.check { check(&outputs, &mend(args)) } else { write(&outputs) }
+}
+
+/// Where models and generated modules of the workspace are.
+#[derive(Clone, Debug)]
+struct Places {
+    models: PathBuf,
+    generated: PathBuf,
+}
+
+impl Places {
+    fn of_workspace() -> Self {
+        let root = files::root();
+        Self { models: root.join("models"), generated: root.join("gyro-sim").join("src").join("generated") }
+    }
+}
+
+/// What the generated files should be.
+#[derive(Debug, Default)]
+struct Outputs {
+    files: Vec<Output>,
+    /// What has to be done by hand.
+    to_do: Vec<String>,
+}
+
+/// One generated file.
+#[derive(Debug)]
+struct Output {
+    path: PathBuf,
+    code: String,
+}
+
+/// Generates everything in memory: a mistake anywhere leaves all files as they are.
+fn outputs(args: &GenerateArgs, places: &Places) -> Result<Outputs, Failure> {
+    let pages = if args.models.is_empty() { shipped(&places.models)? } else { args.models.clone() };
+    if args.out.is_some() && pages.len() != 1 {
+        return Err(Failure::Usage("--out takes the module of a single MODEL: give one".to_owned()));
+    }
+    let mut outputs = Outputs::default();
+    let mut names = Vec::new();
+    for page in &pages {
+        let model = scene::read(page)?;
+        let module = gyro_codegen::generate_model(&files::shown(page), &model)
+            .map_err(|e| Failure::Usage(format!("{}: {e}", page.display())))?;
+        let is_shipped = args.out.is_none() && is_in(page, &places.models);
+        let path = match &args.out {
+            Some(out) => out.clone(),
+            None if is_shipped => places.generated.join(format!("{}.rs", module.name)),
+            None => page.with_file_name(format!("{}.rs", module.name)),
+        };
+        if let Some(other) = outputs.files.iter().position(|o| o.path == path) {
+            let (this, other) = (page.display(), pages[other].display());
+            return Err(Failure::Usage(format!("{this} and {other} have the same name `{}`", module.name)));
+        }
+        if is_shipped {
+            names.push(module.name);
+        }
+        outputs.files.push(Output { path, code: module.code });
+    }
+    outputs.to_do = by_hand(&places.generated, &names, args.models.is_empty())?;
+    Ok(outputs)
+}
+
+/// Writes what has changed and says where.
+fn write(outputs: &Outputs) -> Result<(), Failure> {
+    let mut n_fresh = 0;
+    for output in &outputs.files {
+        if files::write(&output.path, &output.code)? {
+            say(&format!("wrote {}", output.path.display()));
+        } else {
+            n_fresh += 1;
+        }
+    }
+    if n_fresh > 0 {
+        say(&format!("{} fresh already", count(n_fresh, "file")));
+    }
+    if outputs.to_do.is_empty() { Ok(()) } else { Err(Failure::Run(outputs.to_do.join("\n"))) }
+}
+
+/// Compares files with what they should be.
+fn check(outputs: &Outputs, mend: &str) -> Result<(), Failure> {
+    let stale: Vec<String> = outputs.files.iter().filter_map(difference).collect();
+    if stale.is_empty() && outputs.to_do.is_empty() {
+        say(&format!("{} fresh", count(outputs.files.len() as u64, "file")));
+        return Ok(());
+    }
+    let mut words = stale.join("\n");
+    for to_do in &outputs.to_do {
+        let _ = writeln!(words, "{to_do}");
+    }
+    if !stale.is_empty() {
+        let _ = write!(words, "to mend this: {mend}");
+    }
+    Err(Failure::Run(words.trim_end().to_owned()))
+}
+
+/// The command that mends what a check finds.
+fn mend(args: &GenerateArgs) -> String {
+    let models = args.models.iter().map(|m| format!(" {}", m.display()));
+    let out = args.out.iter().map(|o| format!(" --out {}", o.display()));
+    format!("cargo xtask generate{}", models.chain(out).collect::<String>())
+}
+
+/// Lines of a difference that are shown.
+const SHOWN_LINES: usize = 20;
+
+fn difference(output: &Output) -> Option<String> {
+    let path = output.path.display();
+    let found = match fs::read_to_string(&output.path) {
+        Ok(found) if found == output.code => return None,
+        Ok(found) => found,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Some(format!("{path} is missing\n")),
+        Err(error) => return Some(format!("{path} cannot be read: {error}\n")),
+    };
+    let diff = TextDiff::from_lines(&found, &output.code);
+    let unified = diff.unified_diff().context_radius(1).header("as it is", "as its model says").to_string();
+    let mut words = format!("{path} is not what its model says:\n");
+    for line in unified.lines().take(SHOWN_LINES) {
+        let _ = writeln!(words, "{line}");
+    }
+    let n_hidden = unified.lines().count().saturating_sub(SHOWN_LINES);
+    if n_hidden > 0 {
+        let _ = writeln!(words, "... and {}", count(n_hidden as u64, "further line"));
+    }
+    Some(words)
+}
+
+/// What the hand-written door file lacks, and generated files that no model has any more.
+fn by_hand(generated: &Path, names: &[String], all: bool) -> Result<Vec<String>, Failure> {
+    if names.is_empty() {
+        return Ok(Vec::new());
+    }
+    let door = generated.join("mod.rs");
+    let text = fs::read_to_string(&door)
+        .map_err(|e| Failure::Usage(format!("{} cannot be read: {e}", door.display())))?;
+    let is_declared = |name: &str| text.lines().any(|line| line.trim() == format!("pub mod {name};"));
+    let mut to_do: Vec<String> = names
+        .iter()
+        .filter(|name| !is_declared(name))
+        .map(|name| format!("add this line to {}: pub mod {name};", door.display()))
+        .collect();
+    if all {
+        to_do.extend(orphans(generated, names)?);
+    }
+    Ok(to_do)
+}
+
+fn orphans(generated: &Path, names: &[String]) -> Result<Vec<String>, Failure> {
+    let is_orphan = |path: &PathBuf| {
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+        path.extension().is_some_and(|e| e == "rs") && stem != "mod" && !names.iter().any(|n| *n == stem)
+    };
+    let orphans = listing(generated)?.into_iter().filter(is_orphan);
+    Ok(orphans.map(|p| format!("{} has no model: delete it and its line in mod.rs", p.display())).collect())
+}
+
+/// The pages of models/, in the order of their names.
+fn shipped(models: &Path) -> Result<Vec<PathBuf>, Failure> {
+    Ok(listing(models)?.into_iter().filter(|p| p.extension().is_some_and(|e| e == "toml")).collect())
+}
+
+fn listing(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
+    let said = |e: io::Error| Failure::Usage(format!("{} cannot be read: {e}", folder.display()));
+    let entries: io::Result<Vec<PathBuf>> =
+        fs::read_dir(folder).map_err(said)?.map(|entry| Ok(entry?.path())).collect();
+    let mut paths = entries.map_err(said)?;
+    paths.sort();
+    Ok(paths)
+}
+
+fn is_in(page: &Path, folder: &Path) -> bool {
+    match (fs::canonicalize(page), fs::canonicalize(folder)) {
+        (Ok(page), Ok(folder)) => page.parent() == Some(&folder),
+        _ => false,
+    }
+}
+
+fn say(words: &str) {
+    // Whoever closes the pipe has read enough.
+    let _ = writeln!(io::stdout(), "{words}");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::files::tests::Folder;
+
+    const PAGE: &str = "format = 1
+name = \"plate\"
+[[body]]
+name = \"plate\"
+free = true
+mass = 0.1
+inertia = [1e-4, 1e-4, 2e-4]
+";
+
+    /// A workspace with one model and, if so, its line in the door file.
+    fn workspace(door: &str) -> (Folder, Places) {
+        let folder = Folder::new();
+        let places = Places { models: folder.0.join("models"), generated: folder.0.join("generated") };
+        fs::create_dir_all(&places.models).unwrap();
+        fs::create_dir_all(&places.generated).unwrap();
+        fs::write(places.models.join("plate.toml"), PAGE).unwrap();
+        fs::write(places.generated.join("mod.rs"), door).unwrap();
+        (folder, places)
+    }
+
+    fn args(models: &[PathBuf], out: Option<PathBuf>) -> GenerateArgs {
+        GenerateArgs { models: models.to_vec(), check: false, out }
+    }
+
+    fn words(outcome: Result<(), Failure>) -> String {
+        match outcome {
+            Err(Failure::Run(words)) => words,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn what_was_written_is_fresh_and_what_was_edited_is_not() {
+        let (_folder, places) = workspace("pub mod plate;\n");
+        let outputs = outputs(&args(&[], None), &places).unwrap();
+        let mend = "cargo xtask generate";
+        assert!(words(check(&outputs, mend)).contains("plate.rs is missing"));
+        write(&outputs).unwrap();
+        check(&outputs, mend).unwrap();
+        let path = places.generated.join("plate.rs");
+        let edited = fs::read_to_string(&path).unwrap() + "// edited\n";
+        fs::write(&path, edited).unwrap();
+        let found = words(check(&outputs, mend));
+        assert!(found.contains("-// edited"), "{found}");
+        assert!(found.ends_with("to mend this: cargo xtask generate"), "{found}");
+    }
+
+    #[test]
+    fn the_door_file_is_told_line_by_line() {
+        let (_folder, places) = workspace("// pub mod plate;\n");
+        fs::write(places.generated.join("old.rs"), "").unwrap();
+        let outputs = outputs(&args(&[], None), &places).unwrap();
+        let found = words(write(&outputs));
+        assert!(found.contains("mod.rs: pub mod plate;"), "{found}");
+        assert!(found.contains("old.rs has no model"), "{found}");
+    }
+
+    #[test]
+    fn pages_elsewhere_are_written_beside_or_where_asked() {
+        let (folder, places) = workspace("");
+        let page = folder.0.join("mine.toml");
+        fs::write(&page, PAGE).unwrap();
+        let path =
+            |out| outputs(&args(std::slice::from_ref(&page), out), &places).unwrap().files[0].path.clone();
+        assert_eq!(path(None), folder.0.join("plate.rs"));
+        assert_eq!(path(Some(folder.0.join("x.rs"))), folder.0.join("x.rs"));
+        let two = args(&[page.clone(), page.clone()], Some(folder.0.join("x.rs")));
+        assert!(
+            matches!(outputs(&two, &places), Err(Failure::Usage(words)) if words.contains("single MODEL"))
+        );
+        let same = args(&[page.clone(), page], None);
+        assert!(matches!(outputs(&same, &places), Err(Failure::Usage(words)) if words.contains("same name")));
+    }
+
+    #[test]
+    fn a_mistake_in_any_page_writes_nothing() {
+        let (_folder, places) = workspace("pub mod plate;\n");
+        fs::write(places.models.join("zbad.toml"), PAGE.replace("mass = 0.1", "mass = -1")).unwrap();
+        assert!(matches!(outputs(&args(&[], None), &places), Err(Failure::Page(_))));
+        assert!(!places.generated.join("plate.rs").exists());
+    }
+}

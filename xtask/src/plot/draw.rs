@@ -1,0 +1,137 @@
+//! Panels in rows and columns, as SVG.
+
+use super::axis::{Axis, Scale};
+use super::decimate;
+use plotters::coord::Shift;
+use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};
+use plotters::prelude::*;
+
+/// A plot file.
+#[derive(Debug)]
+pub(crate) struct Page {
+    pub(crate) title: String,
+    /// Rows of panels.
+    pub(crate) rows: Vec<Vec<Panel>>,
+}
+
+/// Some quantities of one unit over time.
+#[derive(Debug)]
+pub(crate) struct Panel {
+    pub(crate) title: String,
+    /// Empty for a pure number.
+    pub(crate) unit: &'static str,
+    pub(crate) scale: Scale,
+    pub(crate) times: Vec<f64>,
+    pub(crate) series: Vec<Series>,
+}
+
+/// One quantity; named only among several.
+#[derive(Debug)]
+pub(crate) struct Series {
+    pub(crate) name: &'static str,
+    pub(crate) values: Vec<f64>,
+}
+
+/// Okabe and Ito's colours, told apart by most people.
+const COLOURS: [RGBColor; 4] =
+    [RGBColor(0, 114, 178), RGBColor(213, 94, 0), RGBColor(0, 158, 115), RGBColor(204, 121, 167)];
+
+const PANEL_WIDTH: u32 = 560;
+const PANEL_HEIGHT: u32 = 260;
+const TITLE_HEIGHT: u32 = 40;
+
+/// Draws a page.
+pub(crate) fn svg(page: &Page) -> Result<String, String> {
+    let mut text = String::new();
+    let n_columns = page.rows.iter().map(Vec::len).max().unwrap_or(1) as u32;
+    // A single column is drawn wider.
+    let width = if n_columns == 1 { PANEL_WIDTH * 3 / 2 } else { PANEL_WIDTH * n_columns };
+    let height = TITLE_HEIGHT + PANEL_HEIGHT * page.rows.len() as u32;
+    draw(page, SVGBackend::with_string(&mut text, (width, height)).into_drawing_area())
+        .map_err(|e| format!("the plot `{}` cannot be drawn: {e}", page.title))?;
+    Ok(text)
+}
+
+/// An axis with its own ticks, for plotters.
+struct Ticked<'a>(&'a Axis);
+
+impl Ranged for Ticked<'_> {
+    type FormatOption = DefaultFormatting;
+    type ValueType = f64;
+
+    fn map(&self, value: &f64, limit: (i32, i32)) -> i32 {
+        let (low, high) = self.0.range;
+        let part = (value - low) / (high - low);
+        #[expect(clippy::cast_possible_truncation, reason = "a pixel of the panel")]
+        let pixel = (f64::from(limit.0) + part * f64::from(limit.1 - limit.0)).round() as i32;
+        pixel
+    }
+
+    fn key_points<Hint: KeyPointHint>(&self, _: Hint) -> Vec<f64> {
+        self.0.ticks.clone()
+    }
+
+    fn range(&self) -> std::ops::Range<f64> {
+        self.0.range.0..self.0.range.1
+    }
+}
+
+type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+type Outcome = Result<(), Box<dyn std::error::Error>>;
+
+fn draw(page: &Page, area: Area<'_>) -> Outcome {
+    area.fill(&WHITE).map_err(|e| e.to_string())?;
+    let (title, rest) = area.split_vertically(TITLE_HEIGHT);
+    let style = ("sans-serif", 20).into_font().color(&BLACK);
+    title.draw(&Text::new(page.title.clone(), (16, 14), style)).map_err(|e| e.to_string())?;
+    for (row, panels) in rest.split_evenly((page.rows.len(), 1)).iter().zip(&page.rows) {
+        for (area, panel) in row.split_evenly((1, panels.len())).iter().zip(panels) {
+            draw_panel(panel, area)?;
+        }
+    }
+    area.present().map_err(|e| e.to_string().into())
+}
+
+fn draw_panel(panel: &Panel, area: &Area<'_>) -> Outcome {
+    let values = panel.series.iter().flat_map(|s| &s.values);
+    let (time, axis) =
+        (Axis::time(panel.times.last().copied().unwrap_or(1.0)), Axis::of(panel.scale, panel.unit, values));
+    let mut chart = ChartBuilder::on(area)
+        .caption(format!("{} {}", panel.title, axis.unit), ("sans-serif", 15))
+        .margin(8)
+        .margin_right(24)
+        .x_label_area_size(38)
+        .y_label_area_size(64)
+        .build_cartesian_2d(Ticked(&time), Ticked(&axis))?;
+    chart
+        .configure_mesh()
+        .light_line_style(TRANSPARENT)
+        .bold_line_style(BLACK.mix(0.12))
+        .axis_style(BLACK.mix(0.5))
+        .label_style(("sans-serif", 13))
+        .x_desc(format!("t {}", time.unit))
+        .x_label_formatter(&|t| time.label(*t))
+        .y_label_formatter(&|v| axis.label(*v))
+        .draw()?;
+    for (series, colour) in panel.series.iter().zip(COLOURS.iter().cycle()) {
+        let points = decimate::indices(&series.values).into_iter();
+        let points: Vec<(f64, f64)> =
+            points.map(|k| (time.coordinate(panel.times[k]), axis.coordinate(series.values[k]))).collect();
+        let drawn = chart.draw_series([PathElement::new(points, colour.stroke_width(1))])?;
+        if !series.name.is_empty() {
+            drawn
+                .label(series.name)
+                .legend(|(x, y)| PathElement::new([(x, y), (x + 16, y)], colour.stroke_width(2)));
+        }
+    }
+    if panel.series.len() > 1 {
+        chart
+            .configure_series_labels()
+            .position(SeriesLabelPosition::UpperRight)
+            .background_style(WHITE.mix(0.8))
+            .border_style(BLACK.mix(0.2))
+            .label_font(("sans-serif", 13))
+            .draw()?;
+    }
+    Ok(())
+}

@@ -1,0 +1,66 @@
+//! A progress bar on standard error, for long runs and for terminals only.
+
+use indicatif::{ProgressBar, ProgressStyle};
+use std::time::{Duration, Instant};
+
+/// Shows how far a run is once it has taken a while.
+#[derive(Debug)]
+pub(crate) struct Progress {
+    began: Instant,
+    t_end: f64,
+    bar: Option<ProgressBar>,
+}
+
+/// A run shorter than this is over before anyone has read the bar.
+const PATIENCE: Duration = Duration::from_millis(500);
+
+/// Positions of the bar.
+const DIVISIONS: u64 = 1000;
+
+impl Progress {
+    pub(crate) fn new(t_end: f64) -> Self {
+        Self { began: Instant::now(), t_end, bar: None }
+    }
+
+    /// The run has reached this time.
+    pub(crate) fn reached(&mut self, t: f64) {
+        if self.bar.is_none() && self.began.elapsed() < PATIENCE {
+            return;
+        }
+        let bar = self.bar.get_or_insert_with(bar);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 1000")]
+        bar.set_position((t / self.t_end * DIVISIONS as f64) as u64);
+        bar.set_message(format!("t = {t:.3} s of {} s", self.t_end));
+    }
+
+    /// Takes the bar away.
+    pub(crate) fn finish(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+/// A bar that draws on standard error, and nowhere if that is no terminal.
+fn bar() -> ProgressBar {
+    let style = ProgressStyle::with_template("{bar:40} {percent:>3} % {msg}, {eta} left");
+    ProgressBar::new(DIVISIONS).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+}
+
+/// Says what is under way until it is dropped.
+#[derive(Debug)]
+pub(crate) struct Spinner(ProgressBar);
+
+impl Spinner {
+    pub(crate) fn new(message: String) -> Self {
+        let spinner = ProgressBar::new_spinner().with_message(message);
+        spinner.enable_steady_tick(Duration::from_millis(100));
+        Self(spinner)
+    }
+}
+
+impl Drop for Spinner {
+    fn drop(&mut self) {
+        self.0.finish_and_clear();
+    }
+}

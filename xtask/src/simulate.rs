@@ -1,0 +1,94 @@
+//! `cargo xtask simulate`.
+
+use crate::args::{Engine, SimulateArgs};
+use crate::failure::Failure;
+use crate::progress::Progress;
+use crate::scene::Scene;
+use crate::{csv, files, json, nested, plot, summary, twin, words};
+use gyro_model::Model;
+use gyro_runner::{Event, Sample, Summary};
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// Simulates a model, prints a summary and writes its files.
+pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
+    let scene = Scene::new(args)?;
+    let folder = folder(args, &scene.model.name)?;
+    let mut samples = Vec::new();
+    let run = match run(&scene, &mut samples) {
+        Ok(run) => run,
+        Err(failure) => return Err(keep_what_there_is(&scene.model, &samples, folder.as_deref(), failure)),
+    };
+    let written = match &folder {
+        Some(folder) => write_files(&scene.model, &samples, folder)?,
+        None => Vec::new(),
+    };
+    let last = samples.last().expect("the start is a sample");
+    let text = if args.json {
+        format!("{}\n", json::object(&scene, last, &run))
+    } else {
+        summary::text(&scene, &samples, &run, &written)
+    };
+    // Whoever closes the pipe has read enough.
+    let _ = std::io::stdout().write_all(text.as_bytes());
+    Ok(())
+}
+
+fn run(scene: &Scene, samples: &mut Vec<Sample>) -> Result<Summary, Failure> {
+    let mut progress = Progress::new(scene.settings.t_end);
+    let mut tell = |event: Event<'_>| match event {
+        Event::Sample(sample) => samples.push(sample.clone()),
+        Event::Progress(t) => progress.reached(t),
+    };
+    let outcome = match scene.engine {
+        Engine::Generated => nested::simulate(scene, &mut tell),
+        Engine::Assembled | Engine::Dense => twin::simulate(scene, &mut tell),
+    };
+    progress.finish();
+    outcome
+}
+
+/// Where files go, if any are to be written; a place that cannot be used is found out before the run.
+fn folder(args: &SimulateArgs, name: &str) -> Result<Option<PathBuf>, Failure> {
+    let folder = match &args.out {
+        Some(folder) => folder.clone(),
+        None if args.json => return Ok(None),
+        None => Path::new("out").join(name),
+    };
+    fs::create_dir_all(&folder)
+        .map_err(|e| Failure::Usage(format!("--out: {} cannot be made: {e}", folder.display())))?;
+    Ok(Some(folder))
+}
+
+fn write_files(model: &Model, samples: &[Sample], folder: &Path) -> Result<Vec<PathBuf>, Failure> {
+    let mut written = vec![write_table(model, samples, folder)?];
+    for (name, svg) in plot::pages(model, samples).map_err(Failure::Run)? {
+        let path = folder.join(format!("{}-{name}.svg", model.name));
+        files::write(&path, &svg)?;
+        written.push(path);
+    }
+    Ok(written)
+}
+
+fn write_table(model: &Model, samples: &[Sample], folder: &Path) -> Result<PathBuf, Failure> {
+    let path = folder.join(format!("{}.csv", model.name));
+    files::write(&path, &csv::text(&csv::columns(model, samples)))?;
+    Ok(path)
+}
+
+/// After a failure in the middle of a run: the samples before it are worth keeping, the plots are not.
+fn keep_what_there_is(model: &Model, samples: &[Sample], folder: Option<&Path>, failure: Failure) -> Failure {
+    let (Failure::Run(words), Some(folder), Some(last)) = (&failure, folder, samples.last()) else {
+        return failure;
+    };
+    match write_table(model, samples, folder) {
+        Ok(path) => Failure::Run(format!(
+            "{words}\nThe run is incomplete; its {} up to t = {} s are in {}.",
+            words::count(samples.len() as u64, "sample"),
+            last.t,
+            path.display()
+        )),
+        Err(_) => failure,
+    }
+}
