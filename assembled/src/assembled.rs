@@ -45,7 +45,6 @@ pub trait Solver<T: Number>: Clone + Debug {
         &self,
         lowered: &Lowered<T>,
         choice: &Self::Independent,
-        integrated: &[T],
         y: &mut [T],
     ) -> Result<(), T>;
 }
@@ -166,14 +165,8 @@ impl<T: Number, S: Solver<T>> Partition for Assembled<T, S> {
         self.solver.newton_step(&self.lowered, choice, y).map_err(|pivot| singular(t, pivot))
     }
 
-    fn solve_velocities(
-        &self,
-        t: T,
-        choice: &S::Independent,
-        integrated: &Vec<T>,
-        y: &mut Vec<T>,
-    ) -> Result<(), Error> {
-        self.solver.solve_velocities(&self.lowered, choice, integrated, y).map_err(|pivot| singular(t, pivot))
+    fn solve_velocities(&self, t: T, choice: &S::Independent, y: &mut Vec<T>) -> Result<(), Error> {
+        self.solver.solve_velocities(&self.lowered, choice, y).map_err(|pivot| singular(t, pivot))
     }
 }
 

@@ -65,17 +65,14 @@ pub(crate) fn solve_velocities<T: Number>(
     lowered: &Lowered<T>,
     links: &[Link],
     choice: &[u8],
-    integrated: &[T],
     y: &mut [T],
 ) -> Result<(), T> {
     for (link, &chart) in links.iter().zip(choice) {
         let slot = link.slot;
-        let kept = p_dot(&lowered.p(integrated, slot), &lowered.w(integrated, slot));
+        let kept = p_dot(&lowered.p(y, slot), &lowered.w(y, slot));
         let (s, w) = match &link.hold {
             Hold::Constrained(_) => (Vector3::zeros(), Vector3::zeros()),
-            Hold::Free => {
-                (lowered.s(integrated, slot), parameter_rates(lowered, slot, &[], chart, &kept, y)?)
-            }
+            Hold::Free => (lowered.s(y, slot), parameter_rates(lowered, slot, &[], chart, &kept, y)?),
             Hold::Joint(hinge) => {
                 let joint = &lowered.joints[hinge.joint];
                 let (facing, parent) = facing_dots(lowered, hinge, y);

@@ -46,14 +46,8 @@ impl<T: Number> Solver<T> for Saddle {
         partition::newton_step(lowered, choice, y)
     }
 
-    fn solve_velocities(
-        &self,
-        lowered: &Lowered<T>,
-        choice: &Vec<usize>,
-        integrated: &[T],
-        y: &mut [T],
-    ) -> Result<(), T> {
-        partition::solve_velocities(lowered, choice, integrated, y)
+    fn solve_velocities(&self, lowered: &Lowered<T>, choice: &Vec<usize>, y: &mut [T]) -> Result<(), T> {
+        partition::solve_velocities(lowered, choice, y)
     }
 }
 

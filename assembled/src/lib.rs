@@ -36,6 +36,7 @@ mod careful;
 mod charts;
 mod dense;
 mod forces;
+mod freedom;
 mod lowered;
 mod number;
 mod partition;

@@ -60,15 +60,14 @@ pub(crate) fn newton_step<T: Number>(lowered: &Lowered<T>, choice: &[usize], y: 
     Ok(())
 }
 
-/// `Φ_u u̇ = ν − Φ_v v̇`, eq. (19), with q̇ = (s, ½ Gᵀ w') of the integrated state as v̇; then w' = 2 G ṗ.
+/// `Φ_u u̇ = ν − Φ_v v̇`, eq. (19), with v̇ from q̇ = (s, ½ Gᵀ w') as integrated, at the corrected p; then w' = 2 G ṗ.
 pub(crate) fn solve_velocities<T: Number>(
     lowered: &Lowered<T>,
     choice: &[usize],
-    integrated: &[T],
     y: &mut [T],
 ) -> Result<(), T> {
     let jacobian = jacobian(lowered, y);
-    let mut q_dot = scaled_q_dot(lowered, integrated);
+    let mut q_dot = scaled_q_dot(lowered, y);
     dependent(lowered, choice).for_each(|column| q_dot[column] = T::zero());
     let solution = solve(&jacobian, choice, -(&jacobian * &q_dot))?;
     dependent(lowered, choice).zip(solution.iter()).for_each(|(column, value)| q_dot[column] = *value);

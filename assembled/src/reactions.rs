@@ -1,11 +1,12 @@
 //! λ by a balance of forces from the leaves to the root: `Φ_qᵀ λ = f − M a` of each body and its descendants.
 
-use crate::articulated::{Node, dual_directions};
+use crate::articulated::{Node, attitude};
 use crate::careful::{Hinge, Hold, Link, Side};
+use crate::freedom::dual_directions;
 use crate::lowered::{Joint, Lowered, Place};
 use crate::number::{Number, number};
 use crate::spatial::Spatial;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 
 /// Writes λ; the nodes hold the solved accelerations, and their applied forces are used up.
 pub(crate) fn multipliers<T: Number>(
@@ -16,7 +17,7 @@ pub(crate) fn multipliers<T: Number>(
     lambda: &mut [T],
 ) {
     for (node, body) in nodes.iter_mut().zip(&lowered.bodies) {
-        let (a, acceleration) = (node.a, node.acceleration);
+        let (a, acceleration) = (node.attitude.a, node.acceleration);
         node.applied.linear -= acceleration.linear * body.mass;
         node.applied.angular -= a * (body.inertia * a.tr_mul(&acceleration.angular));
     }
@@ -26,7 +27,7 @@ pub(crate) fn multipliers<T: Number>(
             Hold::Free => {}
             Hold::Constrained(index) => {
                 let body = &lowered.constrained[*index];
-                let torque = nodes[link.slot].a.tr_mul(&unbalanced.angular);
+                let torque = nodes[link.slot].attitude.a.tr_mul(&unbalanced.angular);
                 let orientation = orientation_multipliers(&lowered.relative_orientation(y, body), &torque);
                 lambda[body.first_row..body.first_row + 3].copy_from_slice(unbalanced.linear.as_slice());
                 lambda[body.first_row + 3..body.first_row + 6].copy_from_slice(orientation.as_slice());
@@ -56,25 +57,21 @@ fn joint_multipliers<T: Number>(
         Side::Second => T::one(),
     };
     let (parent_end, child_end) = hinge.ends(joint);
-    let at_joint = unbalanced.about(&(nodes[child].a * child_end.point));
-    let dual =
-        dual_directions(joint, &attitude(&joint.first.place, nodes), &attitude(&joint.second.place, nodes));
+    let at_joint = unbalanced.about(&(nodes[child].attitude.a * child_end.point));
+    let dual = dual_directions(
+        joint,
+        &attitude(&joint.first.place, nodes).a,
+        &attitude(&joint.second.place, nodes).a,
+    );
     let lambda = &mut lambda[joint.first_row..];
     lambda[..3].copy_from_slice((at_joint.linear * sign).as_slice());
     for (k, dual) in dual[..joint.dots.len()].iter().enumerate() {
         lambda[3 + k] = at_joint.angular.dot(dual) * sign;
     }
-    at_joint.about(&-(attitude(&parent_end.place, nodes) * parent_end.point))
+    at_joint.about(&-(attitude(&parent_end.place, nodes).a * parent_end.point))
 }
 
 /// Solves `½ (q₀ I + q̃)ᵀ λ = n'` for a unit `(q₀, q)`.
 fn orientation_multipliers<T: Number>((q0, q): &(T, Vector3<T>), torque: &Vector3<T>) -> Vector3<T> {
     (torque * *q0 + q.cross(torque) + q * (q.dot(torque) / *q0)) * number::<T>(2.0)
-}
-
-fn attitude<T: Number>(place: &Place<T>, nodes: &[Node<T>]) -> Matrix3<T> {
-    match place {
-        Place::Slot(slot) => nodes[*slot].a,
-        Place::Ground(motion) => motion.a,
-    }
 }

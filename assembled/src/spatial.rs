@@ -59,6 +59,10 @@ impl<T: Number> Inertia<T> {
 
     /// The inertia, taken about a point at `d` from the present one: `TᵀMT` with `T = [I d̃; 0 I]`.
     pub(crate) fn about(&self, d: &Vector3<T>) -> Self {
+        // Most joints of a gyroscope are at their bodies' mass centres.
+        if *d == Vector3::zeros() {
+            return *self;
+        }
         let coupling = self.coupling - cross(d, &self.linear).transpose();
         let angular = self.angular - cross(d, &coupling) - cross(d, &self.coupling).transpose();
         Self { linear: self.linear, coupling, angular }

@@ -7,7 +7,7 @@ use gyro_sim::{JointCoordinate, Partition, Partitioned, Turns};
 use support::model;
 
 /// The reference angles at 0.01 s, rad.
-const ALPHA: f64 = 3.126_943_474_878_551_7e-4;
+const ALPHA: f64 = 3.126_943_474_878_552e-4;
 const BETA: f64 = -6.982_394_046_843_141e-4;
 
 const TOLERANCE: f64 = 1e-10;

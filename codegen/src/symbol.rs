@@ -13,12 +13,6 @@ pub enum Symbol {
     Velocity { slot: usize, k: usize },
     /// Component of w'.
     Spin { slot: usize, k: usize },
-    /// Component of p as integrated, before the correction.
-    IntegratedEuler { slot: usize, k: usize },
-    /// Component of s as integrated.
-    IntegratedVelocity { slot: usize, k: usize },
-    /// Component of w' as integrated.
-    IntegratedSpin { slot: usize, k: usize },
     /// Component of a joint's chart: one for the special Euler parameter, else zero.
     Chart { chart: usize, k: usize },
     /// A tunable number of the model.

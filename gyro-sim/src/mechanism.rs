@@ -84,8 +84,8 @@ pub trait Partition: Mechanism<Scalar: Real> {
         choice: &Self::Independent,
         y: &mut Self::State,
     ) -> Result<(), Error>;
-    /// Solves eq. (19) for the dependent velocities; the independent ones (components of ṙ and ṗ) keep the values that
-    /// they have in `integrated`.
+    /// Solves eq. (19) for the dependent velocities, at corrected positions; the independent ones (components of ṙ and of
+    /// `ṗ = ½ G(p)ᵀ w'`) keep the values that they have in `y`.
     ///
     /// # Errors
     /// [`Error::Singular`] if the choice cannot be solved for.
@@ -93,7 +93,6 @@ pub trait Partition: Mechanism<Scalar: Real> {
         &self,
         t: Self::Scalar,
         choice: &Self::Independent,
-        integrated: &Self::State,
         y: &mut Self::State,
     ) -> Result<(), Error>;
 }

@@ -1,6 +1,7 @@
 //! The paper's two algorithms: direct integration and coordinate partitioning.
 
-use crate::{Error, Ode, Owner, Partition, Real, Rk4, Scalar, Storage, violation};
+use crate::violation::{Violation, constraint_violation};
+use crate::{Error, Ode, Owner, Partition, Real, Rk4, Scalar, Storage};
 
 /// *Direct integration*: eq. (17) alone. Violations of the constraints grow, as the paper says.
 #[derive(Clone, Debug)]
@@ -43,7 +44,6 @@ impl<S: Clone> Direct<S> {
 pub struct Partitioned<M: Partition> {
     direct: Direct<M::State>,
     independent: M::Independent,
-    integrated: M::State,
     phi: M::Constraints,
     switches: u64,
 }
@@ -51,7 +51,8 @@ pub struct Partitioned<M: Partition> {
 /// Newton–Raphson converges quadratically from the drift of a few steps: one or two iterations. Ten mean that it does not.
 const MAX_ITERATIONS: u32 = 10;
 
-/// The positions count as corrected when no row exceeds this many roundings of one.
+/// The positions count as corrected when no row exceeds this many roundings: of one, or of the largest coordinate in units
+/// of the mechanism's size, because a point row is a difference of positions.
 const CONVERGED_EPSILONS: f64 = 16.0;
 
 impl<M: Partition> Partitioned<M> {
@@ -63,7 +64,7 @@ impl<M: Partition> Partitioned<M> {
     /// A solver that starts with the given choice of independent coordinates.
     pub fn with_independent(mechanism: &M, state: &M::State, independent: M::Independent) -> Self {
         let (direct, phi) = (Direct::new(state), mechanism.constraints());
-        Self { direct, independent, integrated: state.clone(), phi, switches: 0 }
+        Self { direct, independent, phi, switches: 0 }
     }
 
     /// Advances `y` from `t` by `n_steps` steps of length `h` and corrects it.
@@ -102,9 +103,8 @@ impl<M: Partition> Partitioned<M> {
         t: M::Scalar,
         y: &mut M::State,
     ) -> Result<(), Error> {
-        self.integrated.clone_from(y);
         self.correct_positions(mechanism, t, y)?;
-        mechanism.solve_velocities(t, &self.independent, &self.integrated, y)?;
+        mechanism.solve_velocities(t, &self.independent, y)?;
         check_finite(t, y.as_ref())
     }
 
@@ -120,30 +120,26 @@ impl<M: Partition> Partitioned<M> {
 
     fn correct_positions(&mut self, mechanism: &M, t: M::Scalar, y: &mut M::State) -> Result<(), Error> {
         let tolerance = M::Scalar::EPSILON * M::Scalar::constant(CONVERGED_EPSILONS);
+        let mut worst = Violation { value: tolerance, owner: None };
         for _ in 0..MAX_ITERATIONS {
             mechanism.newton_step(t, &self.independent, y)?;
-            if self.worst(mechanism, t, y).0 <= tolerance {
+            mechanism.phi(t, y, &mut self.phi);
+            worst = constraint_violation(mechanism, self.phi.as_ref());
+            if worst.value <= tolerance || worst.value <= tolerance * reach(mechanism, y) {
                 return Ok(());
             }
         }
-        let (value, owner) = self.worst(mechanism, t, y);
-        Err(Error::NoConvergence { t: t.to_f64(), violation: value.to_f64(), owner })
+        let owner = worst.owner.unwrap_or(Owner::Body(0));
+        Err(Error::NoConvergence { t: t.to_f64(), violation: worst.value.to_f64(), owner })
     }
+}
 
-    /// The worst row of Φ, normalisations included, and its owner.
-    fn worst(&mut self, mechanism: &M, t: M::Scalar, y: &M::State) -> (M::Scalar, Owner) {
-        mechanism.phi(t, y, &mut self.phi);
-        let phi = self.phi.as_ref();
-        let (joint_rows, normalisations) = phi.split_at(phi.len() - mechanism.n_bodies());
-        let joints = violation(mechanism, joint_rows);
-        let mut worst = (joints.value, joints.owner.unwrap_or(Owner::Body(0)));
-        for (body, row) in (0u16..).zip(normalisations) {
-            if !(row.abs() <= worst.0) && worst.0.is_finite() {
-                worst = (row.abs(), Owner::Body(body));
-            }
-        }
-        worst
-    }
+/// The largest coordinate of a mass centre in units of the mechanism's size.
+fn reach<M: Partition>(mechanism: &M, y: &M::State) -> M::Scalar {
+    let bodies = y.as_ref().chunks_exact(7).take(mechanism.n_bodies());
+    let coordinates = bodies.flat_map(|body| body.iter().take(3));
+    let zero = M::Scalar::constant(0.0);
+    coordinates.fold(zero, |largest, r| if r.abs() > largest { r.abs() } else { largest }) / mechanism.size()
 }
 
 fn check_finite<T: Real>(t: T, state: &[T]) -> Result<(), Error> {

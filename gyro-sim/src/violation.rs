@@ -1,6 +1,6 @@
 //! How far a state is off its constraints.
 
-use crate::{Mechanism, Owner, Real, Scalar};
+use crate::{Mechanism, Owner, Real};
 
 /// The worst violated row.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,14 +15,38 @@ pub struct Violation<T> {
 ///
 /// Rows that are not finite count as worse than any number.
 pub fn violation<M: Mechanism<Scalar: Real>>(mechanism: &M, rows: &[M::Scalar]) -> Violation<M::Scalar> {
+    worst(joint_rows(mechanism, rows))
+}
+
+/// The worst of all rows of Φ, normalisations included.
+pub(crate) fn constraint_violation<M: Mechanism<Scalar: Real>>(
+    mechanism: &M,
+    phi: &[M::Scalar],
+) -> Violation<M::Scalar> {
+    let (rows, normalisations) = phi.split_at(phi.len().saturating_sub(mechanism.n_bodies()));
+    let bodies = (0u16..).map(Owner::Body);
+    worst(joint_rows(mechanism, rows).chain(normalisations.iter().map(|x| x.abs()).zip(bodies)))
+}
+
+/// Size and owner of each joint row.
+fn joint_rows<M: Mechanism<Scalar: Real>>(
+    mechanism: &M,
+    rows: &[M::Scalar],
+) -> impl Iterator<Item = (M::Scalar, Owner)> {
     let size = mechanism.size();
-    let mut worst = Violation { value: M::Scalar::constant(0.0), owner: None };
-    for (index, &value) in rows.iter().enumerate() {
+    rows.iter().enumerate().map(move |(index, &value)| {
         let row = mechanism.row(index);
-        let value = if row.is_length { (value / size).abs() } else { value.abs() };
-        // Written so that a NaN replaces the worst and is then kept.
-        if worst.value.is_finite() && (!value.is_finite() || value > worst.value || worst.owner.is_none()) {
-            worst = Violation { value, owner: Some(row.owner) };
+        (if row.is_length { (value / size).abs() } else { value.abs() }, row.owner)
+    })
+}
+
+fn worst<T: Real>(rows: impl Iterator<Item = (T, Owner)>) -> Violation<T> {
+    let mut worst = Violation { value: T::constant(0.0), owner: None };
+    for (value, owner) in rows {
+        // What is not finite replaces the worst and is then kept.
+        let worse = !value.is_finite() || value > worst.value || worst.owner.is_none();
+        if worst.value.is_finite() && worse {
+            worst = Violation { value, owner: Some(owner) };
         }
     }
     worst

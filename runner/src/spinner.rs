@@ -109,13 +109,7 @@ impl Partition for Spinner {
         y[dependent] = (1.0 - y[independent] * y[independent]).sqrt().copysign(y[dependent]);
         Ok(())
     }
-    fn solve_velocities(
-        &self,
-        _: f64,
-        _: &Self::Independent,
-        _: &[f64; 13],
-        y: &mut [f64; 13],
-    ) -> Result<(), Error> {
+    fn solve_velocities(&self, _: f64, _: &Self::Independent, y: &mut [f64; 13]) -> Result<(), Error> {
         (y[11], y[12]) = (0.0, 0.0);
         Ok(())
     }

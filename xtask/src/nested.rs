@@ -124,15 +124,15 @@ fn copy_lock_file(folder: &Path) -> std::io::Result<()> {
 }
 
 fn compile(folder: &Path, target: &Path) -> Result<(), Failure> {
-    let offline = cargo(folder, target, &["--offline"])?;
-    if offline.is_none() {
-        return Ok(());
+    let mut output = cargo(folder, target, &["--offline"])?;
+    // Cargo says so if something has to be downloaded first.
+    if output.as_ref().is_some_and(|words| words.contains("offline")) {
+        output = cargo(folder, target, &[])?;
     }
-    // Something may have to be downloaded; if not, this says the same once more.
-    match cargo(folder, target, &[])? {
+    match output {
         None => Ok(()),
-        Some(output) => Err(Failure::Run(format!(
-            "the generated program does not compile; it is in {}\n{output}",
+        Some(words) => Err(Failure::Run(format!(
+            "the generated program does not compile; it is in {}\n{words}",
             folder.display()
         ))),
     }

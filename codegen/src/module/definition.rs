@@ -26,10 +26,22 @@ impl ModuleWriter<'_> {
         } else {
             (quote! {}, quote! {})
         };
-        let value = if parameters.is_empty() {
-            quote! { _value }
+        let set_parameter = if parameters.is_empty() {
+            quote! {
+                pub fn set_parameter(&mut self, _index: usize, _value: T) -> bool {
+                    false
+                }
+            }
         } else {
-            quote! { value }
+            quote! {
+                pub fn set_parameter(&mut self, index: usize, value: T) -> bool {
+                    match index {
+                        #(#positions => self.#names = value,)*
+                        _ => return false,
+                    }
+                    true
+                }
+            }
         };
         quote! {
             #[doc = #doc]
@@ -50,14 +62,7 @@ impl ModuleWriter<'_> {
                 pub const PARAMETERS: [&'static str; #count] = [#(#strings),*];
 
                 /// Sets a parameter by its place in [`Self::PARAMETERS`]; returns whether there is one.
-                pub fn set_parameter(&mut self, index: usize, #value: T) -> bool {
-                    match index {
-                        #(#positions => self.#names = value,)*
-                        _ => return false,
-                    }
-                    #[allow(unreachable_code)]
-                    true
-                }
+                #set_parameter
             }
         }
     }

@@ -1,8 +1,8 @@
 //! The coordinate partition.
 
 use super::ModuleWriter;
-use crate::emit::{ident, index};
-use crate::graph::ExprId;
+use crate::emit::{Variables, ident, index};
+use crate::graph::{ExprId, Node};
 use crate::symbol::Symbol;
 use proc_macro2::TokenStream;
 use quote::quote;
@@ -58,31 +58,22 @@ impl ModuleWriter<'_> {
         }
     }
 
-    /// A solve of the partition, which overwrites part of the state.
+    /// A solve of the partition, which overwrites part of the state; what keeps its value is not stored again.
     fn solve(&self, name: &str, what: &str, roots: &[ExprId], first: usize) -> TokenStream {
-        let reads_integrated = name == "solve_velocities";
         let name = ident(name);
-        self.function(what, roots, |body, t, _| {
+        let changed = (first..).zip(roots).filter(|&(place, &root)| !self.is_element(root, place));
+        let (places, roots): (Vec<_>, Vec<_>) = changed.map(|(place, &root)| (index(place), root)).unzip();
+        let y = ident(if places.is_empty() { "_y" } else { "y" });
+        self.function(what, &roots, |body, t, _| {
             let (statements, values) = (&body.statements, &body.values);
-            let places = (first..first + values.len()).map(index);
             let charted = body.symbols.iter().any(|s| matches!(s, Symbol::Chart { .. }));
             let (choice, charts) = if charted {
                 (quote! { choice }, quote! { let charts = charts::one_hot::<T, _>(choice); })
             } else {
                 (quote! { _choice }, quote! {})
             };
-            let integrated = reads_integrated.then(|| {
-                let read = body.symbols.iter().any(|s| {
-                    matches!(
-                        s,
-                        Symbol::IntegratedEuler { .. } | Symbol::IntegratedVelocity { .. } | Symbol::IntegratedSpin { .. }
-                    )
-                });
-                let name = ident(if read { "integrated" } else { "_integrated" });
-                quote! { #name: &Self::State, }
-            });
             quote! {
-                fn #name(&self, #t: T, #choice: &Self::Independent, #integrated y: &mut Self::State) -> Result<(), Error> {
+                fn #name(&self, #t: T, #choice: &Self::Independent, #y: &mut Self::State) -> Result<(), Error> {
                     #charts
                     #statements
                     #(y[#places] = #values;)*
@@ -90,5 +81,12 @@ impl ModuleWriter<'_> {
                 }
             }
         })
+    }
+
+    /// Whether an expression is just an element of the state.
+    fn is_element(&self, root: ExprId, place: usize) -> bool {
+        let Node::Symbol(symbol) = self.equations.graph.node(root) else { return false };
+        let place = index(place);
+        self.variable(*symbol).1.is_some_and(|source| source.to_string() == quote! { y[#place] }.to_string())
     }
 }

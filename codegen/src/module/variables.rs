@@ -27,15 +27,6 @@ impl Variables for ModuleWriter<'_> {
             Symbol::Spin { slot, k } => {
                 bound(format!("{}_w{}", body(slot), AXES[k]), "y", velocity(slot, k + 3))
             }
-            Symbol::IntegratedEuler { slot, k } => {
-                bound(format!("{}_integrated_e{k}", body(slot)), "integrated", 7 * slot + 3 + k)
-            }
-            Symbol::IntegratedVelocity { slot, k } => {
-                bound(format!("{}_integrated_s{}", body(slot), AXES[k]), "integrated", velocity(slot, k))
-            }
-            Symbol::IntegratedSpin { slot, k } => {
-                bound(format!("{}_integrated_w{}", body(slot), AXES[k]), "integrated", velocity(slot, k + 3))
-            }
             Symbol::Chart { chart, k } => {
                 let (name, chart, k) = (ident(&format!("chart{chart}_{k}")), index(chart), index(k));
                 (quote! { #name }, Some(quote! { charts[#chart][#k] }))

@@ -49,11 +49,8 @@ impl<T> FreeBody<T> {
     /// Names of the parameters.
     pub const PARAMETERS: [&'static str; 0] = [];
     /// Sets a parameter by its place in [`Self::PARAMETERS`]; returns whether there is one.
-    pub fn set_parameter(&mut self, index: usize, _value: T) -> bool {
-        match index {
-            _ => return false,
-        }
-        #[allow(unreachable_code)] true
+    pub fn set_parameter(&mut self, _index: usize, _value: T) -> bool {
+        false
     }
 }
 impl<T: Scalar> Ode for FreeBody<T> {
@@ -221,9 +218,6 @@ impl<T: Real> Partition for FreeBody<T> {
     ) -> Result<(), Error> {
         let charts = charts::one_hot::<T, _>(choice);
         let k = T::constant;
-        let body_rx = y[0];
-        let body_ry = y[1];
-        let body_rz = y[2];
         let body_e0 = y[3];
         let body_e1 = y[4];
         let body_e2 = y[5];
@@ -237,9 +231,6 @@ impl<T: Real> Partition for FreeBody<T> {
         let t1 = body_e3 * body_e3
             + (body_e0 * body_e0 + body_e1 * body_e1 + body_e2 * body_e2);
         let t2 = (k(1.0) - t1) * (k(0.5) / t0);
-        y[0] = body_rx;
-        y[1] = body_ry;
-        y[2] = body_rz;
         y[3] = body_e0 + chart0_0 * t2;
         y[4] = body_e1 + chart0_1 * t2;
         y[5] = body_e2 + chart0_2 * t2;
@@ -251,21 +242,8 @@ impl<T: Real> Partition for FreeBody<T> {
         &self,
         _t: T,
         _choice: &Self::Independent,
-        _integrated: &Self::State,
-        y: &mut Self::State,
+        _y: &mut Self::State,
     ) -> Result<(), Error> {
-        let body_sx = y[7];
-        let body_sy = y[8];
-        let body_sz = y[9];
-        let body_wx = y[10];
-        let body_wy = y[11];
-        let body_wz = y[12];
-        y[7] = body_sx;
-        y[8] = body_sy;
-        y[9] = body_sz;
-        y[10] = body_wx;
-        y[11] = body_wy;
-        y[12] = body_wz;
         Ok(())
     }
 }

@@ -49,11 +49,8 @@ impl<T> Gyroscope<T> {
     /// Names of the parameters.
     pub const PARAMETERS: [&'static str; 0] = [];
     /// Sets a parameter by its place in [`Self::PARAMETERS`]; returns whether there is one.
-    pub fn set_parameter(&mut self, index: usize, _value: T) -> bool {
-        match index {
-            _ => return false,
-        }
-        #[allow(unreachable_code)] true
+    pub fn set_parameter(&mut self, _index: usize, _value: T) -> bool {
+        false
     }
 }
 impl<T: Scalar> Ode for Gyroscope<T> {
@@ -1403,7 +1400,6 @@ impl<T: Real> Partition for Gyroscope<T> {
         &self,
         _t: T,
         choice: &Self::Independent,
-        _integrated: &Self::State,
         y: &mut Self::State,
     ) -> Result<(), Error> {
         let charts = charts::one_hot::<T, _>(choice);

@@ -49,11 +49,8 @@ impl<T> GyroscopeCombinedOffsets<T> {
     /// Names of the parameters.
     pub const PARAMETERS: [&'static str; 0] = [];
     /// Sets a parameter by its place in [`Self::PARAMETERS`]; returns whether there is one.
-    pub fn set_parameter(&mut self, index: usize, _value: T) -> bool {
-        match index {
-            _ => return false,
-        }
-        #[allow(unreachable_code)] true
+    pub fn set_parameter(&mut self, _index: usize, _value: T) -> bool {
+        false
     }
 }
 impl<T: Scalar> Ode for GyroscopeCombinedOffsets<T> {
@@ -1607,7 +1604,6 @@ impl<T: Real> Partition for GyroscopeCombinedOffsets<T> {
         &self,
         _t: T,
         choice: &Self::Independent,
-        _integrated: &Self::State,
         y: &mut Self::State,
     ) -> Result<(), Error> {
         let charts = charts::one_hot::<T, _>(choice);

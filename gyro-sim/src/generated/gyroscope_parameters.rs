@@ -76,7 +76,7 @@ impl<T> GyroscopeParameters<T> {
             4 => self.ring_diametral_inertia = value,
             _ => return false,
         }
-        #[allow(unreachable_code)] true
+        true
     }
 }
 impl<T: Scalar> Ode for GyroscopeParameters<T> {
@@ -1430,7 +1430,6 @@ impl<T: Real> Partition for GyroscopeParameters<T> {
         &self,
         _t: T,
         choice: &Self::Independent,
-        _integrated: &Self::State,
         y: &mut Self::State,
     ) -> Result<(), Error> {
         let charts = charts::one_hot::<T, _>(choice);

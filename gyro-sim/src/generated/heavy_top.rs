@@ -49,11 +49,8 @@ impl<T> HeavyTop<T> {
     /// Names of the parameters.
     pub const PARAMETERS: [&'static str; 0] = [];
     /// Sets a parameter by its place in [`Self::PARAMETERS`]; returns whether there is one.
-    pub fn set_parameter(&mut self, index: usize, _value: T) -> bool {
-        match index {
-            _ => return false,
-        }
-        #[allow(unreachable_code)] true
+    pub fn set_parameter(&mut self, _index: usize, _value: T) -> bool {
+        false
     }
 }
 impl<T: Scalar> Ode for HeavyTop<T> {
@@ -352,7 +349,6 @@ impl<T: Real> Partition for HeavyTop<T> {
         &self,
         _t: T,
         _choice: &Self::Independent,
-        _integrated: &Self::State,
         y: &mut Self::State,
     ) -> Result<(), Error> {
         let k = T::constant;
@@ -362,7 +358,6 @@ impl<T: Real> Partition for HeavyTop<T> {
         let top_e3 = y[6];
         let top_wx = y[10];
         let top_wy = y[11];
-        let top_wz = y[12];
         let t0 = top_e0 * top_e0;
         let t1 = top_e0 * top_e3;
         let t2 = top_e1 * top_e2;
@@ -375,9 +370,6 @@ impl<T: Real> Partition for HeavyTop<T> {
         y[7] = -(k(0.04) * t3);
         y[8] = k(0.04) * t4;
         y[9] = -(k(0.04) * t5);
-        y[10] = top_wx;
-        y[11] = top_wy;
-        y[12] = top_wz;
         Ok(())
     }
 }

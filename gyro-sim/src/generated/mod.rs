@@ -6,13 +6,23 @@
 )]
 #![allow(missing_docs, reason = "the contract is documented at the traits that these modules implement")]
 
+#[rustfmt::skip]
 pub mod compound_pendulum;
+#[rustfmt::skip]
 pub mod free_body;
-pub mod gyroscope;
+#[rustfmt::skip]
 pub mod gyroscope_combined_offsets;
+#[rustfmt::skip]
 pub mod gyroscope_free_nutation;
+#[rustfmt::skip]
 pub mod gyroscope_maximal;
+#[rustfmt::skip]
 pub mod gyroscope_parameters;
+#[rustfmt::skip]
 pub mod gyroscope_radial_imbalance;
+#[rustfmt::skip]
 pub mod gyroscope_viscous;
+#[rustfmt::skip]
+pub mod gyroscope;
+#[rustfmt::skip]
 pub mod heavy_top;

@@ -77,11 +77,8 @@ impl Axis {
         let is_flat = high > low && high - low < FLAT * largest;
         let offset = if is_flat { values.clone().next().copied().unwrap_or(0.0) } else { 0.0 };
         let (low, high) = (low - offset, high - offset);
-        let (prefix, factor) = prefix(low.abs().max(high.abs()), unit);
-        let bracketed = match format!("{prefix}{unit}") {
-            empty if empty.is_empty() => String::new(),
-            full => format!("[{full}]"),
-        };
+        let (prefixed, factor) = prefixed(low.abs().max(high.abs()), unit);
+        let bracketed = if prefixed.is_empty() { prefixed } else { format!("[{prefixed}]") };
         let unit = match (is_flat, offset < 0.0) {
             (false, _) => bracketed,
             (true, false) => format!("− {} {bracketed}", shortest(offset)),
@@ -112,23 +109,21 @@ fn extent<'a>(values: impl Iterator<Item = &'a f64>) -> (f64, f64) {
     if low <= high { (low, high) } else { (0.0, 0.0) }
 }
 
-/// The prefix that leaves one to three digits before the point. A pure number takes a power of ten instead.
-fn prefix(largest: f64, unit: &str) -> (String, f64) {
+/// The unit with the prefix that leaves one to three digits before the point, and the prefix' power of ten. Where there
+/// is no prefix, as for pure numbers, the power itself is written.
+fn prefixed(largest: f64, unit: &str) -> (String, f64) {
     if largest == 0.0 {
-        return (String::new(), 1.0);
+        return (unit.to_owned(), 1.0);
     }
-    // Tenths still read well without a prefix.
-    let power = (largest * 10.0 * (1.0 + 1e-9)).log10().floor() as i32 - 1;
-    let third = (power + i32::from(power == -1)).div_euclid(3) * 3;
-    if unit.is_empty() || unit.starts_with('1') || !(-15..=9).contains(&third) {
-        let text = if third == 0 { String::new() } else { format!("1e{third} ") };
-        return (
-            text.trim_end().to_owned() + if unit.is_empty() || third == 0 { "" } else { " " },
-            10f64.powi(third),
-        );
-    }
-    let name = PREFIXES.iter().find(|(_, p)| *p == third).map_or("", |(name, _)| name);
-    (name.to_owned(), 10f64.powi(third))
+    let power = (largest * (1.0 + 1e-9)).log10().floor() as i32;
+    // Tenths read well without a prefix.
+    let third = if power == -1 { 0 } else { power.div_euclid(3) * 3 };
+    let prefixed = match PREFIXES.iter().find(|(_, p)| *p == third) {
+        _ if third == 0 => unit.to_owned(),
+        Some((name, _)) if !unit.is_empty() => format!("{name}{unit}"),
+        _ => format!("1e{third} {unit}").trim_end().to_owned(),
+    };
+    (prefixed, 10f64.powi(third))
 }
 
 fn shortest(value: f64) -> String {
@@ -140,7 +135,7 @@ fn nice(low: f64, high: f64) -> ((f64, f64), Vec<f64>, usize) {
     let (low, high) = if high > low { (low, high) } else { (low - 1.0, high + 1.0) };
     let margin = 0.05 * (high - low);
     let range = (low - margin, high + margin);
-    let rough = (range.1 - range.0) / 5.0;
+    let rough = (range.1 - range.0) / 6.0;
     let power = rough.log10().floor();
     let unit = 10f64.powf(power);
     let step = [1.0, 2.0, 5.0, 10.0].iter().map(|m| m * unit).find(|s| *s >= rough).unwrap_or(10.0 * unit);
@@ -163,8 +158,10 @@ mod tests {
     #[test]
     fn small_numbers_get_a_prefix() {
         check(&[0.0, -1.600_25e-3], "rad", "[mrad]", &["-1.5", "-1.0", "-0.5", "0"]);
+        check(&[0.0, 2e-5], "", "[1e-6]", &["0", "5", "10", "15", "20"]);
         check(&[0.0, 3e-15], "J", "[fJ]", &["0", "1", "2", "3"]);
-        check(&[0.0, 1.0], "rad", "[rad]", &["0", "0.5", "1.0"]);
+        check(&[0.0, 2e-18], "J", "[1e-18 J]", &["0", "0.5", "1.0", "1.5", "2.0"]);
+        check(&[0.0, 1.0], "rad", "[rad]", &["0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
     }
 
     #[test]

@@ -36,9 +36,12 @@ pub(crate) struct Series {
 const COLOURS: [RGBColor; 4] =
     [RGBColor(0, 114, 178), RGBColor(213, 94, 0), RGBColor(0, 158, 115), RGBColor(204, 121, 167)];
 
-const PANEL_WIDTH: u32 = 560;
-const PANEL_HEIGHT: u32 = 260;
-const TITLE_HEIGHT: u32 = 40;
+/// Plotters places points on whole pixels: it draws larger, and the picture is shown smaller.
+const FINE: u32 = 8;
+
+const PANEL_WIDTH: u32 = 560 * FINE;
+const PANEL_HEIGHT: u32 = 260 * FINE;
+const TITLE_HEIGHT: u32 = 40 * FINE;
 
 /// Draws a page.
 pub(crate) fn svg(page: &Page) -> Result<String, String> {
@@ -49,7 +52,8 @@ pub(crate) fn svg(page: &Page) -> Result<String, String> {
     let height = TITLE_HEIGHT + PANEL_HEIGHT * page.rows.len() as u32;
     draw(page, SVGBackend::with_string(&mut text, (width, height)).into_drawing_area())
         .map_err(|e| format!("the plot `{}` cannot be drawn: {e}", page.title))?;
-    Ok(text)
+    let size = |fine: u32| format!("width=\"{}\" height=\"{}\"", width / fine, height / fine);
+    Ok(text.replacen(&size(1), &size(FINE), 1))
 }
 
 /// An axis with its own ticks, for plotters.
@@ -82,8 +86,8 @@ type Outcome = Result<(), Box<dyn std::error::Error>>;
 fn draw(page: &Page, area: Area<'_>) -> Outcome {
     area.fill(&WHITE).map_err(|e| e.to_string())?;
     let (title, rest) = area.split_vertically(TITLE_HEIGHT);
-    let style = ("sans-serif", 20).into_font().color(&BLACK);
-    title.draw(&Text::new(page.title.clone(), (16, 14), style)).map_err(|e| e.to_string())?;
+    let at = (pixels(16), pixels(14));
+    title.draw(&Text::new(page.title.clone(), at, font(20).color(&BLACK))).map_err(|e| e.to_string())?;
     for (row, panels) in rest.split_evenly((page.rows.len(), 1)).iter().zip(&page.rows) {
         for (area, panel) in row.split_evenly((1, panels.len())).iter().zip(panels) {
             draw_panel(panel, area)?;
@@ -97,18 +101,19 @@ fn draw_panel(panel: &Panel, area: &Area<'_>) -> Outcome {
     let (time, axis) =
         (Axis::time(panel.times.last().copied().unwrap_or(1.0)), Axis::of(panel.scale, panel.unit, values));
     let mut chart = ChartBuilder::on(area)
-        .caption(format!("{} {}", panel.title, axis.unit), ("sans-serif", 15))
-        .margin(8)
-        .margin_right(24)
-        .x_label_area_size(38)
-        .y_label_area_size(64)
+        .caption(format!("{} {}", panel.title, axis.unit), font(15))
+        .margin(pixels(8))
+        .margin_right(pixels(24))
+        .x_label_area_size(pixels(38))
+        .y_label_area_size(pixels(64))
         .build_cartesian_2d(Ticked(&time), Ticked(&axis))?;
     chart
         .configure_mesh()
         .light_line_style(TRANSPARENT)
-        .bold_line_style(BLACK.mix(0.12))
-        .axis_style(BLACK.mix(0.5))
-        .label_style(("sans-serif", 13))
+        .bold_line_style(BLACK.mix(0.12).stroke_width(FINE))
+        .axis_style(BLACK.mix(0.5).stroke_width(FINE))
+        .set_all_tick_mark_size(pixels(4))
+        .label_style(font(13))
         .x_desc(format!("t {}", time.unit))
         .x_label_formatter(&|t| time.label(*t))
         .y_label_formatter(&|v| axis.label(*v))
@@ -117,21 +122,30 @@ fn draw_panel(panel: &Panel, area: &Area<'_>) -> Outcome {
         let points = decimate::indices(&series.values).into_iter();
         let points: Vec<(f64, f64)> =
             points.map(|k| (time.coordinate(panel.times[k]), axis.coordinate(series.values[k]))).collect();
-        let drawn = chart.draw_series([PathElement::new(points, colour.stroke_width(1))])?;
-        if !series.name.is_empty() {
-            drawn
-                .label(series.name)
-                .legend(|(x, y)| PathElement::new([(x, y), (x + 16, y)], colour.stroke_width(2)));
-        }
+        chart.draw_series([PathElement::new(points, colour.stroke_width(FINE * 5 / 4))])?;
     }
-    if panel.series.len() > 1 {
-        chart
-            .configure_series_labels()
-            .position(SeriesLabelPosition::UpperRight)
-            .background_style(WHITE.mix(0.8))
-            .border_style(BLACK.mix(0.2))
-            .label_font(("sans-serif", 13))
-            .draw()?;
+    draw_legend(panel, area)
+}
+
+/// The names of several series, each in its colour, from the right end of the title's line.
+fn draw_legend(panel: &Panel, area: &Area<'_>) -> Outcome {
+    let width = |name: &str| 8 * name.chars().count() as i32 + 30;
+    let mut right = (area.dim_in_pixel().0 / FINE) as i32 - 16;
+    let coloured: Vec<_> = panel.series.iter().zip(COLOURS.iter().cycle()).collect();
+    for (series, colour) in coloured.into_iter().rev().filter(|(series, _)| !series.name.is_empty()) {
+        right -= width(series.name);
+        let (dash, text) = ([(right, 18), (right + 16, 18)], (pixels(right + 20), pixels(11)));
+        let dash = dash.map(|(x, y)| (pixels(x), pixels(y)));
+        area.draw(&PathElement::new(dash, colour.stroke_width(2 * FINE))).map_err(|e| e.to_string())?;
+        area.draw(&Text::new(series.name, text, font(13))).map_err(|e| e.to_string())?;
     }
     Ok(())
+}
+
+fn pixels(shown: i32) -> i32 {
+    shown * FINE as i32
+}
+
+fn font(size: i32) -> FontDesc<'static> {
+    ("sans-serif", pixels(size)).into_font()
 }

@@ -1,0 +1,66 @@
+//! Seeded random states.
+
+use gyro_sim::{Mechanism, Scalar};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// Seeded random numbers, the same on every machine.
+#[derive(Clone, Debug)]
+pub struct Random(ChaCha8Rng);
+
+impl Random {
+    /// The sequence of a seed.
+    pub fn new(seed: u64) -> Self {
+        Self(ChaCha8Rng::seed_from_u64(seed))
+    }
+
+    /// Uniform in `(−1, 1)`.
+    pub fn signed(&mut self) -> f64 {
+        self.0.random_range(-1.0..1.0)
+    }
+
+    /// A whole number below `n`.
+    pub fn below(&mut self, n: usize) -> usize {
+        self.0.random_range(0..n)
+    }
+
+    /// A direction in four dimensions, uniform: Euler parameters of a uniform rotation (Marsaglia 1972, by rejection).
+    pub fn unit(&mut self) -> [f64; 4] {
+        loop {
+            let p = [self.signed(), self.signed(), self.signed(), self.signed()];
+            let square: f64 = p.iter().map(|e| e * e).sum();
+            if (0.01..1.0).contains(&square) {
+                return p.map(|e| e / square.sqrt());
+            }
+        }
+    }
+}
+
+/// A state with every joint row violated: mass centres anywhere within the mechanism's size of where they start, any
+/// orientations with |p| = 1, angular velocities up to `rate` rad/s and velocities up to `rate` sizes a second.
+pub fn state<M: Mechanism<Scalar = f64>>(mechanism: &M, rate: f64, random: &mut Random) -> Vec<f64> {
+    let (mut y, n_bodies, size) =
+        (mechanism.start().as_ref().to_vec(), mechanism.n_bodies(), mechanism.size());
+    let (positions, rest) = y.split_at_mut(7 * n_bodies);
+    for q in positions.as_chunks_mut::<7>().0 {
+        q[..3].iter_mut().for_each(|r| *r += size * random.signed());
+        q[3..].copy_from_slice(&random.unit());
+    }
+    let (velocities, work) = rest.split_at_mut(6 * n_bodies);
+    for v in velocities.as_chunks_mut::<6>().0 {
+        v[..3].iter_mut().for_each(|s| *s = rate * size * random.signed());
+        v[3..].iter_mut().for_each(|w| *w = rate * random.signed());
+    }
+    work.iter_mut().for_each(|work| *work = random.signed());
+    y
+}
+
+/// The mechanism's own state with these values.
+pub fn state_of<M: Mechanism>(mechanism: &M, values: &[f64]) -> M::State {
+    let mut y = mechanism.start();
+    assert_eq!(y.as_ref().len(), values.len(), "the values are not of this mechanism");
+    for (y, value) in y.as_mut().iter_mut().zip(values) {
+        *y = Scalar::constant(*value);
+    }
+    y
+}
