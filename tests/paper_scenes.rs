@@ -1,4 +1,5 @@
 //! The paper's settings at every tabulated time of every scene, by both engines, in both forms.
+#![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
 use gyro_assembled::{Careful, Dense};
 use gyro_model::Model;
@@ -59,11 +60,11 @@ fn errors(scene: &Scene, run: &Run) -> [(f64, f64); 3] {
 fn check(page: &str, run: &Run) {
     let (_, name) = PAGES.into_iter().find(|(known, _)| *known == page).expect("the page shows a scene");
     let errors = errors(&scene(name), run);
-    println!("{page}: {errors:.1e?}, violation {:.1e}", run.summary.position_violation);
+    println!("{page}: {errors:?}, violation {:.1e}", run.summary.position_violation);
     let rings = if name == "free-nutation" { RINGS_IN_FREE_NUTATION } else { RINGS };
     for ((position, rate), allowed) in errors.into_iter().zip([rings, rings, ROTOR]) {
-        assert!(position <= allowed, "{page}: an angle is off by {position:e} rad: {errors:e?}");
-        assert!(rate <= RATES, "{page}: a rate is off by {rate:e} of its largest: {errors:e?}");
+        assert!(position <= allowed, "{page}: an angle is off by {position:e} rad: {errors:?}");
+        assert!(rate <= RATES, "{page}: a rate is off by {rate:e} of its largest: {errors:?}");
     }
     let violation = run.summary.position_violation;
     assert!(violation <= VIOLATION, "{page}: violation {violation:e}");
@@ -109,5 +110,5 @@ fn another_scene_does_not_pass() {
     let model: Model = model("gyroscope");
     let run = simulate(&Careful::<f64>::new(&model).unwrap(), &model, &PAPER);
     let errors = errors(&scene("viscous-bearings"), &run);
-    assert!(errors.iter().all(|(position, _)| *position > 1e-4), "{errors:e?}");
+    assert!(errors.iter().all(|(position, _)| *position > 1e-4), "{errors:?}");
 }

@@ -5,7 +5,7 @@ use crate::freedom::{self, Attitude, Freedom};
 use crate::lowered::{Joint, Lowered, Place};
 use crate::number::{Number, number};
 use crate::spatial::{Inertia, Spatial};
-use crate::textbook::rotation;
+use crate::textbook::direction_rotation;
 use gyro_model::JointKind;
 use nalgebra::{Matrix3, Vector3};
 
@@ -84,7 +84,7 @@ pub(crate) fn accelerations<T: Number>(
 /// A body by itself.
 fn place<T: Number>(lowered: &Lowered<T>, y: &[T], slot: usize, force: &[T; 6], node: &mut Node<T>) {
     let body = &lowered.bodies[slot];
-    let a = rotation(&lowered.p(y, slot));
+    let a = direction_rotation(&lowered.p(y, slot));
     let [fx, fy, fz, nx, ny, nz] = *force;
     node.attitude = Attitude { a, omega: a * lowered.w(y, slot) };
     node.applied = Spatial { linear: Vector3::new(fx, fy, fz), angular: a * Vector3::new(nx, ny, nz) };

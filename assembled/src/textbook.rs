@@ -14,8 +14,18 @@ pub(crate) fn tilde<T: RealField + Copy>(a: &Vector3<T>) -> Matrix3<T> {
 
 /// A(p), paper, eq. (3): from body components to global ones.
 pub(crate) fn rotation<T: RealField + Copy>(p: &Vector4<T>) -> Matrix3<T> {
+    half_rotation(p, nalgebra::convert(0.5)) * nalgebra::convert::<_, T>(2.0)
+}
+
+/// A(p / |p|), orthogonal also where a stage of the integrator has left p a little off unit length.
+pub(crate) fn direction_rotation<T: RealField + Copy>(p: &Vector4<T>) -> Matrix3<T> {
+    let (squares, two) = (p.norm_squared(), nalgebra::convert::<_, T>(2.0));
+    half_rotation(p, squares / two) * (two / squares)
+}
+
+/// The matrix within eq. (3), with `half` for its 0.5.
+fn half_rotation<T: RealField + Copy>(p: &Vector4<T>, half: T) -> Matrix3<T> {
     let [e0, e1, e2, e3] = [p[0], p[1], p[2], p[3]];
-    let (half, two) = (nalgebra::convert::<_, T>(0.5), nalgebra::convert::<_, T>(2.0));
     Matrix3::new(
         e0 * e0 + e1 * e1 - half,
         e1 * e2 - e0 * e3,
@@ -26,7 +36,7 @@ pub(crate) fn rotation<T: RealField + Copy>(p: &Vector4<T>) -> Matrix3<T> {
         e1 * e3 - e0 * e2,
         e2 * e3 + e0 * e1,
         e0 * e0 + e3 * e3 - half,
-    ) * two
+    )
 }
 
 /// `∂(A(p) a')/∂p`: eq. (3) times a constant a', differentiated as it stands.

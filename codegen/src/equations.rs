@@ -28,8 +28,10 @@ pub struct Equations<'m> {
     /// (s̈, ẇ') of each slot.
     pub accelerations: Vec<ExprId>,
     pub lambda: Vec<ExprId>,
-    /// ẏ.
-    pub derivative: Vec<ExprId>,
+    /// (ṙ, ṗ) of each slot.
+    pub position_rates: Vec<ExprId>,
+    /// Power of the non-conservative forces, where the state carries their work.
+    pub power: Option<ExprId>,
     pub kinetic: ExprId,
     pub potential: ExprId,
     pub readings: Vec<ExprId>,
@@ -67,7 +69,7 @@ impl<'m> Equations<'m> {
         let saddle = Saddle::new(&dynamics.mass_matrix, &phi_pi, &applied_force, &gamma);
         let mut accelerations = saddle.solve(&mut system);
         let lambda = accelerations.split_off(6 * system.slots.len());
-        let derivative = state_derivative(&mut system, &accelerations, power);
+        let position_rates = position_rates(&mut system);
         Self {
             model,
             phi,
@@ -79,7 +81,8 @@ impl<'m> Equations<'m> {
             applied_force,
             accelerations,
             lambda,
-            derivative,
+            position_rates,
+            power: model.has_work().then_some(power),
             kinetic: dynamics.kinetic,
             potential: dynamics.potential,
             readings,
@@ -103,23 +106,18 @@ impl<'m> Equations<'m> {
     }
 
     pub fn n_state(&self) -> usize {
-        self.derivative.len()
+        13 * self.n_slots() + usize::from(self.power.is_some())
     }
 }
 
-/// (ṙ, ṗ) of each slot by eqs. (16) and (14), the accelerations, and the power where the state carries the work.
-fn state_derivative(system: &mut System, accelerations: &[ExprId], power: ExprId) -> Vec<ExprId> {
-    let mut derivative = Vec::new();
-    for &body in &system.slots {
-        let pose = system.poses[body];
-        derivative.extend(pose.s);
-        derivative.extend(system.graph.euler_rate(&pose.p, &pose.w));
-    }
-    derivative.extend(accelerations);
-    if system.model.has_work() {
-        derivative.push(power);
-    }
-    derivative
+/// (ṙ, ṗ) of each slot by eqs. (16) and (14).
+fn position_rates(system: &mut System) -> Vec<ExprId> {
+    let poses: Vec<_> = system.slots.iter().map(|&body| system.poses[body]).collect();
+    let rates = poses.iter().flat_map(|pose| {
+        let p_rate = system.graph.euler_rate(&pose.p, &pose.w);
+        pose.s.into_iter().chain(p_rate)
+    });
+    rates.collect()
 }
 
 fn expand_matrix(expansion: &mut Expansion, graph: &mut Graph, matrix: &Matrix) -> Matrix {

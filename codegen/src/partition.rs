@@ -188,24 +188,23 @@ impl Block {
         }
     }
 
-    /// w' from the body's dot-1 rows; the rate of its special Euler parameter keeps its integrated value.
+    /// w' from the body's dot-1 rows; the rate of its special Euler parameter keeps its integrated value. What is solved for is
+    /// the change of w', so that rounding is relative to the change: a large spin would else take a random walk.
     fn constrained_spin(&self, system: &mut System, kinematics: &Kinematics, solved: &Values) -> Vec3 {
-        let mut values = solved.clone();
-        values.extend((0..3).map(|k| (Symbol::Spin { slot: self.slot, k }, Graph::ZERO)));
-        let mut expansion = Expansion::with_values(&system.definitions, values);
+        let mut expansion = Expansion::with_values(&system.definitions, solved.clone());
         let (mut jacobian, mut rhs) = (Vec::new(), Vec::new());
         for row in self.rows.clone().skip(3) {
             jacobian.push(self.own_rotation(kinematics, row).map(|e| expansion.of(&mut system.graph, e)));
-            let carried = expansion.of(&mut system.graph, kinematics.velocity_residual[row]);
-            rhs.push(system.graph.neg(carried));
+            let residual = expansion.of(&mut system.graph, kinematics.velocity_residual[row]);
+            rhs.push(system.graph.neg(residual));
         }
+        let pose = system.poses[system.slots[self.slot]];
         if let Some(chart) = self.chart {
-            let pose = system.poses[system.slots[self.slot]];
-            let row = chart_row(&mut system.graph, &pose.p, &chart);
-            jacobian.push(row);
-            rhs.push(system.graph.dot(&row, &pose.w));
+            jacobian.push(chart_row(&mut system.graph, &pose.p, &chart));
+            rhs.push(Graph::ZERO);
         }
-        system.graph.solve3(&as_mat3(&jacobian), &as_vec3(&rhs))
+        let change = system.graph.solve3(&as_mat3(&jacobian), &as_vec3(&rhs));
+        system.graph.add_vec(&pose.w, &change)
     }
 
     /// Columns π' of this body in a row of Φ_π'.

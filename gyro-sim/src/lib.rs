@@ -44,6 +44,7 @@ extern crate self as gyro_sim;
 
 pub mod charts;
 mod error;
+#[cfg(feature = "generated")]
 pub mod generated;
 mod mechanism;
 mod partition;

@@ -1,5 +1,6 @@
 //! Seeded random states.
 
+use gyro_model::{JointKind, JointStartSpec, Model, Number, Support, parse_decimal};
 use gyro_sim::{Mechanism, Scalar};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -17,6 +18,11 @@ impl Random {
     /// Uniform in `(−1, 1)`.
     pub fn signed(&mut self) -> f64 {
         self.0.random_range(-1.0..1.0)
+    }
+
+    /// Three numbers, each uniform in `(−size, size)`.
+    pub fn vector(&mut self, size: f64) -> [f64; 3] {
+        [(); 3].map(|()| size * self.signed())
     }
 
     /// A whole number below `n`.
@@ -63,4 +69,62 @@ pub fn state_of<M: Mechanism>(mechanism: &M, values: &[f64]) -> M::State {
         *y = Scalar::constant(*value);
     }
     y
+}
+
+/// The model with a random pose and random velocities as its start: every joint anywhere, every free body too, at rates
+/// up to `rate` rad/s.
+pub fn posed(model: &Model, rate: f64, random: &mut Random) -> Model {
+    let mut model = model.clone();
+    for body in &mut model.bodies {
+        body.angular_velocity = None;
+        if body.support == Support::Free {
+            body.orientation = random.unit().map(number);
+            body.position = random.vector(1.0).map(number);
+            body.velocity = random.vector(1.0).map(number);
+            body.angular_velocity = Some(random.vector(rate).map(number));
+        }
+    }
+    for joint in &mut model.joints {
+        joint.start = match joint.kind {
+            JointKind::Revolute => {
+                let (angle, rate) = (10.0 * random.signed(), rate * random.signed());
+                JointStartSpec {
+                    angle: Some(number(angle)),
+                    rate: Some(vec![number(rate)]),
+                    orientation: None,
+                }
+            }
+            JointKind::Spherical => {
+                let (p, rate) = (random.unit(), random.vector(rate));
+                JointStartSpec {
+                    orientation: Some(p.map(number)),
+                    rate: Some(rate.map(number).to_vec()),
+                    angle: None,
+                }
+            }
+            JointKind::Fixed => JointStartSpec::default(),
+        };
+    }
+    model
+}
+
+/// The start of a model in the order of the state, its positions moved by up to `violation`: mass centres in terms of
+/// `size`, Euler parameters in terms of one and then normalised.
+pub fn violated_start(model: &Model, violation: f64, random: &mut Random) -> Vec<f64> {
+    let start = model.assemble().expect("any pose of a tree of joints can be assembled");
+    let (mut y, size) = (start.q, model.size());
+    for q in y.as_chunks_mut::<7>().0 {
+        q[..3].iter_mut().for_each(|r| *r += violation * size * random.signed());
+        q[3..].iter_mut().for_each(|e| *e += violation * random.signed());
+        let norm = q[3..].iter().map(|e| e * e).sum::<f64>().sqrt();
+        q[3..].iter_mut().for_each(|e| *e /= norm);
+    }
+    y.extend(start.v);
+    y.extend(model.has_work().then_some(0.0));
+    y
+}
+
+/// The number that is written with the digits of a finite `f64`.
+fn number(value: f64) -> Number {
+    Number::Exact(parse_decimal(&format!("{value:?}")).expect("finite numbers are written as decimals"))
 }

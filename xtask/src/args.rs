@@ -71,7 +71,7 @@ pub(crate) struct SimulateArgs {
     /// Number type of the run
     #[arg(long, value_enum, default_value_t = Precision::F64)]
     pub(crate) precision: Precision,
-    /// Interval between samples
+    /// Interval between samples [default: the page's, on the nearest whole number of corrections]
     #[arg(long, value_name = "S", value_parser = seconds, allow_hyphen_values = true)]
     pub(crate) every: Option<f64>,
     /// Value of one of the model's parameters; may be given several times. The start is assembled anew

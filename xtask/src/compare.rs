@@ -86,7 +86,8 @@ fn describe(compared: &[Compared<'_>], no_theory: Option<&str>, length: f64) -> 
         }
         rows.insert(0, head.into_iter().map(str::to_owned).collect());
     }
-    format!("\nfit of each angle by a + b t + A cos ωt + B sin ωt\n{}{notes}", table(&rows))
+    let title = "fit of each angle by a + b t + A cos ωt + B sin ωt (b: precession or spin, ω: nutation)";
+    format!("\n{title}\n{}{notes}", table(&rows))
 }
 
 /// The rows of an angle that could be fitted.
@@ -106,9 +107,9 @@ fn fitted(joint: &Compared<'_>, run: &Fit, length: f64) -> Vec<Vec<String>> {
     let line = if is_level(run) && theory.is_none_or(is_level) {
         row("mean [rad]", |fit| Some(fit.mean))
     } else {
-        row("slope (precession, spin) [rad/s]", |fit| Some(fit.slope))
+        row("slope b [rad/s]", |fit| Some(fit.slope))
     };
-    let omega = row("frequency ω (nutation) [rad/s]", |fit| Some(fit.harmonic?.omega));
+    let omega = row("frequency ω [rad/s]", |fit| Some(fit.harmonic?.omega));
     let swing = row("peak to peak [rad]", |fit| Some(2.0 * fit.harmonic?.amplitude));
     [line, omega, swing].into_iter().flatten().collect()
 }

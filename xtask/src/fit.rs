@@ -49,8 +49,9 @@ const FEWEST_SAMPLES: usize = 16;
 /// Line and harmonic are told apart only over more than one cycle.
 const FEWEST_CYCLES: f64 = 1.5;
 
-/// The root mean square of the rest, as part of the amplitude, up to which a fit is worth printing.
-const EXPLAINED: f64 = 0.05;
+/// The root mean square of the rest, as part of the amplitude, up to which a fit is worth printing: a
+/// pendulum that swings by a right angle is not harmonic.
+const EXPLAINED: f64 = 0.01;
 
 /// Further samples would not make the fit better, only slower.
 const MOST_SAMPLES: usize = 1 << 18;
@@ -61,7 +62,7 @@ impl fmt::Display for NoFit {
             Self::Still => write!(f, "it does not move"),
             Self::TooShort => write!(f, "the run shows too few samples or cycles"),
             Self::Unexplained(rest) => {
-                write!(f, "a line plus one harmonic leaves {:.0} % of the amplitude", rest * 100.0)
+                write!(f, "a line plus one harmonic leaves {:.1} % of the amplitude", rest * 100.0)
             }
         }
     }
@@ -147,7 +148,7 @@ impl Samples<'_> {
             return Err(NoFit::TooShort);
         }
         let rest = self.rms(&curve) / curve.amplitude();
-        if !(rest <= EXPLAINED) {
+        if rest.is_nan() || rest > EXPLAINED {
             return Err(NoFit::Unexplained(rest));
         }
         let harmonic = Some(Harmonic { omega, amplitude: curve.amplitude() });

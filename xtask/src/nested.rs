@@ -84,7 +84,7 @@ publish = false
 [workspace]
 
 [dependencies]
-gyro-sim = {{ path = {gyro_sim:?} }}
+gyro-sim = {{ path = {gyro_sim:?}, default-features = false }}
 gyro-runner = {{ path = {gyro_runner:?} }}
 
 [profile.release]

@@ -92,7 +92,9 @@ impl Samples<'_> {
 
     fn residuals(&self) -> Vec<Vec<Panel>> {
         let panel = |title: &str, unit, value: fn(&Sample) -> f64| {
-            vec![Panel { scale: Scale::Log, ..self.panel(title, unit, vec![self.series("", value)]) }]
+            let series = self.series("", value);
+            let remark = if series.values.iter().all(|v| *v == 0.0) { ": exactly zero" } else { "" };
+            vec![Panel { scale: Scale::Log, ..self.panel(&format!("{title}{remark}"), unit, vec![series]) }]
         };
         vec![
             panel("constraint violation, lengths over the mechanism's size", "", |s| s.position_violation),

@@ -63,13 +63,21 @@ fn with_parameters(page: &Model, set: &[(String, Rational)]) -> Result<Model, Fa
 fn settings(model: &Model, args: &SimulateArgs) -> Settings {
     let page = &model.simulation;
     let method = args.method.map_or(page.method, Method::from);
-    let correct_every = args.correct_every.unwrap_or(page.correct_every);
+    let step = args.step.unwrap_or(page.step);
+    let correct_every =
+        (method == Method::Partitioned).then_some(args.correct_every.unwrap_or(page.correct_every));
+    let grid = correct_every.unwrap_or(step);
     Settings {
         t_end: args.t_end.unwrap_or(page.t_end),
-        step: args.step.unwrap_or(page.step),
-        correct_every: (method == Method::Partitioned).then_some(correct_every),
-        sample_every: args.every.unwrap_or(page.sample_every),
+        step,
+        correct_every,
+        sample_every: args.every.unwrap_or_else(|| nearest_multiple(page.sample_every, grid)),
     }
+}
+
+/// Samples that nobody asked for at other times fall on corrections (or steps): they shall not shorten a step.
+fn nearest_multiple(interval: f64, grid: f64) -> f64 {
+    grid * (interval / grid).round().max(1.0)
 }
 
 /// The assembled start; free bodies are observed, as no joint shows how they move.

@@ -12,15 +12,7 @@ impl ModuleWriter<'_> {
         let work = self.equations.model.has_work().then_some(0.0);
         let start = start.q.iter().chain(&start.v).copied().chain(work);
         let start: Vec<_> = start.map(|x| if x == 0.0 { float(0.0) } else { float(x) }).collect();
-        let derivative = self.function("Writes ẏ", &self.functions.derivative, |body, t, y| {
-            let (statements, values) = (&body.statements, &body.values);
-            quote! {
-                fn derivative(&self, #t: T, #y: &Self::State, dy: &mut Self::State) {
-                    #statements
-                    *dy = [#(#values),*];
-                }
-            }
-        });
+        let derivative = self.derivative();
         quote! {
             impl<T: Scalar> Ode for #name<T> {
                 type Scalar = T;
@@ -35,5 +27,24 @@ impl ModuleWriter<'_> {
                 #derivative
             }
         }
+    }
+
+    /// The position rates and the power; the accelerations are those of `Equations`, unrolled there and nowhere else.
+    fn derivative(&self) -> TokenStream {
+        let n_positions = 7 * self.equations.n_slots();
+        let what = "Writes ẏ; beyond what [`Equations::accelerations`] takes";
+        self.function(what, &self.functions.derivative, |body, _, _| {
+            let (statements, (positions, power)) = (&body.statements, body.values.split_at(n_positions));
+            let accelerations = (0..self.equations.accelerations.len()).map(index);
+            quote! {
+                fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+                    let mut v = self.velocities();
+                    let mut lambda = self.rows();
+                    self.accelerations(t, y, &mut v, &mut lambda);
+                    #statements
+                    *dy = [#(#positions,)* #(v[#accelerations],)* #(#power),*];
+                }
+            }
+        })
     }
 }

@@ -20,12 +20,12 @@
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 120 | 173 | 0 | 293 | 0 of 15 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 |
 //! | accelerations | (s̈, ẇ') and λ, eq. (17) | 500 | 743 | 14 | 1257 | 2 of 33 |
-//! | derivative | ẏ: eqs. (14), (16), (17) | 524 | 791 | 14 | 1329 | 2 of 39 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
 //! | read_joints | joint coordinates and rates | 37 | 58 | 0 | 95 | 0 of 9 |
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
 //! | newton_step | dependent positions, one Newton step | 220 | 343 | 3 | 566 | 6 of 21 |
-//! | solve_velocities | dependent velocities, eq. (19) | 139 | 245 | 3 | 387 | 8 of 18 |
+//! | solve_velocities | dependent velocities, eq. (19) | 165 | 278 | 3 | 446 | 6 of 18 |
 
 use gyro_sim::charts::{self, Charts};
 use gyro_sim::{
@@ -101,8 +101,11 @@ impl<T: Scalar> Ode for GyroscopeCombinedOffsets<T> {
             k(0.0),
         ]
     }
-    /// Writes ẏ: 1329 operations (524 ±, 791 ×, 14 ÷).
-    fn derivative(&self, _t: T, y: &Self::State, dy: &mut Self::State) {
+    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 72 operations (24 ±, 48 ×, 0 ÷).
+    fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut v = self.velocities();
+        let mut lambda = self.rows();
+        self.accelerations(t, y, &mut v, &mut lambda);
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -134,675 +137,6 @@ impl<T: Scalar> Ode for GyroscopeCombinedOffsets<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let (
-            t3,
-            t7,
-            t10,
-            t13,
-            t17,
-            t21,
-            t22,
-            t23,
-            t27,
-            t29,
-            t31,
-            t32,
-            t33,
-            t35,
-            t37,
-            t39,
-            t41,
-            t43,
-            t47,
-            t48,
-            t49,
-            t50,
-            t52,
-            t54,
-            t56,
-            t57,
-            t58,
-            t59,
-            t60,
-            t62,
-            t63,
-            t69,
-            t70,
-            t71,
-            t72,
-            t73,
-            t75,
-            t77,
-            t83,
-            t84,
-            t85,
-            t86,
-            t87,
-            t89,
-            t92,
-            t94,
-            t100,
-            t101,
-            t102,
-            t103,
-            t104,
-            t106,
-            t109,
-            t112,
-            t115,
-            t116,
-            t117,
-            t124,
-            t125,
-            t126,
-            t127,
-            t128,
-            t130,
-            t135,
-            t136,
-            t137,
-            t138,
-            t139,
-            t140,
-            t142,
-            t145,
-            t146,
-            t147,
-            t148,
-            t149,
-            t150,
-            t151,
-            t153,
-            t155,
-            t156,
-            t157,
-            t158,
-            t159,
-            t160,
-            t161,
-            t162,
-            t164,
-            t165,
-            t166,
-            t167,
-            t168,
-            t169,
-            t170,
-            t171,
-            t172,
-            t173,
-            t175,
-            t176,
-            t177,
-            t178,
-            t179,
-            t180,
-            t181,
-            t182,
-            t183,
-            t185,
-            t186,
-            t187,
-            t188,
-            t189,
-            t190,
-            t191,
-            t192,
-            t193,
-            t194,
-            t195,
-            t196,
-            t197,
-            t198,
-            t199,
-        ) = {
-            let t0 = rotor_e0 * rotor_e3;
-            let t1 = rotor_e1 * rotor_e2;
-            let t2 = t1 - t0;
-            let t3 = k(2.0) * t2;
-            let t4 = inner_ring_e0 * inner_ring_e3;
-            let t5 = inner_ring_e1 * inner_ring_e2;
-            let t6 = t5 - t4;
-            let t7 = k(2.0) * t6;
-            let t8 = rotor_e0 * rotor_e0;
-            let t9 = k(0.5) - (t8 + rotor_e2 * rotor_e2);
-            let t10 = k(2.0) * t9;
-            let t11 = inner_ring_e0 * inner_ring_e0;
-            let t12 = k(0.5) - (t11 + inner_ring_e2 * inner_ring_e2);
-            let t13 = k(2.0) * t12;
-            let t14 = rotor_e0 * rotor_e1;
-            let t15 = rotor_e2 * rotor_e3;
-            let t16 = t15 + t14;
-            let t17 = k(2.0) * t16;
-            let t18 = inner_ring_e0 * inner_ring_e1;
-            let t19 = inner_ring_e2 * inner_ring_e3;
-            let t20 = t19 + t18;
-            let t21 = k(2.0) * t20;
-            let t22 = t21 * t17 + (t13 * t10 + t7 * t3);
-            let t23 = k(200000.0) * t22;
-            let t24 = rotor_e0 * rotor_e2;
-            let t25 = rotor_e1 * rotor_e3;
-            let t26 = t25 + t24;
-            let t27 = k(2.0) * t26;
-            let t28 = t15 - t14;
-            let t29 = k(2.0) * t28;
-            let t30 = k(0.5) - (t8 + rotor_e3 * rotor_e3);
-            let t31 = k(2.0) * t30;
-            let t32 = t21 * t31 + (t13 * t29 - t7 * t27);
-            let t33 = k(200000.0) * t32;
-            let t34 = k(0.5) - (t8 + rotor_e1 * rotor_e1);
-            let t35 = k(2.0) * t34;
-            let t36 = k(0.5) - (t11 + inner_ring_e1 * inner_ring_e1);
-            let t37 = k(2.0) * t36;
-            let t38 = t1 + t0;
-            let t39 = k(2.0) * t38;
-            let t40 = t5 + t4;
-            let t41 = k(2.0) * t40;
-            let t42 = t25 - t24;
-            let t43 = k(2.0) * t42;
-            let t44 = inner_ring_e0 * inner_ring_e2;
-            let t45 = inner_ring_e1 * inner_ring_e3;
-            let t46 = t45 - t44;
-            let t47 = k(2.0) * t46;
-            let t48 = t47 * t43 + (t41 * t39 + t37 * t35);
-            let t49 = k(1000000.0) * t48;
-            let t50 = k(1.0) / (t48 * t49 + t32 * t33 + t22 * t23);
-            let t51 = t45 + t44;
-            let t52 = k(2.0) * t51;
-            let t53 = t19 - t18;
-            let t54 = k(2.0) * t53;
-            let t55 = k(0.5) - (t11 + inner_ring_e3 * inner_ring_e3);
-            let t56 = k(2.0) * t55;
-            let t57 = t56 * t17 + (t54 * t10 - t52 * t3);
-            let t58 = k(200000.0) * t57;
-            let t59 = t56 * t31 + (t54 * t29 + t52 * t27);
-            let t60 = k(200000.0) * t59;
-            let t61 = t32 * t60 + t22 * t58;
-            let t62 = t61 * t50;
-            let t63 = k(1.0) / (t59 * t60 + t57 * t58 - t61 * t62);
-            let t64 = k(0.0002) * t2 + k(0.0004) * t34;
-            let t65 = k(0.0002) * t26 - k(0.0003) * t34;
-            let t66 = k(0.00025) * t6 + k(0.0001) * t36;
-            let t67 = t66 * t49 - t65 * t33 + t64 * t23;
-            let t68 = t65 * t60 - t64 * t58 + t67 * t62;
-            let t69 = t68 * t63;
-            let t70 = t67 * t50;
-            let t71 = k(200000.0) * t64;
-            let t72 = k(200000.0) * t65;
-            let t73 = k(1000000.0) * t66;
-            let t74 = k(0.0004) * t26 + k(0.0003) * t2;
-            let t75 = k(100000.0) * t74;
-            let t76 = t74 * t75 + k(112.5) + t66 * t73 + t65 * t72 + t64 * t71;
-            let t77 = k(1.0) / (t76 - t67 * t70 - t68 * t69);
-            let t78 = k(0.0002) * t9 + k(0.0004) * t38;
-            let t79 = k(0.0002) * t28 + k(0.0003) * t38;
-            let t80 = k(0.00025) * t12 + k(0.0001) * t40;
-            let t81 = t80 * t49 + t79 * t33 + t78 * t23;
-            let t82 = t79 * t60 + t78 * t58 - t81 * t62;
-            let t83 = t82 * t63;
-            let t84 = t81 * t50;
-            let t85 = k(200000.0) * t78;
-            let t86 = k(200000.0) * t79;
-            let t87 = k(1000000.0) * t80;
-            let t88 = k(0.0004) * t28 - k(0.0003) * t9;
-            let t89 = k(100000.0) * t88;
-            let t90 = t74 * t89 - t66 * t87 + t65 * t86 - t64 * t85;
-            let t91 = t90 + t67 * t84 - t68 * t83;
-            let t92 = t91 * t77;
-            let t93 = k(112.5) + t88 * t89 + t80 * t87 + t79 * t86 + t78 * t85;
-            let t94 = k(1.0) / (t93 - t81 * t84 - t82 * t83 - t91 * t92);
-            let t95 = k(0.0002) * t16 - k(0.0004) * t42;
-            let t96 = k(0.0002) * t30 - k(0.0003) * t42;
-            let t97 = k(0.00025) * t20 - k(0.0001) * t46;
-            let t98 = t97 * t49 + t96 * t33 + t95 * t23;
-            let t99 = t96 * t60 + t95 * t58 - t98 * t62;
-            let t100 = t99 * t63;
-            let t101 = t98 * t50;
-            let t102 = k(200000.0) * t95;
-            let t103 = k(200000.0) * t96;
-            let t104 = k(1000000.0) * t97;
-            let t105 = k(0.0004) * t30 - k(0.0003) * t16;
-            let t106 = k(100000.0) * t105;
-            let t107 = t74 * t106 - t66 * t104 + t65 * t103 - t64 * t102;
-            let t108 = t107 + t67 * t101 - t68 * t100;
-            let t109 = t108 * t77;
-            let t110 = t88 * t106 + t80 * t104 + t79 * t103 + t78 * t102;
-            let t111 = t110 - t81 * t101 - t82 * t100 - t91 * t109;
-            let t112 = t111 * t94;
-            let t113 = k(112.5) + t105 * t106 + t97 * t104 + t96 * t103 + t95 * t102;
-            let t114 = t113 - t98 * t101 - t99 * t100 - t108 * t109 - t111 * t112;
-            let t115 = k(1.0) / t114;
-            let t116 = t56 * t43 - (t54 * t39 - t52 * t35);
-            let t117 = t21 * t43 - (t13 * t39 + t7 * t35);
-            let t118 = t117 + t116 * t62;
-            let t119 = k(0.0001) * t51 + k(6e-5) * t6 - t116 * t70 - t118 * t69;
-            let t120 = k(0.0001) * t53 - k(6e-5) * t12 + t116 * t84 - t118 * t83;
-            let t121 = t120 - t119 * t92;
-            let t122 = k(0.0001) * t55 - k(6e-5) * t20 + t116 * t101 - t118 * t100;
-            let t123 = t122 - t119 * t109 - t121 * t112;
-            let t124 = t123 * t115;
-            let t125 = t121 * t94;
-            let t126 = t119 * t77;
-            let t127 = t118 * t63;
-            let t128 = t116 * t50;
-            let t129 = k(1e-6) + t116 * t128 + t118 * t127 + t119 * t126 + t121 * t125;
-            let t130 = k(1.0) / (t129 + t123 * t124);
-            let t131 = k(0.00025) * t51 - k(6e-5) * t36 - t48 * t69;
-            let t132 = k(0.00025) * t53 + k(6e-5) * t40 - t48 * t83 - t131 * t92;
-            let t133 = k(0.00025) * t55 - k(6e-5) * t46 - t48 * t100 - t131 * t109;
-            let t134 = t133 - t132 * t112;
-            let t135 = t134 * t115;
-            let t136 = t132 * t94;
-            let t137 = t131 * t77;
-            let t138 = t48 * t63;
-            let t139 = t118 * t138 + t119 * t137 + t121 * t136 + t123 * t135;
-            let t140 = t139 * t130;
-            let t141 = k(2e-6) + t48 * t138 + t131 * t137 + t132 * t136 + t134 * t135;
-            let t142 = k(1.0) / (t141 - t139 * t140);
-            let t143 = k(100.0) * t92;
-            let t144 = k(100.0) * t109 - t143 * t112;
-            let t145 = t144 * t115;
-            let t146 = t143 * t94;
-            let t147 = k(100.0) * t77;
-            let t148 = t119 * t147 - t121 * t146 - t123 * t145;
-            let t149 = t148 * t130;
-            let t150 = t131 * t147 - t132 * t146 - t134 * t145 - t139 * t149;
-            let t151 = t150 * t142;
-            let t152 = k(100.0) - k(10000.0) * t77 - t143 * t146 - t144 * t145
-                + t148 * t149;
-            let t153 = k(1.0) / (t152 + t150 * t151);
-            let t154 = k(100.0) * t112;
-            let t155 = t154 * t115;
-            let t156 = k(100.0) * t94;
-            let t157 = t121 * t156 - t123 * t155;
-            let t158 = t157 * t130;
-            let t159 = t132 * t156 - t134 * t155 - t139 * t158;
-            let t160 = t159 * t142;
-            let t161 = t143 * t156 - t144 * t155 + t148 * t158 + t150 * t160;
-            let t162 = t161 * t153;
-            let t163 = k(100.0) - k(10000.0) * t94 - t154 * t155 + t157 * t158
-                + t159 * t160;
-            let t164 = k(1.0) / (t163 - t161 * t162);
-            let t165 = k(100.0) * t115;
-            let t166 = t123 * t165;
-            let t167 = t166 * t130;
-            let t168 = t134 * t165 - t139 * t167;
-            let t169 = t168 * t142;
-            let t170 = t144 * t165 + t148 * t167 + t150 * t169;
-            let t171 = t170 * t153;
-            let t172 = t154 * t165 + t157 * t167 + t159 * t169 - t161 * t171;
-            let t173 = t172 * t164;
-            let t174 = k(100.0) - k(10000.0) * t115 + t166 * t167 + t168 * t169
-                - t170 * t171;
-            let t175 = k(1.0) / (t174 - t172 * t173);
-            let t176 = outer_ring_e0 * outer_ring_e0;
-            let t177 = k(0.5) - (t176 + outer_ring_e1 * outer_ring_e1);
-            let t178 = k(2.0) * t177;
-            let t179 = outer_ring_e0 * outer_ring_e3;
-            let t180 = outer_ring_e1 * outer_ring_e2;
-            let t181 = k(2.0) * (t180 + t179);
-            let t182 = outer_ring_e0 * outer_ring_e2;
-            let t183 = outer_ring_e1 * outer_ring_e3;
-            let t184 = t183 - t182;
-            let t185 = k(2.0) * t184;
-            let t186 = t185 * t21 - (t181 * t13 + t178 * t7);
-            let t187 = t186 * t130;
-            let t188 = t185 * t47 + (t181 * t41 + t178 * t37);
-            let t189 = t188 - t139 * t187;
-            let t190 = t189 * t142;
-            let t191 = t148 * t187 + t150 * t190;
-            let t192 = t191 * t153;
-            let t193 = t157 * t187 + t159 * t190 - t161 * t192;
-            let t194 = t193 * t164;
-            let t195 = t166 * t187 + t168 * t190 - t170 * t192 - t172 * t194;
-            let t196 = t195 * t175;
-            let t197 = k(2000000.0) * t184;
-            let t198 = k(0.5) - (t176 + outer_ring_e3 * outer_ring_e3);
-            let t199 = k(1000000.0) * t198;
-            (
-                t3,
-                t7,
-                t10,
-                t13,
-                t17,
-                t21,
-                t22,
-                t23,
-                t27,
-                t29,
-                t31,
-                t32,
-                t33,
-                t35,
-                t37,
-                t39,
-                t41,
-                t43,
-                t47,
-                t48,
-                t49,
-                t50,
-                t52,
-                t54,
-                t56,
-                t57,
-                t58,
-                t59,
-                t60,
-                t62,
-                t63,
-                t69,
-                t70,
-                t71,
-                t72,
-                t73,
-                t75,
-                t77,
-                t83,
-                t84,
-                t85,
-                t86,
-                t87,
-                t89,
-                t92,
-                t94,
-                t100,
-                t101,
-                t102,
-                t103,
-                t104,
-                t106,
-                t109,
-                t112,
-                t115,
-                t116,
-                t117,
-                t124,
-                t125,
-                t126,
-                t127,
-                t128,
-                t130,
-                t135,
-                t136,
-                t137,
-                t138,
-                t139,
-                t140,
-                t142,
-                t145,
-                t146,
-                t147,
-                t148,
-                t149,
-                t150,
-                t151,
-                t153,
-                t155,
-                t156,
-                t157,
-                t158,
-                t159,
-                t160,
-                t161,
-                t162,
-                t164,
-                t165,
-                t166,
-                t167,
-                t168,
-                t169,
-                t170,
-                t171,
-                t172,
-                t173,
-                t175,
-                t176,
-                t177,
-                t178,
-                t179,
-                t180,
-                t181,
-                t182,
-                t183,
-                t185,
-                t186,
-                t187,
-                t188,
-                t189,
-                t190,
-                t191,
-                t192,
-                t193,
-                t194,
-                t195,
-                t196,
-                t197,
-                t198,
-                t199,
-            )
-        };
-        let (
-            t204,
-            t222,
-            t239,
-            t313,
-            t325,
-            t326,
-            t327,
-            t328,
-            t329,
-            t330,
-            t331,
-            t332,
-            t334,
-            t336,
-            t338,
-            t340,
-            t342,
-            t344,
-            t346,
-            t349,
-            t350,
-            t351,
-        ) = {
-            let t200 = k(2.0) * t198;
-            let t201 = k(1.0) / (t200 * t199 + t185 * t197);
-            let t202 = k(2000000.0) * t177;
-            let t203 = t183 + t182;
-            let t204 = k(1000000.0) * t203;
-            let t205 = t200 * t204 + t185 * t202;
-            let t206 = t205 * t201;
-            let t207 = k(2.0) * t203;
-            let t208 = k(1.0) / (t207 * t204 + t178 * t202 - t205 * t206);
-            let t209 = k(2.0) * (t180 - t179);
-            let t210 = k(2.0) * (k(0.5) - (t176 + outer_ring_e2 * outer_ring_e2));
-            let t211 = outer_ring_e0 * outer_ring_e1;
-            let t212 = outer_ring_e2 * outer_ring_e3;
-            let t213 = k(2.0) * (t212 + t211);
-            let t214 = t213 * t56 + (t210 * t54 - t209 * t52);
-            let t215 = k(1000000.0) * t214;
-            let t216 = t185 * t215;
-            let t217 = t216 * t201;
-            let t218 = t178 * t215 - t205 * t217;
-            let t219 = t218 * t208;
-            let t220 = k(2.0) * (t212 - t211);
-            let t221 = t200 * t56 + (t220 * t54 + t207 * t52);
-            let t222 = k(1000000.0) * t221;
-            let t223 = t221 * t222 + t214 * t215 - t216 * t217 - t218 * t219;
-            let t224 = t223 + t186 * t187 + t189 * t190 - t191 * t192 - t193 * t194;
-            let t225 = k(1.0) / (t224 - t195 * t196);
-            let t226 = t213 * t21 + (t210 * t13 + t209 * t7);
-            let t227 = t226 * t130;
-            let t228 = t213 * t47 - (t210 * t41 + t209 * t37);
-            let t229 = t228 - t139 * t227;
-            let t230 = t229 * t142;
-            let t231 = t148 * t227 + t150 * t230;
-            let t232 = t231 * t153;
-            let t233 = t157 * t227 + t159 * t230 - t161 * t232;
-            let t234 = t233 * t164;
-            let t235 = t166 * t227 + t168 * t230 - t170 * t232 - t172 * t234;
-            let t236 = t235 * t175;
-            let t237 = t185 * t56 - (t181 * t54 - t178 * t52);
-            let t238 = k(1000000.0) * t237;
-            let t239 = k(500000.0) * t221;
-            let t240 = t200 * t239 + t185 * t238;
-            let t241 = t240 * t201;
-            let t242 = t207 * t239 + t178 * t238 - t205 * t241;
-            let t243 = t242 * t208;
-            let t244 = t214 * t238 - t216 * t241 - t218 * t243 - t186 * t227;
-            let t245 = t244 - t189 * t230 + t191 * t232 + t193 * t234 + t195 * t236;
-            let t246 = t245 * t225;
-            let t247 = t221 * t239 + t237 * t238 - t240 * t241 - t242 * t243;
-            let t248 = t247 + t226 * t227 + t229 * t230 - t231 * t232 - t233 * t234;
-            let t249 = rotor_wx * rotor_wy;
-            let t250 = k(5e-6) * t249;
-            let t251 = rotor_wx * rotor_wz;
-            let t252 = k(5e-6) * t251;
-            let t253 = inner_ring_wx * inner_ring_wy;
-            let t254 = k(1e-6) * t253;
-            let t255 = inner_ring_wx * inner_ring_wx;
-            let t256 = inner_ring_wz * inner_ring_wz;
-            let t257 = t256 + t255;
-            let t258 = inner_ring_wy * inner_ring_wz;
-            let t259 = rotor_wy * (t47 * t31 - (t41 * t29 - t37 * t27))
-                + rotor_wz * (t47 * t17 - (t41 * t10 + t37 * t3));
-            let t260 = k(2.0)
-                * (inner_ring_wx * (rotor_wy * t59 + rotor_wz * t57)
-                    + inner_ring_wz * t259);
-            let t261 = rotor_wy * rotor_wy;
-            let t262 = rotor_wz * rotor_wz;
-            let t263 = t262 + t261;
-            let t264 = t251 * t32 - (t249 * t22 - t263 * t117) + t260
-                + (t258 * t116 + (t257 * t117 - t253 * t48));
-            let t265 = t264 - t254 * t49 + t252 * t33 - t250 * t23;
-            let t266 = inner_ring_wx * inner_ring_wz;
-            let t267 = inner_ring_wy * inner_ring_wy;
-            let t268 = t267 + t255;
-            let t269 = k(2.0)
-                * (inner_ring_wx * (rotor_wy * t32 + rotor_wz * t22)
-                    - inner_ring_wy * t259);
-            let t270 = t251 * t59 - (t249 * t57 - t263 * t116) - t269
-                + (t268 * t116 + (t258 * t117 + t266 * t48));
-            let t271 = t270 + t252 * t60 - t250 * t58 - t265 * t62;
-            let t272 = t256 + t267;
-            let t273 = k(5e-5) * (t52 * t258 - (t7 * t257 + t37 * t253))
-                + k(0.000125) * (t52 * t266 + (t7 * t253 + t37 * t272));
-            let t274 = k(3e-5) * (t52 * t268 - (t7 * t258 - t37 * t266)) + t273;
-            let t275 = rotor_wx * rotor_wx;
-            let t276 = t262 + t275;
-            let t277 = rotor_wy * rotor_wz;
-            let t278 = k(0.0002) * (t27 * t277 - (t3 * t276 + t35 * t249))
-                + k(0.0001) * (t27 * t251 + (t3 * t249 + t35 * t263));
-            let t279 = t261 + t275;
-            let t280 = k(0.00015) * (t27 * t279 - (t3 * t277 - t35 * t251)) + t278;
-            let t281 = t280 - t274 + t254 * t73 + t252 * t72 + t250 * t71;
-            let t282 = t281 + t265 * t70 - t271 * t69;
-            let t283 = k(5e-5) * (t54 * t258 + (t13 * t257 + t41 * t253))
-                + k(0.000125) * (t54 * t266 - (t13 * t253 + t41 * t272));
-            let t284 = k(3e-5) * (t54 * t268 + (t13 * t258 - t41 * t266)) + t283;
-            let t285 = k(0.0002) * (t29 * t277 + (t10 * t276 + t39 * t249))
-                + k(0.0001) * (t29 * t251 - (t10 * t249 + t39 * t263));
-            let t286 = k(0.00015) * (t29 * t279 + (t10 * t277 - t39 * t251)) + t285;
-            let t287 = k(10.0) + (t286 - t284 - k(10.0)) - t254 * t87 + t252 * t86;
-            let t288 = t287 - t250 * t85 - t265 * t84 - t271 * t83 - t282 * t92;
-            let t289 = k(5e-5) * (t56 * t258 + (t21 * t257 - t47 * t253))
-                + k(0.000125) * (t56 * t266 - (t21 * t253 - t47 * t272));
-            let t290 = k(3e-5) * (t56 * t268 + (t21 * t258 + t47 * t266)) + t289;
-            let t291 = k(0.0002) * (t31 * t277 + (t17 * t276 - t43 * t249))
-                + k(0.0001) * (t31 * t251 - (t17 * t249 - t43 * t263));
-            let t292 = k(0.00015) * (t31 * t279 + (t17 * t277 + t43 * t251)) + t291;
-            let t293 = t292 - t290 - t254 * t104 + t252 * t103 - t250 * t102;
-            let t294 = t293 - t265 * t101 - t271 * t100 - t282 * t109 - t288 * t112;
-            let t295 = k(1e-6) * t258 - t265 * t128 + t271 * t127 + t282 * t126;
-            let t296 = t295 + t288 * t125 + t294 * t124;
-            let t297 = t271 * t138 + t282 * t137 + t288 * t136 + t294 * t135;
-            let t298 = t297 - t296 * t140;
-            let t299 = t282 * t147 - t288 * t146 - t294 * t145 - t296 * t149;
-            let t300 = t299 - t298 * t151;
-            let t301 = k(10.0) - t288 * t156 + t294 * t155 + t296 * t158 + t298 * t160;
-            let t302 = t301 + t300 * t162;
-            let t303 = t294 * t165 - t296 * t167 - t298 * t169 - t300 * t171;
-            let t304 = t303 + t302 * t173;
-            let t305 = outer_ring_wx * outer_ring_wy;
-            let t306 = k(1e-6) * t305;
-            let t307 = outer_ring_wz * outer_ring_wz;
-            let t308 = t307 + outer_ring_wx * outer_ring_wx;
-            let t309 = outer_ring_wy * outer_ring_wz;
-            let t310 = t200 * t309 + (t213 * t308 - t185 * t305) + t306 * t197;
-            let t311 = t207 * t309 - (t209 * t308 + t178 * t305) + t306 * t202;
-            let t312 = t311 - t310 * t206;
-            let t313 = outer_ring_wx * outer_ring_wz;
-            let t314 = t313 * t221
-                - (t305 * t214 - (t307 + outer_ring_wy * outer_ring_wy) * t237);
-            let t315 = inner_ring_wx * (t200 * t21 + (t220 * t13 - t207 * t7))
-                - inner_ring_wy * (t200 * t47 - (t220 * t41 - t207 * t37));
-            let t316 = k(2.0)
-                * (outer_ring_wy * t315
-                    + outer_ring_wz * (inner_ring_wx * t226 - inner_ring_wy * t228));
-            let t317 = t268 * t237 + (t258 * t186 + t266 * t188) - t316 + t314;
-            let t318 = t317 + k(1e-6) * t313 * t222 - t306 * t215 + t310 * t217;
-            let t319 = t318 + t312 * t219 - t296 * t187 - t298 * t190 - t300 * t192;
-            let t320 = t319 + t302 * t194 - t304 * t196;
-            let t321 = k(2.0)
-                * (outer_ring_wx * t315
-                    + outer_ring_wz * (inner_ring_wx * t186 - inner_ring_wy * t188));
-            let t322 = t268 * t214 + (t258 * t226 + t266 * t228) + t321
-                + (t309 * t221 + (t308 * t214 - t305 * t237));
-            let t323 = t322 + t306 * t238 - t310 * t241 - t312 * t243 - t296 * t227;
-            let t324 = t323 - t298 * t230 - t300 * t232 + t302 * t234 - t304 * t236;
-            let t325 = (t324 + t320 * t246) / (t248 - t235 * t236 - t245 * t246);
-            let t326 = t320 * t225 + t246 * t325;
-            let t327 = t304 * t175 - t196 * t326 - t236 * t325;
-            let t328 = t302 * t164 + t173 * t327 + t194 * t326 + t234 * t325;
-            let t329 = k(100.0) * t328;
-            let t330 = t312 * t208 + t219 * t326 - t243 * t325;
-            let t331 = t310 * t201 - t206 * t330 + t217 * t326 - t241 * t325;
-            let t332 = t305 - t197 * t331 - t202 * t330 + t215 * t326 - t238 * t325;
-            let t333 = t300 * t153 + t162 * t328 - t171 * t327 - t192 * t326;
-            let t334 = t333 - t232 * t325;
-            let t335 = t298 * t142 + t151 * t334 - t160 * t328 + t169 * t327;
-            let t336 = t335 + t190 * t326 + t230 * t325;
-            let t337 = t296 * t130 - t140 * t336 + t149 * t334 - t158 * t328;
-            let t338 = t337 + t167 * t327 + t187 * t326 + t227 * t325;
-            let t339 = t294 * t115 - t124 * t338 - t135 * t336 - t145 * t334;
-            let t340 = t339 + t155 * t328 + t165 * t327;
-            let t341 = t288 * t94 - t125 * t338 - t136 * t336 - t146 * t334;
-            let t342 = t341 - t156 * t328 - t112 * t340;
-            let t343 = t282 * t77 - t126 * t338 - t137 * t336 + t147 * t334;
-            let t344 = t343 - t92 * t342 - t109 * t340;
-            let t345 = t271 * t63 - t127 * t338 - t138 * t336 - t69 * t344;
-            let t346 = t345 - t83 * t342 - t100 * t340;
-            let t347 = t265 * t50 + t128 * t338 + t70 * t344 - t84 * t342;
-            let t348 = t347 - t101 * t340 - t62 * t346;
-            let t349 = t253 - t73 * t344 + t87 * t342 + t104 * t340 + t49 * t348;
-            let t350 = t251 - t72 * t344 - t86 * t342 - t103 * t340 - t33 * t348;
-            let t351 = t249 - t71 * t344 + t85 * t342 + t102 * t340 + t23 * t348;
-            (
-                t204,
-                t222,
-                t239,
-                t313,
-                t325,
-                t326,
-                t327,
-                t328,
-                t329,
-                t330,
-                t331,
-                t332,
-                t334,
-                t336,
-                t338,
-                t340,
-                t342,
-                t344,
-                t346,
-                t349,
-                t350,
-                t351,
-            )
-        };
         *dy = [
             outer_ring_sx,
             outer_ring_sy,
@@ -843,24 +177,24 @@ impl<T: Scalar> Ode for GyroscopeCombinedOffsets<T> {
             k(0.5) * (rotor_e3 * rotor_wx + rotor_e0 * rotor_wy - rotor_e1 * rotor_wz),
             -(k(0.5)
                 * (rotor_e2 * rotor_wx - rotor_e1 * rotor_wy - rotor_e0 * rotor_wz)),
-            k(0.0),
-            -(k(10.0) - k(100.0) * (k(0.1) + t328) + t329),
-            k(0.0),
-            -(t199 * t331 + t204 * t330 + t239 * t325),
-            t222 * t326 - t313,
-            t332,
-            k(100.0) * (t344 - t334),
-            k(100.0) * t342 - (k(10.0) - t329),
-            k(100.0) * (t327 - t340),
-            t338,
-            -t336,
-            -t349,
-            -(k(12.5) * t344),
-            -(k(10.0) + k(12.5) * t342),
-            k(12.5) * t340,
-            -(t75 * t344 + t89 * t342 + t106 * t340),
-            t60 * t346 - t350,
-            t351 + t58 * t346,
+            v[0],
+            v[1],
+            v[2],
+            v[3],
+            v[4],
+            v[5],
+            v[6],
+            v[7],
+            v[8],
+            v[9],
+            v[10],
+            v[11],
+            v[12],
+            v[13],
+            v[14],
+            v[15],
+            v[16],
+            v[17],
         ];
     }
 }
@@ -1599,7 +933,7 @@ impl<T: Real> Partition for GyroscopeCombinedOffsets<T> {
         y[20] = -t152;
         Ok(())
     }
-    /// Solves eq. (19) for the dependent velocities: 387 operations (139 ±, 245 ×, 3 ÷).
+    /// Solves eq. (19) for the dependent velocities: 446 operations (165 ±, 278 ×, 3 ÷).
     fn solve_velocities(
         &self,
         _t: T,
@@ -1641,144 +975,151 @@ impl<T: Real> Partition for GyroscopeCombinedOffsets<T> {
         let chart2_1 = charts[2][1];
         let chart2_2 = charts[2][2];
         let chart2_3 = charts[2][3];
-        let t0 = outer_ring_e0 * outer_ring_e0;
-        let t1 = k(2.0) * (k(0.5) - (t0 + outer_ring_e3 * outer_ring_e3));
-        let t2 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
-        let t3 = outer_ring_e0 * outer_ring_e2;
-        let t4 = outer_ring_e1 * outer_ring_e3;
-        let t5 = k(2.0) * (t4 - t3);
-        let t6 = k(2.0) * (t4 + t3);
-        let t7 = t6 * t5 - t2 * t1;
-        let t8 = outer_ring_e3 * chart0_0 - outer_ring_e2 * chart0_1
-            + outer_ring_e1 * chart0_2 - outer_ring_e0 * chart0_3;
-        let t9 = outer_ring_e2 * chart0_0 + outer_ring_e3 * chart0_1
+        let t0 = outer_ring_e2 * chart0_0 + outer_ring_e3 * chart0_1
             - outer_ring_e0 * chart0_2 - outer_ring_e1 * chart0_3;
-        let t10 = k(0.5) * t9;
-        let t11 = outer_ring_e1 * chart0_0 - outer_ring_e0 * chart0_1
+        let t1 = k(0.5) * t0;
+        let t2 = outer_ring_e0 * outer_ring_e2;
+        let t3 = outer_ring_e1 * outer_ring_e3;
+        let t4 = k(2.0) * (t3 - t2);
+        let t5 = outer_ring_e0 * outer_ring_e0;
+        let t6 = k(2.0) * (k(0.5) - (t5 + outer_ring_e1 * outer_ring_e1));
+        let t7 = k(2.0) * (t3 + t2);
+        let t8 = t7 * outer_ring_wx + t6 * outer_ring_wz;
+        let t9 = k(2.0) * (k(0.5) - (t5 + outer_ring_e3 * outer_ring_e3));
+        let t10 = t9 * outer_ring_wx + t4 * outer_ring_wz;
+        let t11 = k(1.0) / (t1 * (t7 * t4 - t6 * t9));
+        let t12 = outer_ring_wx + t11 * (t10 * (t6 * t1) - t8 * (t4 * t1));
+        let t13 = outer_ring_e1 * chart0_0 - outer_ring_e0 * chart0_1
             - outer_ring_e3 * chart0_2 + outer_ring_e2 * chart0_3;
-        let t12 = outer_ring_wx * (k(0.5) * t11) + outer_ring_wy * t10
-            + outer_ring_wz * (k(0.5) * t8);
-        let t13 = t12 * t7 / (t10 * t7);
-        let t14 = inner_ring_e3 * chart1_0 - inner_ring_e2 * chart1_1
+        let t14 = k(0.5) * t13;
+        let t15 = outer_ring_e3 * chart0_0 - outer_ring_e2 * chart0_1
+            + outer_ring_e1 * chart0_2 - outer_ring_e0 * chart0_3;
+        let t16 = k(0.5) * t15;
+        let t17 = t10 * (t6 * t14 - t7 * t16) + t8 * (t9 * t16 - t4 * t14);
+        let t18 = outer_ring_wy - t11 * t17;
+        let t19 = outer_ring_wz - t11 * (t10 * (t7 * t1) - t8 * (t9 * t1));
+        let t20 = inner_ring_e3 * chart1_0 - inner_ring_e2 * chart1_1
             + inner_ring_e1 * chart1_2 - inner_ring_e0 * chart1_3;
-        let t15 = k(0.5) * t14;
-        let t16 = inner_ring_e0 * inner_ring_e0;
-        let t17 = k(2.0) * (k(0.5) - (t16 + inner_ring_e1 * inner_ring_e1));
-        let t18 = outer_ring_e0 * outer_ring_e3;
-        let t19 = outer_ring_e1 * outer_ring_e2;
-        let t20 = k(2.0) * (t19 - t18);
-        let t21 = inner_ring_e0 * inner_ring_e3;
-        let t22 = inner_ring_e1 * inner_ring_e2;
-        let t23 = k(2.0) * (t22 + t21);
-        let t24 = k(2.0) * (k(0.5) - (t0 + outer_ring_e2 * outer_ring_e2));
-        let t25 = inner_ring_e0 * inner_ring_e2;
-        let t26 = inner_ring_e1 * inner_ring_e3;
-        let t27 = k(2.0) * (t26 - t25);
-        let t28 = outer_ring_e0 * outer_ring_e1;
-        let t29 = outer_ring_e2 * outer_ring_e3;
-        let t30 = k(2.0) * (t29 + t28);
-        let t31 = t30 * t27 - (t24 * t23 + t20 * t17);
-        let t32 = k(2.0) * (t26 + t25);
-        let t33 = inner_ring_e0 * inner_ring_e1;
-        let t34 = inner_ring_e2 * inner_ring_e3;
-        let t35 = k(2.0) * (t34 - t33);
-        let t36 = k(2.0) * (k(0.5) - (t16 + inner_ring_e3 * inner_ring_e3));
-        let t37 = t1 * t36 + (k(2.0) * (t29 - t28) * t35 + t6 * t32);
-        let t38 = t13 * t37;
-        let t39 = k(2.0) * (t22 - t21);
-        let t40 = k(2.0) * (k(0.5) - (t16 + inner_ring_e2 * inner_ring_e2));
-        let t41 = k(2.0) * (t34 + t33);
-        let t42 = t30 * t41 + (t24 * t40 + t20 * t39);
-        let t43 = k(2.0) * (t19 + t18);
-        let t44 = (t5 * t41 - (t43 * t40 + t2 * t39)) * t31
-            - (t5 * t27 + (t43 * t23 + t2 * t17)) * t42;
-        let t45 = k(1.0) / (t15 * t44);
-        let t46 = t45 * (t38 * (t31 * t15));
-        let t47 = t45 * (t38 * (t42 * t15));
-        let t48 = inner_ring_e2 * chart1_0 + inner_ring_e3 * chart1_1
+        let t21 = k(0.5) * t20;
+        let t22 = inner_ring_e0 * inner_ring_e0;
+        let t23 = k(2.0) * (k(0.5) - (t22 + inner_ring_e1 * inner_ring_e1));
+        let t24 = inner_ring_e0 * inner_ring_e3;
+        let t25 = inner_ring_e1 * inner_ring_e2;
+        let t26 = k(2.0) * (t25 + t24);
+        let t27 = outer_ring_e0 * outer_ring_e3;
+        let t28 = outer_ring_e1 * outer_ring_e2;
+        let t29 = k(2.0) * (t28 + t27);
+        let t30 = inner_ring_e0 * inner_ring_e2;
+        let t31 = inner_ring_e1 * inner_ring_e3;
+        let t32 = k(2.0) * (t31 - t30);
+        let t33 = t4 * t32 + (t29 * t26 + t6 * t23);
+        let t34 = k(2.0) * (t28 - t27);
+        let t35 = k(2.0) * (k(0.5) - (t5 + outer_ring_e2 * outer_ring_e2));
+        let t36 = outer_ring_e0 * outer_ring_e1;
+        let t37 = outer_ring_e2 * outer_ring_e3;
+        let t38 = k(2.0) * (t37 + t36);
+        let t39 = t38 * t32 - (t35 * t26 + t34 * t23);
+        let t40 = k(2.0) * (t25 - t24);
+        let t41 = k(2.0) * (k(0.5) - (t22 + inner_ring_e2 * inner_ring_e2));
+        let t42 = inner_ring_e0 * inner_ring_e1;
+        let t43 = inner_ring_e2 * inner_ring_e3;
+        let t44 = k(2.0) * (t43 + t42);
+        let t45 = t38 * t44 + (t35 * t41 + t34 * t40);
+        let t46 = k(2.0) * (t31 + t30);
+        let t47 = k(2.0) * (t43 - t42);
+        let t48 = k(2.0) * (k(0.5) - (t22 + inner_ring_e3 * inner_ring_e3));
+        let t49 = t9 * t48 + (k(2.0) * (t37 - t36) * t47 + t7 * t46);
+        let t50 = t12 * t49 + t19 * (t4 * t48 - (t29 * t47 - t6 * t46));
+        let t51 = t50 - (inner_ring_wx * t45 - inner_ring_wy * t39);
+        let t52 = t4 * t44 - (t29 * t41 + t6 * t40);
+        let t53 = t18 * t49 + t19 * (t38 * t48 + (t35 * t47 - t34 * t46));
+        let t54 = t53 + (inner_ring_wx * t52 - inner_ring_wy * t33);
+        let t55 = k(1.0) / (t21 * (t52 * t39 - t33 * t45));
+        let t56 = inner_ring_wx - t55 * (t54 * (t39 * t21) + t51 * (t33 * t21));
+        let t57 = inner_ring_wy - t55 * (t54 * (t45 * t21) + t51 * (t52 * t21));
+        let t58 = inner_ring_e2 * chart1_0 + inner_ring_e3 * chart1_1
             - inner_ring_e0 * chart1_2 - inner_ring_e1 * chart1_3;
-        let t49 = k(0.5) * t48;
-        let t50 = inner_ring_e1 * chart1_0 - inner_ring_e0 * chart1_1
+        let t59 = k(0.5) * t58;
+        let t60 = inner_ring_e1 * chart1_0 - inner_ring_e0 * chart1_1
             - inner_ring_e3 * chart1_2 + inner_ring_e2 * chart1_3;
-        let t51 = k(0.5) * t50;
-        let t52 = t38 * (t42 * t49 + t31 * t51)
-            + (inner_ring_wx * t51 + inner_ring_wy * t49 + inner_ring_wz * t15) * t44;
-        let t53 = t45 * t52;
-        let t54 = rotor_e1 * chart2_0 - rotor_e0 * chart2_1 - rotor_e3 * chart2_2
+        let t61 = k(0.5) * t60;
+        let t62 = t54 * (t45 * t59 + t39 * t61) + t51 * (t33 * t61 + t52 * t59);
+        let t63 = inner_ring_wz + t55 * t62;
+        let t64 = rotor_e1 * chart2_0 - rotor_e0 * chart2_1 - rotor_e3 * chart2_2
             + rotor_e2 * chart2_3;
-        let t55 = k(0.5) * t54;
-        let t56 = rotor_e0 * rotor_e3;
-        let t57 = rotor_e1 * rotor_e2;
-        let t58 = k(2.0) * (t57 - t56);
-        let t59 = rotor_e0 * rotor_e0;
-        let t60 = k(2.0) * (k(0.5) - (t59 + rotor_e2 * rotor_e2));
-        let t61 = rotor_e0 * rotor_e1;
-        let t62 = rotor_e2 * rotor_e3;
-        let t63 = k(2.0) * (t62 + t61);
-        let t64 = t41 * t63 + (t40 * t60 + t39 * t58);
-        let t65 = k(2.0) * (k(0.5) - (t59 + rotor_e1 * rotor_e1));
-        let t66 = k(2.0) * (t57 + t56);
-        let t67 = rotor_e0 * rotor_e2;
-        let t68 = rotor_e1 * rotor_e3;
-        let t69 = k(2.0) * (t68 - t67);
-        let t70 = t27 * t69 + (t23 * t66 + t17 * t65);
-        let t71 = t46 * (t41 * t69 - (t40 * t66 + t39 * t65)) - t47 * t70;
-        let t72 = t36 * t63 + (t35 * t60 - t32 * t58);
-        let t73 = t46 * (t36 * t69 - (t35 * t66 - t32 * t65)) - t53 * t70;
-        let t74 = k(2.0) * (t68 + t67);
-        let t75 = k(2.0) * (t62 - t61);
-        let t76 = k(2.0) * (k(0.5) - (t59 + rotor_e3 * rotor_e3));
-        let t77 = t36 * t76 + (t35 * t75 + t32 * t74);
-        let t78 = t41 * t76 + (t40 * t75 - t39 * t74);
-        let t79 = t78 * t72 - t64 * t77;
-        let t80 = k(1.0) / (t55 * t79);
-        let t81 = t80 * (t73 * (t72 * t55) + t71 * (t64 * t55));
-        let t82 = rotor_e3 * chart2_0 - rotor_e2 * chart2_1 + rotor_e1 * chart2_2
+        let t65 = k(0.5) * t64;
+        let t66 = rotor_e0 * rotor_e3;
+        let t67 = rotor_e1 * rotor_e2;
+        let t68 = k(2.0) * (t67 - t66);
+        let t69 = rotor_e0 * rotor_e0;
+        let t70 = k(2.0) * (k(0.5) - (t69 + rotor_e2 * rotor_e2));
+        let t71 = rotor_e0 * rotor_e1;
+        let t72 = rotor_e2 * rotor_e3;
+        let t73 = k(2.0) * (t72 + t71);
+        let t74 = t44 * t73 + (t41 * t70 + t40 * t68);
+        let t75 = t48 * t73 + (t47 * t70 - t46 * t68);
+        let t76 = rotor_e0 * rotor_e2;
+        let t77 = rotor_e1 * rotor_e3;
+        let t78 = k(2.0) * (t77 + t76);
+        let t79 = k(2.0) * (t72 - t71);
+        let t80 = k(2.0) * (k(0.5) - (t69 + rotor_e3 * rotor_e3));
+        let t81 = t48 * t80 + (t47 * t79 + t46 * t78);
+        let t82 = k(2.0) * (k(0.5) - (t69 + rotor_e1 * rotor_e1));
+        let t83 = k(2.0) * (t67 + t66);
+        let t84 = k(2.0) * (t77 - t76);
+        let t85 = t32 * t84 + (t26 * t83 + t23 * t82);
+        let t86 = t56 * (t44 * t84 - (t41 * t83 + t40 * t82)) - t57 * t85;
+        let t87 = t86 + (rotor_wy * t81 + rotor_wz * t75);
+        let t88 = t44 * t80 + (t41 * t79 - t40 * t78);
+        let t89 = t56 * (t48 * t84 - (t47 * t83 - t46 * t82)) + t63 * t85;
+        let t90 = t89 - (rotor_wy * t88 + rotor_wz * t74);
+        let t91 = k(1.0) / (t65 * (t88 * t75 - t74 * t81));
+        let t92 = rotor_wy + t91 * (t90 * (t75 * t65) + t87 * (t74 * t65));
+        let t93 = rotor_e3 * chart2_0 - rotor_e2 * chart2_1 + rotor_e1 * chart2_2
             - rotor_e0 * chart2_3;
-        let t83 = k(0.5) * t82;
-        let t84 = rotor_e2 * chart2_0 + rotor_e3 * chart2_1 - rotor_e0 * chart2_2
+        let t94 = k(0.5) * t93;
+        let t95 = rotor_e2 * chart2_0 + rotor_e3 * chart2_1 - rotor_e0 * chart2_2
             - rotor_e1 * chart2_3;
-        let t85 = k(0.5) * t84;
-        let t86 = t73 * (t77 * t83 - t72 * t85) - t71 * (t64 * t85 - t78 * t83);
-        let t87 = t86 - (rotor_wx * t55 + rotor_wy * t85 + rotor_wz * t83) * t79;
-        let t88 = t80 * t87;
-        let t89 = t80 * (t73 * (t77 * t55) + t71 * (t78 * t55));
-        let t90 = k(0.0001) * (t74 * t81 + t58 * t89)
-            - k(0.0002) * (t74 * t88 - t65 * t89);
-        let t91 = k(0.000125) * (t32 * t47 + t39 * t53)
-            - k(5e-5) * (t32 * t46 - t17 * t53);
-        let t92 = t91 - k(3e-5) * (t39 * t46 + t17 * t47)
-            - (t90 - k(0.00015) * (t58 * t88 + t65 * t81));
-        let t93 = k(0.0001) * (t75 * t81 - t60 * t89)
-            - k(0.0002) * (t75 * t88 + t66 * t89);
-        let t94 = k(0.000125) * (t35 * t47 - t40 * t53)
-            - k(5e-5) * (t35 * t46 + t23 * t53);
-        let t95 = t94 + k(3e-5) * (t40 * t46 + t23 * t47)
-            - (t93 + k(0.00015) * (t60 * t88 + t66 * t81));
-        let t96 = k(0.0001) * (t76 * t81 - t63 * t89)
-            - k(0.0002) * (t76 * t88 - t69 * t89);
-        let t97 = k(0.000125) * (t36 * t47 - t41 * t53)
-            - k(5e-5) * (t36 * t46 - t27 * t53);
-        let t98 = t97 + k(3e-5) * (t41 * t46 - t27 * t47)
-            - (t96 + k(0.00015) * (t63 * t88 - t69 * t81));
+        let t96 = k(0.5) * t95;
+        let t97 = t90 * (t81 * t94 - t75 * t96) - t87 * (t74 * t96 - t88 * t94);
+        let t98 = rotor_wx + t91 * t97;
+        let t99 = rotor_wz - t91 * (t90 * (t81 * t65) + t87 * (t88 * t65));
+        let t100 = k(0.0001) * (t78 * t92 - t68 * t99)
+            - k(0.0002) * (t78 * t98 + t82 * t99);
+        let t101 = k(0.000125) * (t46 * t57 - t40 * t63)
+            - k(5e-5) * (t46 * t56 + t23 * t63);
+        let t102 = t101 - k(3e-5) * (t40 * t56 + t23 * t57)
+            - (t100 - k(0.00015) * (t68 * t98 + t82 * t92));
+        let t103 = k(0.0001) * (t79 * t92 + t70 * t99)
+            - k(0.0002) * (t79 * t98 - t83 * t99);
+        let t104 = k(0.000125) * (t47 * t57 + t41 * t63)
+            - k(5e-5) * (t47 * t56 - t26 * t63);
+        let t105 = t104 + k(3e-5) * (t41 * t56 + t26 * t57)
+            - (t103 + k(0.00015) * (t70 * t98 + t83 * t92));
+        let t106 = k(0.0001) * (t80 * t92 + t73 * t99)
+            - k(0.0002) * (t80 * t98 + t84 * t99);
+        let t107 = k(0.000125) * (t48 * t57 + t44 * t63)
+            - k(5e-5) * (t48 * t56 + t32 * t63);
+        let t108 = t107 + k(3e-5) * (t44 * t56 - t32 * t57)
+            - (t106 + k(0.00015) * (t73 * t98 - t84 * t92));
         y[21] = k(0.0);
         y[22] = k(0.0);
         y[23] = k(0.0);
-        y[24] = k(0.0);
-        y[25] = t13;
-        y[26] = k(0.0);
+        y[24] = t12;
+        y[25] = t18;
+        y[26] = t19;
         y[27] = k(0.0);
         y[28] = k(0.0);
         y[29] = k(0.0);
-        y[30] = -t46;
-        y[31] = -t47;
-        y[32] = t53;
-        y[33] = t92;
-        y[34] = t95;
-        y[35] = -t98;
-        y[36] = -t88;
-        y[37] = -t81;
-        y[38] = t89;
+        y[30] = t56;
+        y[31] = t57;
+        y[32] = t63;
+        y[33] = -t102;
+        y[34] = -t105;
+        y[35] = t108;
+        y[36] = t98;
+        y[37] = t92;
+        y[38] = t99;
         Ok(())
     }
 }

@@ -21,12 +21,12 @@
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 84 | 119 | 0 | 203 | 0 of 15 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 12 of 18 |
 //! | accelerations | (s̈, ẇ') and λ, eq. (17) | 191 | 310 | 10 | 511 | 19 of 33 |
-//! | derivative | ẏ: eqs. (14), (16), (17) | 215 | 358 | 10 | 583 | 10 of 39 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | energy | T and V | 17 | 31 | 0 | 48 | 1 of 2 |
 //! | read_joints | joint coordinates and rates | 37 | 58 | 0 | 95 | 0 of 9 |
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
 //! | newton_step | dependent positions, one Newton step | 189 | 314 | 3 | 506 | 9 of 21 |
-//! | solve_velocities | dependent velocities, eq. (19) | 106 | 191 | 3 | 300 | 11 of 18 |
+//! | solve_velocities | dependent velocities, eq. (19) | 132 | 224 | 3 | 359 | 9 of 18 |
 
 use gyro_sim::charts::{self, Charts};
 use gyro_sim::{
@@ -102,8 +102,11 @@ impl<T: Scalar> Ode for GyroscopeFreeNutation<T> {
             k(0.5),
         ]
     }
-    /// Writes ẏ: 583 operations (215 ±, 358 ×, 10 ÷).
-    fn derivative(&self, _t: T, y: &Self::State, dy: &mut Self::State) {
+    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 72 operations (24 ±, 48 ×, 0 ÷).
+    fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut v = self.velocities();
+        let mut lambda = self.rows();
+        self.accelerations(t, y, &mut v, &mut lambda);
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -135,174 +138,6 @@ impl<T: Scalar> Ode for GyroscopeFreeNutation<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = rotor_e0 * rotor_e3;
-        let t1 = rotor_e1 * rotor_e2;
-        let t2 = k(2.0) * (t1 - t0);
-        let t3 = inner_ring_e0 * inner_ring_e3;
-        let t4 = inner_ring_e1 * inner_ring_e2;
-        let t5 = k(2.0) * (t4 - t3);
-        let t6 = rotor_e0 * rotor_e0;
-        let t7 = k(2.0) * (k(0.5) - (t6 + rotor_e2 * rotor_e2));
-        let t8 = inner_ring_e0 * inner_ring_e0;
-        let t9 = k(2.0) * (k(0.5) - (t8 + inner_ring_e2 * inner_ring_e2));
-        let t10 = rotor_e0 * rotor_e1;
-        let t11 = rotor_e2 * rotor_e3;
-        let t12 = k(2.0) * (t11 + t10);
-        let t13 = inner_ring_e0 * inner_ring_e1;
-        let t14 = inner_ring_e2 * inner_ring_e3;
-        let t15 = k(2.0) * (t14 + t13);
-        let t16 = t15 * t12 + (t9 * t7 + t5 * t2);
-        let t17 = k(200000.0) * t16;
-        let t18 = rotor_e0 * rotor_e2;
-        let t19 = rotor_e1 * rotor_e3;
-        let t20 = k(2.0) * (t19 + t18);
-        let t21 = k(2.0) * (t11 - t10);
-        let t22 = k(2.0) * (k(0.5) - (t6 + rotor_e3 * rotor_e3));
-        let t23 = t15 * t22 + (t9 * t21 - t5 * t20);
-        let t24 = k(200000.0) * t23;
-        let t25 = k(2.0) * (k(0.5) - (t6 + rotor_e1 * rotor_e1));
-        let t26 = k(2.0) * (k(0.5) - (t8 + inner_ring_e1 * inner_ring_e1));
-        let t27 = k(2.0) * (t1 + t0);
-        let t28 = k(2.0) * (t4 + t3);
-        let t29 = k(2.0) * (t19 - t18);
-        let t30 = inner_ring_e0 * inner_ring_e2;
-        let t31 = inner_ring_e1 * inner_ring_e3;
-        let t32 = k(2.0) * (t31 - t30);
-        let t33 = t32 * t29 + (t28 * t27 + t26 * t25);
-        let t34 = k(1000000.0) * t33;
-        let t35 = k(1.0) / (t33 * t34 + t23 * t24 + t16 * t17);
-        let t36 = k(2.0) * (t31 + t30);
-        let t37 = k(2.0) * (t14 - t13);
-        let t38 = k(2.0) * (k(0.5) - (t8 + inner_ring_e3 * inner_ring_e3));
-        let t39 = t38 * t12 + (t37 * t7 - t36 * t2);
-        let t40 = k(200000.0) * t39;
-        let t41 = t38 * t22 + (t37 * t21 + t36 * t20);
-        let t42 = k(200000.0) * t41;
-        let t43 = t23 * t42 + t16 * t40;
-        let t44 = t43 * t35;
-        let t45 = k(1.0) / (t41 * t42 + t39 * t40 - t43 * t44);
-        let t46 = t38 * t29 - (t37 * t27 - t36 * t25);
-        let t47 = t15 * t29 - (t9 * t27 + t5 * t25);
-        let t48 = t47 + t46 * t44;
-        let t49 = t48 * t45;
-        let t50 = t46 * t35;
-        let t51 = k(1.0) / (k(1e-6) + t46 * t50 + t48 * t49);
-        let t52 = t33 * t45;
-        let t53 = t48 * t52;
-        let t54 = t53 * t51;
-        let t55 = k(1.0) / (k(2e-6) + t33 * t52 - t53 * t54);
-        let t56 = outer_ring_e0 * outer_ring_e0;
-        let t57 = k(2.0) * (k(0.5) - (t56 + outer_ring_e1 * outer_ring_e1));
-        let t58 = outer_ring_e0 * outer_ring_e3;
-        let t59 = outer_ring_e1 * outer_ring_e2;
-        let t60 = k(2.0) * (t59 + t58);
-        let t61 = outer_ring_e0 * outer_ring_e2;
-        let t62 = outer_ring_e1 * outer_ring_e3;
-        let t63 = k(2.0) * (t62 - t61);
-        let t64 = t63 * t15 - (t60 * t9 + t57 * t5);
-        let t65 = t64 * t51;
-        let t66 = t63 * t32 + (t60 * t28 + t57 * t26);
-        let t67 = t66 - t53 * t65;
-        let t68 = t67 * t55;
-        let t69 = k(2.0) * (t62 + t61);
-        let t70 = outer_ring_e0 * outer_ring_e1;
-        let t71 = outer_ring_e2 * outer_ring_e3;
-        let t72 = k(2.0) * (t71 - t70);
-        let t73 = k(2.0) * (k(0.5) - (t56 + outer_ring_e3 * outer_ring_e3));
-        let t74 = t73 * t38 + (t72 * t37 + t69 * t36);
-        let t75 = k(1000000.0) * t74;
-        let t76 = k(1.0) / (t74 * t75 + t64 * t65 + t67 * t68);
-        let t77 = k(2.0) * (t59 - t58);
-        let t78 = k(2.0) * (k(0.5) - (t56 + outer_ring_e2 * outer_ring_e2));
-        let t79 = k(2.0) * (t71 + t70);
-        let t80 = t79 * t15 + (t78 * t9 + t77 * t5);
-        let t81 = t80 * t51;
-        let t82 = t79 * t32 - (t78 * t28 + t77 * t26);
-        let t83 = t82 - t53 * t81;
-        let t84 = t83 * t55;
-        let t85 = t64 * t81 + t67 * t84;
-        let t86 = t85 * t76;
-        let t87 = k(1.0) / (t80 * t81 + t83 * t84 - t85 * t86);
-        let t88 = t74 * t87;
-        let t89 = k(1.0) / (k(2e-6) + t74 * t88);
-        let t90 = t79 * t38 + (t78 * t37 - t77 * t36);
-        let t91 = t63 * t38 - (t60 * t37 - t57 * t36);
-        let t92 = t91 + t90 * t86;
-        let t93 = t92 * t87;
-        let t94 = t74 * t93;
-        let t95 = t94 * t89;
-        let t96 = t90 * t76;
-        let t97 = k(1.0) / (k(1e-6) + t90 * t96 + t92 * t93 - t94 * t95);
-        let t98 = t73 * t89;
-        let t99 = t63 - t94 * t98;
-        let t100 = t99 * t97;
-        let t101 = k(1.0) / (t73 * t98 + t99 * t100);
-        let t102 = t69 * t89;
-        let t103 = t57 - t94 * t102;
-        let t104 = t103 * t97;
-        let t105 = t73 * t102 + t99 * t104;
-        let t106 = t105 * t101;
-        let t107 = rotor_wx * rotor_wy;
-        let t108 = k(5e-6) * t107;
-        let t109 = rotor_wx * rotor_wz;
-        let t110 = k(5e-6) * t109;
-        let t111 = inner_ring_wx * inner_ring_wy;
-        let t112 = inner_ring_wx * inner_ring_wx;
-        let t113 = inner_ring_wy * inner_ring_wz;
-        let t114 = t113 * t46
-            + ((inner_ring_wz * inner_ring_wz + t112) * t47 - t111 * t33);
-        let t115 = rotor_wy * (t32 * t22 - (t28 * t21 - t26 * t20))
-            + rotor_wz * (t32 * t12 - (t28 * t7 + t26 * t2));
-        let t116 = k(2.0)
-            * (inner_ring_wx * (rotor_wy * t41 + rotor_wz * t39) + inner_ring_wz * t115);
-        let t117 = rotor_wz * rotor_wz + rotor_wy * rotor_wy;
-        let t118 = t109 * t23 - (t107 * t16 - t117 * t47) + t116 + t114;
-        let t119 = t118 - k(1e-6) * t111 * t34 + t110 * t24 - t108 * t17;
-        let t120 = inner_ring_wx * inner_ring_wz;
-        let t121 = inner_ring_wy * inner_ring_wy + t112;
-        let t122 = k(2.0)
-            * (inner_ring_wx * (rotor_wy * t23 + rotor_wz * t16) - inner_ring_wy * t115);
-        let t123 = t109 * t41 - (t107 * t39 - t117 * t46) - t122
-            + (t121 * t46 + (t113 * t47 + t120 * t33));
-        let t124 = t123 + t110 * t42 - t108 * t40 - t119 * t44;
-        let t125 = k(1e-6) * t113 - t119 * t50 + t124 * t49;
-        let t126 = t124 * t52 - t125 * t54;
-        let t127 = outer_ring_wx * outer_ring_wz;
-        let t128 = outer_ring_wz * outer_ring_wz;
-        let t129 = outer_ring_wx * outer_ring_wy;
-        let t130 = t127 * t74
-            - (t129 * t90 - (t128 + outer_ring_wy * outer_ring_wy) * t91);
-        let t131 = inner_ring_wx * (t73 * t15 + (t72 * t9 - t69 * t5))
-            - inner_ring_wy * (t73 * t32 - (t72 * t28 - t69 * t26));
-        let t132 = k(2.0)
-            * (outer_ring_wy * t131
-                + outer_ring_wz * (inner_ring_wx * t80 - inner_ring_wy * t82));
-        let t133 = t121 * t91 + (t113 * t64 + t120 * t66) - t132 + t130;
-        let t134 = t133 + k(1e-6) * t127 * t75 - t125 * t65 - t126 * t68;
-        let t135 = t128 + outer_ring_wx * outer_ring_wx;
-        let t136 = outer_ring_wy * outer_ring_wz;
-        let t137 = k(2.0)
-            * (outer_ring_wx * t131
-                + outer_ring_wz * (inner_ring_wx * t64 - inner_ring_wy * t66));
-        let t138 = t121 * t90 + (t113 * t80 + t120 * t82) + t137
-            + (t136 * t74 + (t135 * t90 - t129 * t91));
-        let t139 = t138 - t125 * t81 - t126 * t84 - t134 * t86;
-        let t140 = t139 * t88;
-        let t141 = k(1e-6) * t129 + t134 * t96 - t139 * t93 + t140 * t95;
-        let t142 = t73 * t136 + (t79 * t135 - t63 * t129) - t140 * t98;
-        let t143 = t142 + t141 * t100;
-        let t144 = t69 * t136 - (t77 * t135 + t57 * t129) - t140 * t102;
-        let t145 = (t144 + t141 * t104 - t143 * t106)
-            / (t69 * t102 + t103 * t104 - t105 * t106);
-        let t146 = t143 * t101 - t106 * t145;
-        let t147 = t141 * t97 - t100 * t146 - t104 * t145;
-        let t148 = t140 * t89 + t95 * t147 + t98 * t146 + t102 * t145;
-        let t149 = t139 * t87 - t88 * t148 + t93 * t147;
-        let t150 = t134 * t76 - t96 * t147 - t86 * t149;
-        let t151 = t126 * t55 + t68 * t150 + t84 * t149;
-        let t152 = t125 * t51 - t54 * t151 + t65 * t150 + t81 * t149;
-        let t153 = t124 * t45 - t49 * t152 - t52 * t151;
-        let t154 = t119 * t35 + t50 * t152 - t44 * t153;
         *dy = [
             outer_ring_sx,
             outer_ring_sy,
@@ -343,24 +178,24 @@ impl<T: Scalar> Ode for GyroscopeFreeNutation<T> {
             k(0.5) * (rotor_e3 * rotor_wx + rotor_e0 * rotor_wy - rotor_e1 * rotor_wz),
             -(k(0.5)
                 * (rotor_e2 * rotor_wx - rotor_e1 * rotor_wy - rotor_e0 * rotor_wz)),
-            k(0.0),
-            k(0.0),
-            k(0.0),
-            -t148,
-            t75 * t150 - t127,
-            t147,
-            k(0.0),
-            k(0.0),
-            k(0.0),
-            t152,
-            -t151,
-            -(t111 + t34 * t154),
-            k(0.0),
-            k(0.0),
-            k(0.0),
-            k(0.0),
-            t42 * t153 - (t109 - t24 * t154),
-            t107 + t17 * t154 + t40 * t153,
+            v[0],
+            v[1],
+            v[2],
+            v[3],
+            v[4],
+            v[5],
+            v[6],
+            v[7],
+            v[8],
+            v[9],
+            v[10],
+            v[11],
+            v[12],
+            v[13],
+            v[14],
+            v[15],
+            v[16],
+            v[17],
         ];
     }
 }
@@ -1014,7 +849,7 @@ impl<T: Real> Partition for GyroscopeFreeNutation<T> {
         y[20] = -t139;
         Ok(())
     }
-    /// Solves eq. (19) for the dependent velocities: 300 operations (106 ±, 191 ×, 3 ÷).
+    /// Solves eq. (19) for the dependent velocities: 359 operations (132 ±, 224 ×, 3 ÷).
     fn solve_velocities(
         &self,
         _t: T,
@@ -1056,123 +891,132 @@ impl<T: Real> Partition for GyroscopeFreeNutation<T> {
         let chart2_1 = charts[2][1];
         let chart2_2 = charts[2][2];
         let chart2_3 = charts[2][3];
-        let t0 = outer_ring_e0 * outer_ring_e0;
-        let t1 = k(2.0) * (k(0.5) - (t0 + outer_ring_e3 * outer_ring_e3));
-        let t2 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
-        let t3 = outer_ring_e0 * outer_ring_e2;
-        let t4 = outer_ring_e1 * outer_ring_e3;
-        let t5 = k(2.0) * (t4 - t3);
-        let t6 = k(2.0) * (t4 + t3);
-        let t7 = t6 * t5 - t2 * t1;
-        let t8 = outer_ring_e3 * chart0_0 - outer_ring_e2 * chart0_1
-            + outer_ring_e1 * chart0_2 - outer_ring_e0 * chart0_3;
-        let t9 = outer_ring_e2 * chart0_0 + outer_ring_e3 * chart0_1
+        let t0 = outer_ring_e2 * chart0_0 + outer_ring_e3 * chart0_1
             - outer_ring_e0 * chart0_2 - outer_ring_e1 * chart0_3;
-        let t10 = k(0.5) * t9;
-        let t11 = outer_ring_e1 * chart0_0 - outer_ring_e0 * chart0_1
+        let t1 = k(0.5) * t0;
+        let t2 = outer_ring_e0 * outer_ring_e2;
+        let t3 = outer_ring_e1 * outer_ring_e3;
+        let t4 = k(2.0) * (t3 - t2);
+        let t5 = outer_ring_e0 * outer_ring_e0;
+        let t6 = k(2.0) * (k(0.5) - (t5 + outer_ring_e1 * outer_ring_e1));
+        let t7 = k(2.0) * (t3 + t2);
+        let t8 = t7 * outer_ring_wx + t6 * outer_ring_wz;
+        let t9 = k(2.0) * (k(0.5) - (t5 + outer_ring_e3 * outer_ring_e3));
+        let t10 = t9 * outer_ring_wx + t4 * outer_ring_wz;
+        let t11 = k(1.0) / (t1 * (t7 * t4 - t6 * t9));
+        let t12 = outer_ring_wx + t11 * (t10 * (t6 * t1) - t8 * (t4 * t1));
+        let t13 = outer_ring_e1 * chart0_0 - outer_ring_e0 * chart0_1
             - outer_ring_e3 * chart0_2 + outer_ring_e2 * chart0_3;
-        let t12 = outer_ring_wx * (k(0.5) * t11) + outer_ring_wy * t10
-            + outer_ring_wz * (k(0.5) * t8);
-        let t13 = t12 * t7 / (t10 * t7);
-        let t14 = inner_ring_e3 * chart1_0 - inner_ring_e2 * chart1_1
+        let t14 = k(0.5) * t13;
+        let t15 = outer_ring_e3 * chart0_0 - outer_ring_e2 * chart0_1
+            + outer_ring_e1 * chart0_2 - outer_ring_e0 * chart0_3;
+        let t16 = k(0.5) * t15;
+        let t17 = t10 * (t6 * t14 - t7 * t16) + t8 * (t9 * t16 - t4 * t14);
+        let t18 = outer_ring_wy - t11 * t17;
+        let t19 = outer_ring_wz - t11 * (t10 * (t7 * t1) - t8 * (t9 * t1));
+        let t20 = inner_ring_e3 * chart1_0 - inner_ring_e2 * chart1_1
             + inner_ring_e1 * chart1_2 - inner_ring_e0 * chart1_3;
-        let t15 = k(0.5) * t14;
-        let t16 = inner_ring_e0 * inner_ring_e0;
-        let t17 = k(2.0) * (k(0.5) - (t16 + inner_ring_e1 * inner_ring_e1));
-        let t18 = outer_ring_e0 * outer_ring_e3;
-        let t19 = outer_ring_e1 * outer_ring_e2;
-        let t20 = k(2.0) * (t19 - t18);
-        let t21 = inner_ring_e0 * inner_ring_e3;
-        let t22 = inner_ring_e1 * inner_ring_e2;
-        let t23 = k(2.0) * (t22 + t21);
-        let t24 = k(2.0) * (k(0.5) - (t0 + outer_ring_e2 * outer_ring_e2));
-        let t25 = inner_ring_e0 * inner_ring_e2;
-        let t26 = inner_ring_e1 * inner_ring_e3;
-        let t27 = k(2.0) * (t26 - t25);
-        let t28 = outer_ring_e0 * outer_ring_e1;
-        let t29 = outer_ring_e2 * outer_ring_e3;
-        let t30 = k(2.0) * (t29 + t28);
-        let t31 = t30 * t27 - (t24 * t23 + t20 * t17);
-        let t32 = k(2.0) * (t26 + t25);
-        let t33 = inner_ring_e0 * inner_ring_e1;
-        let t34 = inner_ring_e2 * inner_ring_e3;
-        let t35 = k(2.0) * (t34 - t33);
-        let t36 = k(2.0) * (k(0.5) - (t16 + inner_ring_e3 * inner_ring_e3));
-        let t37 = t1 * t36 + (k(2.0) * (t29 - t28) * t35 + t6 * t32);
-        let t38 = t13 * t37;
-        let t39 = k(2.0) * (t22 - t21);
-        let t40 = k(2.0) * (k(0.5) - (t16 + inner_ring_e2 * inner_ring_e2));
-        let t41 = k(2.0) * (t34 + t33);
-        let t42 = t30 * t41 + (t24 * t40 + t20 * t39);
-        let t43 = k(2.0) * (t19 + t18);
-        let t44 = (t5 * t41 - (t43 * t40 + t2 * t39)) * t31
-            - (t5 * t27 + (t43 * t23 + t2 * t17)) * t42;
-        let t45 = k(1.0) / (t15 * t44);
-        let t46 = t45 * (t38 * (t31 * t15));
-        let t47 = t45 * (t38 * (t42 * t15));
-        let t48 = inner_ring_e2 * chart1_0 + inner_ring_e3 * chart1_1
+        let t21 = k(0.5) * t20;
+        let t22 = inner_ring_e0 * inner_ring_e0;
+        let t23 = k(2.0) * (k(0.5) - (t22 + inner_ring_e1 * inner_ring_e1));
+        let t24 = inner_ring_e0 * inner_ring_e3;
+        let t25 = inner_ring_e1 * inner_ring_e2;
+        let t26 = k(2.0) * (t25 + t24);
+        let t27 = outer_ring_e0 * outer_ring_e3;
+        let t28 = outer_ring_e1 * outer_ring_e2;
+        let t29 = k(2.0) * (t28 + t27);
+        let t30 = inner_ring_e0 * inner_ring_e2;
+        let t31 = inner_ring_e1 * inner_ring_e3;
+        let t32 = k(2.0) * (t31 - t30);
+        let t33 = t4 * t32 + (t29 * t26 + t6 * t23);
+        let t34 = k(2.0) * (t28 - t27);
+        let t35 = k(2.0) * (k(0.5) - (t5 + outer_ring_e2 * outer_ring_e2));
+        let t36 = outer_ring_e0 * outer_ring_e1;
+        let t37 = outer_ring_e2 * outer_ring_e3;
+        let t38 = k(2.0) * (t37 + t36);
+        let t39 = t38 * t32 - (t35 * t26 + t34 * t23);
+        let t40 = k(2.0) * (t25 - t24);
+        let t41 = k(2.0) * (k(0.5) - (t22 + inner_ring_e2 * inner_ring_e2));
+        let t42 = inner_ring_e0 * inner_ring_e1;
+        let t43 = inner_ring_e2 * inner_ring_e3;
+        let t44 = k(2.0) * (t43 + t42);
+        let t45 = t38 * t44 + (t35 * t41 + t34 * t40);
+        let t46 = k(2.0) * (t31 + t30);
+        let t47 = k(2.0) * (t43 - t42);
+        let t48 = k(2.0) * (k(0.5) - (t22 + inner_ring_e3 * inner_ring_e3));
+        let t49 = t9 * t48 + (k(2.0) * (t37 - t36) * t47 + t7 * t46);
+        let t50 = t12 * t49 + t19 * (t4 * t48 - (t29 * t47 - t6 * t46));
+        let t51 = t50 - (inner_ring_wx * t45 - inner_ring_wy * t39);
+        let t52 = t4 * t44 - (t29 * t41 + t6 * t40);
+        let t53 = t18 * t49 + t19 * (t38 * t48 + (t35 * t47 - t34 * t46));
+        let t54 = t53 + (inner_ring_wx * t52 - inner_ring_wy * t33);
+        let t55 = k(1.0) / (t21 * (t52 * t39 - t33 * t45));
+        let t56 = inner_ring_wx - t55 * (t54 * (t39 * t21) + t51 * (t33 * t21));
+        let t57 = inner_ring_wy - t55 * (t54 * (t45 * t21) + t51 * (t52 * t21));
+        let t58 = inner_ring_e2 * chart1_0 + inner_ring_e3 * chart1_1
             - inner_ring_e0 * chart1_2 - inner_ring_e1 * chart1_3;
-        let t49 = k(0.5) * t48;
-        let t50 = inner_ring_e1 * chart1_0 - inner_ring_e0 * chart1_1
+        let t59 = k(0.5) * t58;
+        let t60 = inner_ring_e1 * chart1_0 - inner_ring_e0 * chart1_1
             - inner_ring_e3 * chart1_2 + inner_ring_e2 * chart1_3;
-        let t51 = k(0.5) * t50;
-        let t52 = t38 * (t42 * t49 + t31 * t51)
-            + (inner_ring_wx * t51 + inner_ring_wy * t49 + inner_ring_wz * t15) * t44;
-        let t53 = t45 * t52;
-        let t54 = rotor_e0 * rotor_e2;
-        let t55 = rotor_e1 * rotor_e3;
-        let t56 = k(2.0) * (t55 + t54);
-        let t57 = rotor_e0 * rotor_e1;
-        let t58 = rotor_e2 * rotor_e3;
-        let t59 = k(2.0) * (t58 - t57);
-        let t60 = rotor_e0 * rotor_e0;
-        let t61 = k(2.0) * (k(0.5) - (t60 + rotor_e3 * rotor_e3));
-        let t62 = t36 * t61 + (t35 * t59 + t32 * t56);
-        let t63 = rotor_e0 * rotor_e3;
-        let t64 = rotor_e1 * rotor_e2;
-        let t65 = k(2.0) * (t64 - t63);
-        let t66 = k(2.0) * (k(0.5) - (t60 + rotor_e2 * rotor_e2));
-        let t67 = k(2.0) * (t58 + t57);
-        let t68 = t41 * t67 + (t40 * t66 + t39 * t65);
-        let t69 = t36 * t67 + (t35 * t66 - t32 * t65);
-        let t70 = t41 * t61 + (t40 * t59 - t39 * t56);
-        let t71 = t70 * t69 - t68 * t62;
-        let t72 = rotor_e3 * chart2_0 - rotor_e2 * chart2_1 + rotor_e1 * chart2_2
+        let t61 = k(0.5) * t60;
+        let t62 = t54 * (t45 * t59 + t39 * t61) + t51 * (t33 * t61 + t52 * t59);
+        let t63 = inner_ring_wz + t55 * t62;
+        let t64 = rotor_e3 * chart2_0 - rotor_e2 * chart2_1 + rotor_e1 * chart2_2
             - rotor_e0 * chart2_3;
-        let t73 = k(0.5) * t72;
-        let t74 = rotor_e2 * chart2_0 + rotor_e3 * chart2_1 - rotor_e0 * chart2_2
+        let t65 = k(0.5) * t64;
+        let t66 = rotor_e0 * rotor_e2;
+        let t67 = rotor_e1 * rotor_e3;
+        let t68 = k(2.0) * (t67 + t66);
+        let t69 = rotor_e0 * rotor_e1;
+        let t70 = rotor_e2 * rotor_e3;
+        let t71 = k(2.0) * (t70 - t69);
+        let t72 = rotor_e0 * rotor_e0;
+        let t73 = k(2.0) * (k(0.5) - (t72 + rotor_e3 * rotor_e3));
+        let t74 = t44 * t73 + (t41 * t71 - t40 * t68);
+        let t75 = rotor_e2 * chart2_0 + rotor_e3 * chart2_1 - rotor_e0 * chart2_2
             - rotor_e1 * chart2_3;
-        let t75 = k(0.5) * t74;
-        let t76 = rotor_e1 * chart2_0 - rotor_e0 * chart2_1 - rotor_e3 * chart2_2
+        let t76 = k(0.5) * t75;
+        let t77 = rotor_e0 * rotor_e3;
+        let t78 = rotor_e1 * rotor_e2;
+        let t79 = k(2.0) * (t78 - t77);
+        let t80 = k(2.0) * (k(0.5) - (t72 + rotor_e2 * rotor_e2));
+        let t81 = k(2.0) * (t70 + t69);
+        let t82 = t44 * t81 + (t41 * t80 + t40 * t79);
+        let t83 = t48 * t81 + (t47 * t80 - t46 * t79);
+        let t84 = t48 * t73 + (t47 * t71 + t46 * t68);
+        let t85 = k(2.0) * (k(0.5) - (t72 + rotor_e1 * rotor_e1));
+        let t86 = k(2.0) * (t78 + t77);
+        let t87 = k(2.0) * (t67 - t66);
+        let t88 = t32 * t87 + (t26 * t86 + t23 * t85);
+        let t89 = t56 * (t44 * t87 - (t41 * t86 + t40 * t85)) - t57 * t88;
+        let t90 = t89 + (rotor_wy * t84 + rotor_wz * t83);
+        let t91 = t56 * (t48 * t87 - (t47 * t86 - t46 * t85)) + t63 * t88;
+        let t92 = t91 - (rotor_wy * t74 + rotor_wz * t82);
+        let t93 = t92 * (t84 * t65 - t83 * t76) - t90 * (t82 * t76 - t74 * t65);
+        let t94 = rotor_e1 * chart2_0 - rotor_e0 * chart2_1 - rotor_e3 * chart2_2
             + rotor_e2 * chart2_3;
-        let t77 = k(0.5) * t76;
-        let t78 = k(2.0) * (k(0.5) - (t60 + rotor_e1 * rotor_e1));
-        let t79 = k(2.0) * (t64 + t63);
-        let t80 = k(2.0) * (t55 - t54);
-        let t81 = t27 * t80 + (t23 * t79 + t17 * t78);
-        let t82 = t46 * (t41 * t80 - (t40 * t79 + t39 * t78)) - t47 * t81;
-        let t83 = t46 * (t36 * t80 - (t35 * t79 - t32 * t78)) - t53 * t81;
-        let t84 = t83 * (t62 * t73 - t69 * t75) - t82 * (t68 * t75 - t70 * t73);
-        let t85 = t84 - (rotor_wx * t77 + rotor_wy * t75 + rotor_wz * t73) * t71;
-        let t86 = k(1.0) / (t77 * t71);
+        let t95 = k(0.5) * t94;
+        let t96 = k(1.0) / (t95 * (t74 * t83 - t82 * t84));
+        let t97 = rotor_wy + t96 * (t92 * (t83 * t95) + t90 * (t82 * t95));
+        let t98 = rotor_wz - t96 * (t92 * (t84 * t95) + t90 * (t74 * t95));
         y[21] = k(0.0);
         y[22] = k(0.0);
         y[23] = k(0.0);
-        y[24] = k(0.0);
-        y[25] = t13;
-        y[26] = k(0.0);
+        y[24] = t12;
+        y[25] = t18;
+        y[26] = t19;
         y[27] = k(0.0);
         y[28] = k(0.0);
         y[29] = k(0.0);
-        y[30] = -t46;
-        y[31] = -t47;
-        y[32] = t53;
+        y[30] = t56;
+        y[31] = t57;
+        y[32] = t63;
         y[33] = k(0.0);
         y[34] = k(0.0);
         y[35] = k(0.0);
-        y[36] = -(t86 * t85);
-        y[37] = -(t86 * (t83 * (t69 * t77) + t82 * (t68 * t77)));
-        y[38] = t86 * (t83 * (t62 * t77) + t82 * (t70 * t77));
+        y[36] = rotor_wx + t96 * t93;
+        y[37] = t97;
+        y[38] = t98;
         Ok(())
     }
 }

@@ -20,12 +20,12 @@
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 90 | 128 | 0 | 218 | 0 of 15 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 |
 //! | accelerations | (s̈, ẇ') and λ, eq. (17) | 370 | 577 | 13 | 960 | 0 of 33 |
-//! | derivative | ẏ: eqs. (14), (16), (17) | 394 | 622 | 13 | 1029 | 0 of 39 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
 //! | read_joints | joint coordinates and rates | 37 | 58 | 0 | 95 | 0 of 9 |
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
 //! | newton_step | dependent positions, one Newton step | 193 | 323 | 3 | 519 | 6 of 21 |
-//! | solve_velocities | dependent velocities, eq. (19) | 109 | 200 | 3 | 312 | 8 of 18 |
+//! | solve_velocities | dependent velocities, eq. (19) | 135 | 233 | 3 | 371 | 6 of 18 |
 
 use gyro_sim::charts::{self, Charts};
 use gyro_sim::{
@@ -101,8 +101,11 @@ impl<T: Scalar> Ode for GyroscopeRadialImbalance<T> {
             k(0.0),
         ]
     }
-    /// Writes ẏ: 1029 operations (394 ±, 622 ×, 13 ÷).
-    fn derivative(&self, _t: T, y: &Self::State, dy: &mut Self::State) {
+    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 72 operations (24 ±, 48 ×, 0 ÷).
+    fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut v = self.velocities();
+        let mut lambda = self.rows();
+        self.accelerations(t, y, &mut v, &mut lambda);
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -134,602 +137,6 @@ impl<T: Scalar> Ode for GyroscopeRadialImbalance<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let (
-            t2,
-            t4,
-            t6,
-            t12,
-            t15,
-            t16,
-            t17,
-            t18,
-            t19,
-            t22,
-            t23,
-            t24,
-            t27,
-            t31,
-            t34,
-            t35,
-            t36,
-            t37,
-            t38,
-            t40,
-            t41,
-            t42,
-            t43,
-            t44,
-            t46,
-            t47,
-            t49,
-            t50,
-            t51,
-            t53,
-            t54,
-            t55,
-            t57,
-            t59,
-            t60,
-            t61,
-            t63,
-            t65,
-            t66,
-            t68,
-            t70,
-            t73,
-            t77,
-            t81,
-            t82,
-            t83,
-            t85,
-            t87,
-            t89,
-            t91,
-            t93,
-            t94,
-            t97,
-            t99,
-            t100,
-            t104,
-            t106,
-            t110,
-            t111,
-            t113,
-            t115,
-            t117,
-            t120,
-            t121,
-            t122,
-            t123,
-            t124,
-            t125,
-            t127,
-            t129,
-            t131,
-            t132,
-            t133,
-            t134,
-            t135,
-            t136,
-            t137,
-            t138,
-            t142,
-            t143,
-            t144,
-            t145,
-            t147,
-            t149,
-            t151,
-            t153,
-            t155,
-            t156,
-            t157,
-            t159,
-            t161,
-            t163,
-            t164,
-            t165,
-            t169,
-            t173,
-            t175,
-            t176,
-            t177,
-            t178,
-            t179,
-            t180,
-            t181,
-            t183,
-            t184,
-            t185,
-            t186,
-            t187,
-            t188,
-            t189,
-            t190,
-            t191,
-            t192,
-            t194,
-            t195,
-            t196,
-            t197,
-            t198,
-            t199,
-        ) = {
-            let t0 = inner_ring_e0 * inner_ring_e3;
-            let t1 = inner_ring_e1 * inner_ring_e2;
-            let t2 = k(2.0) * (t1 - t0);
-            let t3 = outer_ring_e0 * outer_ring_e0;
-            let t4 = k(2.0) * (k(0.5) - (t3 + outer_ring_e1 * outer_ring_e1));
-            let t5 = inner_ring_e0 * inner_ring_e0;
-            let t6 = k(2.0) * (k(0.5) - (t5 + inner_ring_e2 * inner_ring_e2));
-            let t7 = outer_ring_e0 * outer_ring_e3;
-            let t8 = outer_ring_e1 * outer_ring_e2;
-            let t9 = k(2.0) * (t8 + t7);
-            let t10 = inner_ring_e0 * inner_ring_e1;
-            let t11 = inner_ring_e2 * inner_ring_e3;
-            let t12 = k(2.0) * (t11 + t10);
-            let t13 = outer_ring_e0 * outer_ring_e2;
-            let t14 = outer_ring_e1 * outer_ring_e3;
-            let t15 = k(2.0) * (t14 - t13);
-            let t16 = t15 * t12 - (t9 * t6 + t4 * t2);
-            let t17 = k(1000000.0) * t16;
-            let t18 = k(2.0) * (k(0.5) - (t5 + inner_ring_e1 * inner_ring_e1));
-            let t19 = k(2.0) * (t1 + t0);
-            let t20 = inner_ring_e0 * inner_ring_e2;
-            let t21 = inner_ring_e1 * inner_ring_e3;
-            let t22 = k(2.0) * (t21 - t20);
-            let t23 = t15 * t22 + (t9 * t19 + t4 * t18);
-            let t24 = k(500000.0) * t23;
-            let t25 = k(2.0) * (t21 + t20);
-            let t26 = t14 + t13;
-            let t27 = k(2.0) * t26;
-            let t28 = k(2.0) * (t11 - t10);
-            let t29 = outer_ring_e0 * outer_ring_e1;
-            let t30 = outer_ring_e2 * outer_ring_e3;
-            let t31 = k(2.0) * (t30 - t29);
-            let t32 = k(2.0) * (k(0.5) - (t5 + inner_ring_e3 * inner_ring_e3));
-            let t33 = k(0.5) - (t3 + outer_ring_e3 * outer_ring_e3);
-            let t34 = k(2.0) * t33;
-            let t35 = t34 * t32 + (t31 * t28 + t27 * t25);
-            let t36 = k(1000000.0) * t35;
-            let t37 = k(1.0) / (t35 * t36 + t23 * t24 + t16 * t17);
-            let t38 = k(2.0) * (t8 - t7);
-            let t39 = k(2.0) * (k(0.5) - (t3 + outer_ring_e2 * outer_ring_e2));
-            let t40 = k(2.0) * (t30 + t29);
-            let t41 = t40 * t12 + (t39 * t6 + t38 * t2);
-            let t42 = k(1000000.0) * t41;
-            let t43 = t40 * t22 - (t39 * t19 + t38 * t18);
-            let t44 = k(500000.0) * t43;
-            let t45 = t23 * t44 + t16 * t42;
-            let t46 = t45 * t37;
-            let t47 = k(500000.0) * t35;
-            let t48 = t43 * t44 + t35 * t47 + t41 * t42 - t45 * t46;
-            let t49 = k(1.0) / t48;
-            let t50 = t40 * t32 + (t39 * t28 - t38 * t25);
-            let t51 = t15 * t32 - (t9 * t28 - t4 * t25);
-            let t52 = t51 + t50 * t46;
-            let t53 = t52 * t49;
-            let t54 = t50 * t37;
-            let t55 = k(1.0) / (k(1e-6) + t50 * t54 + t52 * t53);
-            let t56 = t34 * t47;
-            let t57 = t56 * t49;
-            let t58 = t15 - t52 * t57;
-            let t59 = t58 * t55;
-            let t60 = k(1000000.0) * t33;
-            let t61 = k(1.0) / (t34 * t60 - t56 * t57 + t58 * t59);
-            let t62 = t27 * t47;
-            let t63 = t62 * t49;
-            let t64 = t4 - t52 * t63;
-            let t65 = t64 * t55;
-            let t66 = k(1000000.0) * t26;
-            let t67 = t34 * t66 - t56 * t63 + t58 * t65;
-            let t68 = t67 * t61;
-            let t69 = t27 * t66 - t62 * t63 + t64 * t65 - t67 * t68;
-            let t70 = k(1.0) / t69;
-            let t71 = rotor_e0 * rotor_e0;
-            let t72 = k(0.5) - (t71 + rotor_e1 * rotor_e1);
-            let t73 = k(2.0) * t72;
-            let t74 = rotor_e0 * rotor_e3;
-            let t75 = rotor_e1 * rotor_e2;
-            let t76 = t75 + t74;
-            let t77 = k(2.0) * t76;
-            let t78 = rotor_e0 * rotor_e2;
-            let t79 = rotor_e1 * rotor_e3;
-            let t80 = t79 - t78;
-            let t81 = k(2.0) * t80;
-            let t82 = t32 * t81 - (t28 * t77 - t25 * t73);
-            let t83 = k(1000000.0) * t82;
-            let t84 = t16 * t83;
-            let t85 = t84 * t37;
-            let t86 = t41 * t83 - t45 * t85;
-            let t87 = t86 * t49;
-            let t88 = t50 * t85 - t52 * t87;
-            let t89 = t88 * t55;
-            let t90 = t56 * t87 - t58 * t89;
-            let t91 = t90 * t61;
-            let t92 = t62 * t87 - t64 * t89 - t67 * t91;
-            let t93 = t92 * t70;
-            let t94 = k(80.0) * t72;
-            let t95 = k(0.0004) * t72;
-            let t96 = t79 + t78;
-            let t97 = k(40.0) * t96;
-            let t98 = k(0.0004) * t96;
-            let t99 = k(1.0) / (t98 * t97 + k(112.5) - k(50.0) + t95 * t94);
-            let t100 = k(80.0) * t76;
-            let t101 = rotor_e0 * rotor_e1;
-            let t102 = rotor_e2 * rotor_e3;
-            let t103 = t102 - t101;
-            let t104 = k(40.0) * t103;
-            let t105 = t98 * t104 - t95 * t100;
-            let t106 = t105 * t99;
-            let t107 = k(0.0004) * t76;
-            let t108 = k(0.0004) * t103;
-            let t109 = k(112.5) + t108 * t104 - k(50.0) + t107 * t100 - t105 * t106;
-            let t110 = k(1.0) / t109;
-            let t111 = k(80.0) * t80;
-            let t112 = k(0.5) - (t71 + rotor_e3 * rotor_e3);
-            let t113 = k(40.0) * t112;
-            let t114 = t98 * t113 + t95 * t111;
-            let t115 = t114 * t99;
-            let t116 = t108 * t113 - t107 * t111 - t105 * t115;
-            let t117 = t116 * t110;
-            let t118 = k(0.0004) * t80;
-            let t119 = k(112.5) + k(0.0004) * t112 * t113 - k(50.0) + t118 * t111
-                - t114 * t115;
-            let t120 = k(1.0) / (t119 - t116 * t117);
-            let t121 = k(2.0) * (t75 - t74);
-            let t122 = k(2.0) * (k(0.5) - (t71 + rotor_e2 * rotor_e2));
-            let t123 = k(2.0) * (t102 + t101);
-            let t124 = t12 * t123 + (t6 * t122 + t2 * t121);
-            let t125 = k(200000.0) * t124;
-            let t126 = t95 * t125;
-            let t127 = t126 * t99;
-            let t128 = t107 * t125 + t105 * t127;
-            let t129 = t128 * t110;
-            let t130 = t118 * t125 - t114 * t127 + t116 * t129;
-            let t131 = t130 * t120;
-            let t132 = k(2.0) * t96;
-            let t133 = k(2.0) * t103;
-            let t134 = k(2.0) * t112;
-            let t135 = t12 * t134 + (t6 * t133 - t2 * t132);
-            let t136 = k(200000.0) * t135;
-            let t137 = t22 * t81 + (t19 * t77 + t18 * t73);
-            let t138 = k(1000000.0) * t137;
-            let t139 = t137 * t138 + t135 * t136 + t82 * t83 - t84 * t85;
-            let t140 = t139 + t124 * t125 - t126 * t127 - t128 * t129 - t130 * t131;
-            let t141 = t140 - t86 * t87 + t88 * t89 - t90 * t91 - t92 * t93;
-            let t142 = k(1.0) / t141;
-            let t143 = t12 * t81 - (t6 * t77 + t2 * t73);
-            let t144 = k(1000000.0) * t143;
-            let t145 = k(500000.0) * t137;
-            let t146 = t23 * t145 + t16 * t144;
-            let t147 = t146 * t37;
-            let t148 = t43 * t145 + t41 * t144 - t45 * t147;
-            let t149 = t148 * t49;
-            let t150 = t50 * t147 - t52 * t149;
-            let t151 = t150 * t55;
-            let t152 = t56 * t149 - t58 * t151;
-            let t153 = t152 * t61;
-            let t154 = t62 * t149 - t64 * t151 - t67 * t153;
-            let t155 = t154 * t70;
-            let t156 = t32 * t123 + (t28 * t122 - t25 * t121);
-            let t157 = k(200000.0) * t156;
-            let t158 = t95 * t157;
-            let t159 = t158 * t99;
-            let t160 = t107 * t157 + t105 * t159;
-            let t161 = t160 * t110;
-            let t162 = t118 * t157 - t114 * t159 + t116 * t161;
-            let t163 = t162 * t120;
-            let t164 = t32 * t134 + (t28 * t133 + t25 * t132);
-            let t165 = k(200000.0) * t164;
-            let t166 = t135 * t165 - t82 * t144 + t84 * t147 + t124 * t157;
-            let t167 = t166 - t126 * t159 - t128 * t161 - t130 * t163 + t86 * t149;
-            let t168 = t167 - t88 * t151 + t90 * t153 + t92 * t155;
-            let t169 = t168 * t142;
-            let t170 = t164 * t165 + t137 * t145 + t143 * t144 - t146 * t147;
-            let t171 = t170 + t156 * t157 - t158 * t159 - t160 * t161 - t162 * t163;
-            let t172 = t171 - t148 * t149 + t150 * t151 - t152 * t153 - t154 * t155;
-            let t173 = k(1.0) / (t172 - t168 * t169);
-            let t174 = k(50.0) * t106;
-            let t175 = k(50.0) * t115 - t174 * t117;
-            let t176 = k(50.0) * t127 + t174 * t129 - t175 * t131;
-            let t177 = k(50.0) * t159 + t174 * t161 - t175 * t163 - t176 * t169;
-            let t178 = t177 * t173;
-            let t179 = t176 * t142;
-            let t180 = t175 * t120;
-            let t181 = t174 * t110;
-            let t182 = k(50.0) - k(2500.0) * t99 - t174 * t181 - t175 * t180
-                - t176 * t179;
-            let t183 = k(1.0) / (t182 - t177 * t178);
-            let t184 = k(50.0) * t117;
-            let t185 = k(50.0) * t129 + t184 * t131;
-            let t186 = k(50.0) * t161 + t184 * t163 - t185 * t169;
-            let t187 = t186 * t173;
-            let t188 = t185 * t142;
-            let t189 = t184 * t120;
-            let t190 = k(50.0) * t110;
-            let t191 = t174 * t190 - t175 * t189 + t176 * t188 + t177 * t187;
-            let t192 = t191 * t183;
-            let t193 = k(50.0) - k(2500.0) * t110 - t184 * t189 - t185 * t188
-                - t186 * t187;
-            let t194 = k(1.0) / (t193 - t191 * t192);
-            let t195 = k(50.0) * t131;
-            let t196 = k(50.0) * t163 - t195 * t169;
-            let t197 = t196 * t173;
-            let t198 = t195 * t142;
-            let t199 = k(50.0) * t120;
-            (
-                t2,
-                t4,
-                t6,
-                t12,
-                t15,
-                t16,
-                t17,
-                t18,
-                t19,
-                t22,
-                t23,
-                t24,
-                t27,
-                t31,
-                t34,
-                t35,
-                t36,
-                t37,
-                t38,
-                t40,
-                t41,
-                t42,
-                t43,
-                t44,
-                t46,
-                t47,
-                t49,
-                t50,
-                t51,
-                t53,
-                t54,
-                t55,
-                t57,
-                t59,
-                t60,
-                t61,
-                t63,
-                t65,
-                t66,
-                t68,
-                t70,
-                t73,
-                t77,
-                t81,
-                t82,
-                t83,
-                t85,
-                t87,
-                t89,
-                t91,
-                t93,
-                t94,
-                t97,
-                t99,
-                t100,
-                t104,
-                t106,
-                t110,
-                t111,
-                t113,
-                t115,
-                t117,
-                t120,
-                t121,
-                t122,
-                t123,
-                t124,
-                t125,
-                t127,
-                t129,
-                t131,
-                t132,
-                t133,
-                t134,
-                t135,
-                t136,
-                t137,
-                t138,
-                t142,
-                t143,
-                t144,
-                t145,
-                t147,
-                t149,
-                t151,
-                t153,
-                t155,
-                t156,
-                t157,
-                t159,
-                t161,
-                t163,
-                t164,
-                t165,
-                t169,
-                t173,
-                t175,
-                t176,
-                t177,
-                t178,
-                t179,
-                t180,
-                t181,
-                t183,
-                t184,
-                t185,
-                t186,
-                t187,
-                t188,
-                t189,
-                t190,
-                t191,
-                t192,
-                t194,
-                t195,
-                t196,
-                t197,
-                t198,
-                t199,
-            )
-        };
-        let (
-            t207,
-            t238,
-            t240,
-            t261,
-            t262,
-            t263,
-            t264,
-            t266,
-            t268,
-            t270,
-            t272,
-            t273,
-            t274,
-            t275,
-            t276,
-            t277,
-            t279,
-            t281,
-            t283,
-            t284,
-            t285,
-        ) = {
-            let t200 = t175 * t199 - t176 * t198 - t177 * t197;
-            let t201 = t200 * t183;
-            let t202 = t184 * t199 + t185 * t198 + t186 * t197 - t191 * t201;
-            let t203 = t202 * t194;
-            let t204 = k(50.0) - k(2500.0) * t120 - t195 * t198 - t196 * t197
-                - t200 * t201;
-            let t205 = inner_ring_wy * inner_ring_wz;
-            let t206 = k(1e-6) * t205;
-            let t207 = outer_ring_wx * outer_ring_wz;
-            let t208 = outer_ring_wz * outer_ring_wz;
-            let t209 = outer_ring_wx * outer_ring_wy;
-            let t210 = t207 * t35
-                - (t209 * t50 - (t208 + outer_ring_wy * outer_ring_wy) * t51);
-            let t211 = inner_ring_wx * (t34 * t12 + (t31 * t6 - t27 * t2))
-                - inner_ring_wy * (t34 * t22 - (t31 * t19 - t27 * t18));
-            let t212 = k(2.0)
-                * (outer_ring_wy * t211
-                    + outer_ring_wz * (inner_ring_wx * t41 - inner_ring_wy * t43));
-            let t213 = inner_ring_wx * inner_ring_wz;
-            let t214 = inner_ring_wx * inner_ring_wx;
-            let t215 = inner_ring_wy * inner_ring_wy + t214;
-            let t216 = t215 * t51 + (t205 * t16 + t213 * t23) - t212 + t210;
-            let t217 = t216 + k(1e-6) * t207 * t36 - t206 * t17;
-            let t218 = t208 + outer_ring_wx * outer_ring_wx;
-            let t219 = outer_ring_wy * outer_ring_wz;
-            let t220 = k(2.0)
-                * (outer_ring_wx * t211
-                    + outer_ring_wz * (inner_ring_wx * t16 - inner_ring_wy * t23));
-            let t221 = t215 * t50 + (t205 * t41 + t213 * t43) + t220
-                + (t219 * t35 + (t218 * t50 - t209 * t51));
-            let t222 = t221 - t206 * t42 - t217 * t46;
-            let t223 = k(1e-6) * t209 + t217 * t54 - t222 * t53;
-            let t224 = t34 * t219 + (t40 * t218 - t15 * t209) - t222 * t57;
-            let t225 = t224 + t223 * t59;
-            let t226 = t27 * t219 - (t38 * t218 + t4 * t209) - t222 * t63;
-            let t227 = t226 + t223 * t65 - t225 * t68;
-            let t228 = rotor_wx * rotor_wy;
-            let t229 = k(5e-6) * t228;
-            let t230 = rotor_wz * rotor_wz;
-            let t231 = t230 + rotor_wx * rotor_wx;
-            let t232 = rotor_wy * rotor_wz;
-            let t233 = k(0.0002) * (t132 * t232 - (t121 * t231 + t73 * t228))
-                + t229 * t94;
-            let t234 = k(0.0002) * (t133 * t232 + (t122 * t231 + t77 * t228)) - k(10.0);
-            let t235 = k(10.0) + t234 - t229 * t100 - t233 * t106;
-            let t236 = k(0.0002) * (t134 * t232 + (t123 * t231 - t81 * t228))
-                + t229 * t111;
-            let t237 = t236 - t233 * t115 - t235 * t117;
-            let t238 = rotor_wx * rotor_wz;
-            let t239 = k(5e-6) * t238;
-            let t240 = inner_ring_wx * inner_ring_wy;
-            let t241 = t205 * t82
-                + ((inner_ring_wz * inner_ring_wz + t214) * t143 - t240 * t137);
-            let t242 = rotor_wy * (t22 * t134 - (t19 * t133 - t18 * t132))
-                + rotor_wz * (t22 * t123 - (t19 * t122 + t18 * t121));
-            let t243 = k(2.0)
-                * (inner_ring_wx * (rotor_wy * t164 + rotor_wz * t156)
-                    + inner_ring_wz * t242);
-            let t244 = t230 + rotor_wy * rotor_wy;
-            let t245 = t238 * t135 - (t228 * t124 - t244 * t143) + t243 + t241;
-            let t246 = t245 - k(1e-6) * t240 * t138 + t239 * t136 + t206 * t83;
-            let t247 = t246 + t217 * t85 - t229 * t125 + t233 * t127 - t235 * t129;
-            let t248 = t247 + t237 * t131 + t222 * t87 - t223 * t89 - t225 * t91;
-            let t249 = t248 - t227 * t93;
-            let t250 = k(2.0)
-                * (inner_ring_wx * (rotor_wy * t135 + rotor_wz * t124)
-                    - inner_ring_wy * t242);
-            let t251 = t238 * t164 - (t228 * t156 - t244 * t82) - t250
-                + (t215 * t82 + (t205 * t143 + t213 * t137));
-            let t252 = t251 + t239 * t165 - t206 * t144 - t217 * t147 - t229 * t157;
-            let t253 = t252 + t233 * t159 - t235 * t161 + t237 * t163 - t222 * t149;
-            let t254 = t253 + t223 * t151 + t225 * t153 + t227 * t155 - t249 * t169;
-            let t255 = k(50.0) * t99;
-            let t256 = t233 * t255 - t235 * t181 - t237 * t180 + t249 * t179;
-            let t257 = t256 + t254 * t178;
-            let t258 = k(10.0) - t235 * t190 + t237 * t189 + t249 * t188 + t254 * t187;
-            let t259 = t258 + t257 * t192;
-            let t260 = t237 * t199 + t249 * t198 + t254 * t197 - t257 * t201;
-            let t261 = (t260 + t259 * t203) / (t204 - t202 * t203);
-            let t262 = t259 * t194 + t203 * t261;
-            let t263 = t257 * t183 + t192 * t262 - t201 * t261;
-            let t264 = t254 * t173 + t178 * t263 + t187 * t262 + t197 * t261;
-            let t265 = t249 * t142 + t179 * t263 + t188 * t262 + t198 * t261;
-            let t266 = t265 - t169 * t264;
-            let t267 = t237 * t120 - t180 * t263 + t189 * t262 + t199 * t261;
-            let t268 = t267 + t131 * t266 + t163 * t264;
-            let t269 = t235 * t110 - t181 * t263 - t190 * t262 - t117 * t268;
-            let t270 = t269 - t129 * t266 - t161 * t264;
-            let t271 = t233 * t99 + t255 * t263 - t106 * t270 - t115 * t268;
-            let t272 = t271 + t127 * t266 + t159 * t264;
-            let t273 = k(50.0) * (t263 + t272);
-            let t274 = k(50.0) * (t270 - t262);
-            let t275 = k(50.0) * -(t261 + t268);
-            let t276 = t227 * t70 - t93 * t266 + t155 * t264;
-            let t277 = t225 * t61 - t68 * t276 - t91 * t266 + t153 * t264;
-            let t278 = t223 * t55 - t59 * t277 - t65 * t276 + t89 * t266;
-            let t279 = t278 - t151 * t264;
-            let t280 = t222 * t49 + t53 * t279 - t57 * t277 - t63 * t276;
-            let t281 = t280 + t87 * t266 - t149 * t264;
-            let t282 = t217 * t37 - t54 * t279 - t46 * t281 + t85 * t266;
-            let t283 = t282 - t147 * t264;
-            let t284 = t205 + t17 * t283 + t42 * t281 - t83 * t266 + t144 * t264;
-            let t285 = t228 - t94 * t272 + t100 * t270 - t111 * t268 + t125 * t266;
-            (
-                t207,
-                t238,
-                t240,
-                t261,
-                t262,
-                t263,
-                t264,
-                t266,
-                t268,
-                t270,
-                t272,
-                t273,
-                t274,
-                t275,
-                t276,
-                t277,
-                t279,
-                t281,
-                t283,
-                t284,
-                t285,
-            )
-        };
         *dy = [
             outer_ring_sx,
             outer_ring_sy,
@@ -770,24 +177,24 @@ impl<T: Scalar> Ode for GyroscopeRadialImbalance<T> {
             k(0.5) * (rotor_e3 * rotor_wx + rotor_e0 * rotor_wy - rotor_e1 * rotor_wz),
             -(k(0.5)
                 * (rotor_e2 * rotor_wx - rotor_e1 * rotor_wy - rotor_e0 * rotor_wz)),
-            t273 - k(100.0) * t263,
-            t274 - (k(10.0) - k(100.0) * t262),
-            k(100.0) * t261 + t275,
-            -(t60 * t277 + t66 * t276 + t47 * t281),
-            t36 * t283 - t207,
-            t279,
-            k(100.0) * t272 - t273,
-            k(100.0) * t270 - (k(10.0) + t274),
-            -(t275 + k(100.0) * t268),
-            t284,
-            -(t24 * t283 + t44 * t281 + t145 * t264),
-            -(t240 + t138 * t266),
-            -(k(12.5) * t272),
-            -(k(10.0) + k(12.5) * t270),
-            k(12.5) * t268,
-            -(t97 * t272 + t104 * t270 + t113 * t268),
-            t165 * t264 - (t238 - t136 * t266),
-            t285 + t157 * t264,
+            v[0],
+            v[1],
+            v[2],
+            v[3],
+            v[4],
+            v[5],
+            v[6],
+            v[7],
+            v[8],
+            v[9],
+            v[10],
+            v[11],
+            v[12],
+            v[13],
+            v[14],
+            v[15],
+            v[16],
+            v[17],
         ];
     }
 }
@@ -1450,7 +857,7 @@ impl<T: Real> Partition for GyroscopeRadialImbalance<T> {
         y[20] = -t138;
         Ok(())
     }
-    /// Solves eq. (19) for the dependent velocities: 312 operations (109 ±, 200 ×, 3 ÷).
+    /// Solves eq. (19) for the dependent velocities: 371 operations (135 ±, 233 ×, 3 ÷).
     fn solve_velocities(
         &self,
         _t: T,
@@ -1492,125 +899,133 @@ impl<T: Real> Partition for GyroscopeRadialImbalance<T> {
         let chart2_1 = charts[2][1];
         let chart2_2 = charts[2][2];
         let chart2_3 = charts[2][3];
-        let t0 = outer_ring_e0 * outer_ring_e0;
-        let t1 = k(2.0) * (k(0.5) - (t0 + outer_ring_e3 * outer_ring_e3));
-        let t2 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
-        let t3 = outer_ring_e0 * outer_ring_e2;
-        let t4 = outer_ring_e1 * outer_ring_e3;
-        let t5 = k(2.0) * (t4 - t3);
-        let t6 = k(2.0) * (t4 + t3);
-        let t7 = t6 * t5 - t2 * t1;
-        let t8 = outer_ring_e3 * chart0_0 - outer_ring_e2 * chart0_1
-            + outer_ring_e1 * chart0_2 - outer_ring_e0 * chart0_3;
-        let t9 = outer_ring_e2 * chart0_0 + outer_ring_e3 * chart0_1
+        let t0 = outer_ring_e2 * chart0_0 + outer_ring_e3 * chart0_1
             - outer_ring_e0 * chart0_2 - outer_ring_e1 * chart0_3;
-        let t10 = k(0.5) * t9;
-        let t11 = outer_ring_e1 * chart0_0 - outer_ring_e0 * chart0_1
+        let t1 = k(0.5) * t0;
+        let t2 = outer_ring_e0 * outer_ring_e2;
+        let t3 = outer_ring_e1 * outer_ring_e3;
+        let t4 = k(2.0) * (t3 - t2);
+        let t5 = outer_ring_e0 * outer_ring_e0;
+        let t6 = k(2.0) * (k(0.5) - (t5 + outer_ring_e1 * outer_ring_e1));
+        let t7 = k(2.0) * (t3 + t2);
+        let t8 = t7 * outer_ring_wx + t6 * outer_ring_wz;
+        let t9 = k(2.0) * (k(0.5) - (t5 + outer_ring_e3 * outer_ring_e3));
+        let t10 = t9 * outer_ring_wx + t4 * outer_ring_wz;
+        let t11 = k(1.0) / (t1 * (t7 * t4 - t6 * t9));
+        let t12 = outer_ring_wx + t11 * (t10 * (t6 * t1) - t8 * (t4 * t1));
+        let t13 = outer_ring_e1 * chart0_0 - outer_ring_e0 * chart0_1
             - outer_ring_e3 * chart0_2 + outer_ring_e2 * chart0_3;
-        let t12 = outer_ring_wx * (k(0.5) * t11) + outer_ring_wy * t10
-            + outer_ring_wz * (k(0.5) * t8);
-        let t13 = t12 * t7 / (t10 * t7);
-        let t14 = inner_ring_e3 * chart1_0 - inner_ring_e2 * chart1_1
+        let t14 = k(0.5) * t13;
+        let t15 = outer_ring_e3 * chart0_0 - outer_ring_e2 * chart0_1
+            + outer_ring_e1 * chart0_2 - outer_ring_e0 * chart0_3;
+        let t16 = k(0.5) * t15;
+        let t17 = t10 * (t6 * t14 - t7 * t16) + t8 * (t9 * t16 - t4 * t14);
+        let t18 = outer_ring_wy - t11 * t17;
+        let t19 = outer_ring_wz - t11 * (t10 * (t7 * t1) - t8 * (t9 * t1));
+        let t20 = inner_ring_e3 * chart1_0 - inner_ring_e2 * chart1_1
             + inner_ring_e1 * chart1_2 - inner_ring_e0 * chart1_3;
-        let t15 = k(0.5) * t14;
-        let t16 = inner_ring_e0 * inner_ring_e0;
-        let t17 = k(2.0) * (k(0.5) - (t16 + inner_ring_e1 * inner_ring_e1));
-        let t18 = outer_ring_e0 * outer_ring_e3;
-        let t19 = outer_ring_e1 * outer_ring_e2;
-        let t20 = k(2.0) * (t19 - t18);
-        let t21 = inner_ring_e0 * inner_ring_e3;
-        let t22 = inner_ring_e1 * inner_ring_e2;
-        let t23 = k(2.0) * (t22 + t21);
-        let t24 = k(2.0) * (k(0.5) - (t0 + outer_ring_e2 * outer_ring_e2));
-        let t25 = inner_ring_e0 * inner_ring_e2;
-        let t26 = inner_ring_e1 * inner_ring_e3;
-        let t27 = k(2.0) * (t26 - t25);
-        let t28 = outer_ring_e0 * outer_ring_e1;
-        let t29 = outer_ring_e2 * outer_ring_e3;
-        let t30 = k(2.0) * (t29 + t28);
-        let t31 = t30 * t27 - (t24 * t23 + t20 * t17);
-        let t32 = k(2.0) * (t26 + t25);
-        let t33 = inner_ring_e0 * inner_ring_e1;
-        let t34 = inner_ring_e2 * inner_ring_e3;
-        let t35 = k(2.0) * (t34 - t33);
-        let t36 = k(2.0) * (k(0.5) - (t16 + inner_ring_e3 * inner_ring_e3));
-        let t37 = t1 * t36 + (k(2.0) * (t29 - t28) * t35 + t6 * t32);
-        let t38 = t13 * t37;
-        let t39 = k(2.0) * (t22 - t21);
-        let t40 = k(2.0) * (k(0.5) - (t16 + inner_ring_e2 * inner_ring_e2));
-        let t41 = k(2.0) * (t34 + t33);
-        let t42 = t30 * t41 + (t24 * t40 + t20 * t39);
-        let t43 = k(2.0) * (t19 + t18);
-        let t44 = (t5 * t41 - (t43 * t40 + t2 * t39)) * t31
-            - (t5 * t27 + (t43 * t23 + t2 * t17)) * t42;
-        let t45 = k(1.0) / (t15 * t44);
-        let t46 = t45 * (t38 * (t31 * t15));
-        let t47 = t45 * (t38 * (t42 * t15));
-        let t48 = inner_ring_e2 * chart1_0 + inner_ring_e3 * chart1_1
+        let t21 = k(0.5) * t20;
+        let t22 = inner_ring_e0 * inner_ring_e0;
+        let t23 = k(2.0) * (k(0.5) - (t22 + inner_ring_e1 * inner_ring_e1));
+        let t24 = inner_ring_e0 * inner_ring_e3;
+        let t25 = inner_ring_e1 * inner_ring_e2;
+        let t26 = k(2.0) * (t25 + t24);
+        let t27 = outer_ring_e0 * outer_ring_e3;
+        let t28 = outer_ring_e1 * outer_ring_e2;
+        let t29 = k(2.0) * (t28 + t27);
+        let t30 = inner_ring_e0 * inner_ring_e2;
+        let t31 = inner_ring_e1 * inner_ring_e3;
+        let t32 = k(2.0) * (t31 - t30);
+        let t33 = t4 * t32 + (t29 * t26 + t6 * t23);
+        let t34 = k(2.0) * (t28 - t27);
+        let t35 = k(2.0) * (k(0.5) - (t5 + outer_ring_e2 * outer_ring_e2));
+        let t36 = outer_ring_e0 * outer_ring_e1;
+        let t37 = outer_ring_e2 * outer_ring_e3;
+        let t38 = k(2.0) * (t37 + t36);
+        let t39 = t38 * t32 - (t35 * t26 + t34 * t23);
+        let t40 = k(2.0) * (t25 - t24);
+        let t41 = k(2.0) * (k(0.5) - (t22 + inner_ring_e2 * inner_ring_e2));
+        let t42 = inner_ring_e0 * inner_ring_e1;
+        let t43 = inner_ring_e2 * inner_ring_e3;
+        let t44 = k(2.0) * (t43 + t42);
+        let t45 = t38 * t44 + (t35 * t41 + t34 * t40);
+        let t46 = k(2.0) * (t31 + t30);
+        let t47 = k(2.0) * (t43 - t42);
+        let t48 = k(2.0) * (k(0.5) - (t22 + inner_ring_e3 * inner_ring_e3));
+        let t49 = t9 * t48 + (k(2.0) * (t37 - t36) * t47 + t7 * t46);
+        let t50 = t12 * t49 + t19 * (t4 * t48 - (t29 * t47 - t6 * t46));
+        let t51 = t50 - (inner_ring_wx * t45 - inner_ring_wy * t39);
+        let t52 = t4 * t44 - (t29 * t41 + t6 * t40);
+        let t53 = t18 * t49 + t19 * (t38 * t48 + (t35 * t47 - t34 * t46));
+        let t54 = t53 + (inner_ring_wx * t52 - inner_ring_wy * t33);
+        let t55 = k(1.0) / (t21 * (t52 * t39 - t33 * t45));
+        let t56 = inner_ring_wx - t55 * (t54 * (t39 * t21) + t51 * (t33 * t21));
+        let t57 = inner_ring_wy - t55 * (t54 * (t45 * t21) + t51 * (t52 * t21));
+        let t58 = inner_ring_e2 * chart1_0 + inner_ring_e3 * chart1_1
             - inner_ring_e0 * chart1_2 - inner_ring_e1 * chart1_3;
-        let t49 = k(0.5) * t48;
-        let t50 = inner_ring_e1 * chart1_0 - inner_ring_e0 * chart1_1
+        let t59 = k(0.5) * t58;
+        let t60 = inner_ring_e1 * chart1_0 - inner_ring_e0 * chart1_1
             - inner_ring_e3 * chart1_2 + inner_ring_e2 * chart1_3;
-        let t51 = k(0.5) * t50;
-        let t52 = t38 * (t42 * t49 + t31 * t51)
-            + (inner_ring_wx * t51 + inner_ring_wy * t49 + inner_ring_wz * t15) * t44;
-        let t53 = t45 * t52;
-        let t54 = rotor_e1 * chart2_0 - rotor_e0 * chart2_1 - rotor_e3 * chart2_2
+        let t61 = k(0.5) * t60;
+        let t62 = t54 * (t45 * t59 + t39 * t61) + t51 * (t33 * t61 + t52 * t59);
+        let t63 = inner_ring_wz + t55 * t62;
+        let t64 = rotor_e1 * chart2_0 - rotor_e0 * chart2_1 - rotor_e3 * chart2_2
             + rotor_e2 * chart2_3;
-        let t55 = k(0.5) * t54;
-        let t56 = rotor_e0 * rotor_e2;
-        let t57 = rotor_e1 * rotor_e3;
-        let t58 = k(2.0) * (t57 + t56);
-        let t59 = rotor_e0 * rotor_e1;
-        let t60 = rotor_e2 * rotor_e3;
-        let t61 = k(2.0) * (t60 - t59);
-        let t62 = rotor_e0 * rotor_e0;
-        let t63 = k(2.0) * (k(0.5) - (t62 + rotor_e3 * rotor_e3));
-        let t64 = t41 * t63 + (t40 * t61 - t39 * t58);
-        let t65 = k(2.0) * (k(0.5) - (t62 + rotor_e1 * rotor_e1));
-        let t66 = rotor_e0 * rotor_e3;
-        let t67 = rotor_e1 * rotor_e2;
+        let t65 = k(0.5) * t64;
+        let t66 = rotor_e0 * rotor_e2;
+        let t67 = rotor_e1 * rotor_e3;
         let t68 = k(2.0) * (t67 + t66);
-        let t69 = k(2.0) * (t57 - t56);
-        let t70 = t27 * t69 + (t23 * t68 + t17 * t65);
-        let t71 = t46 * (t41 * t69 - (t40 * t68 + t39 * t65)) - t47 * t70;
-        let t72 = t36 * t63 + (t35 * t61 + t32 * t58);
-        let t73 = t46 * (t36 * t69 - (t35 * t68 - t32 * t65)) - t53 * t70;
-        let t74 = k(2.0) * (t67 - t66);
-        let t75 = k(2.0) * (k(0.5) - (t62 + rotor_e2 * rotor_e2));
-        let t76 = k(2.0) * (t60 + t59);
-        let t77 = t41 * t76 + (t40 * t75 + t39 * t74);
-        let t78 = t36 * t76 + (t35 * t75 - t32 * t74);
-        let t79 = t64 * t78 - t77 * t72;
-        let t80 = k(1.0) / (t55 * t79);
-        let t81 = t80 * (t73 * (t72 * t55) + t71 * (t64 * t55));
-        let t82 = rotor_e3 * chart2_0 - rotor_e2 * chart2_1 + rotor_e1 * chart2_2
+        let t69 = rotor_e0 * rotor_e1;
+        let t70 = rotor_e2 * rotor_e3;
+        let t71 = k(2.0) * (t70 - t69);
+        let t72 = rotor_e0 * rotor_e0;
+        let t73 = k(2.0) * (k(0.5) - (t72 + rotor_e3 * rotor_e3));
+        let t74 = t44 * t73 + (t41 * t71 - t40 * t68);
+        let t75 = rotor_e0 * rotor_e3;
+        let t76 = rotor_e1 * rotor_e2;
+        let t77 = k(2.0) * (t76 - t75);
+        let t78 = k(2.0) * (k(0.5) - (t72 + rotor_e2 * rotor_e2));
+        let t79 = k(2.0) * (t70 + t69);
+        let t80 = t48 * t79 + (t47 * t78 - t46 * t77);
+        let t81 = t48 * t73 + (t47 * t71 + t46 * t68);
+        let t82 = k(2.0) * (k(0.5) - (t72 + rotor_e1 * rotor_e1));
+        let t83 = k(2.0) * (t76 + t75);
+        let t84 = k(2.0) * (t67 - t66);
+        let t85 = t32 * t84 + (t26 * t83 + t23 * t82);
+        let t86 = t56 * (t44 * t84 - (t41 * t83 + t40 * t82)) - t57 * t85;
+        let t87 = t86 + (rotor_wy * t81 + rotor_wz * t80);
+        let t88 = t44 * t79 + (t41 * t78 + t40 * t77);
+        let t89 = t56 * (t48 * t84 - (t47 * t83 - t46 * t82)) + t63 * t85;
+        let t90 = t89 - (rotor_wy * t74 + rotor_wz * t88);
+        let t91 = k(1.0) / (t65 * (t74 * t80 - t88 * t81));
+        let t92 = rotor_wz - t91 * (t90 * (t81 * t65) + t87 * (t74 * t65));
+        let t93 = rotor_e3 * chart2_0 - rotor_e2 * chart2_1 + rotor_e1 * chart2_2
             - rotor_e0 * chart2_3;
-        let t83 = k(0.5) * t82;
-        let t84 = rotor_e2 * chart2_0 + rotor_e3 * chart2_1 - rotor_e0 * chart2_2
+        let t94 = k(0.5) * t93;
+        let t95 = rotor_e2 * chart2_0 + rotor_e3 * chart2_1 - rotor_e0 * chart2_2
             - rotor_e1 * chart2_3;
-        let t85 = k(0.5) * t84;
-        let t86 = t73 * (t72 * t83 - t78 * t85) - t71 * (t77 * t85 - t64 * t83);
-        let t87 = t86 - (rotor_wx * t55 + rotor_wy * t85 + rotor_wz * t83) * t79;
-        let t88 = t80 * t87;
+        let t96 = k(0.5) * t95;
+        let t97 = t90 * (t81 * t94 - t80 * t96) - t87 * (t88 * t96 - t74 * t94);
+        let t98 = rotor_wx + t91 * t97;
+        let t99 = rotor_wy + t91 * (t90 * (t80 * t65) + t87 * (t88 * t65));
         y[21] = k(0.0);
         y[22] = k(0.0);
         y[23] = k(0.0);
-        y[24] = k(0.0);
-        y[25] = t13;
-        y[26] = k(0.0);
+        y[24] = t12;
+        y[25] = t18;
+        y[26] = t19;
         y[27] = k(0.0);
         y[28] = k(0.0);
         y[29] = k(0.0);
-        y[30] = -t46;
-        y[31] = -t47;
-        y[32] = t53;
-        y[33] = k(0.0002) * (t58 * t88 - t65 * t81);
-        y[34] = k(0.0002) * (t61 * t88 + t68 * t81);
-        y[35] = -(k(0.0002) * (t63 * t88 - t69 * t81));
-        y[36] = -t88;
-        y[37] = -(t80 * (t73 * (t78 * t55) + t71 * (t77 * t55)));
-        y[38] = t81;
+        y[30] = t56;
+        y[31] = t57;
+        y[32] = t63;
+        y[33] = -(k(0.0002) * (t68 * t98 + t82 * t92));
+        y[34] = -(k(0.0002) * (t71 * t98 - t83 * t92));
+        y[35] = k(0.0002) * (t73 * t98 + t84 * t92);
+        y[36] = t98;
+        y[37] = t99;
+        y[38] = t92;
         Ok(())
     }
 }

@@ -90,7 +90,7 @@ impl Axis {
 
     fn log<'a>(unit: &str, values: impl Iterator<Item = &'a f64>) -> Self {
         let (mut low, mut high) = extent(values.filter(|v| **v != 0.0));
-        if !(low > 0.0) {
+        if low <= 0.0 {
             (low, high) = (FLOOR, 10.0 * FLOOR);
         }
         let low = low.max(FLOOR).log10().floor();

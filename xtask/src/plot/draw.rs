@@ -5,6 +5,7 @@ use super::decimate;
 use plotters::coord::Shift;
 use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};
 use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 /// A plot file.
 #[derive(Debug)]
@@ -101,8 +102,8 @@ fn draw_panel(panel: &Panel, area: &Area<'_>) -> Outcome {
     let (time, axis) =
         (Axis::time(panel.times.last().copied().unwrap_or(1.0)), Axis::of(panel.scale, panel.unit, values));
     let mut chart = ChartBuilder::on(area)
-        .caption(format!("{} {}", panel.title, axis.unit), font(15))
         .margin(pixels(8))
+        .margin_top(pixels(34))
         .margin_right(pixels(24))
         .x_label_area_size(pixels(38))
         .y_label_area_size(pixels(64))
@@ -124,7 +125,15 @@ fn draw_panel(panel: &Panel, area: &Area<'_>) -> Outcome {
             points.map(|k| (time.coordinate(panel.times[k]), axis.coordinate(series.values[k]))).collect();
         chart.draw_series([PathElement::new(points, colour.stroke_width(FINE * 5 / 4))])?;
     }
+    draw_title(&format!("{} {}", panel.title, axis.unit), area)?;
     draw_legend(panel, area)
+}
+
+/// The title in the middle above the panel.
+fn draw_title(title: &str, area: &Area<'_>) -> Outcome {
+    let middle = (area.dim_in_pixel().0 / 2) as i32 + pixels(20);
+    let style = TextStyle::from(font(15)).pos(Pos::new(HPos::Center, VPos::Top));
+    area.draw(&Text::new(title.to_owned(), (middle, pixels(11)), style)).map_err(|e| e.to_string().into())
 }
 
 /// The names of several series, each in its colour, from the right end of the title's line.
