@@ -40,6 +40,7 @@ mod freedom;
 mod lowered;
 mod number;
 mod partition;
+mod quick_look;
 mod reactions;
 mod readings;
 mod rows;
@@ -51,6 +52,7 @@ pub use careful::Elimination;
 pub use dense::Saddle;
 pub use lowered::Lowered;
 pub use number::Number;
+pub use quick_look::{Form, Precision, QuickLookError, quick_look};
 
 /// The paper's plain form. See [`Saddle`].
 pub type Dense<T> = Assembled<T, Saddle>;

@@ -16,7 +16,6 @@ mod scene;
 mod simulate;
 mod spectrum;
 mod summary;
-mod twin;
 mod words;
 
 use args::{Cli, Command};

@@ -1,10 +1,11 @@
 //! `cargo xtask simulate`.
 
-use crate::args::{Engine, SimulateArgs};
+use crate::args::{Engine, Precision, SimulateArgs};
 use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::scene::Scene;
-use crate::{csv, files, json, nested, plot, summary, twin, words};
+use crate::{csv, files, json, nested, plot, summary, words};
+use gyro_assembled::{Form, QuickLookError, quick_look};
 use gyro_model::Model;
 use gyro_runner::{Event, Sample, Summary};
 use std::fs;
@@ -43,10 +44,24 @@ fn run(scene: &Scene, samples: &mut Vec<Sample>) -> Result<Summary, Failure> {
     };
     let outcome = match scene.engine {
         Engine::Generated => nested::simulate(scene, &mut tell),
-        Engine::Assembled | Engine::Dense => twin::simulate(scene, &mut tell),
+        Engine::Assembled => twin(scene, Form::Careful, &mut tell),
+        Engine::Dense => twin(scene, Form::Dense, &mut tell),
     };
     progress.finish();
     outcome
+}
+
+/// Runs the runtime-assembled twin in this process.
+fn twin(scene: &Scene, form: Form, tell: &mut dyn FnMut(Event<'_>)) -> Result<Summary, Failure> {
+    let precision = match scene.precision {
+        Precision::F32 => gyro_assembled::Precision::Single,
+        Precision::F64 => gyro_assembled::Precision::Double,
+    };
+    let outcome = quick_look(&scene.model, (form, precision), &scene.settings, &scene.start, tell);
+    outcome.map_err(|error| match error {
+        QuickLookError::Start(error) => Failure::Usage(error.to_string()),
+        QuickLookError::Run(failure) => Failure::Run(failure.to_string()),
+    })
 }
 
 /// Where files go, if any are to be written; a place that cannot be used is found out before the run.
