@@ -8,4 +8,5 @@ mod joint_readings;
 mod long_run;
 mod paper_scenes;
 mod robustness;
+mod scalars;
 mod terms;
