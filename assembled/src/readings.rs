@@ -3,7 +3,7 @@
 use crate::forces::{relative_angular_velocity, relative_rate};
 use crate::lowered::{Joint, Lowered};
 use crate::number::Number;
-use crate::textbook::relative_matrix;
+use crate::textbook::{direction_rotation, relative_matrix};
 use gyro_model::JointKind;
 
 impl<T: Number> Lowered<T> {
@@ -27,7 +27,7 @@ impl<T: Number> Lowered<T> {
         match joint.kind {
             JointKind::Revolute => {
                 // Paper, section 3: the second body's zero direction as the first body sees it.
-                let zero = i.a.tr_mul(&(j.a * joint.second.f));
+                let zero = direction_rotation(&i.p).tr_mul(&(direction_rotation(&j.p) * joint.second.f));
                 out[0] = joint.first.g.dot(&zero);
                 out[1] = joint.first.f.dot(&zero);
                 out[2] = relative_rate(joint, &i, &j);

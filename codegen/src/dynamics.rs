@@ -141,9 +141,10 @@ fn relative_spin(system: &mut System, joint: &JointFrames) -> Vec3 {
 pub fn readings(system: &mut System) -> Vec<ExprId> {
     let mut readings = Vec::new();
     for joint in system.joints.clone() {
-        let (i, j, a) = (&joint.first, &joint.second, &joint.relative);
+        let (i, j) = (&joint.first, &joint.second);
         match joint.kind {
             JointKind::Revolute => {
+                let a = &direction_rotation(system, &joint);
                 readings.push(dot1(&mut system.graph, &i.g, a, &j.f));
                 readings.push(dot1(&mut system.graph, &i.f, a, &j.f));
                 readings.push(revolute_rate(system, &joint));
@@ -156,6 +157,19 @@ pub fn readings(system: &mut System) -> Vec<ExprId> {
         }
     }
     readings
+}
+
+/// `A_iᵀ A_j` times |p_i|² |p_j|²: a rotation in direction whatever the length of p, which direct integration loses. Only the
+/// ratio of an angle's sine and cosine matters.
+fn direction_rotation(system: &mut System, joint: &JointFrames) -> Mat3 {
+    let homogeneous = |system: &mut System, body: usize| match system.slot_of(body) {
+        Some(_) => system.graph.homogeneous_rotation(&system.poses[body].p),
+        None => system.poses[body].a,
+    };
+    let (a_i, a_j) = (homogeneous(system, joint.first.body), homogeneous(system, joint.second.body));
+    let columns = |m: Mat3| [0, 1, 2].map(|column| m.map(|row| row[column]));
+    let (columns_i, columns_j) = (columns(a_i), columns(a_j));
+    columns_i.map(|u| columns_j.map(|v| system.graph.dot(&u, &v)))
 }
 
 /// `p_i* p_j`: scalar part p_iᵀp_j, vector part G(p_i) p_j.

@@ -108,6 +108,18 @@ impl Graph {
         })
     }
 
+    /// `|p|² A(p / |p|)`: eq. (3) with pᵀp for its one.
+    pub fn homogeneous_rotation(&mut self, p: &Vec4) -> Mat3 {
+        let a = self.rotation(p);
+        let square = self.dot(p, p);
+        let missing = self.sub(Self::ONE, square);
+        std::array::from_fn(|row| {
+            std::array::from_fn(|column| {
+                if row == column { self.add(a[row][column], missing) } else { a[row][column] }
+            })
+        })
+    }
+
     /// G(p), paper eq. (15): rows of four.
     pub fn g_matrix(&mut self, p: &Vec4) -> [Vec4; 3] {
         let [e0, e1, e2, e3] = *p;

@@ -41,7 +41,7 @@ pub(crate) struct GenerateArgs {
 
 /// Simulate a model
 ///
-/// Prints a summary and writes a CSV file and plots. What no option says, the model page's own [simulation] says. All
+/// Prints a summary and writes a CSV file and plots. What no option says, the model page's own table `simulation` says. All
 /// times are in seconds.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "Examples:

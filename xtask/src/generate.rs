@@ -78,6 +78,8 @@ fn outputs(args: &GenerateArgs, places: &Places) -> Result<Outputs, Failure> {
 
 /// Writes what has changed and says where.
 fn write(outputs: &Outputs) -> Result<(), Failure> {
+    // Before anything is written: nothing is lost by a mistaken name.
+    outputs.files.iter().try_for_each(spare_what_is_not_generated)?;
     let mut n_fresh = 0;
     for output in &outputs.files {
         if files::write(&output.path, &output.code)? {
@@ -90,6 +92,19 @@ fn write(outputs: &Outputs) -> Result<(), Failure> {
         say(&format!("{} fresh already", count(n_fresh, "file")));
     }
     if outputs.to_do.is_empty() { Ok(()) } else { Err(Failure::Run(outputs.to_do.join("\n"))) }
+}
+
+/// Refuses to replace a file that somebody wrote.
+fn spare_what_is_not_generated(output: &Output) -> Result<(), Failure> {
+    let is_written_by_hand = fs::read_to_string(&output.path)
+        .is_ok_and(|text| !text.trim().is_empty() && !text.starts_with("// @generated"));
+    if is_written_by_hand {
+        let path = output.path.display();
+        return Err(Failure::Usage(format!(
+            "{path} exists and is not a generated file: choose another place with --out, or move it away"
+        )));
+    }
+    Ok(())
 }
 
 /// Compares files with what they should be.
@@ -191,7 +206,7 @@ fn is_in(page: &Path, folder: &Path) -> bool {
 }
 
 fn say(words: &str) {
-    // Whoever closes the pipe has read enough.
+    // What was said is only about files that are there already.
     let _ = writeln!(io::stdout(), "{words}");
 }
 

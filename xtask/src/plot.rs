@@ -11,19 +11,23 @@ use draw::{Page, Panel, Series};
 use gyro_model::{JointKind, Model};
 use gyro_runner::{Sample, energy_error};
 
+/// The names of the pages.
+pub(crate) const NAMES: [&str; 3] = ["motion", "residuals", "energy"];
+
 /// Name and SVG text of each plot.
 pub(crate) fn pages(model: &Model, samples: &[Sample]) -> Result<Vec<(&'static str, String)>, String> {
+    let [motion, residuals, energy] = NAMES;
     let all = Samples { model, samples };
     let mut pages = Vec::new();
     let rows = all.motion();
     if !rows.is_empty() {
         let title = format!("{}: motion", model.name);
-        pages.push(("motion", draw::svg(&Page { title, rows })?));
+        pages.push((motion, draw::svg(&Page { title, rows })?));
     }
     let title = format!("{}: residuals", model.name);
-    pages.push(("residuals", draw::svg(&Page { title, rows: all.residuals() })?));
+    pages.push((residuals, draw::svg(&Page { title, rows: all.residuals() })?));
     let title = format!("{}: energy since the start", model.name);
-    pages.push(("energy", draw::svg(&Page { title, rows: all.energy() })?));
+    pages.push((energy, draw::svg(&Page { title, rows: all.energy() })?));
     Ok(pages)
 }
 

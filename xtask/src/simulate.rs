@@ -31,9 +31,18 @@ pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
     } else {
         summary::text(&scene, &samples, &run, &written)
     };
-    // Whoever closes the pipe has read enough.
-    let _ = std::io::stdout().write_all(text.as_bytes());
-    Ok(())
+    say(&text)
+}
+
+/// Whoever closes the pipe has read enough; any other loss of output is a failure.
+fn say(text: &str) -> Result<(), Failure> {
+    let mut stdout = std::io::stdout();
+    match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(Failure::Run(format!("standard output cannot be written: {error}")))
+        }
+        _ => Ok(()),
+    }
 }
 
 fn run(scene: &Scene, samples: &mut Vec<Sample>) -> Result<Summary, Failure> {
@@ -92,11 +101,15 @@ fn write_table(model: &Model, samples: &[Sample], folder: &Path) -> Result<PathB
     Ok(path)
 }
 
-/// After a failure in the middle of a run: the samples before it are worth keeping, the plots are not.
+/// After a failure in the middle of a run: the samples before it are worth keeping; plots of an earlier run would belie them.
 fn keep_what_there_is(model: &Model, samples: &[Sample], folder: Option<&Path>, failure: Failure) -> Failure {
     let (Failure::Run(words), Some(folder), Some(last)) = (&failure, folder, samples.last()) else {
         return failure;
     };
+    for name in plot::NAMES {
+        // There may be none.
+        let _ = fs::remove_file(folder.join(format!("{}-{name}.svg", model.name)));
+    }
     match write_table(model, samples, folder) {
         Ok(path) => Failure::Run(format!(
             "{words}\nThe run is incomplete; its {} up to t = {} s are in {}.",

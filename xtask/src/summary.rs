@@ -37,11 +37,11 @@ fn head(scene: &Scene, run: &Summary, last: &Sample) -> String {
         None => "direct integration".to_owned(),
     };
     let mut text = format!(
-        "{}: {} s in {} of at most {:?} s, {method}\nengine {}, {}\n",
+        "{}: {} s in {} (mean {} s), {method}\nengine {}, {}\n",
         scene.model.name,
         last.t,
         count(run.steps, "step"),
-        settings.step,
+        number(last.t / run.steps.max(1) as f64, 6),
         scene.engine.name(),
         scene.precision.name()
     );

@@ -20,8 +20,8 @@ impl ModuleWriter<'_> {
         let (marker, marker_value) = if parameters.is_empty() {
             let doc = " The model has no parameters.";
             (
-                quote! { #[doc = #doc] scalar: core::marker::PhantomData<T>, },
-                quote! { scalar: core::marker::PhantomData, },
+                quote! { #[doc = #doc] scalar: ::core::marker::PhantomData<T>, },
+                quote! { scalar: ::core::marker::PhantomData, },
             )
         } else {
             (quote! {}, quote! {})
@@ -51,7 +51,7 @@ impl ModuleWriter<'_> {
                 #marker
             }
 
-            impl<T: Scalar> Default for #name<T> {
+            impl<T: gyro_sim::Scalar> ::core::default::Default for #name<T> {
                 fn default() -> Self {
                     Self { #(#names: T::constant(#values),)* #marker_value }
                 }

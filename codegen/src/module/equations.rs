@@ -34,7 +34,7 @@ impl ModuleWriter<'_> {
             }
         });
         quote! {
-            impl<T: Scalar> Equations for #name<T> {
+            impl<T: gyro_sim::Scalar> gyro_sim::Equations for #name<T> {
                 type Velocities = [T; #n_velocities];
                 type PhiQ = [T; #n_phi_q];
                 type PhiPi = [T; #n_phi_pi];

@@ -21,9 +21,9 @@ impl ModuleWriter<'_> {
         let energy = self.function("Kinetic and potential energy", &self.functions.energy, |body, _, y| {
             let (statements, kinetic, potential) = (&body.statements, &body.values[0], &body.values[1]);
             quote! {
-                fn energy(&self, #y: &Self::State) -> Energy<T> {
+                fn energy(&self, #y: &Self::State) -> gyro_sim::Energy<T> {
                     #statements
-                    Energy { kinetic: #kinetic, potential: #potential }
+                    gyro_sim::Energy { kinetic: #kinetic, potential: #potential }
                 }
             }
         });
@@ -39,7 +39,7 @@ impl ModuleWriter<'_> {
             });
         let tables = self.tables();
         quote! {
-            impl<T: Scalar> Mechanism for #name<T> {
+            impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for #name<T> {
                 type Rows = [T; #n_rows];
                 type Constraints = [T; #n_all];
                 type Readings = [T; #n_readings];
@@ -76,7 +76,7 @@ impl ModuleWriter<'_> {
                     JointKind::Fixed => "None",
                 }),
             );
-            quote! { JointInfo { name: #name, coordinate: Coordinate::#coordinate } }
+            quote! { gyro_sim::JointInfo { name: #name, coordinate: gyro_sim::Coordinate::#coordinate } }
         });
         let rows = e.model.rows().into_iter().map(|row| {
             let is_length = row.unit == RowUnit::Length;
@@ -88,7 +88,7 @@ impl ModuleWriter<'_> {
                 RowOwner::Joint(joint) => ("Joint", joint),
             };
             let (owner, index) = (ident(owner), emit::index(index));
-            quote! { RowInfo { owner: Owner::#owner(#index), is_length: #is_length } }
+            quote! { gyro_sim::RowInfo { owner: gyro_sim::Owner::#owner(#index), is_length: #is_length } }
         });
         let [n_bodies, n_joints, n_rows] = [e.n_slots(), e.model.joints.len(), e.n_rows()].map(index);
         let size = float(e.model.size());
@@ -109,13 +109,13 @@ impl ModuleWriter<'_> {
                 const BODIES: [&str; #n_bodies] = [#(#bodies),*];
                 BODIES.get(body).copied().unwrap_or_default()
             }
-            fn joint(&self, joint: usize) -> JointInfo<'_> {
-                const JOINTS: [JointInfo<'static>; #n_joints] = [#(#joints),*];
-                JOINTS.get(joint).copied().unwrap_or(JointInfo { name: "", coordinate: Coordinate::None })
+            fn joint(&self, joint: usize) -> gyro_sim::JointInfo<'_> {
+                const JOINTS: [gyro_sim::JointInfo<'static>; #n_joints] = [#(#joints),*];
+                JOINTS.get(joint).copied().unwrap_or(gyro_sim::JointInfo { name: "", coordinate: gyro_sim::Coordinate::None })
             }
-            fn row(&self, row: usize) -> RowInfo {
-                const ROWS: [RowInfo; #n_rows] = [#(#rows),*];
-                ROWS.get(row).copied().unwrap_or(RowInfo { owner: Owner::Body(0), is_length: false })
+            fn row(&self, row: usize) -> gyro_sim::RowInfo {
+                const ROWS: [gyro_sim::RowInfo; #n_rows] = [#(#rows),*];
+                ROWS.get(row).copied().unwrap_or(gyro_sim::RowInfo { owner: gyro_sim::Owner::Body(0), is_length: false })
             }
             fn size(&self) -> T {
                 T::constant(#size)

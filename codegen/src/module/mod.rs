@@ -19,7 +19,7 @@ use gyro_model::Start;
 use proc_macro2::TokenStream;
 use quote::quote;
 
-/// `gyroscope_maximal` to `GyroscopeMaximal`.
+/// `gyroscope_maximal` to `GyroscopeMaximal`; what Rust or the generic parameter already means gets an underscore.
 pub fn type_name(module_name: &str) -> String {
     let capital = |word: &str| {
         let mut letters = word.chars();
@@ -28,7 +28,8 @@ pub fn type_name(module_name: &str) -> String {
             .map(|first| first.to_uppercase().chain(letters).collect::<String>())
             .unwrap_or_default()
     };
-    module_name.split('_').map(capital).collect()
+    let name: String = module_name.split('_').map(capital).collect();
+    if ["Self", "T"].contains(&name.as_str()) { format!("{name}_") } else { name }
 }
 
 /// Writes the file.
@@ -64,11 +65,6 @@ impl ModuleWriter<'_> {
         let (definition, ode) = (self.definition(), self.ode(start));
         let (mechanism, partition, equations) = (self.mechanism(), self.partition(), self.equations());
         quote! {
-            use gyro_sim::charts::{self, Charts};
-            use gyro_sim::{
-                Coordinate, Energy, Equations, Error, JointInfo, Mechanism, Ode, Owner, Partition, Real, RowInfo, Scalar,
-            };
-
             #definition
             #ode
             #mechanism

@@ -14,7 +14,7 @@ impl ModuleWriter<'_> {
         let start: Vec<_> = start.map(|x| if x == 0.0 { float(0.0) } else { float(x) }).collect();
         let derivative = self.derivative();
         quote! {
-            impl<T: Scalar> Ode for #name<T> {
+            impl<T: gyro_sim::Scalar> gyro_sim::Ode for #name<T> {
                 type Scalar = T;
                 type State = [T; #n_state];
 
@@ -38,9 +38,9 @@ impl ModuleWriter<'_> {
             let accelerations = (0..self.equations.accelerations.len()).map(index);
             quote! {
                 fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-                    let mut v = self.velocities();
-                    let mut lambda = self.rows();
-                    self.accelerations(t, y, &mut v, &mut lambda);
+                    let mut v = gyro_sim::Equations::velocities(self);
+                    let mut lambda = gyro_sim::Mechanism::rows(self);
+                    gyro_sim::Equations::accelerations(self, t, y, &mut v, &mut lambda);
                     #statements
                     *dy = [#(#positions,)* #(v[#accelerations],)* #(#power),*];
                 }

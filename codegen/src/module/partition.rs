@@ -38,18 +38,18 @@ impl ModuleWriter<'_> {
             7 * self.equations.n_slots(),
         );
         quote! {
-            impl<T: Scalar> #name<T> {
+            impl<T: gyro_sim::Scalar> #name<T> {
                 #vectors
             }
 
-            impl<T: Real> Partition for #name<T> {
-                type Independent = Charts<#n_charts>;
+            impl<T: gyro_sim::Real> gyro_sim::Partition for #name<T> {
+                type Independent = gyro_sim::charts::Charts<#n_charts>;
 
                 fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
-                    charts::best(&self.chart_vectors(y))
+                    gyro_sim::charts::best(&self.chart_vectors(y))
                 }
                 fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
-                    charts::follow(&self.chart_vectors(y), choice)
+                    gyro_sim::charts::follow(&self.chart_vectors(y), choice)
                 }
 
                 #newton
@@ -68,12 +68,12 @@ impl ModuleWriter<'_> {
             let (statements, values) = (&body.statements, &body.values);
             let charted = body.symbols.iter().any(|s| matches!(s, Symbol::Chart { .. }));
             let (choice, charts) = if charted {
-                (quote! { choice }, quote! { let charts = charts::one_hot::<T, _>(choice); })
+                (quote! { choice }, quote! { let charts = gyro_sim::charts::one_hot::<T, _>(choice); })
             } else {
                 (quote! { _choice }, quote! {})
             };
             quote! {
-                fn #name(&self, #t: T, #choice: &Self::Independent, #y: &mut Self::State) -> Result<(), Error> {
+                fn #name(&self, #t: T, #choice: &Self::Independent, #y: &mut Self::State) -> ::core::result::Result<(), gyro_sim::Error> {
                     #charts
                     #statements
                     #(y[#places] = #values;)*

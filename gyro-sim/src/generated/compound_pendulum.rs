@@ -22,26 +22,21 @@
 //! | accelerations | (s̈, ẇ') and λ, eq. (17) | 95 | 156 | 5 | 256 | 0 of 11 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 |
 //! | energy | T and V | 5 | 12 | 0 | 17 | 0 of 2 |
-//! | read_joints | joint coordinates and rates | 3 | 6 | 0 | 9 | 0 of 3 |
+//! | read_joints | joint coordinates and rates | 7 | 8 | 0 | 15 | 0 of 3 |
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 4 |
 //! | newton_step | dependent positions, one Newton step | 51 | 86 | 1 | 138 | 0 of 7 |
 //! | solve_velocities | dependent velocities, eq. (19) | 34 | 66 | 1 | 101 | 0 of 6 |
 
-use gyro_sim::charts::{self, Charts};
-use gyro_sim::{
-    Coordinate, Energy, Equations, Error, JointInfo, Mechanism, Ode, Owner, Partition,
-    Real, RowInfo, Scalar,
-};
 /// The mechanism `compound_pendulum`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CompoundPendulum<T> {
     /// The model has no parameters.
-    scalar: core::marker::PhantomData<T>,
+    scalar: ::core::marker::PhantomData<T>,
 }
-impl<T: Scalar> Default for CompoundPendulum<T> {
+impl<T: gyro_sim::Scalar> ::core::default::Default for CompoundPendulum<T> {
     fn default() -> Self {
         Self {
-            scalar: core::marker::PhantomData,
+            scalar: ::core::marker::PhantomData,
         }
     }
 }
@@ -53,7 +48,7 @@ impl<T> CompoundPendulum<T> {
         false
     }
 }
-impl<T: Scalar> Ode for CompoundPendulum<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Ode for CompoundPendulum<T> {
     type Scalar = T;
     type State = [T; 13];
     /// The assembled start, with all parameters at their defaults.
@@ -77,9 +72,9 @@ impl<T: Scalar> Ode for CompoundPendulum<T> {
     }
     /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut v = self.velocities();
-        let mut lambda = self.rows();
-        self.accelerations(t, y, &mut v, &mut lambda);
+        let mut v = gyro_sim::Equations::velocities(self);
+        let mut lambda = gyro_sim::Mechanism::rows(self);
+        gyro_sim::Equations::accelerations(self, t, y, &mut v, &mut lambda);
         let k = T::constant;
         let rod_e0 = y[3];
         let rod_e1 = y[4];
@@ -108,7 +103,7 @@ impl<T: Scalar> Ode for CompoundPendulum<T> {
         ];
     }
 }
-impl<T: Scalar> Mechanism for CompoundPendulum<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for CompoundPendulum<T> {
     type Rows = [T; 5];
     type Constraints = [T; 6];
     type Readings = [T; 3];
@@ -177,7 +172,7 @@ impl<T: Scalar> Mechanism for CompoundPendulum<T> {
         ];
     }
     /// Kinetic and potential energy: 17 operations (5 ±, 12 ×, 0 ÷).
-    fn energy(&self, y: &Self::State) -> Energy<T> {
+    fn energy(&self, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let rod_ry = y[1];
         let rod_sx = y[7];
@@ -189,12 +184,12 @@ impl<T: Scalar> Mechanism for CompoundPendulum<T> {
         let t0 = rod_wx * (k(0.0001) * rod_wx) + rod_wy * (k(0.1) * rod_wy)
             + rod_wz * (k(0.1) * rod_wz);
         let t1 = t0 + k(1.2) * (rod_sx * rod_sx + rod_sy * rod_sy + rod_sz * rod_sz);
-        Energy {
+        gyro_sim::Energy {
             kinetic: k(0.5) * t1,
             potential: k(11.772) * rod_ry,
         }
     }
-    /// Writes the joint readings: 9 operations (3 ±, 6 ×, 0 ÷).
+    /// Writes the joint readings: 15 operations (7 ±, 8 ×, 0 ÷).
     fn read_joints(&self, y: &Self::State, out: &mut Self::Readings) {
         let k = T::constant;
         let rod_e0 = y[3];
@@ -202,11 +197,10 @@ impl<T: Scalar> Mechanism for CompoundPendulum<T> {
         let rod_e2 = y[5];
         let rod_e3 = y[6];
         let rod_wz = y[12];
-        *out = [
-            -(k(2.0) * (k(0.5) - (rod_e0 * rod_e0 + rod_e1 * rod_e1))),
-            -(k(2.0) * (rod_e1 * rod_e2 + rod_e0 * rod_e3)),
-            rod_wz,
-        ];
+        let t0 = rod_e0 * rod_e0 + rod_e1 * rod_e1;
+        let t1 = k(2.0) * (k(0.5) - t0)
+            - (k(1.0) - (rod_e3 * rod_e3 + (t0 + rod_e2 * rod_e2)));
+        *out = [-t1, -(k(2.0) * (rod_e1 * rod_e2 + rod_e0 * rod_e3)), rod_wz];
     }
     fn n_bodies(&self) -> usize {
         1
@@ -218,48 +212,48 @@ impl<T: Scalar> Mechanism for CompoundPendulum<T> {
         const BODIES: [&str; 1] = ["rod"];
         BODIES.get(body).copied().unwrap_or_default()
     }
-    fn joint(&self, joint: usize) -> JointInfo<'_> {
-        const JOINTS: [JointInfo<'static>; 1] = [
-            JointInfo {
+    fn joint(&self, joint: usize) -> gyro_sim::JointInfo<'_> {
+        const JOINTS: [gyro_sim::JointInfo<'static>; 1] = [
+            gyro_sim::JointInfo {
                 name: "pivot",
-                coordinate: Coordinate::Angle,
+                coordinate: gyro_sim::Coordinate::Angle,
             },
         ];
         JOINTS
             .get(joint)
             .copied()
-            .unwrap_or(JointInfo {
+            .unwrap_or(gyro_sim::JointInfo {
                 name: "",
-                coordinate: Coordinate::None,
+                coordinate: gyro_sim::Coordinate::None,
             })
     }
-    fn row(&self, row: usize) -> RowInfo {
-        const ROWS: [RowInfo; 5] = [
-            RowInfo {
-                owner: Owner::Joint(0),
+    fn row(&self, row: usize) -> gyro_sim::RowInfo {
+        const ROWS: [gyro_sim::RowInfo; 5] = [
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(0),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(0),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(0),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(0),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(0),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(0),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(0),
                 is_length: false,
             },
-            RowInfo {
-                owner: Owner::Joint(0),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(0),
                 is_length: false,
             },
         ];
         ROWS.get(row)
             .copied()
-            .unwrap_or(RowInfo {
-                owner: Owner::Body(0),
+            .unwrap_or(gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Body(0),
                 is_length: false,
             })
     }
@@ -270,7 +264,7 @@ impl<T: Scalar> Mechanism for CompoundPendulum<T> {
         T::constant(0.0)
     }
 }
-impl<T: Scalar> CompoundPendulum<T> {
+impl<T: gyro_sim::Scalar> CompoundPendulum<T> {
     /// The four-vectors whose largest components are the special Euler parameters: 0 operations (0 ±, 0 ×, 0 ÷).
     fn chart_vectors(&self, y: &[T; 13]) -> [[T; 4]; 1] {
         let rod_e0 = y[3];
@@ -280,13 +274,13 @@ impl<T: Scalar> CompoundPendulum<T> {
         [[-rod_e3, rod_e2, -rod_e1, rod_e0]]
     }
 }
-impl<T: Real> Partition for CompoundPendulum<T> {
-    type Independent = Charts<1>;
+impl<T: gyro_sim::Real> gyro_sim::Partition for CompoundPendulum<T> {
+    type Independent = gyro_sim::charts::Charts<1>;
     fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
-        charts::best(&self.chart_vectors(y))
+        gyro_sim::charts::best(&self.chart_vectors(y))
     }
     fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
-        charts::follow(&self.chart_vectors(y), choice)
+        gyro_sim::charts::follow(&self.chart_vectors(y), choice)
     }
     /// One Newton step of the dependent positions: 138 operations (51 ±, 86 ×, 1 ÷).
     fn newton_step(
@@ -294,8 +288,8 @@ impl<T: Real> Partition for CompoundPendulum<T> {
         _t: T,
         choice: &Self::Independent,
         y: &mut Self::State,
-    ) -> Result<(), Error> {
-        let charts = charts::one_hot::<T, _>(choice);
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
         let k = T::constant;
         let rod_e0 = y[3];
         let rod_e1 = y[4];
@@ -353,8 +347,8 @@ impl<T: Real> Partition for CompoundPendulum<T> {
         _t: T,
         choice: &Self::Independent,
         y: &mut Self::State,
-    ) -> Result<(), Error> {
-        let charts = charts::one_hot::<T, _>(choice);
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
         let k = T::constant;
         let rod_e0 = y[3];
         let rod_e1 = y[4];
@@ -404,7 +398,7 @@ impl<T: Real> Partition for CompoundPendulum<T> {
         Ok(())
     }
 }
-impl<T: Scalar> Equations for CompoundPendulum<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Equations for CompoundPendulum<T> {
     type Velocities = [T; 6];
     type PhiQ = [T; 25];
     type PhiPi = [T; 13];

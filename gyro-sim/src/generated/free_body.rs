@@ -27,21 +27,16 @@
 //! | newton_step | dependent positions, one Newton step | 11 | 13 | 1 | 25 | 0 of 7 |
 //! | solve_velocities | dependent velocities, eq. (19) | 0 | 0 | 0 | 0 | 0 of 6 |
 
-use gyro_sim::charts::{self, Charts};
-use gyro_sim::{
-    Coordinate, Energy, Equations, Error, JointInfo, Mechanism, Ode, Owner, Partition,
-    Real, RowInfo, Scalar,
-};
 /// The mechanism `free_body`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FreeBody<T> {
     /// The model has no parameters.
-    scalar: core::marker::PhantomData<T>,
+    scalar: ::core::marker::PhantomData<T>,
 }
-impl<T: Scalar> Default for FreeBody<T> {
+impl<T: gyro_sim::Scalar> ::core::default::Default for FreeBody<T> {
     fn default() -> Self {
         Self {
-            scalar: core::marker::PhantomData,
+            scalar: ::core::marker::PhantomData,
         }
     }
 }
@@ -53,7 +48,7 @@ impl<T> FreeBody<T> {
         false
     }
 }
-impl<T: Scalar> Ode for FreeBody<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Ode for FreeBody<T> {
     type Scalar = T;
     type State = [T; 13];
     /// The assembled start, with all parameters at their defaults.
@@ -77,9 +72,9 @@ impl<T: Scalar> Ode for FreeBody<T> {
     }
     /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut v = self.velocities();
-        let mut lambda = self.rows();
-        self.accelerations(t, y, &mut v, &mut lambda);
+        let mut v = gyro_sim::Equations::velocities(self);
+        let mut lambda = gyro_sim::Mechanism::rows(self);
+        gyro_sim::Equations::accelerations(self, t, y, &mut v, &mut lambda);
         let k = T::constant;
         let body_e0 = y[3];
         let body_e1 = y[4];
@@ -108,7 +103,7 @@ impl<T: Scalar> Ode for FreeBody<T> {
         ];
     }
 }
-impl<T: Scalar> Mechanism for FreeBody<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for FreeBody<T> {
     type Rows = [T; 0];
     type Constraints = [T; 1];
     type Readings = [T; 0];
@@ -137,7 +132,7 @@ impl<T: Scalar> Mechanism for FreeBody<T> {
         *out = [];
     }
     /// Kinetic and potential energy: 16 operations (5 ±, 11 ×, 0 ÷).
-    fn energy(&self, y: &Self::State) -> Energy<T> {
+    fn energy(&self, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let body_sx = y[7];
         let body_sy = y[8];
@@ -149,7 +144,7 @@ impl<T: Scalar> Mechanism for FreeBody<T> {
             + body_wz * (k(0.0004) * body_wz);
         let t1 = t0
             + k(0.1) * (body_sx * body_sx + body_sy * body_sy + body_sz * body_sz);
-        Energy {
+        gyro_sim::Energy {
             kinetic: k(0.5) * t1,
             potential: k(0.0),
         }
@@ -168,22 +163,22 @@ impl<T: Scalar> Mechanism for FreeBody<T> {
         const BODIES: [&str; 1] = ["body"];
         BODIES.get(body).copied().unwrap_or_default()
     }
-    fn joint(&self, joint: usize) -> JointInfo<'_> {
-        const JOINTS: [JointInfo<'static>; 0] = [];
+    fn joint(&self, joint: usize) -> gyro_sim::JointInfo<'_> {
+        const JOINTS: [gyro_sim::JointInfo<'static>; 0] = [];
         JOINTS
             .get(joint)
             .copied()
-            .unwrap_or(JointInfo {
+            .unwrap_or(gyro_sim::JointInfo {
                 name: "",
-                coordinate: Coordinate::None,
+                coordinate: gyro_sim::Coordinate::None,
             })
     }
-    fn row(&self, row: usize) -> RowInfo {
-        const ROWS: [RowInfo; 0] = [];
+    fn row(&self, row: usize) -> gyro_sim::RowInfo {
+        const ROWS: [gyro_sim::RowInfo; 0] = [];
         ROWS.get(row)
             .copied()
-            .unwrap_or(RowInfo {
-                owner: Owner::Body(0),
+            .unwrap_or(gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Body(0),
                 is_length: false,
             })
     }
@@ -194,7 +189,7 @@ impl<T: Scalar> Mechanism for FreeBody<T> {
         T::constant(0.0)
     }
 }
-impl<T: Scalar> FreeBody<T> {
+impl<T: gyro_sim::Scalar> FreeBody<T> {
     /// The four-vectors whose largest components are the special Euler parameters: 0 operations (0 ±, 0 ×, 0 ÷).
     fn chart_vectors(&self, y: &[T; 13]) -> [[T; 4]; 1] {
         let body_e0 = y[3];
@@ -204,13 +199,13 @@ impl<T: Scalar> FreeBody<T> {
         [[body_e0, body_e1, body_e2, body_e3]]
     }
 }
-impl<T: Real> Partition for FreeBody<T> {
-    type Independent = Charts<1>;
+impl<T: gyro_sim::Real> gyro_sim::Partition for FreeBody<T> {
+    type Independent = gyro_sim::charts::Charts<1>;
     fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
-        charts::best(&self.chart_vectors(y))
+        gyro_sim::charts::best(&self.chart_vectors(y))
     }
     fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
-        charts::follow(&self.chart_vectors(y), choice)
+        gyro_sim::charts::follow(&self.chart_vectors(y), choice)
     }
     /// One Newton step of the dependent positions: 25 operations (11 ±, 13 ×, 1 ÷).
     fn newton_step(
@@ -218,8 +213,8 @@ impl<T: Real> Partition for FreeBody<T> {
         _t: T,
         choice: &Self::Independent,
         y: &mut Self::State,
-    ) -> Result<(), Error> {
-        let charts = charts::one_hot::<T, _>(choice);
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
         let k = T::constant;
         let body_e0 = y[3];
         let body_e1 = y[4];
@@ -246,11 +241,11 @@ impl<T: Real> Partition for FreeBody<T> {
         _t: T,
         _choice: &Self::Independent,
         _y: &mut Self::State,
-    ) -> Result<(), Error> {
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
         Ok(())
     }
 }
-impl<T: Scalar> Equations for FreeBody<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Equations for FreeBody<T> {
     type Velocities = [T; 6];
     type PhiQ = [T; 4];
     type PhiPi = [T; 0];

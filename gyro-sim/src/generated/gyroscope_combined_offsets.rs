@@ -22,26 +22,21 @@
 //! | accelerations | (s̈, ẇ') and λ, eq. (17) | 500 | 743 | 14 | 1257 | 2 of 33 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
-//! | read_joints | joint coordinates and rates | 37 | 58 | 0 | 95 | 0 of 9 |
+//! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 |
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
 //! | newton_step | dependent positions, one Newton step | 220 | 343 | 3 | 566 | 6 of 21 |
 //! | solve_velocities | dependent velocities, eq. (19) | 165 | 278 | 3 | 446 | 6 of 18 |
 
-use gyro_sim::charts::{self, Charts};
-use gyro_sim::{
-    Coordinate, Energy, Equations, Error, JointInfo, Mechanism, Ode, Owner, Partition,
-    Real, RowInfo, Scalar,
-};
 /// The mechanism `gyroscope_combined_offsets`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GyroscopeCombinedOffsets<T> {
     /// The model has no parameters.
-    scalar: core::marker::PhantomData<T>,
+    scalar: ::core::marker::PhantomData<T>,
 }
-impl<T: Scalar> Default for GyroscopeCombinedOffsets<T> {
+impl<T: gyro_sim::Scalar> ::core::default::Default for GyroscopeCombinedOffsets<T> {
     fn default() -> Self {
         Self {
-            scalar: core::marker::PhantomData,
+            scalar: ::core::marker::PhantomData,
         }
     }
 }
@@ -53,7 +48,7 @@ impl<T> GyroscopeCombinedOffsets<T> {
         false
     }
 }
-impl<T: Scalar> Ode for GyroscopeCombinedOffsets<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Ode for GyroscopeCombinedOffsets<T> {
     type Scalar = T;
     type State = [T; 39];
     /// The assembled start, with all parameters at their defaults.
@@ -103,9 +98,9 @@ impl<T: Scalar> Ode for GyroscopeCombinedOffsets<T> {
     }
     /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 72 operations (24 ±, 48 ×, 0 ÷).
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut v = self.velocities();
-        let mut lambda = self.rows();
-        self.accelerations(t, y, &mut v, &mut lambda);
+        let mut v = gyro_sim::Equations::velocities(self);
+        let mut lambda = gyro_sim::Mechanism::rows(self);
+        gyro_sim::Equations::accelerations(self, t, y, &mut v, &mut lambda);
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -198,7 +193,7 @@ impl<T: Scalar> Ode for GyroscopeCombinedOffsets<T> {
         ];
     }
 }
-impl<T: Scalar> Mechanism for GyroscopeCombinedOffsets<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeCombinedOffsets<T> {
     type Rows = [T; 15];
     type Constraints = [T; 18];
     type Readings = [T; 9];
@@ -256,7 +251,7 @@ impl<T: Scalar> Mechanism for GyroscopeCombinedOffsets<T> {
         let t17 = k(0.5) - (t16 + t15);
         let t18 = k(2.0) * t17;
         let t19 = outer_ring_e2 * outer_ring_e2;
-        let t20 = t0 * t18 + (k(2.0) * (k(0.5) - (t8 + t19)) * t13 - t3 * t7);
+        let t20 = t0 * t18 - (t3 * t7 - k(2.0) * (k(0.5) - (t8 + t19)) * t13);
         let t21 = t16 + inner_ring_e1 * inner_ring_e1;
         let t22 = inner_ring_e0 * inner_ring_e3;
         let t23 = inner_ring_e1 * inner_ring_e2;
@@ -356,39 +351,39 @@ impl<T: Scalar> Mechanism for GyroscopeCombinedOffsets<T> {
         let t4 = k(2.0) * (k(0.5) - (t3 + outer_ring_e3 * outer_ring_e3));
         let t5 = k(2.0) * (k(0.5) - (t3 + outer_ring_e1 * outer_ring_e1));
         let t6 = k(2.0) * (t1 + t0);
-        let t7 = inner_ring_e0 * inner_ring_e2;
-        let t8 = inner_ring_e1 * inner_ring_e3;
-        let t9 = k(2.0) * (t8 + t7);
-        let t10 = outer_ring_e0 * outer_ring_e3;
-        let t11 = outer_ring_e1 * outer_ring_e2;
-        let t12 = k(2.0) * (t11 - t10);
-        let t13 = inner_ring_e0 * inner_ring_e1;
-        let t14 = inner_ring_e2 * inner_ring_e3;
-        let t15 = k(2.0) * (t14 - t13);
-        let t16 = k(2.0) * (k(0.5) - (t3 + outer_ring_e2 * outer_ring_e2));
+        let t7 = inner_ring_e0 * inner_ring_e1;
+        let t8 = inner_ring_e2 * inner_ring_e3;
+        let t9 = k(2.0) * (t8 - t7);
+        let t10 = k(2.0) * (k(0.5) - (t3 + outer_ring_e2 * outer_ring_e2));
+        let t11 = inner_ring_e0 * inner_ring_e2;
+        let t12 = inner_ring_e1 * inner_ring_e3;
+        let t13 = k(2.0) * (t12 + t11);
+        let t14 = outer_ring_e0 * outer_ring_e3;
+        let t15 = outer_ring_e1 * outer_ring_e2;
+        let t16 = k(2.0) * (t15 - t14);
         let t17 = inner_ring_e0 * inner_ring_e0;
         let t18 = k(2.0) * (k(0.5) - (t17 + inner_ring_e3 * inner_ring_e3));
         let t19 = outer_ring_e0 * outer_ring_e1;
         let t20 = outer_ring_e2 * outer_ring_e3;
         let t21 = k(2.0) * (t20 + t19);
-        let t22 = t4 * t18 + (k(2.0) * (t20 - t19) * t15 + t6 * t9);
+        let t22 = t6 * t13 + k(2.0) * (t20 - t19) * t9 + t4 * t18;
         let t23 = outer_ring_wy * t22
-            + outer_ring_wz * (t21 * t18 + (t16 * t15 - t12 * t9));
+            + outer_ring_wz * (t21 * t18 - (t16 * t13 - t10 * t9));
         let t24 = k(2.0) * (k(0.5) - (t17 + inner_ring_e1 * inner_ring_e1));
         let t25 = inner_ring_e0 * inner_ring_e3;
         let t26 = inner_ring_e1 * inner_ring_e2;
         let t27 = k(2.0) * (t26 + t25);
-        let t28 = k(2.0) * (t11 + t10);
-        let t29 = k(2.0) * (t8 - t7);
+        let t28 = k(2.0) * (t15 + t14);
+        let t29 = k(2.0) * (t12 - t11);
         let t30 = k(2.0) * (t26 - t25);
         let t31 = k(2.0) * (k(0.5) - (t17 + inner_ring_e2 * inner_ring_e2));
-        let t32 = k(2.0) * (t14 + t13);
+        let t32 = k(2.0) * (t8 + t7);
         let t33 = inner_ring_wx * (t2 * t32 - (t28 * t31 + t5 * t30))
             - inner_ring_wy * (t2 * t29 + (t28 * t27 + t5 * t24));
         let t34 = outer_ring_wx * t22
-            + outer_ring_wz * (t2 * t18 - (t28 * t15 - t5 * t9));
-        let t35 = inner_ring_wx * (t21 * t32 + (t16 * t31 + t12 * t30))
-            - inner_ring_wy * (t21 * t29 - (t16 * t27 + t12 * t24));
+            + outer_ring_wz * (t2 * t18 - (t28 * t9 - t5 * t13));
+        let t35 = inner_ring_wx * (t21 * t32 + (t16 * t30 + t10 * t31))
+            - inner_ring_wy * (t21 * t29 - (t10 * t27 + t16 * t24));
         let t36 = rotor_e0 * rotor_e0;
         let t37 = k(2.0) * (k(0.5) - (t36 + rotor_e1 * rotor_e1));
         let t38 = rotor_e0 * rotor_e3;
@@ -399,8 +394,8 @@ impl<T: Scalar> Mechanism for GyroscopeCombinedOffsets<T> {
         let t43 = k(2.0) * (t42 + t41);
         let t44 = k(0.0001) * (t43 * rotor_wy - t40 * rotor_wz)
             - k(0.0002) * (t43 * rotor_wx + t37 * rotor_wz);
-        let t45 = k(0.000125) * (t9 * inner_ring_wy - t30 * inner_ring_wz)
-            - k(5e-5) * (t9 * inner_ring_wx + t24 * inner_ring_wz);
+        let t45 = k(0.000125) * (t13 * inner_ring_wy - t30 * inner_ring_wz)
+            - k(5e-5) * (t13 * inner_ring_wx + t24 * inner_ring_wz);
         let t46 = inner_ring_sx
             - (t45 - k(3e-5) * (t30 * inner_ring_wx + t24 * inner_ring_wy))
             - (rotor_sx - (t44 - k(0.00015) * (t40 * rotor_wx + t37 * rotor_wy)));
@@ -411,8 +406,8 @@ impl<T: Scalar> Mechanism for GyroscopeCombinedOffsets<T> {
         let t51 = k(2.0) * (t50 - t49);
         let t52 = k(0.0001) * (t51 * rotor_wy + t48 * rotor_wz)
             - k(0.0002) * (t51 * rotor_wx - t47 * rotor_wz);
-        let t53 = k(0.000125) * (t15 * inner_ring_wy + t31 * inner_ring_wz)
-            - k(5e-5) * (t15 * inner_ring_wx - t27 * inner_ring_wz);
+        let t53 = k(0.000125) * (t9 * inner_ring_wy + t31 * inner_ring_wz)
+            - k(5e-5) * (t9 * inner_ring_wx - t27 * inner_ring_wz);
         let t54 = inner_ring_sy
             - (t53 + k(3e-5) * (t31 * inner_ring_wx + t27 * inner_ring_wy))
             - (rotor_sy - (t52 + k(0.00015) * (t48 * rotor_wx + t47 * rotor_wy)));
@@ -427,14 +422,14 @@ impl<T: Scalar> Mechanism for GyroscopeCombinedOffsets<T> {
             + (t59 + k(3e-5) * (t32 * inner_ring_wx - t29 * inner_ring_wy))
             - (rotor_sz + (t58 + k(0.00015) * (t56 * rotor_wx - t55 * rotor_wy)));
         let t61 = t29 * t55 + (t27 * t47 + t24 * t37);
-        let t62 = inner_ring_wx * (t18 * t55 - (t15 * t47 - t9 * t37))
+        let t62 = inner_ring_wx * (t18 * t55 - (t9 * t47 - t13 * t37))
             + inner_ring_wz * t61;
-        let t63 = rotor_wy * (t32 * t57 + (t31 * t51 - t30 * t43))
-            + rotor_wz * (t32 * t56 + (t31 * t48 + t30 * t40));
+        let t63 = rotor_wy * (t32 * t57 - (t30 * t43 - t31 * t51))
+            + rotor_wz * (t32 * t56 + (t30 * t40 + t31 * t48));
         let t64 = inner_ring_wx * (t32 * t55 - (t31 * t47 + t30 * t37))
             - inner_ring_wy * t61;
-        let t65 = rotor_wy * (t18 * t57 + (t15 * t51 + t9 * t43))
-            + rotor_wz * (t18 * t56 + (t15 * t48 - t9 * t40));
+        let t65 = rotor_wy * (t13 * t43 + t9 * t51 + t18 * t57)
+            + rotor_wz * (t18 * t56 - (t13 * t40 - t9 * t48));
         *out = [
             outer_ring_sx,
             outer_ring_sy,
@@ -454,7 +449,7 @@ impl<T: Scalar> Mechanism for GyroscopeCombinedOffsets<T> {
         ];
     }
     /// Kinetic and potential energy: 52 operations (19 ±, 33 ×, 0 ÷).
-    fn energy(&self, y: &Self::State) -> Energy<T> {
+    fn energy(&self, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let outer_ring_ry = y[1];
         let inner_ring_ry = y[8];
@@ -496,12 +491,12 @@ impl<T: Scalar> Mechanism for GyroscopeCombinedOffsets<T> {
             + k(0.01)
                 * (outer_ring_sx * outer_ring_sx + outer_ring_sy * outer_ring_sy
                     + outer_ring_sz * outer_ring_sz);
-        Energy {
+        gyro_sim::Energy {
             kinetic: k(0.5) * (t5 + t3 + t1),
             potential: k(0.1) * (outer_ring_ry + inner_ring_ry) + k(0.8) * rotor_ry,
         }
     }
-    /// Writes the joint readings: 95 operations (37 ±, 58 ×, 0 ÷).
+    /// Writes the joint readings: 114 operations (54 ±, 60 ×, 0 ÷).
     fn read_joints(&self, y: &Self::State, out: &mut Self::Readings) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -523,39 +518,49 @@ impl<T: Scalar> Mechanism for GyroscopeCombinedOffsets<T> {
         let rotor_wx = y[36];
         let t0 = outer_ring_e0 * outer_ring_e2;
         let t1 = outer_ring_e1 * outer_ring_e3;
-        let t2 = outer_ring_e0 * outer_ring_e0;
-        let t3 = inner_ring_e0 * inner_ring_e0;
-        let t4 = k(2.0) * (k(0.5) - (t3 + inner_ring_e1 * inner_ring_e1));
-        let t5 = outer_ring_e0 * outer_ring_e3;
-        let t6 = outer_ring_e1 * outer_ring_e2;
-        let t7 = inner_ring_e0 * inner_ring_e3;
-        let t8 = inner_ring_e1 * inner_ring_e2;
-        let t9 = k(2.0) * (t8 + t7);
-        let t10 = k(2.0) * (k(0.5) - (t2 + outer_ring_e2 * outer_ring_e2)) * t9
-            + k(2.0) * (t6 - t5) * t4;
-        let t11 = inner_ring_e0 * inner_ring_e2;
-        let t12 = inner_ring_e1 * inner_ring_e3;
-        let t13 = k(2.0) * (t12 - t11);
-        let t14 = k(2.0) * (t6 + t5) * t9
-            + k(2.0) * (k(0.5) - (t2 + outer_ring_e1 * outer_ring_e1)) * t4;
-        let t15 = k(2.0) * (rotor_e1 * rotor_e2 - rotor_e0 * rotor_e3);
-        let t16 = k(2.0) * (k(0.5) - (rotor_e0 * rotor_e0 + rotor_e2 * rotor_e2));
-        let t17 = inner_ring_e0 * inner_ring_e1;
-        let t18 = inner_ring_e2 * inner_ring_e3;
-        let t19 = k(2.0) * (t18 - t17) * t16 - k(2.0) * (t12 + t11) * t15;
-        let t20 = k(2.0) * (rotor_e2 * rotor_e3 + rotor_e0 * rotor_e1);
-        let t21 = k(2.0) * (k(0.5) - (t3 + inner_ring_e2 * inner_ring_e2)) * t16
-            + k(2.0) * (t8 - t7) * t15;
+        let t2 = outer_ring_e2 * outer_ring_e2;
+        let t3 = outer_ring_e0 * outer_ring_e0;
+        let t4 = t3 + outer_ring_e1 * outer_ring_e1;
+        let t5 = outer_ring_e3 * outer_ring_e3;
+        let t6 = k(1.0) - (t5 + (t4 + t2));
+        let t7 = inner_ring_e0 * inner_ring_e2;
+        let t8 = inner_ring_e1 * inner_ring_e3;
+        let t9 = k(2.0) * (t8 - t7);
+        let t10 = inner_ring_e0 * inner_ring_e3;
+        let t11 = inner_ring_e1 * inner_ring_e2;
+        let t12 = k(2.0) * (t11 + t10);
+        let t13 = inner_ring_e2 * inner_ring_e2;
+        let t14 = inner_ring_e0 * inner_ring_e0;
+        let t15 = t14 + inner_ring_e1 * inner_ring_e1;
+        let t16 = inner_ring_e3 * inner_ring_e3;
+        let t17 = k(1.0) - (t16 + (t15 + t13));
+        let t18 = k(2.0) * (k(0.5) - t15) - t17;
+        let t19 = outer_ring_e0 * outer_ring_e3;
+        let t20 = outer_ring_e1 * outer_ring_e2;
+        let t21 = k(2.0) * (t20 - t19) * t18
+            + t12 * (k(2.0) * (k(0.5) - (t3 + t2)) - t6);
+        let t22 = (k(2.0) * (k(0.5) - t4) - t6) * t18 + k(2.0) * (t20 + t19) * t12;
+        let t23 = k(2.0) * (rotor_e2 * rotor_e3 + rotor_e0 * rotor_e1);
+        let t24 = rotor_e2 * rotor_e2;
+        let t25 = rotor_e0 * rotor_e0;
+        let t26 = k(2.0) * (k(0.5) - (t25 + t24))
+            - (k(1.0) - (rotor_e3 * rotor_e3 + (t25 + rotor_e1 * rotor_e1 + t24)));
+        let t27 = inner_ring_e0 * inner_ring_e1;
+        let t28 = inner_ring_e2 * inner_ring_e3;
+        let t29 = k(2.0) * (rotor_e1 * rotor_e2 - rotor_e0 * rotor_e3);
+        let t30 = k(2.0) * (t8 + t7) * t29 - k(2.0) * (t28 - t27) * t26;
+        let t31 = k(2.0) * (t11 - t10) * t29
+            + (k(2.0) * (k(0.5) - (t14 + t13)) - t17) * t26;
         *out = [
             k(2.0) * (t1 + t0),
-            -(k(2.0) * (k(0.5) - (t2 + outer_ring_e3 * outer_ring_e3))),
+            t6 - k(2.0) * (k(0.5) - (t3 + t5)),
             outer_ring_wy,
-            k(2.0) * (outer_ring_e2 * outer_ring_e3 + outer_ring_e0 * outer_ring_e1)
-                * t13 - t10,
-            k(2.0) * (t1 - t0) * t13 + t14,
+            k(2.0) * (outer_ring_e2 * outer_ring_e3 + outer_ring_e0 * outer_ring_e1) * t9
+                - t21,
+            t22 + k(2.0) * (t1 - t0) * t9,
             inner_ring_wz - outer_ring_wz,
-            -(k(2.0) * (k(0.5) - (t3 + inner_ring_e3 * inner_ring_e3)) * t20 + t19),
-            k(2.0) * (t18 + t17) * t20 + t21,
+            t30 - t23 * (k(2.0) * (k(0.5) - (t14 + t16)) - t17),
+            t31 + k(2.0) * (t28 + t27) * t23,
             rotor_wx - inner_ring_wx,
         ];
     }
@@ -569,96 +574,96 @@ impl<T: Scalar> Mechanism for GyroscopeCombinedOffsets<T> {
         const BODIES: [&str; 3] = ["outer_ring", "inner_ring", "rotor"];
         BODIES.get(body).copied().unwrap_or_default()
     }
-    fn joint(&self, joint: usize) -> JointInfo<'_> {
-        const JOINTS: [JointInfo<'static>; 3] = [
-            JointInfo {
+    fn joint(&self, joint: usize) -> gyro_sim::JointInfo<'_> {
+        const JOINTS: [gyro_sim::JointInfo<'static>; 3] = [
+            gyro_sim::JointInfo {
                 name: "alpha",
-                coordinate: Coordinate::Angle,
+                coordinate: gyro_sim::Coordinate::Angle,
             },
-            JointInfo {
+            gyro_sim::JointInfo {
                 name: "beta",
-                coordinate: Coordinate::Angle,
+                coordinate: gyro_sim::Coordinate::Angle,
             },
-            JointInfo {
+            gyro_sim::JointInfo {
                 name: "phi",
-                coordinate: Coordinate::Angle,
+                coordinate: gyro_sim::Coordinate::Angle,
             },
         ];
         JOINTS
             .get(joint)
             .copied()
-            .unwrap_or(JointInfo {
+            .unwrap_or(gyro_sim::JointInfo {
                 name: "",
-                coordinate: Coordinate::None,
+                coordinate: gyro_sim::Coordinate::None,
             })
     }
-    fn row(&self, row: usize) -> RowInfo {
-        const ROWS: [RowInfo; 15] = [
-            RowInfo {
-                owner: Owner::Joint(0),
+    fn row(&self, row: usize) -> gyro_sim::RowInfo {
+        const ROWS: [gyro_sim::RowInfo; 15] = [
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(0),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(0),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(0),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(0),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(0),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(0),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(0),
                 is_length: false,
             },
-            RowInfo {
-                owner: Owner::Joint(0),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(0),
                 is_length: false,
             },
-            RowInfo {
-                owner: Owner::Joint(1),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(1),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(1),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(1),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(1),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(1),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(1),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(1),
                 is_length: false,
             },
-            RowInfo {
-                owner: Owner::Joint(1),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(1),
                 is_length: false,
             },
-            RowInfo {
-                owner: Owner::Joint(2),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(2),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(2),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(2),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(2),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(2),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(2),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(2),
                 is_length: false,
             },
-            RowInfo {
-                owner: Owner::Joint(2),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(2),
                 is_length: false,
             },
         ];
         ROWS.get(row)
             .copied()
-            .unwrap_or(RowInfo {
-                owner: Owner::Body(0),
+            .unwrap_or(gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Body(0),
                 is_length: false,
             })
     }
@@ -669,7 +674,7 @@ impl<T: Scalar> Mechanism for GyroscopeCombinedOffsets<T> {
         T::constant(0.0)
     }
 }
-impl<T: Scalar> GyroscopeCombinedOffsets<T> {
+impl<T: gyro_sim::Scalar> GyroscopeCombinedOffsets<T> {
     /// The four-vectors whose largest components are the special Euler parameters: 0 operations (0 ±, 0 ×, 0 ÷).
     fn chart_vectors(&self, y: &[T; 39]) -> [[T; 4]; 3] {
         let outer_ring_e0 = y[3];
@@ -691,13 +696,13 @@ impl<T: Scalar> GyroscopeCombinedOffsets<T> {
         ]
     }
 }
-impl<T: Real> Partition for GyroscopeCombinedOffsets<T> {
-    type Independent = Charts<3>;
+impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeCombinedOffsets<T> {
+    type Independent = gyro_sim::charts::Charts<3>;
     fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
-        charts::best(&self.chart_vectors(y))
+        gyro_sim::charts::best(&self.chart_vectors(y))
     }
     fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
-        charts::follow(&self.chart_vectors(y), choice)
+        gyro_sim::charts::follow(&self.chart_vectors(y), choice)
     }
     /// One Newton step of the dependent positions: 566 operations (220 ±, 343 ×, 3 ÷).
     fn newton_step(
@@ -705,8 +710,8 @@ impl<T: Real> Partition for GyroscopeCombinedOffsets<T> {
         _t: T,
         choice: &Self::Independent,
         y: &mut Self::State,
-    ) -> Result<(), Error> {
-        let charts = charts::one_hot::<T, _>(choice);
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -939,8 +944,8 @@ impl<T: Real> Partition for GyroscopeCombinedOffsets<T> {
         _t: T,
         choice: &Self::Independent,
         y: &mut Self::State,
-    ) -> Result<(), Error> {
-        let charts = charts::one_hot::<T, _>(choice);
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -1019,20 +1024,20 @@ impl<T: Real> Partition for GyroscopeCombinedOffsets<T> {
         let t37 = outer_ring_e2 * outer_ring_e3;
         let t38 = k(2.0) * (t37 + t36);
         let t39 = t38 * t32 - (t35 * t26 + t34 * t23);
-        let t40 = k(2.0) * (t25 - t24);
-        let t41 = k(2.0) * (k(0.5) - (t22 + inner_ring_e2 * inner_ring_e2));
+        let t40 = k(2.0) * (k(0.5) - (t22 + inner_ring_e2 * inner_ring_e2));
+        let t41 = k(2.0) * (t25 - t24);
         let t42 = inner_ring_e0 * inner_ring_e1;
         let t43 = inner_ring_e2 * inner_ring_e3;
         let t44 = k(2.0) * (t43 + t42);
-        let t45 = t38 * t44 + (t35 * t41 + t34 * t40);
+        let t45 = t38 * t44 + (t34 * t41 + t35 * t40);
         let t46 = k(2.0) * (t31 + t30);
         let t47 = k(2.0) * (t43 - t42);
         let t48 = k(2.0) * (k(0.5) - (t22 + inner_ring_e3 * inner_ring_e3));
-        let t49 = t9 * t48 + (k(2.0) * (t37 - t36) * t47 + t7 * t46);
+        let t49 = t7 * t46 + k(2.0) * (t37 - t36) * t47 + t9 * t48;
         let t50 = t12 * t49 + t19 * (t4 * t48 - (t29 * t47 - t6 * t46));
         let t51 = t50 - (inner_ring_wx * t45 - inner_ring_wy * t39);
-        let t52 = t4 * t44 - (t29 * t41 + t6 * t40);
-        let t53 = t18 * t49 + t19 * (t38 * t48 + (t35 * t47 - t34 * t46));
+        let t52 = t4 * t44 - (t29 * t40 + t6 * t41);
+        let t53 = t18 * t49 + t19 * (t38 * t48 - (t34 * t46 - t35 * t47));
         let t54 = t53 + (inner_ring_wx * t52 - inner_ring_wy * t33);
         let t55 = k(1.0) / (t21 * (t52 * t39 - t33 * t45));
         let t56 = inner_ring_wx - t55 * (t54 * (t39 * t21) + t51 * (t33 * t21));
@@ -1048,29 +1053,29 @@ impl<T: Real> Partition for GyroscopeCombinedOffsets<T> {
         let t64 = rotor_e1 * chart2_0 - rotor_e0 * chart2_1 - rotor_e3 * chart2_2
             + rotor_e2 * chart2_3;
         let t65 = k(0.5) * t64;
-        let t66 = rotor_e0 * rotor_e3;
-        let t67 = rotor_e1 * rotor_e2;
-        let t68 = k(2.0) * (t67 - t66);
-        let t69 = rotor_e0 * rotor_e0;
-        let t70 = k(2.0) * (k(0.5) - (t69 + rotor_e2 * rotor_e2));
+        let t66 = rotor_e0 * rotor_e0;
+        let t67 = k(2.0) * (k(0.5) - (t66 + rotor_e2 * rotor_e2));
+        let t68 = rotor_e0 * rotor_e3;
+        let t69 = rotor_e1 * rotor_e2;
+        let t70 = k(2.0) * (t69 - t68);
         let t71 = rotor_e0 * rotor_e1;
         let t72 = rotor_e2 * rotor_e3;
         let t73 = k(2.0) * (t72 + t71);
-        let t74 = t44 * t73 + (t41 * t70 + t40 * t68);
-        let t75 = t48 * t73 + (t47 * t70 - t46 * t68);
-        let t76 = rotor_e0 * rotor_e2;
-        let t77 = rotor_e1 * rotor_e3;
-        let t78 = k(2.0) * (t77 + t76);
-        let t79 = k(2.0) * (t72 - t71);
-        let t80 = k(2.0) * (k(0.5) - (t69 + rotor_e3 * rotor_e3));
-        let t81 = t48 * t80 + (t47 * t79 + t46 * t78);
-        let t82 = k(2.0) * (k(0.5) - (t69 + rotor_e1 * rotor_e1));
-        let t83 = k(2.0) * (t67 + t66);
-        let t84 = k(2.0) * (t77 - t76);
+        let t74 = t44 * t73 + (t41 * t70 + t40 * t67);
+        let t75 = t48 * t73 - (t46 * t70 - t47 * t67);
+        let t76 = k(2.0) * (k(0.5) - (t66 + rotor_e3 * rotor_e3));
+        let t77 = k(2.0) * (t72 - t71);
+        let t78 = rotor_e0 * rotor_e2;
+        let t79 = rotor_e1 * rotor_e3;
+        let t80 = k(2.0) * (t79 + t78);
+        let t81 = t46 * t80 + t47 * t77 + t48 * t76;
+        let t82 = k(2.0) * (k(0.5) - (t66 + rotor_e1 * rotor_e1));
+        let t83 = k(2.0) * (t69 + t68);
+        let t84 = k(2.0) * (t79 - t78);
         let t85 = t32 * t84 + (t26 * t83 + t23 * t82);
-        let t86 = t56 * (t44 * t84 - (t41 * t83 + t40 * t82)) - t57 * t85;
+        let t86 = t56 * (t44 * t84 - (t40 * t83 + t41 * t82)) - t57 * t85;
         let t87 = t86 + (rotor_wy * t81 + rotor_wz * t75);
-        let t88 = t44 * t80 + (t41 * t79 - t40 * t78);
+        let t88 = t44 * t76 - (t41 * t80 - t40 * t77);
         let t89 = t56 * (t48 * t84 - (t47 * t83 - t46 * t82)) + t63 * t85;
         let t90 = t89 - (rotor_wy * t88 + rotor_wz * t74);
         let t91 = k(1.0) / (t65 * (t88 * t75 - t74 * t81));
@@ -1084,20 +1089,20 @@ impl<T: Real> Partition for GyroscopeCombinedOffsets<T> {
         let t97 = t90 * (t81 * t94 - t75 * t96) - t87 * (t74 * t96 - t88 * t94);
         let t98 = rotor_wx + t91 * t97;
         let t99 = rotor_wz - t91 * (t90 * (t81 * t65) + t87 * (t88 * t65));
-        let t100 = k(0.0001) * (t78 * t92 - t68 * t99)
-            - k(0.0002) * (t78 * t98 + t82 * t99);
-        let t101 = k(0.000125) * (t46 * t57 - t40 * t63)
+        let t100 = k(0.0001) * (t80 * t92 - t70 * t99)
+            - k(0.0002) * (t80 * t98 + t82 * t99);
+        let t101 = k(0.000125) * (t46 * t57 - t41 * t63)
             - k(5e-5) * (t46 * t56 + t23 * t63);
-        let t102 = t101 - k(3e-5) * (t40 * t56 + t23 * t57)
-            - (t100 - k(0.00015) * (t68 * t98 + t82 * t92));
-        let t103 = k(0.0001) * (t79 * t92 + t70 * t99)
-            - k(0.0002) * (t79 * t98 - t83 * t99);
-        let t104 = k(0.000125) * (t47 * t57 + t41 * t63)
+        let t102 = t101 - k(3e-5) * (t41 * t56 + t23 * t57)
+            - (t100 - k(0.00015) * (t70 * t98 + t82 * t92));
+        let t103 = k(0.0001) * (t77 * t92 + t67 * t99)
+            - k(0.0002) * (t77 * t98 - t83 * t99);
+        let t104 = k(0.000125) * (t47 * t57 + t40 * t63)
             - k(5e-5) * (t47 * t56 - t26 * t63);
-        let t105 = t104 + k(3e-5) * (t41 * t56 + t26 * t57)
-            - (t103 + k(0.00015) * (t70 * t98 + t83 * t92));
-        let t106 = k(0.0001) * (t80 * t92 + t73 * t99)
-            - k(0.0002) * (t80 * t98 + t84 * t99);
+        let t105 = t104 + k(3e-5) * (t40 * t56 + t26 * t57)
+            - (t103 + k(0.00015) * (t67 * t98 + t83 * t92));
+        let t106 = k(0.0001) * (t76 * t92 + t73 * t99)
+            - k(0.0002) * (t76 * t98 + t84 * t99);
         let t107 = k(0.000125) * (t48 * t57 + t44 * t63)
             - k(5e-5) * (t48 * t56 + t32 * t63);
         let t108 = t107 + k(3e-5) * (t44 * t56 - t32 * t57)
@@ -1123,7 +1128,7 @@ impl<T: Real> Partition for GyroscopeCombinedOffsets<T> {
         Ok(())
     }
 }
-impl<T: Scalar> Equations for GyroscopeCombinedOffsets<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
     type Velocities = [T; 18];
     type PhiQ = [T; 91];
     type PhiPi = [T; 53];
@@ -1491,39 +1496,39 @@ impl<T: Scalar> Equations for GyroscopeCombinedOffsets<T> {
         let t4 = k(2.0) * (t3 - t2);
         let t5 = k(2.0) * (t3 + t2);
         let t6 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
-        let t7 = inner_ring_e0 * inner_ring_e2;
-        let t8 = inner_ring_e1 * inner_ring_e3;
-        let t9 = t8 + t7;
-        let t10 = k(2.0) * t9;
-        let t11 = inner_ring_e0 * inner_ring_e1;
-        let t12 = inner_ring_e2 * inner_ring_e3;
-        let t13 = t12 - t11;
-        let t14 = k(2.0) * t13;
-        let t15 = outer_ring_e0 * outer_ring_e1;
-        let t16 = outer_ring_e2 * outer_ring_e3;
-        let t17 = inner_ring_e0 * inner_ring_e0;
-        let t18 = k(0.5) - (t17 + inner_ring_e3 * inner_ring_e3);
+        let t7 = inner_ring_e0 * inner_ring_e0;
+        let t8 = k(0.5) - (t7 + inner_ring_e3 * inner_ring_e3);
+        let t9 = k(2.0) * t8;
+        let t10 = inner_ring_e0 * inner_ring_e1;
+        let t11 = inner_ring_e2 * inner_ring_e3;
+        let t12 = t11 - t10;
+        let t13 = k(2.0) * t12;
+        let t14 = outer_ring_e0 * outer_ring_e1;
+        let t15 = outer_ring_e2 * outer_ring_e3;
+        let t16 = inner_ring_e0 * inner_ring_e2;
+        let t17 = inner_ring_e1 * inner_ring_e3;
+        let t18 = t17 + t16;
         let t19 = k(2.0) * t18;
-        let t20 = t1 * t19 + (k(2.0) * (t16 - t15) * t14 + t5 * t10);
-        let t21 = outer_ring_e0 * outer_ring_e3;
-        let t22 = outer_ring_e1 * outer_ring_e2;
-        let t23 = k(2.0) * (t22 - t21);
-        let t24 = k(2.0) * (k(0.5) - (t0 + outer_ring_e2 * outer_ring_e2));
-        let t25 = k(2.0) * (t16 + t15);
+        let t20 = t5 * t19 + k(2.0) * (t15 - t14) * t13 + t1 * t9;
+        let t21 = k(2.0) * (k(0.5) - (t0 + outer_ring_e2 * outer_ring_e2));
+        let t22 = outer_ring_e0 * outer_ring_e3;
+        let t23 = outer_ring_e1 * outer_ring_e2;
+        let t24 = k(2.0) * (t23 - t22);
+        let t25 = k(2.0) * (t15 + t14);
         let t26 = inner_ring_e0 * inner_ring_e3;
         let t27 = inner_ring_e1 * inner_ring_e2;
         let t28 = t27 - t26;
         let t29 = k(2.0) * t28;
-        let t30 = k(0.5) - (t17 + inner_ring_e2 * inner_ring_e2);
+        let t30 = k(0.5) - (t7 + inner_ring_e2 * inner_ring_e2);
         let t31 = k(2.0) * t30;
-        let t32 = k(2.0) * (t22 + t21);
-        let t33 = t12 + t11;
+        let t32 = k(2.0) * (t23 + t22);
+        let t33 = t11 + t10;
         let t34 = k(2.0) * t33;
-        let t35 = k(0.5) - (t17 + inner_ring_e1 * inner_ring_e1);
+        let t35 = k(0.5) - (t7 + inner_ring_e1 * inner_ring_e1);
         let t36 = k(2.0) * t35;
         let t37 = t27 + t26;
         let t38 = k(2.0) * t37;
-        let t39 = t8 - t7;
+        let t39 = t17 - t16;
         let t40 = k(2.0) * t39;
         let t41 = rotor_e0 * rotor_e3;
         let t42 = rotor_e1 * rotor_e2;
@@ -1545,11 +1550,11 @@ impl<T: Scalar> Equations for GyroscopeCombinedOffsets<T> {
         let t58 = k(2.0) * t53;
         let t59 = k(2.0) * t56;
         let t60 = t40 * t59 + (t38 * t58 + t36 * t57);
-        let t61 = k(2.0) * t46;
-        let t62 = k(2.0) * t52;
+        let t61 = k(2.0) * t52;
+        let t62 = k(2.0) * t46;
         let t63 = k(2.0) * t55;
-        let t64 = k(2.0) * t43;
-        let t65 = k(2.0) * t49;
+        let t64 = k(2.0) * t49;
+        let t65 = k(2.0) * t43;
         let t66 = k(2.0) * t54;
         *out = [
             k(1.0),
@@ -1566,45 +1571,45 @@ impl<T: Scalar> Equations for GyroscopeCombinedOffsets<T> {
             k(-1.0),
             k(1.0),
             -t20,
-            -(t25 * t19 + (t24 * t14 - t23 * t10)),
+            t24 * t19 - t21 * t13 - t25 * t9,
             t32 * t31 + t6 * t29 - t4 * t34,
             t4 * t40 + (t32 * t38 + t6 * t36),
             t20,
-            t4 * t19 - (t32 * t14 - t6 * t10),
-            -(t25 * t34 + (t24 * t31 + t23 * t29)),
-            t25 * t40 - (t24 * t38 + t23 * t36),
+            t4 * t9 - (t32 * t13 - t6 * t19),
+            -(t25 * t34 + (t24 * t29 + t21 * t31)),
+            t25 * t40 - (t21 * t38 + t24 * t36),
             k(-1.0),
-            -(k(0.0001) * t9 + k(6e-5) * t28),
-            k(0.00025) * t9 - k(6e-5) * t35,
+            -(k(0.0001) * t18 + k(6e-5) * t28),
+            k(0.00025) * t18 - k(6e-5) * t35,
             -(k(0.00025) * t28 + k(0.0001) * t35),
             k(1.0),
             k(0.0004) * t46 + k(0.0003) * t43,
             k(0.0003) * t48 - k(0.0002) * t46,
             k(0.0002) * t43 + k(0.0004) * t48,
             k(-1.0),
-            k(6e-5) * t30 - k(0.0001) * t13,
-            k(0.00025) * t13 + k(6e-5) * t37,
+            k(6e-5) * t30 - k(0.0001) * t12,
+            k(0.00025) * t12 + k(6e-5) * t37,
             k(0.00025) * t30 + k(0.0001) * t37,
             k(1.0),
             k(0.0004) * t52 - k(0.0003) * t49,
             -(k(0.0002) * t52 + k(0.0003) * t53),
             -(k(0.0002) * t49 + k(0.0004) * t53),
             k(-1.0),
-            k(0.0001) * t18 - k(6e-5) * t33,
-            k(6e-5) * t39 - k(0.00025) * t18,
+            k(0.0001) * t8 - k(6e-5) * t33,
+            k(6e-5) * t39 - k(0.00025) * t8,
             k(0.0001) * t39 - k(0.00025) * t33,
             k(1.0),
             k(0.0003) * t54 - k(0.0004) * t55,
             k(0.0002) * t55 - k(0.0003) * t56,
             k(0.0002) * t54 - k(0.0004) * t56,
-            t14 * t58 - t10 * t57 - t19 * t59,
+            t13 * t58 - t19 * t57 - t9 * t59,
             -t60,
-            t34 * t63 + (t31 * t62 - t29 * t61),
-            t34 * t66 + (t31 * t65 + t29 * t64),
+            t34 * t63 - (t29 * t62 - t31 * t61),
+            t34 * t66 + (t29 * t65 + t31 * t64),
             t31 * t58 + t29 * t57 - t34 * t59,
             t60,
-            -(t19 * t63 + (t14 * t62 + t10 * t61)),
-            -(t19 * t66 + (t14 * t65 - t10 * t64)),
+            -(t19 * t62 + t13 * t61 + t9 * t63),
+            t19 * t65 - t13 * t64 - t9 * t66,
         ];
     }
     /// Writes ν: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -1680,9 +1685,9 @@ impl<T: Scalar> Equations for GyroscopeCombinedOffsets<T> {
         let t25 = k(2.0) * (k(0.5) - (t24 + inner_ring_e3 * inner_ring_e3));
         let t26 = t3 * t25 - (t23 * t22 - t12 * t19);
         let t27 = k(2.0) * (k(0.5) - (t10 + outer_ring_e2 * outer_ring_e2));
-        let t28 = t8 * t25 + (t27 * t22 - t15 * t19);
+        let t28 = t8 * t25 - (t15 * t19 - t27 * t22);
         let t29 = k(2.0) * (t7 - t6);
-        let t30 = t11 * t25 + (t29 * t22 + t16 * t19);
+        let t30 = t16 * t19 + t29 * t22 + t11 * t25;
         let t31 = outer_ring_wx * outer_ring_wz * t30
             - (t0 * t28 - (t4 + outer_ring_wy * outer_ring_wy) * t26);
         let t32 = k(2.0) * (k(0.5) - (t24 + inner_ring_e1 * inner_ring_e1));
@@ -1691,18 +1696,18 @@ impl<T: Scalar> Equations for GyroscopeCombinedOffsets<T> {
         let t35 = k(2.0) * (t34 + t33);
         let t36 = k(2.0) * (t18 - t17);
         let t37 = t8 * t36 - (t27 * t35 + t15 * t32);
-        let t38 = k(2.0) * (t34 - t33);
-        let t39 = k(2.0) * (k(0.5) - (t24 + inner_ring_e2 * inner_ring_e2));
+        let t38 = k(2.0) * (k(0.5) - (t24 + inner_ring_e2 * inner_ring_e2));
+        let t39 = k(2.0) * (t34 - t33);
         let t40 = k(2.0) * (t21 + t20);
-        let t41 = t8 * t40 + (t27 * t39 + t15 * t38);
-        let t42 = inner_ring_wx * (t11 * t40 + (t29 * t39 - t16 * t38))
+        let t41 = t8 * t40 + (t15 * t39 + t27 * t38);
+        let t42 = inner_ring_wx * (t11 * t40 - (t16 * t39 - t29 * t38))
             - inner_ring_wy * (t11 * t36 - (t29 * t35 - t16 * t32));
         let t43 = k(2.0)
             * (outer_ring_wy * t42
                 + outer_ring_wz * (inner_ring_wx * t41 - inner_ring_wy * t37));
         let t44 = t3 * t36 + (t23 * t35 + t12 * t32);
         let t45 = inner_ring_wx * inner_ring_wz;
-        let t46 = t3 * t40 - (t23 * t39 + t12 * t38);
+        let t46 = t3 * t40 - (t23 * t38 + t12 * t39);
         let t47 = inner_ring_wy * inner_ring_wz;
         let t48 = inner_ring_wx * inner_ring_wx;
         let t49 = inner_ring_wy * inner_ring_wy;
@@ -1717,9 +1722,9 @@ impl<T: Scalar> Equations for GyroscopeCombinedOffsets<T> {
         let t55 = t54 + t49;
         let t56 = inner_ring_wx * inner_ring_wy;
         let t57 = t54 + t48;
-        let t58 = k(5e-5) * (t19 * t47 - (t38 * t57 + t32 * t56))
-            + k(0.000125) * (t19 * t45 + (t38 * t56 + t32 * t55));
-        let t59 = k(3e-5) * (t19 * t50 - (t38 * t47 - t32 * t45)) + t58;
+        let t58 = k(5e-5) * (t19 * t47 - (t39 * t57 + t32 * t56))
+            + k(0.000125) * (t19 * t45 + (t39 * t56 + t32 * t55));
+        let t59 = k(3e-5) * (t19 * t50 - (t39 * t47 - t32 * t45)) + t58;
         let t60 = rotor_wy * rotor_wy;
         let t61 = rotor_wz * rotor_wz;
         let t62 = t61 + t60;
@@ -1740,9 +1745,9 @@ impl<T: Scalar> Equations for GyroscopeCombinedOffsets<T> {
             + k(0.0001) * (t72 * t69 + (t68 * t65 + t64 * t62));
         let t77 = t60 + t73;
         let t78 = k(0.00015) * (t72 * t77 - (t68 * t75 - t64 * t69)) + t76;
-        let t79 = k(5e-5) * (t22 * t47 + (t39 * t57 + t35 * t56))
-            + k(0.000125) * (t22 * t45 - (t39 * t56 + t35 * t55));
-        let t80 = k(3e-5) * (t22 * t50 + (t39 * t47 - t35 * t45)) + t79;
+        let t79 = k(5e-5) * (t22 * t47 + (t38 * t57 + t35 * t56))
+            + k(0.000125) * (t22 * t45 - (t38 * t56 + t35 * t55));
+        let t80 = k(3e-5) * (t22 * t50 + (t38 * t47 - t35 * t45)) + t79;
         let t81 = k(2.0) * (t67 + t66);
         let t82 = k(2.0) * (k(0.5) - (t63 + rotor_e2 * rotor_e2));
         let t83 = rotor_e0 * rotor_e1;
@@ -1761,16 +1766,16 @@ impl<T: Scalar> Equations for GyroscopeCombinedOffsets<T> {
             + k(0.0001) * (t92 * t69 - (t91 * t65 - t90 * t62));
         let t94 = k(0.00015) * (t92 * t77 + (t91 * t75 + t90 * t69)) + t93;
         let t95 = t36 * t90 + (t35 * t81 + t32 * t64);
-        let t96 = t40 * t90 - (t39 * t81 + t38 * t64);
+        let t96 = t40 * t90 - (t38 * t81 + t39 * t64);
         let t97 = t25 * t90 - (t22 * t81 - t19 * t64);
         let t98 = rotor_wy * (t36 * t92 - (t35 * t85 - t32 * t72))
             + rotor_wz * (t36 * t91 - (t35 * t82 + t32 * t68));
-        let t99 = t25 * t91 + (t22 * t82 - t19 * t68);
-        let t100 = t25 * t92 + (t22 * t85 + t19 * t72);
+        let t99 = t25 * t91 - (t19 * t68 - t22 * t82);
+        let t100 = t19 * t72 + t22 * t85 + t25 * t92;
         let t101 = k(2.0)
             * (inner_ring_wx * (rotor_wy * t100 + rotor_wz * t99) + inner_ring_wz * t98);
-        let t102 = t40 * t91 + (t39 * t82 + t38 * t68);
-        let t103 = t40 * t92 + (t39 * t85 - t38 * t72);
+        let t102 = t40 * t91 + (t39 * t68 + t38 * t82);
+        let t103 = t40 * t92 - (t39 * t72 - t38 * t85);
         let t104 = t69 * t103 - (t65 * t102 - t62 * t96) + t101
             + (t47 * t97 + (t57 * t96 - t56 * t95));
         let t105 = k(2.0)
@@ -1860,15 +1865,15 @@ impl<T: Scalar> Equations for GyroscopeCombinedOffsets<T> {
         let rotor_wy = y[37];
         let rotor_wz = y[38];
         let (
-            t3,
-            t7,
-            t10,
+            t2,
+            t5,
+            t9,
             t13,
             t17,
             t21,
             t22,
             t23,
-            t27,
+            t25,
             t29,
             t31,
             t32,
@@ -1981,19 +1986,19 @@ impl<T: Scalar> Equations for GyroscopeCombinedOffsets<T> {
             t198,
             t199,
         ) = {
-            let t0 = rotor_e0 * rotor_e3;
-            let t1 = rotor_e1 * rotor_e2;
-            let t2 = t1 - t0;
-            let t3 = k(2.0) * t2;
-            let t4 = inner_ring_e0 * inner_ring_e3;
-            let t5 = inner_ring_e1 * inner_ring_e2;
-            let t6 = t5 - t4;
-            let t7 = k(2.0) * t6;
-            let t8 = rotor_e0 * rotor_e0;
-            let t9 = k(0.5) - (t8 + rotor_e2 * rotor_e2);
-            let t10 = k(2.0) * t9;
-            let t11 = inner_ring_e0 * inner_ring_e0;
-            let t12 = k(0.5) - (t11 + inner_ring_e2 * inner_ring_e2);
+            let t0 = rotor_e0 * rotor_e0;
+            let t1 = k(0.5) - (t0 + rotor_e2 * rotor_e2);
+            let t2 = k(2.0) * t1;
+            let t3 = inner_ring_e0 * inner_ring_e0;
+            let t4 = k(0.5) - (t3 + inner_ring_e2 * inner_ring_e2);
+            let t5 = k(2.0) * t4;
+            let t6 = rotor_e0 * rotor_e3;
+            let t7 = rotor_e1 * rotor_e2;
+            let t8 = t7 - t6;
+            let t9 = k(2.0) * t8;
+            let t10 = inner_ring_e0 * inner_ring_e3;
+            let t11 = inner_ring_e1 * inner_ring_e2;
+            let t12 = t11 - t10;
             let t13 = k(2.0) * t12;
             let t14 = rotor_e0 * rotor_e1;
             let t15 = rotor_e2 * rotor_e3;
@@ -2003,27 +2008,27 @@ impl<T: Scalar> Equations for GyroscopeCombinedOffsets<T> {
             let t19 = inner_ring_e2 * inner_ring_e3;
             let t20 = t19 + t18;
             let t21 = k(2.0) * t20;
-            let t22 = t21 * t17 + (t13 * t10 + t7 * t3);
+            let t22 = t21 * t17 + (t13 * t9 + t5 * t2);
             let t23 = k(200000.0) * t22;
-            let t24 = rotor_e0 * rotor_e2;
-            let t25 = rotor_e1 * rotor_e3;
-            let t26 = t25 + t24;
-            let t27 = k(2.0) * t26;
-            let t28 = t15 - t14;
+            let t24 = t15 - t14;
+            let t25 = k(2.0) * t24;
+            let t26 = rotor_e0 * rotor_e2;
+            let t27 = rotor_e1 * rotor_e3;
+            let t28 = t27 + t26;
             let t29 = k(2.0) * t28;
-            let t30 = k(0.5) - (t8 + rotor_e3 * rotor_e3);
+            let t30 = k(0.5) - (t0 + rotor_e3 * rotor_e3);
             let t31 = k(2.0) * t30;
-            let t32 = t21 * t31 + (t13 * t29 - t7 * t27);
+            let t32 = t21 * t31 - (t13 * t29 - t5 * t25);
             let t33 = k(200000.0) * t32;
-            let t34 = k(0.5) - (t8 + rotor_e1 * rotor_e1);
+            let t34 = k(0.5) - (t0 + rotor_e1 * rotor_e1);
             let t35 = k(2.0) * t34;
-            let t36 = k(0.5) - (t11 + inner_ring_e1 * inner_ring_e1);
+            let t36 = k(0.5) - (t3 + inner_ring_e1 * inner_ring_e1);
             let t37 = k(2.0) * t36;
-            let t38 = t1 + t0;
+            let t38 = t7 + t6;
             let t39 = k(2.0) * t38;
-            let t40 = t5 + t4;
+            let t40 = t11 + t10;
             let t41 = k(2.0) * t40;
-            let t42 = t25 - t24;
+            let t42 = t27 - t26;
             let t43 = k(2.0) * t42;
             let t44 = inner_ring_e0 * inner_ring_e2;
             let t45 = inner_ring_e1 * inner_ring_e3;
@@ -2032,22 +2037,22 @@ impl<T: Scalar> Equations for GyroscopeCombinedOffsets<T> {
             let t48 = t47 * t43 + (t41 * t39 + t37 * t35);
             let t49 = k(1000000.0) * t48;
             let t50 = k(1.0) / (t48 * t49 + t32 * t33 + t22 * t23);
-            let t51 = t45 + t44;
+            let t51 = t19 - t18;
             let t52 = k(2.0) * t51;
-            let t53 = t19 - t18;
+            let t53 = t45 + t44;
             let t54 = k(2.0) * t53;
-            let t55 = k(0.5) - (t11 + inner_ring_e3 * inner_ring_e3);
+            let t55 = k(0.5) - (t3 + inner_ring_e3 * inner_ring_e3);
             let t56 = k(2.0) * t55;
-            let t57 = t56 * t17 + (t54 * t10 - t52 * t3);
+            let t57 = t56 * t17 - (t54 * t9 - t52 * t2);
             let t58 = k(200000.0) * t57;
-            let t59 = t56 * t31 + (t54 * t29 + t52 * t27);
+            let t59 = t54 * t29 + t52 * t25 + t56 * t31;
             let t60 = k(200000.0) * t59;
             let t61 = t32 * t60 + t22 * t58;
             let t62 = t61 * t50;
             let t63 = k(1.0) / (t59 * t60 + t57 * t58 - t61 * t62);
-            let t64 = k(0.0002) * t2 + k(0.0004) * t34;
-            let t65 = k(0.0002) * t26 - k(0.0003) * t34;
-            let t66 = k(0.00025) * t6 + k(0.0001) * t36;
+            let t64 = k(0.0002) * t8 + k(0.0004) * t34;
+            let t65 = k(0.0002) * t28 - k(0.0003) * t34;
+            let t66 = k(0.00025) * t12 + k(0.0001) * t36;
             let t67 = t66 * t49 - t65 * t33 + t64 * t23;
             let t68 = t65 * t60 - t64 * t58 + t67 * t62;
             let t69 = t68 * t63;
@@ -2055,13 +2060,13 @@ impl<T: Scalar> Equations for GyroscopeCombinedOffsets<T> {
             let t71 = k(200000.0) * t64;
             let t72 = k(200000.0) * t65;
             let t73 = k(1000000.0) * t66;
-            let t74 = k(0.0004) * t26 + k(0.0003) * t2;
+            let t74 = k(0.0004) * t28 + k(0.0003) * t8;
             let t75 = k(100000.0) * t74;
             let t76 = t74 * t75 + k(112.5) + t66 * t73 + t65 * t72 + t64 * t71;
             let t77 = k(1.0) / (t76 - t67 * t70 - t68 * t69);
-            let t78 = k(0.0002) * t9 + k(0.0004) * t38;
-            let t79 = k(0.0002) * t28 + k(0.0003) * t38;
-            let t80 = k(0.00025) * t12 + k(0.0001) * t40;
+            let t78 = k(0.0002) * t1 + k(0.0004) * t38;
+            let t79 = k(0.0002) * t24 + k(0.0003) * t38;
+            let t80 = k(0.00025) * t4 + k(0.0001) * t40;
             let t81 = t80 * t49 + t79 * t33 + t78 * t23;
             let t82 = t79 * t60 + t78 * t58 - t81 * t62;
             let t83 = t82 * t63;
@@ -2069,7 +2074,7 @@ impl<T: Scalar> Equations for GyroscopeCombinedOffsets<T> {
             let t85 = k(200000.0) * t78;
             let t86 = k(200000.0) * t79;
             let t87 = k(1000000.0) * t80;
-            let t88 = k(0.0004) * t28 - k(0.0003) * t9;
+            let t88 = k(0.0004) * t24 - k(0.0003) * t1;
             let t89 = k(100000.0) * t88;
             let t90 = t74 * t89 - t66 * t87 + t65 * t86 - t64 * t85;
             let t91 = t90 + t67 * t84 - t68 * t83;
@@ -2097,11 +2102,11 @@ impl<T: Scalar> Equations for GyroscopeCombinedOffsets<T> {
             let t113 = k(112.5) + t105 * t106 + t97 * t104 + t96 * t103 + t95 * t102;
             let t114 = t113 - t98 * t101 - t99 * t100 - t108 * t109 - t111 * t112;
             let t115 = k(1.0) / t114;
-            let t116 = t56 * t43 - (t54 * t39 - t52 * t35);
-            let t117 = t21 * t43 - (t13 * t39 + t7 * t35);
+            let t116 = t56 * t43 - (t52 * t39 - t54 * t35);
+            let t117 = t21 * t43 - (t5 * t39 + t13 * t35);
             let t118 = t117 + t116 * t62;
-            let t119 = k(0.0001) * t51 + k(6e-5) * t6 - t116 * t70 - t118 * t69;
-            let t120 = k(0.0001) * t53 - k(6e-5) * t12 + t116 * t84 - t118 * t83;
+            let t119 = k(0.0001) * t53 + k(6e-5) * t12 - t116 * t70 - t118 * t69;
+            let t120 = k(0.0001) * t51 - k(6e-5) * t4 + t116 * t84 - t118 * t83;
             let t121 = t120 - t119 * t92;
             let t122 = k(0.0001) * t55 - k(6e-5) * t20 + t116 * t101 - t118 * t100;
             let t123 = t122 - t119 * t109 - t121 * t112;
@@ -2112,8 +2117,8 @@ impl<T: Scalar> Equations for GyroscopeCombinedOffsets<T> {
             let t128 = t116 * t50;
             let t129 = k(1e-6) + t116 * t128 + t118 * t127 + t119 * t126 + t121 * t125;
             let t130 = k(1.0) / (t129 + t123 * t124);
-            let t131 = k(0.00025) * t51 - k(6e-5) * t36 - t48 * t69;
-            let t132 = k(0.00025) * t53 + k(6e-5) * t40 - t48 * t83 - t131 * t92;
+            let t131 = k(0.00025) * t53 - k(6e-5) * t36 - t48 * t69;
+            let t132 = k(0.00025) * t51 + k(6e-5) * t40 - t48 * t83 - t131 * t92;
             let t133 = k(0.00025) * t55 - k(6e-5) * t46 - t48 * t100 - t131 * t109;
             let t134 = t133 - t132 * t112;
             let t135 = t134 * t115;
@@ -2170,7 +2175,7 @@ impl<T: Scalar> Equations for GyroscopeCombinedOffsets<T> {
             let t183 = outer_ring_e1 * outer_ring_e3;
             let t184 = t183 - t182;
             let t185 = k(2.0) * t184;
-            let t186 = t185 * t21 - (t181 * t13 + t178 * t7);
+            let t186 = t185 * t21 - (t181 * t5 + t178 * t13);
             let t187 = t186 * t130;
             let t188 = t185 * t47 + (t181 * t41 + t178 * t37);
             let t189 = t188 - t139 * t187;
@@ -2185,15 +2190,15 @@ impl<T: Scalar> Equations for GyroscopeCombinedOffsets<T> {
             let t198 = k(0.5) - (t176 + outer_ring_e3 * outer_ring_e3);
             let t199 = k(1000000.0) * t198;
             (
-                t3,
-                t7,
-                t10,
+                t2,
+                t5,
+                t9,
                 t13,
                 t17,
                 t21,
                 t22,
                 t23,
-                t27,
+                t25,
                 t29,
                 t31,
                 t32,
@@ -2342,26 +2347,26 @@ impl<T: Scalar> Equations for GyroscopeCombinedOffsets<T> {
             let t206 = t205 * t201;
             let t207 = k(2.0) * t203;
             let t208 = k(1.0) / (t207 * t204 + t178 * t202 - t205 * t206);
-            let t209 = k(2.0) * (t180 - t179);
-            let t210 = k(2.0) * (k(0.5) - (t176 + outer_ring_e2 * outer_ring_e2));
+            let t209 = k(2.0) * (k(0.5) - (t176 + outer_ring_e2 * outer_ring_e2));
+            let t210 = k(2.0) * (t180 - t179);
             let t211 = outer_ring_e0 * outer_ring_e1;
             let t212 = outer_ring_e2 * outer_ring_e3;
             let t213 = k(2.0) * (t212 + t211);
-            let t214 = t213 * t56 + (t210 * t54 - t209 * t52);
+            let t214 = t213 * t56 - (t210 * t54 - t209 * t52);
             let t215 = k(1000000.0) * t214;
             let t216 = t185 * t215;
             let t217 = t216 * t201;
             let t218 = t178 * t215 - t205 * t217;
             let t219 = t218 * t208;
             let t220 = k(2.0) * (t212 - t211);
-            let t221 = t200 * t56 + (t220 * t54 + t207 * t52);
+            let t221 = t207 * t54 + t220 * t52 + t200 * t56;
             let t222 = k(1000000.0) * t221;
             let t223 = t221 * t222 + t214 * t215 - t216 * t217 - t218 * t219;
             let t224 = t223 + t186 * t187 + t189 * t190 - t191 * t192 - t193 * t194;
             let t225 = k(1.0) / (t224 - t195 * t196);
-            let t226 = t213 * t21 + (t210 * t13 + t209 * t7);
+            let t226 = t213 * t21 + (t210 * t13 + t209 * t5);
             let t227 = t226 * t130;
-            let t228 = t213 * t47 - (t210 * t41 + t209 * t37);
+            let t228 = t213 * t47 - (t209 * t41 + t210 * t37);
             let t229 = t228 - t139 * t227;
             let t230 = t229 * t142;
             let t231 = t148 * t227 + t150 * t230;
@@ -2370,7 +2375,7 @@ impl<T: Scalar> Equations for GyroscopeCombinedOffsets<T> {
             let t234 = t233 * t164;
             let t235 = t166 * t227 + t168 * t230 - t170 * t232 - t172 * t234;
             let t236 = t235 * t175;
-            let t237 = t185 * t56 - (t181 * t54 - t178 * t52);
+            let t237 = t185 * t56 - (t181 * t52 - t178 * t54);
             let t238 = k(1000000.0) * t237;
             let t239 = k(500000.0) * t221;
             let t240 = t200 * t239 + t185 * t238;
@@ -2392,8 +2397,8 @@ impl<T: Scalar> Equations for GyroscopeCombinedOffsets<T> {
             let t256 = inner_ring_wz * inner_ring_wz;
             let t257 = t256 + t255;
             let t258 = inner_ring_wy * inner_ring_wz;
-            let t259 = rotor_wy * (t47 * t31 - (t41 * t29 - t37 * t27))
-                + rotor_wz * (t47 * t17 - (t41 * t10 + t37 * t3));
+            let t259 = rotor_wy * (t47 * t31 - (t41 * t25 - t37 * t29))
+                + rotor_wz * (t47 * t17 - (t41 * t2 + t37 * t9));
             let t260 = k(2.0)
                 * (inner_ring_wx * (rotor_wy * t59 + rotor_wz * t57)
                     + inner_ring_wz * t259);
@@ -2413,24 +2418,24 @@ impl<T: Scalar> Equations for GyroscopeCombinedOffsets<T> {
                 + (t268 * t116 + (t258 * t117 + t266 * t48));
             let t271 = t270 + t252 * t60 - t250 * t58 - t265 * t62;
             let t272 = t256 + t267;
-            let t273 = k(5e-5) * (t52 * t258 - (t7 * t257 + t37 * t253))
-                + k(0.000125) * (t52 * t266 + (t7 * t253 + t37 * t272));
-            let t274 = k(3e-5) * (t52 * t268 - (t7 * t258 - t37 * t266)) + t273;
+            let t273 = k(5e-5) * (t54 * t258 - (t13 * t257 + t37 * t253))
+                + k(0.000125) * (t54 * t266 + (t13 * t253 + t37 * t272));
+            let t274 = k(3e-5) * (t54 * t268 - (t13 * t258 - t37 * t266)) + t273;
             let t275 = rotor_wx * rotor_wx;
             let t276 = t262 + t275;
             let t277 = rotor_wy * rotor_wz;
-            let t278 = k(0.0002) * (t27 * t277 - (t3 * t276 + t35 * t249))
-                + k(0.0001) * (t27 * t251 + (t3 * t249 + t35 * t263));
+            let t278 = k(0.0002) * (t29 * t277 - (t9 * t276 + t35 * t249))
+                + k(0.0001) * (t29 * t251 + (t9 * t249 + t35 * t263));
             let t279 = t261 + t275;
-            let t280 = k(0.00015) * (t27 * t279 - (t3 * t277 - t35 * t251)) + t278;
+            let t280 = k(0.00015) * (t29 * t279 - (t9 * t277 - t35 * t251)) + t278;
             let t281 = t280 - t274 + t254 * t73 + t252 * t72 + t250 * t71;
             let t282 = t281 + t265 * t70 - t271 * t69;
-            let t283 = k(5e-5) * (t54 * t258 + (t13 * t257 + t41 * t253))
-                + k(0.000125) * (t54 * t266 - (t13 * t253 + t41 * t272));
-            let t284 = k(3e-5) * (t54 * t268 + (t13 * t258 - t41 * t266)) + t283;
-            let t285 = k(0.0002) * (t29 * t277 + (t10 * t276 + t39 * t249))
-                + k(0.0001) * (t29 * t251 - (t10 * t249 + t39 * t263));
-            let t286 = k(0.00015) * (t29 * t279 + (t10 * t277 - t39 * t251)) + t285;
+            let t283 = k(5e-5) * (t52 * t258 + (t5 * t257 + t41 * t253))
+                + k(0.000125) * (t52 * t266 - (t5 * t253 + t41 * t272));
+            let t284 = k(3e-5) * (t52 * t268 + (t5 * t258 - t41 * t266)) + t283;
+            let t285 = k(0.0002) * (t25 * t277 + (t2 * t276 + t39 * t249))
+                + k(0.0001) * (t25 * t251 - (t2 * t249 + t39 * t263));
+            let t286 = k(0.00015) * (t25 * t279 + (t2 * t277 - t39 * t251)) + t285;
             let t287 = k(10.0) + (t286 - t284 - k(10.0)) - t254 * t87 + t252 * t86;
             let t288 = t287 - t250 * t85 - t265 * t84 - t271 * t83 - t282 * t92;
             let t289 = k(5e-5) * (t56 * t258 + (t21 * t257 - t47 * t253))
@@ -2457,12 +2462,12 @@ impl<T: Scalar> Equations for GyroscopeCombinedOffsets<T> {
             let t308 = t307 + outer_ring_wx * outer_ring_wx;
             let t309 = outer_ring_wy * outer_ring_wz;
             let t310 = t200 * t309 + (t213 * t308 - t185 * t305) + t306 * t197;
-            let t311 = t207 * t309 - (t209 * t308 + t178 * t305) + t306 * t202;
+            let t311 = t207 * t309 - (t210 * t308 + t178 * t305) + t306 * t202;
             let t312 = t311 - t310 * t206;
             let t313 = outer_ring_wx * outer_ring_wz;
             let t314 = t313 * t221
                 - (t305 * t214 - (t307 + outer_ring_wy * outer_ring_wy) * t237);
-            let t315 = inner_ring_wx * (t200 * t21 + (t220 * t13 - t207 * t7))
+            let t315 = inner_ring_wx * (t200 * t21 - (t207 * t13 - t220 * t5))
                 - inner_ring_wy * (t200 * t47 - (t220 * t41 - t207 * t37));
             let t316 = k(2.0)
                 * (outer_ring_wy * t315

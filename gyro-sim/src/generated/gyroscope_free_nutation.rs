@@ -23,26 +23,21 @@
 //! | accelerations | (s̈, ẇ') and λ, eq. (17) | 191 | 310 | 10 | 511 | 19 of 33 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | energy | T and V | 17 | 31 | 0 | 48 | 1 of 2 |
-//! | read_joints | joint coordinates and rates | 37 | 58 | 0 | 95 | 0 of 9 |
+//! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 |
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
 //! | newton_step | dependent positions, one Newton step | 189 | 314 | 3 | 506 | 9 of 21 |
 //! | solve_velocities | dependent velocities, eq. (19) | 132 | 224 | 3 | 359 | 9 of 18 |
 
-use gyro_sim::charts::{self, Charts};
-use gyro_sim::{
-    Coordinate, Energy, Equations, Error, JointInfo, Mechanism, Ode, Owner, Partition,
-    Real, RowInfo, Scalar,
-};
 /// The mechanism `gyroscope_free_nutation`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GyroscopeFreeNutation<T> {
     /// The model has no parameters.
-    scalar: core::marker::PhantomData<T>,
+    scalar: ::core::marker::PhantomData<T>,
 }
-impl<T: Scalar> Default for GyroscopeFreeNutation<T> {
+impl<T: gyro_sim::Scalar> ::core::default::Default for GyroscopeFreeNutation<T> {
     fn default() -> Self {
         Self {
-            scalar: core::marker::PhantomData,
+            scalar: ::core::marker::PhantomData,
         }
     }
 }
@@ -54,7 +49,7 @@ impl<T> GyroscopeFreeNutation<T> {
         false
     }
 }
-impl<T: Scalar> Ode for GyroscopeFreeNutation<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Ode for GyroscopeFreeNutation<T> {
     type Scalar = T;
     type State = [T; 39];
     /// The assembled start, with all parameters at their defaults.
@@ -104,9 +99,9 @@ impl<T: Scalar> Ode for GyroscopeFreeNutation<T> {
     }
     /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 72 operations (24 ±, 48 ×, 0 ÷).
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut v = self.velocities();
-        let mut lambda = self.rows();
-        self.accelerations(t, y, &mut v, &mut lambda);
+        let mut v = gyro_sim::Equations::velocities(self);
+        let mut lambda = gyro_sim::Mechanism::rows(self);
+        gyro_sim::Equations::accelerations(self, t, y, &mut v, &mut lambda);
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -199,7 +194,7 @@ impl<T: Scalar> Ode for GyroscopeFreeNutation<T> {
         ];
     }
 }
-impl<T: Scalar> Mechanism for GyroscopeFreeNutation<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeFreeNutation<T> {
     type Rows = [T; 15];
     type Constraints = [T; 18];
     type Readings = [T; 9];
@@ -253,7 +248,7 @@ impl<T: Scalar> Mechanism for GyroscopeFreeNutation<T> {
         let t12 = inner_ring_e0 * inner_ring_e0;
         let t13 = k(2.0) * (k(0.5) - (t12 + t11));
         let t14 = outer_ring_e2 * outer_ring_e2;
-        let t15 = t0 * t13 + (k(2.0) * (k(0.5) - (t5 + t14)) * t9 - t3 * t4);
+        let t15 = t0 * t13 - (t3 * t4 - k(2.0) * (k(0.5) - (t5 + t14)) * t9);
         let t16 = rotor_e0 * rotor_e0 + rotor_e1 * rotor_e1;
         let t17 = k(2.0) * (k(0.5) - t16);
         let t18 = k(2.0) * (rotor_e1 * rotor_e2 + rotor_e0 * rotor_e3);
@@ -325,39 +320,39 @@ impl<T: Scalar> Mechanism for GyroscopeFreeNutation<T> {
         let t4 = k(2.0) * (k(0.5) - (t3 + outer_ring_e3 * outer_ring_e3));
         let t5 = k(2.0) * (k(0.5) - (t3 + outer_ring_e1 * outer_ring_e1));
         let t6 = k(2.0) * (t1 + t0);
-        let t7 = inner_ring_e0 * inner_ring_e2;
-        let t8 = inner_ring_e1 * inner_ring_e3;
-        let t9 = k(2.0) * (t8 + t7);
-        let t10 = outer_ring_e0 * outer_ring_e3;
-        let t11 = outer_ring_e1 * outer_ring_e2;
-        let t12 = k(2.0) * (t11 - t10);
-        let t13 = inner_ring_e0 * inner_ring_e1;
-        let t14 = inner_ring_e2 * inner_ring_e3;
-        let t15 = k(2.0) * (t14 - t13);
-        let t16 = k(2.0) * (k(0.5) - (t3 + outer_ring_e2 * outer_ring_e2));
+        let t7 = inner_ring_e0 * inner_ring_e1;
+        let t8 = inner_ring_e2 * inner_ring_e3;
+        let t9 = k(2.0) * (t8 - t7);
+        let t10 = k(2.0) * (k(0.5) - (t3 + outer_ring_e2 * outer_ring_e2));
+        let t11 = inner_ring_e0 * inner_ring_e2;
+        let t12 = inner_ring_e1 * inner_ring_e3;
+        let t13 = k(2.0) * (t12 + t11);
+        let t14 = outer_ring_e0 * outer_ring_e3;
+        let t15 = outer_ring_e1 * outer_ring_e2;
+        let t16 = k(2.0) * (t15 - t14);
         let t17 = inner_ring_e0 * inner_ring_e0;
         let t18 = k(2.0) * (k(0.5) - (t17 + inner_ring_e3 * inner_ring_e3));
         let t19 = outer_ring_e0 * outer_ring_e1;
         let t20 = outer_ring_e2 * outer_ring_e3;
         let t21 = k(2.0) * (t20 + t19);
-        let t22 = t4 * t18 + (k(2.0) * (t20 - t19) * t15 + t6 * t9);
+        let t22 = t6 * t13 + k(2.0) * (t20 - t19) * t9 + t4 * t18;
         let t23 = outer_ring_wy * t22
-            + outer_ring_wz * (t21 * t18 + (t16 * t15 - t12 * t9));
+            + outer_ring_wz * (t21 * t18 - (t16 * t13 - t10 * t9));
         let t24 = k(2.0) * (k(0.5) - (t17 + inner_ring_e1 * inner_ring_e1));
         let t25 = inner_ring_e0 * inner_ring_e3;
         let t26 = inner_ring_e1 * inner_ring_e2;
         let t27 = k(2.0) * (t26 + t25);
-        let t28 = k(2.0) * (t11 + t10);
-        let t29 = k(2.0) * (t8 - t7);
+        let t28 = k(2.0) * (t15 + t14);
+        let t29 = k(2.0) * (t12 - t11);
         let t30 = k(2.0) * (t26 - t25);
         let t31 = k(2.0) * (k(0.5) - (t17 + inner_ring_e2 * inner_ring_e2));
-        let t32 = k(2.0) * (t14 + t13);
+        let t32 = k(2.0) * (t8 + t7);
         let t33 = inner_ring_wx * (t2 * t32 - (t28 * t31 + t5 * t30))
             - inner_ring_wy * (t2 * t29 + (t28 * t27 + t5 * t24));
         let t34 = outer_ring_wx * t22
-            + outer_ring_wz * (t2 * t18 - (t28 * t15 - t5 * t9));
-        let t35 = inner_ring_wx * (t21 * t32 + (t16 * t31 + t12 * t30))
-            - inner_ring_wy * (t21 * t29 - (t16 * t27 + t12 * t24));
+            + outer_ring_wz * (t2 * t18 - (t28 * t9 - t5 * t13));
+        let t35 = inner_ring_wx * (t21 * t32 + (t16 * t30 + t10 * t31))
+            - inner_ring_wy * (t21 * t29 - (t10 * t27 + t16 * t24));
         let t36 = rotor_e0 * rotor_e0;
         let t37 = k(2.0) * (k(0.5) - (t36 + rotor_e1 * rotor_e1));
         let t38 = rotor_e0 * rotor_e3;
@@ -367,22 +362,22 @@ impl<T: Scalar> Mechanism for GyroscopeFreeNutation<T> {
         let t42 = rotor_e1 * rotor_e3;
         let t43 = k(2.0) * (t42 - t41);
         let t44 = t29 * t43 + (t27 * t40 + t24 * t37);
-        let t45 = inner_ring_wx * (t18 * t43 - (t15 * t40 - t9 * t37))
+        let t45 = inner_ring_wx * (t18 * t43 - (t9 * t40 - t13 * t37))
             + inner_ring_wz * t44;
-        let t46 = k(2.0) * (t39 - t38);
-        let t47 = k(2.0) * (k(0.5) - (t36 + rotor_e2 * rotor_e2));
+        let t46 = k(2.0) * (k(0.5) - (t36 + rotor_e2 * rotor_e2));
+        let t47 = k(2.0) * (t39 - t38);
         let t48 = rotor_e0 * rotor_e1;
         let t49 = rotor_e2 * rotor_e3;
         let t50 = k(2.0) * (t49 + t48);
-        let t51 = k(2.0) * (t42 + t41);
-        let t52 = k(2.0) * (t49 - t48);
+        let t51 = k(2.0) * (t49 - t48);
+        let t52 = k(2.0) * (t42 + t41);
         let t53 = k(2.0) * (k(0.5) - (t36 + rotor_e3 * rotor_e3));
-        let t54 = rotor_wy * (t32 * t53 + (t31 * t52 - t30 * t51))
-            + rotor_wz * (t32 * t50 + (t31 * t47 + t30 * t46));
+        let t54 = rotor_wy * (t32 * t53 - (t30 * t52 - t31 * t51))
+            + rotor_wz * (t32 * t50 + (t30 * t47 + t31 * t46));
         let t55 = inner_ring_wx * (t32 * t43 - (t31 * t40 + t30 * t37))
             - inner_ring_wy * t44;
-        let t56 = rotor_wy * (t18 * t53 + (t15 * t52 + t9 * t51))
-            + rotor_wz * (t18 * t50 + (t15 * t47 - t9 * t46));
+        let t56 = rotor_wy * (t13 * t52 + t9 * t51 + t18 * t53)
+            + rotor_wz * (t18 * t50 - (t13 * t47 - t9 * t46));
         *out = [
             outer_ring_sx,
             outer_ring_sy,
@@ -402,7 +397,7 @@ impl<T: Scalar> Mechanism for GyroscopeFreeNutation<T> {
         ];
     }
     /// Kinetic and potential energy: 48 operations (17 ±, 31 ×, 0 ÷).
-    fn energy(&self, y: &Self::State) -> Energy<T> {
+    fn energy(&self, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let outer_ring_sx = y[21];
         let outer_ring_sy = y[22];
@@ -441,12 +436,12 @@ impl<T: Scalar> Mechanism for GyroscopeFreeNutation<T> {
             + k(0.01)
                 * (outer_ring_sx * outer_ring_sx + outer_ring_sy * outer_ring_sy
                     + outer_ring_sz * outer_ring_sz);
-        Energy {
+        gyro_sim::Energy {
             kinetic: k(0.5) * (t5 + t3 + t1),
             potential: k(0.0),
         }
     }
-    /// Writes the joint readings: 95 operations (37 ±, 58 ×, 0 ÷).
+    /// Writes the joint readings: 114 operations (54 ±, 60 ×, 0 ÷).
     fn read_joints(&self, y: &Self::State, out: &mut Self::Readings) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -468,39 +463,49 @@ impl<T: Scalar> Mechanism for GyroscopeFreeNutation<T> {
         let rotor_wx = y[36];
         let t0 = outer_ring_e0 * outer_ring_e2;
         let t1 = outer_ring_e1 * outer_ring_e3;
-        let t2 = outer_ring_e0 * outer_ring_e0;
-        let t3 = inner_ring_e0 * inner_ring_e0;
-        let t4 = k(2.0) * (k(0.5) - (t3 + inner_ring_e1 * inner_ring_e1));
-        let t5 = outer_ring_e0 * outer_ring_e3;
-        let t6 = outer_ring_e1 * outer_ring_e2;
-        let t7 = inner_ring_e0 * inner_ring_e3;
-        let t8 = inner_ring_e1 * inner_ring_e2;
-        let t9 = k(2.0) * (t8 + t7);
-        let t10 = k(2.0) * (k(0.5) - (t2 + outer_ring_e2 * outer_ring_e2)) * t9
-            + k(2.0) * (t6 - t5) * t4;
-        let t11 = inner_ring_e0 * inner_ring_e2;
-        let t12 = inner_ring_e1 * inner_ring_e3;
-        let t13 = k(2.0) * (t12 - t11);
-        let t14 = k(2.0) * (t6 + t5) * t9
-            + k(2.0) * (k(0.5) - (t2 + outer_ring_e1 * outer_ring_e1)) * t4;
-        let t15 = k(2.0) * (rotor_e1 * rotor_e2 - rotor_e0 * rotor_e3);
-        let t16 = k(2.0) * (k(0.5) - (rotor_e0 * rotor_e0 + rotor_e2 * rotor_e2));
-        let t17 = inner_ring_e0 * inner_ring_e1;
-        let t18 = inner_ring_e2 * inner_ring_e3;
-        let t19 = k(2.0) * (t18 - t17) * t16 - k(2.0) * (t12 + t11) * t15;
-        let t20 = k(2.0) * (rotor_e2 * rotor_e3 + rotor_e0 * rotor_e1);
-        let t21 = k(2.0) * (k(0.5) - (t3 + inner_ring_e2 * inner_ring_e2)) * t16
-            + k(2.0) * (t8 - t7) * t15;
+        let t2 = outer_ring_e2 * outer_ring_e2;
+        let t3 = outer_ring_e0 * outer_ring_e0;
+        let t4 = t3 + outer_ring_e1 * outer_ring_e1;
+        let t5 = outer_ring_e3 * outer_ring_e3;
+        let t6 = k(1.0) - (t5 + (t4 + t2));
+        let t7 = inner_ring_e0 * inner_ring_e2;
+        let t8 = inner_ring_e1 * inner_ring_e3;
+        let t9 = k(2.0) * (t8 - t7);
+        let t10 = inner_ring_e0 * inner_ring_e3;
+        let t11 = inner_ring_e1 * inner_ring_e2;
+        let t12 = k(2.0) * (t11 + t10);
+        let t13 = inner_ring_e2 * inner_ring_e2;
+        let t14 = inner_ring_e0 * inner_ring_e0;
+        let t15 = t14 + inner_ring_e1 * inner_ring_e1;
+        let t16 = inner_ring_e3 * inner_ring_e3;
+        let t17 = k(1.0) - (t16 + (t15 + t13));
+        let t18 = k(2.0) * (k(0.5) - t15) - t17;
+        let t19 = outer_ring_e0 * outer_ring_e3;
+        let t20 = outer_ring_e1 * outer_ring_e2;
+        let t21 = k(2.0) * (t20 - t19) * t18
+            + t12 * (k(2.0) * (k(0.5) - (t3 + t2)) - t6);
+        let t22 = (k(2.0) * (k(0.5) - t4) - t6) * t18 + k(2.0) * (t20 + t19) * t12;
+        let t23 = k(2.0) * (rotor_e2 * rotor_e3 + rotor_e0 * rotor_e1);
+        let t24 = rotor_e2 * rotor_e2;
+        let t25 = rotor_e0 * rotor_e0;
+        let t26 = k(2.0) * (k(0.5) - (t25 + t24))
+            - (k(1.0) - (rotor_e3 * rotor_e3 + (t25 + rotor_e1 * rotor_e1 + t24)));
+        let t27 = inner_ring_e0 * inner_ring_e1;
+        let t28 = inner_ring_e2 * inner_ring_e3;
+        let t29 = k(2.0) * (rotor_e1 * rotor_e2 - rotor_e0 * rotor_e3);
+        let t30 = k(2.0) * (t8 + t7) * t29 - k(2.0) * (t28 - t27) * t26;
+        let t31 = k(2.0) * (t11 - t10) * t29
+            + (k(2.0) * (k(0.5) - (t14 + t13)) - t17) * t26;
         *out = [
             k(2.0) * (t1 + t0),
-            -(k(2.0) * (k(0.5) - (t2 + outer_ring_e3 * outer_ring_e3))),
+            t6 - k(2.0) * (k(0.5) - (t3 + t5)),
             outer_ring_wy,
-            k(2.0) * (outer_ring_e2 * outer_ring_e3 + outer_ring_e0 * outer_ring_e1)
-                * t13 - t10,
-            k(2.0) * (t1 - t0) * t13 + t14,
+            k(2.0) * (outer_ring_e2 * outer_ring_e3 + outer_ring_e0 * outer_ring_e1) * t9
+                - t21,
+            t22 + k(2.0) * (t1 - t0) * t9,
             inner_ring_wz - outer_ring_wz,
-            -(k(2.0) * (k(0.5) - (t3 + inner_ring_e3 * inner_ring_e3)) * t20 + t19),
-            k(2.0) * (t18 + t17) * t20 + t21,
+            t30 - t23 * (k(2.0) * (k(0.5) - (t14 + t16)) - t17),
+            t31 + k(2.0) * (t28 + t27) * t23,
             rotor_wx - inner_ring_wx,
         ];
     }
@@ -514,96 +519,96 @@ impl<T: Scalar> Mechanism for GyroscopeFreeNutation<T> {
         const BODIES: [&str; 3] = ["outer_ring", "inner_ring", "rotor"];
         BODIES.get(body).copied().unwrap_or_default()
     }
-    fn joint(&self, joint: usize) -> JointInfo<'_> {
-        const JOINTS: [JointInfo<'static>; 3] = [
-            JointInfo {
+    fn joint(&self, joint: usize) -> gyro_sim::JointInfo<'_> {
+        const JOINTS: [gyro_sim::JointInfo<'static>; 3] = [
+            gyro_sim::JointInfo {
                 name: "alpha",
-                coordinate: Coordinate::Angle,
+                coordinate: gyro_sim::Coordinate::Angle,
             },
-            JointInfo {
+            gyro_sim::JointInfo {
                 name: "beta",
-                coordinate: Coordinate::Angle,
+                coordinate: gyro_sim::Coordinate::Angle,
             },
-            JointInfo {
+            gyro_sim::JointInfo {
                 name: "phi",
-                coordinate: Coordinate::Angle,
+                coordinate: gyro_sim::Coordinate::Angle,
             },
         ];
         JOINTS
             .get(joint)
             .copied()
-            .unwrap_or(JointInfo {
+            .unwrap_or(gyro_sim::JointInfo {
                 name: "",
-                coordinate: Coordinate::None,
+                coordinate: gyro_sim::Coordinate::None,
             })
     }
-    fn row(&self, row: usize) -> RowInfo {
-        const ROWS: [RowInfo; 15] = [
-            RowInfo {
-                owner: Owner::Joint(0),
+    fn row(&self, row: usize) -> gyro_sim::RowInfo {
+        const ROWS: [gyro_sim::RowInfo; 15] = [
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(0),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(0),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(0),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(0),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(0),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(0),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(0),
                 is_length: false,
             },
-            RowInfo {
-                owner: Owner::Joint(0),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(0),
                 is_length: false,
             },
-            RowInfo {
-                owner: Owner::Joint(1),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(1),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(1),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(1),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(1),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(1),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(1),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(1),
                 is_length: false,
             },
-            RowInfo {
-                owner: Owner::Joint(1),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(1),
                 is_length: false,
             },
-            RowInfo {
-                owner: Owner::Joint(2),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(2),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(2),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(2),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(2),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(2),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(2),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(2),
                 is_length: false,
             },
-            RowInfo {
-                owner: Owner::Joint(2),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(2),
                 is_length: false,
             },
         ];
         ROWS.get(row)
             .copied()
-            .unwrap_or(RowInfo {
-                owner: Owner::Body(0),
+            .unwrap_or(gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Body(0),
                 is_length: false,
             })
     }
@@ -614,7 +619,7 @@ impl<T: Scalar> Mechanism for GyroscopeFreeNutation<T> {
         T::constant(0.0)
     }
 }
-impl<T: Scalar> GyroscopeFreeNutation<T> {
+impl<T: gyro_sim::Scalar> GyroscopeFreeNutation<T> {
     /// The four-vectors whose largest components are the special Euler parameters: 0 operations (0 ±, 0 ×, 0 ÷).
     fn chart_vectors(&self, y: &[T; 39]) -> [[T; 4]; 3] {
         let outer_ring_e0 = y[3];
@@ -636,13 +641,13 @@ impl<T: Scalar> GyroscopeFreeNutation<T> {
         ]
     }
 }
-impl<T: Real> Partition for GyroscopeFreeNutation<T> {
-    type Independent = Charts<3>;
+impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeFreeNutation<T> {
+    type Independent = gyro_sim::charts::Charts<3>;
     fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
-        charts::best(&self.chart_vectors(y))
+        gyro_sim::charts::best(&self.chart_vectors(y))
     }
     fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
-        charts::follow(&self.chart_vectors(y), choice)
+        gyro_sim::charts::follow(&self.chart_vectors(y), choice)
     }
     /// One Newton step of the dependent positions: 506 operations (189 ±, 314 ×, 3 ÷).
     fn newton_step(
@@ -650,8 +655,8 @@ impl<T: Real> Partition for GyroscopeFreeNutation<T> {
         _t: T,
         choice: &Self::Independent,
         y: &mut Self::State,
-    ) -> Result<(), Error> {
-        let charts = charts::one_hot::<T, _>(choice);
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -855,8 +860,8 @@ impl<T: Real> Partition for GyroscopeFreeNutation<T> {
         _t: T,
         choice: &Self::Independent,
         y: &mut Self::State,
-    ) -> Result<(), Error> {
-        let charts = charts::one_hot::<T, _>(choice);
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -935,20 +940,20 @@ impl<T: Real> Partition for GyroscopeFreeNutation<T> {
         let t37 = outer_ring_e2 * outer_ring_e3;
         let t38 = k(2.0) * (t37 + t36);
         let t39 = t38 * t32 - (t35 * t26 + t34 * t23);
-        let t40 = k(2.0) * (t25 - t24);
-        let t41 = k(2.0) * (k(0.5) - (t22 + inner_ring_e2 * inner_ring_e2));
+        let t40 = k(2.0) * (k(0.5) - (t22 + inner_ring_e2 * inner_ring_e2));
+        let t41 = k(2.0) * (t25 - t24);
         let t42 = inner_ring_e0 * inner_ring_e1;
         let t43 = inner_ring_e2 * inner_ring_e3;
         let t44 = k(2.0) * (t43 + t42);
-        let t45 = t38 * t44 + (t35 * t41 + t34 * t40);
+        let t45 = t38 * t44 + (t34 * t41 + t35 * t40);
         let t46 = k(2.0) * (t31 + t30);
         let t47 = k(2.0) * (t43 - t42);
         let t48 = k(2.0) * (k(0.5) - (t22 + inner_ring_e3 * inner_ring_e3));
-        let t49 = t9 * t48 + (k(2.0) * (t37 - t36) * t47 + t7 * t46);
+        let t49 = t7 * t46 + k(2.0) * (t37 - t36) * t47 + t9 * t48;
         let t50 = t12 * t49 + t19 * (t4 * t48 - (t29 * t47 - t6 * t46));
         let t51 = t50 - (inner_ring_wx * t45 - inner_ring_wy * t39);
-        let t52 = t4 * t44 - (t29 * t41 + t6 * t40);
-        let t53 = t18 * t49 + t19 * (t38 * t48 + (t35 * t47 - t34 * t46));
+        let t52 = t4 * t44 - (t29 * t40 + t6 * t41);
+        let t53 = t18 * t49 + t19 * (t38 * t48 - (t34 * t46 - t35 * t47));
         let t54 = t53 + (inner_ring_wx * t52 - inner_ring_wy * t33);
         let t55 = k(1.0) / (t21 * (t52 * t39 - t33 * t45));
         let t56 = inner_ring_wx - t55 * (t54 * (t39 * t21) + t51 * (t33 * t21));
@@ -964,31 +969,31 @@ impl<T: Real> Partition for GyroscopeFreeNutation<T> {
         let t64 = rotor_e3 * chart2_0 - rotor_e2 * chart2_1 + rotor_e1 * chart2_2
             - rotor_e0 * chart2_3;
         let t65 = k(0.5) * t64;
-        let t66 = rotor_e0 * rotor_e2;
-        let t67 = rotor_e1 * rotor_e3;
-        let t68 = k(2.0) * (t67 + t66);
-        let t69 = rotor_e0 * rotor_e1;
-        let t70 = rotor_e2 * rotor_e3;
-        let t71 = k(2.0) * (t70 - t69);
+        let t66 = rotor_e0 * rotor_e1;
+        let t67 = rotor_e2 * rotor_e3;
+        let t68 = k(2.0) * (t67 - t66);
+        let t69 = rotor_e0 * rotor_e2;
+        let t70 = rotor_e1 * rotor_e3;
+        let t71 = k(2.0) * (t70 + t69);
         let t72 = rotor_e0 * rotor_e0;
         let t73 = k(2.0) * (k(0.5) - (t72 + rotor_e3 * rotor_e3));
-        let t74 = t44 * t73 + (t41 * t71 - t40 * t68);
+        let t74 = t44 * t73 - (t41 * t71 - t40 * t68);
         let t75 = rotor_e2 * chart2_0 + rotor_e3 * chart2_1 - rotor_e0 * chart2_2
             - rotor_e1 * chart2_3;
         let t76 = k(0.5) * t75;
-        let t77 = rotor_e0 * rotor_e3;
-        let t78 = rotor_e1 * rotor_e2;
-        let t79 = k(2.0) * (t78 - t77);
-        let t80 = k(2.0) * (k(0.5) - (t72 + rotor_e2 * rotor_e2));
-        let t81 = k(2.0) * (t70 + t69);
-        let t82 = t44 * t81 + (t41 * t80 + t40 * t79);
-        let t83 = t48 * t81 + (t47 * t80 - t46 * t79);
-        let t84 = t48 * t73 + (t47 * t71 + t46 * t68);
+        let t77 = k(2.0) * (k(0.5) - (t72 + rotor_e2 * rotor_e2));
+        let t78 = rotor_e0 * rotor_e3;
+        let t79 = rotor_e1 * rotor_e2;
+        let t80 = k(2.0) * (t79 - t78);
+        let t81 = k(2.0) * (t67 + t66);
+        let t82 = t44 * t81 + (t41 * t80 + t40 * t77);
+        let t83 = t48 * t81 - (t46 * t80 - t47 * t77);
+        let t84 = t46 * t71 + t47 * t68 + t48 * t73;
         let t85 = k(2.0) * (k(0.5) - (t72 + rotor_e1 * rotor_e1));
-        let t86 = k(2.0) * (t78 + t77);
-        let t87 = k(2.0) * (t67 - t66);
+        let t86 = k(2.0) * (t79 + t78);
+        let t87 = k(2.0) * (t70 - t69);
         let t88 = t32 * t87 + (t26 * t86 + t23 * t85);
-        let t89 = t56 * (t44 * t87 - (t41 * t86 + t40 * t85)) - t57 * t88;
+        let t89 = t56 * (t44 * t87 - (t40 * t86 + t41 * t85)) - t57 * t88;
         let t90 = t89 + (rotor_wy * t84 + rotor_wz * t83);
         let t91 = t56 * (t48 * t87 - (t47 * t86 - t46 * t85)) + t63 * t88;
         let t92 = t91 - (rotor_wy * t74 + rotor_wz * t82);
@@ -1020,7 +1025,7 @@ impl<T: Real> Partition for GyroscopeFreeNutation<T> {
         Ok(())
     }
 }
-impl<T: Scalar> Equations for GyroscopeFreeNutation<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
     type Velocities = [T; 18];
     type PhiQ = [T; 67];
     type PhiPi = [T; 35];
@@ -1300,31 +1305,31 @@ impl<T: Scalar> Equations for GyroscopeFreeNutation<T> {
         let t4 = k(2.0) * (t3 - t2);
         let t5 = k(2.0) * (t3 + t2);
         let t6 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
-        let t7 = inner_ring_e0 * inner_ring_e2;
-        let t8 = inner_ring_e1 * inner_ring_e3;
-        let t9 = k(2.0) * (t8 + t7);
-        let t10 = inner_ring_e0 * inner_ring_e1;
-        let t11 = inner_ring_e2 * inner_ring_e3;
-        let t12 = k(2.0) * (t11 - t10);
-        let t13 = outer_ring_e0 * outer_ring_e1;
-        let t14 = outer_ring_e2 * outer_ring_e3;
-        let t15 = inner_ring_e0 * inner_ring_e0;
-        let t16 = k(2.0) * (k(0.5) - (t15 + inner_ring_e3 * inner_ring_e3));
-        let t17 = t1 * t16 + (k(2.0) * (t14 - t13) * t12 + t5 * t9);
-        let t18 = outer_ring_e0 * outer_ring_e3;
-        let t19 = outer_ring_e1 * outer_ring_e2;
-        let t20 = k(2.0) * (t19 - t18);
-        let t21 = k(2.0) * (k(0.5) - (t0 + outer_ring_e2 * outer_ring_e2));
-        let t22 = k(2.0) * (t14 + t13);
+        let t7 = inner_ring_e0 * inner_ring_e0;
+        let t8 = k(2.0) * (k(0.5) - (t7 + inner_ring_e3 * inner_ring_e3));
+        let t9 = inner_ring_e0 * inner_ring_e1;
+        let t10 = inner_ring_e2 * inner_ring_e3;
+        let t11 = k(2.0) * (t10 - t9);
+        let t12 = outer_ring_e0 * outer_ring_e1;
+        let t13 = outer_ring_e2 * outer_ring_e3;
+        let t14 = inner_ring_e0 * inner_ring_e2;
+        let t15 = inner_ring_e1 * inner_ring_e3;
+        let t16 = k(2.0) * (t15 + t14);
+        let t17 = t5 * t16 + k(2.0) * (t13 - t12) * t11 + t1 * t8;
+        let t18 = k(2.0) * (k(0.5) - (t0 + outer_ring_e2 * outer_ring_e2));
+        let t19 = outer_ring_e0 * outer_ring_e3;
+        let t20 = outer_ring_e1 * outer_ring_e2;
+        let t21 = k(2.0) * (t20 - t19);
+        let t22 = k(2.0) * (t13 + t12);
         let t23 = inner_ring_e0 * inner_ring_e3;
         let t24 = inner_ring_e1 * inner_ring_e2;
         let t25 = k(2.0) * (t24 - t23);
-        let t26 = k(2.0) * (k(0.5) - (t15 + inner_ring_e2 * inner_ring_e2));
-        let t27 = k(2.0) * (t19 + t18);
-        let t28 = k(2.0) * (t11 + t10);
-        let t29 = k(2.0) * (k(0.5) - (t15 + inner_ring_e1 * inner_ring_e1));
+        let t26 = k(2.0) * (k(0.5) - (t7 + inner_ring_e2 * inner_ring_e2));
+        let t27 = k(2.0) * (t20 + t19);
+        let t28 = k(2.0) * (t10 + t9);
+        let t29 = k(2.0) * (k(0.5) - (t7 + inner_ring_e1 * inner_ring_e1));
         let t30 = k(2.0) * (t24 + t23);
-        let t31 = k(2.0) * (t8 - t7);
+        let t31 = k(2.0) * (t15 - t14);
         let t32 = rotor_e0 * rotor_e0;
         let t33 = k(2.0) * (k(0.5) - (t32 + rotor_e1 * rotor_e1));
         let t34 = rotor_e0 * rotor_e3;
@@ -1334,14 +1339,14 @@ impl<T: Scalar> Equations for GyroscopeFreeNutation<T> {
         let t38 = rotor_e1 * rotor_e3;
         let t39 = k(2.0) * (t38 - t37);
         let t40 = t31 * t39 + (t30 * t36 + t29 * t33);
-        let t41 = k(2.0) * (t38 + t37);
-        let t42 = rotor_e0 * rotor_e1;
-        let t43 = rotor_e2 * rotor_e3;
-        let t44 = k(2.0) * (t43 - t42);
+        let t41 = rotor_e0 * rotor_e1;
+        let t42 = rotor_e2 * rotor_e3;
+        let t43 = k(2.0) * (t42 - t41);
+        let t44 = k(2.0) * (t38 + t37);
         let t45 = k(2.0) * (k(0.5) - (t32 + rotor_e3 * rotor_e3));
-        let t46 = k(2.0) * (t35 - t34);
-        let t47 = k(2.0) * (k(0.5) - (t32 + rotor_e2 * rotor_e2));
-        let t48 = k(2.0) * (t43 + t42);
+        let t46 = k(2.0) * (k(0.5) - (t32 + rotor_e2 * rotor_e2));
+        let t47 = k(2.0) * (t35 - t34);
+        let t48 = k(2.0) * (t42 + t41);
         *out = [
             k(1.0),
             k(1.0),
@@ -1357,27 +1362,27 @@ impl<T: Scalar> Equations for GyroscopeFreeNutation<T> {
             k(-1.0),
             k(1.0),
             -t17,
-            -(t22 * t16 + (t21 * t12 - t20 * t9)),
+            t21 * t16 - t18 * t11 - t22 * t8,
             t27 * t26 + t6 * t25 - t4 * t28,
             t4 * t31 + (t27 * t30 + t6 * t29),
             t17,
-            t4 * t16 - (t27 * t12 - t6 * t9),
-            -(t22 * t28 + (t21 * t26 + t20 * t25)),
-            t22 * t31 - (t21 * t30 + t20 * t29),
+            t4 * t8 - (t27 * t11 - t6 * t16),
+            -(t22 * t28 + (t21 * t25 + t18 * t26)),
+            t22 * t31 - (t18 * t30 + t21 * t29),
             k(-1.0),
             k(1.0),
             k(-1.0),
             k(1.0),
             k(-1.0),
             k(1.0),
-            t12 * t36 - t9 * t33 - t16 * t39,
+            t11 * t36 - t16 * t33 - t8 * t39,
             -t40,
-            t28 * t45 + (t26 * t44 - t25 * t41),
-            t28 * t48 + (t26 * t47 + t25 * t46),
+            t28 * t45 - (t25 * t44 - t26 * t43),
+            t28 * t48 + (t25 * t47 + t26 * t46),
             t26 * t36 + t25 * t33 - t28 * t39,
             t40,
-            -(t16 * t45 + (t12 * t44 + t9 * t41)),
-            -(t16 * t48 + (t12 * t47 - t9 * t46)),
+            -(t16 * t44 + t11 * t43 + t8 * t45),
+            t16 * t47 - t11 * t46 - t8 * t48,
         ];
     }
     /// Writes ν: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -1453,9 +1458,9 @@ impl<T: Scalar> Equations for GyroscopeFreeNutation<T> {
         let t25 = k(2.0) * (k(0.5) - (t24 + inner_ring_e3 * inner_ring_e3));
         let t26 = t3 * t25 - (t23 * t22 - t12 * t19);
         let t27 = k(2.0) * (k(0.5) - (t10 + outer_ring_e2 * outer_ring_e2));
-        let t28 = t8 * t25 + (t27 * t22 - t15 * t19);
+        let t28 = t8 * t25 - (t15 * t19 - t27 * t22);
         let t29 = k(2.0) * (t7 - t6);
-        let t30 = t11 * t25 + (t29 * t22 + t16 * t19);
+        let t30 = t16 * t19 + t29 * t22 + t11 * t25;
         let t31 = outer_ring_wx * outer_ring_wz * t30
             - (t0 * t28 - (t4 + outer_ring_wy * outer_ring_wy) * t26);
         let t32 = k(2.0) * (k(0.5) - (t24 + inner_ring_e1 * inner_ring_e1));
@@ -1464,18 +1469,18 @@ impl<T: Scalar> Equations for GyroscopeFreeNutation<T> {
         let t35 = k(2.0) * (t34 + t33);
         let t36 = k(2.0) * (t18 - t17);
         let t37 = t8 * t36 - (t27 * t35 + t15 * t32);
-        let t38 = k(2.0) * (t34 - t33);
-        let t39 = k(2.0) * (k(0.5) - (t24 + inner_ring_e2 * inner_ring_e2));
+        let t38 = k(2.0) * (k(0.5) - (t24 + inner_ring_e2 * inner_ring_e2));
+        let t39 = k(2.0) * (t34 - t33);
         let t40 = k(2.0) * (t21 + t20);
-        let t41 = t8 * t40 + (t27 * t39 + t15 * t38);
-        let t42 = inner_ring_wx * (t11 * t40 + (t29 * t39 - t16 * t38))
+        let t41 = t8 * t40 + (t15 * t39 + t27 * t38);
+        let t42 = inner_ring_wx * (t11 * t40 - (t16 * t39 - t29 * t38))
             - inner_ring_wy * (t11 * t36 - (t29 * t35 - t16 * t32));
         let t43 = k(2.0)
             * (outer_ring_wy * t42
                 + outer_ring_wz * (inner_ring_wx * t41 - inner_ring_wy * t37));
         let t44 = t3 * t36 + (t23 * t35 + t12 * t32);
         let t45 = inner_ring_wx * inner_ring_wz;
-        let t46 = t3 * t40 - (t23 * t39 + t12 * t38);
+        let t46 = t3 * t40 - (t23 * t38 + t12 * t39);
         let t47 = inner_ring_wy * inner_ring_wz;
         let t48 = inner_ring_wx * inner_ring_wx;
         let t49 = inner_ring_wy * inner_ring_wy + t48;
@@ -1494,7 +1499,7 @@ impl<T: Scalar> Equations for GyroscopeFreeNutation<T> {
         let t59 = rotor_e1 * rotor_e3;
         let t60 = k(2.0) * (t59 - t58);
         let t61 = t36 * t60 + (t35 * t57 + t32 * t54);
-        let t62 = t40 * t60 - (t39 * t57 + t38 * t54);
+        let t62 = t40 * t60 - (t38 * t57 + t39 * t54);
         let t63 = t25 * t60 - (t22 * t57 - t19 * t54);
         let t64 = t47 * t63
             + ((inner_ring_wz * inner_ring_wz + t48) * t62
@@ -1509,14 +1514,14 @@ impl<T: Scalar> Equations for GyroscopeFreeNutation<T> {
         let t72 = k(2.0) * (k(0.5) - (t53 + rotor_e3 * rotor_e3));
         let t73 = rotor_wy * (t36 * t72 - (t35 * t71 - t32 * t70))
             + rotor_wz * (t36 * t69 - (t35 * t66 + t32 * t65));
-        let t74 = t25 * t69 + (t22 * t66 - t19 * t65);
-        let t75 = t25 * t72 + (t22 * t71 + t19 * t70);
+        let t74 = t25 * t69 - (t19 * t65 - t22 * t66);
+        let t75 = t19 * t70 + t22 * t71 + t25 * t72;
         let t76 = k(2.0)
             * (inner_ring_wx * (rotor_wy * t75 + rotor_wz * t74) + inner_ring_wz * t73);
         let t77 = rotor_wz * rotor_wz + rotor_wy * rotor_wy;
-        let t78 = t40 * t69 + (t39 * t66 + t38 * t65);
+        let t78 = t40 * t69 + (t39 * t65 + t38 * t66);
         let t79 = rotor_wx * rotor_wy;
-        let t80 = t40 * t72 + (t39 * t71 - t38 * t70);
+        let t80 = t40 * t72 - (t39 * t70 - t38 * t71);
         let t81 = rotor_wx * rotor_wz;
         let t82 = t81 * t80 - (t79 * t78 - t77 * t62) + t76 + t64;
         let t83 = k(2.0)
@@ -1604,54 +1609,54 @@ impl<T: Scalar> Equations for GyroscopeFreeNutation<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = rotor_e0 * rotor_e3;
-        let t1 = rotor_e1 * rotor_e2;
-        let t2 = k(2.0) * (t1 - t0);
-        let t3 = inner_ring_e0 * inner_ring_e3;
-        let t4 = inner_ring_e1 * inner_ring_e2;
-        let t5 = k(2.0) * (t4 - t3);
-        let t6 = rotor_e0 * rotor_e0;
-        let t7 = k(2.0) * (k(0.5) - (t6 + rotor_e2 * rotor_e2));
-        let t8 = inner_ring_e0 * inner_ring_e0;
-        let t9 = k(2.0) * (k(0.5) - (t8 + inner_ring_e2 * inner_ring_e2));
+        let t0 = rotor_e0 * rotor_e0;
+        let t1 = k(2.0) * (k(0.5) - (t0 + rotor_e2 * rotor_e2));
+        let t2 = inner_ring_e0 * inner_ring_e0;
+        let t3 = k(2.0) * (k(0.5) - (t2 + inner_ring_e2 * inner_ring_e2));
+        let t4 = rotor_e0 * rotor_e3;
+        let t5 = rotor_e1 * rotor_e2;
+        let t6 = k(2.0) * (t5 - t4);
+        let t7 = inner_ring_e0 * inner_ring_e3;
+        let t8 = inner_ring_e1 * inner_ring_e2;
+        let t9 = k(2.0) * (t8 - t7);
         let t10 = rotor_e0 * rotor_e1;
         let t11 = rotor_e2 * rotor_e3;
         let t12 = k(2.0) * (t11 + t10);
         let t13 = inner_ring_e0 * inner_ring_e1;
         let t14 = inner_ring_e2 * inner_ring_e3;
         let t15 = k(2.0) * (t14 + t13);
-        let t16 = t15 * t12 + (t9 * t7 + t5 * t2);
+        let t16 = t15 * t12 + (t9 * t6 + t3 * t1);
         let t17 = k(200000.0) * t16;
-        let t18 = rotor_e0 * rotor_e2;
-        let t19 = rotor_e1 * rotor_e3;
-        let t20 = k(2.0) * (t19 + t18);
-        let t21 = k(2.0) * (t11 - t10);
-        let t22 = k(2.0) * (k(0.5) - (t6 + rotor_e3 * rotor_e3));
-        let t23 = t15 * t22 + (t9 * t21 - t5 * t20);
+        let t18 = k(2.0) * (t11 - t10);
+        let t19 = rotor_e0 * rotor_e2;
+        let t20 = rotor_e1 * rotor_e3;
+        let t21 = k(2.0) * (t20 + t19);
+        let t22 = k(2.0) * (k(0.5) - (t0 + rotor_e3 * rotor_e3));
+        let t23 = t15 * t22 - (t9 * t21 - t3 * t18);
         let t24 = k(200000.0) * t23;
-        let t25 = k(2.0) * (k(0.5) - (t6 + rotor_e1 * rotor_e1));
-        let t26 = k(2.0) * (k(0.5) - (t8 + inner_ring_e1 * inner_ring_e1));
-        let t27 = k(2.0) * (t1 + t0);
-        let t28 = k(2.0) * (t4 + t3);
-        let t29 = k(2.0) * (t19 - t18);
+        let t25 = k(2.0) * (k(0.5) - (t0 + rotor_e1 * rotor_e1));
+        let t26 = k(2.0) * (k(0.5) - (t2 + inner_ring_e1 * inner_ring_e1));
+        let t27 = k(2.0) * (t5 + t4);
+        let t28 = k(2.0) * (t8 + t7);
+        let t29 = k(2.0) * (t20 - t19);
         let t30 = inner_ring_e0 * inner_ring_e2;
         let t31 = inner_ring_e1 * inner_ring_e3;
         let t32 = k(2.0) * (t31 - t30);
         let t33 = t32 * t29 + (t28 * t27 + t26 * t25);
         let t34 = k(1000000.0) * t33;
         let t35 = k(1.0) / (t33 * t34 + t23 * t24 + t16 * t17);
-        let t36 = k(2.0) * (t31 + t30);
-        let t37 = k(2.0) * (t14 - t13);
-        let t38 = k(2.0) * (k(0.5) - (t8 + inner_ring_e3 * inner_ring_e3));
-        let t39 = t38 * t12 + (t37 * t7 - t36 * t2);
+        let t36 = k(2.0) * (t14 - t13);
+        let t37 = k(2.0) * (t31 + t30);
+        let t38 = k(2.0) * (k(0.5) - (t2 + inner_ring_e3 * inner_ring_e3));
+        let t39 = t38 * t12 - (t37 * t6 - t36 * t1);
         let t40 = k(200000.0) * t39;
-        let t41 = t38 * t22 + (t37 * t21 + t36 * t20);
+        let t41 = t37 * t21 + t36 * t18 + t38 * t22;
         let t42 = k(200000.0) * t41;
         let t43 = t23 * t42 + t16 * t40;
         let t44 = t43 * t35;
         let t45 = k(1.0) / (t41 * t42 + t39 * t40 - t43 * t44);
-        let t46 = t38 * t29 - (t37 * t27 - t36 * t25);
-        let t47 = t15 * t29 - (t9 * t27 + t5 * t25);
+        let t46 = t38 * t29 - (t36 * t27 - t37 * t25);
+        let t47 = t15 * t29 - (t3 * t27 + t9 * t25);
         let t48 = t47 + t46 * t44;
         let t49 = t48 * t45;
         let t50 = t46 * t35;
@@ -1668,25 +1673,25 @@ impl<T: Scalar> Equations for GyroscopeFreeNutation<T> {
         let t61 = outer_ring_e0 * outer_ring_e2;
         let t62 = outer_ring_e1 * outer_ring_e3;
         let t63 = k(2.0) * (t62 - t61);
-        let t64 = t63 * t15 - (t60 * t9 + t57 * t5);
+        let t64 = t63 * t15 - (t60 * t3 + t57 * t9);
         let t65 = t64 * t51;
         let t66 = t63 * t32 + (t60 * t28 + t57 * t26);
         let t67 = t66 - t53 * t65;
         let t68 = t67 * t55;
-        let t69 = k(2.0) * (t62 + t61);
+        let t69 = k(2.0) * (k(0.5) - (t56 + outer_ring_e3 * outer_ring_e3));
         let t70 = outer_ring_e0 * outer_ring_e1;
         let t71 = outer_ring_e2 * outer_ring_e3;
         let t72 = k(2.0) * (t71 - t70);
-        let t73 = k(2.0) * (k(0.5) - (t56 + outer_ring_e3 * outer_ring_e3));
-        let t74 = t73 * t38 + (t72 * t37 + t69 * t36);
+        let t73 = k(2.0) * (t62 + t61);
+        let t74 = t73 * t37 + t72 * t36 + t69 * t38;
         let t75 = k(1000000.0) * t74;
         let t76 = k(1.0) / (t74 * t75 + t64 * t65 + t67 * t68);
-        let t77 = k(2.0) * (t59 - t58);
-        let t78 = k(2.0) * (k(0.5) - (t56 + outer_ring_e2 * outer_ring_e2));
+        let t77 = k(2.0) * (k(0.5) - (t56 + outer_ring_e2 * outer_ring_e2));
+        let t78 = k(2.0) * (t59 - t58);
         let t79 = k(2.0) * (t71 + t70);
-        let t80 = t79 * t15 + (t78 * t9 + t77 * t5);
+        let t80 = t79 * t15 + (t78 * t9 + t77 * t3);
         let t81 = t80 * t51;
-        let t82 = t79 * t32 - (t78 * t28 + t77 * t26);
+        let t82 = t79 * t32 - (t77 * t28 + t78 * t26);
         let t83 = t82 - t53 * t81;
         let t84 = t83 * t55;
         let t85 = t64 * t81 + t67 * t84;
@@ -1694,22 +1699,22 @@ impl<T: Scalar> Equations for GyroscopeFreeNutation<T> {
         let t87 = k(1.0) / (t80 * t81 + t83 * t84 - t85 * t86);
         let t88 = t74 * t87;
         let t89 = k(1.0) / (k(2e-6) + t74 * t88);
-        let t90 = t79 * t38 + (t78 * t37 - t77 * t36);
-        let t91 = t63 * t38 - (t60 * t37 - t57 * t36);
+        let t90 = t79 * t38 - (t78 * t37 - t77 * t36);
+        let t91 = t63 * t38 - (t60 * t36 - t57 * t37);
         let t92 = t91 + t90 * t86;
         let t93 = t92 * t87;
         let t94 = t74 * t93;
         let t95 = t94 * t89;
         let t96 = t90 * t76;
         let t97 = k(1.0) / (k(1e-6) + t90 * t96 + t92 * t93 - t94 * t95);
-        let t98 = t73 * t89;
+        let t98 = t69 * t89;
         let t99 = t63 - t94 * t98;
         let t100 = t99 * t97;
-        let t101 = k(1.0) / (t73 * t98 + t99 * t100);
-        let t102 = t69 * t89;
+        let t101 = k(1.0) / (t69 * t98 + t99 * t100);
+        let t102 = t73 * t89;
         let t103 = t57 - t94 * t102;
         let t104 = t103 * t97;
-        let t105 = t73 * t102 + t99 * t104;
+        let t105 = t69 * t102 + t99 * t104;
         let t106 = t105 * t101;
         let t107 = rotor_wx * rotor_wy;
         let t108 = k(5e-6) * t107;
@@ -1720,8 +1725,8 @@ impl<T: Scalar> Equations for GyroscopeFreeNutation<T> {
         let t113 = inner_ring_wy * inner_ring_wz;
         let t114 = t113 * t46
             + ((inner_ring_wz * inner_ring_wz + t112) * t47 - t111 * t33);
-        let t115 = rotor_wy * (t32 * t22 - (t28 * t21 - t26 * t20))
-            + rotor_wz * (t32 * t12 - (t28 * t7 + t26 * t2));
+        let t115 = rotor_wy * (t32 * t22 - (t28 * t18 - t26 * t21))
+            + rotor_wz * (t32 * t12 - (t28 * t1 + t26 * t6));
         let t116 = k(2.0)
             * (inner_ring_wx * (rotor_wy * t41 + rotor_wz * t39) + inner_ring_wz * t115);
         let t117 = rotor_wz * rotor_wz + rotor_wy * rotor_wy;
@@ -1741,8 +1746,8 @@ impl<T: Scalar> Equations for GyroscopeFreeNutation<T> {
         let t129 = outer_ring_wx * outer_ring_wy;
         let t130 = t127 * t74
             - (t129 * t90 - (t128 + outer_ring_wy * outer_ring_wy) * t91);
-        let t131 = inner_ring_wx * (t73 * t15 + (t72 * t9 - t69 * t5))
-            - inner_ring_wy * (t73 * t32 - (t72 * t28 - t69 * t26));
+        let t131 = inner_ring_wx * (t69 * t15 - (t73 * t9 - t72 * t3))
+            - inner_ring_wy * (t69 * t32 - (t72 * t28 - t73 * t26));
         let t132 = k(2.0)
             * (outer_ring_wy * t131
                 + outer_ring_wz * (inner_ring_wx * t80 - inner_ring_wy * t82));
@@ -1758,11 +1763,11 @@ impl<T: Scalar> Equations for GyroscopeFreeNutation<T> {
         let t139 = t138 - t125 * t81 - t126 * t84 - t134 * t86;
         let t140 = t139 * t88;
         let t141 = k(1e-6) * t129 + t134 * t96 - t139 * t93 + t140 * t95;
-        let t142 = t73 * t136 + (t79 * t135 - t63 * t129) - t140 * t98;
+        let t142 = t69 * t136 + (t79 * t135 - t63 * t129) - t140 * t98;
         let t143 = t142 + t141 * t100;
-        let t144 = t69 * t136 - (t77 * t135 + t57 * t129) - t140 * t102;
+        let t144 = t73 * t136 - (t78 * t135 + t57 * t129) - t140 * t102;
         let t145 = (t144 + t141 * t104 - t143 * t106)
-            / (t69 * t102 + t103 * t104 - t105 * t106);
+            / (t73 * t102 + t103 * t104 - t105 * t106);
         let t146 = t143 * t101 - t106 * t145;
         let t147 = t141 * t97 - t100 * t146 - t104 * t145;
         let t148 = t140 * t89 + t95 * t147 + t98 * t146 + t102 * t145;

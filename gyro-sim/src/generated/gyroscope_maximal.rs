@@ -21,26 +21,21 @@
 //! | accelerations | (s̈, ẇ') and λ, eq. (17) | 461 | 719 | 15 | 1195 | 5 of 45 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 32 | 64 | 0 | 96 | 0 of 28 |
 //! | energy | T and V | 26 | 45 | 0 | 71 | 0 of 2 |
-//! | read_joints | joint coordinates and rates | 51 | 80 | 0 | 131 | 0 of 9 |
+//! | read_joints | joint coordinates and rates | 73 | 83 | 0 | 156 | 0 of 9 |
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
 //! | newton_step | dependent positions, one Newton step | 193 | 318 | 3 | 514 | 12 of 28 |
 //! | solve_velocities | dependent velocities, eq. (19) | 151 | 260 | 3 | 414 | 12 of 24 |
 
-use gyro_sim::charts::{self, Charts};
-use gyro_sim::{
-    Coordinate, Energy, Equations, Error, JointInfo, Mechanism, Ode, Owner, Partition,
-    Real, RowInfo, Scalar,
-};
 /// The mechanism `gyroscope_maximal`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GyroscopeMaximal<T> {
     /// The model has no parameters.
-    scalar: core::marker::PhantomData<T>,
+    scalar: ::core::marker::PhantomData<T>,
 }
-impl<T: Scalar> Default for GyroscopeMaximal<T> {
+impl<T: gyro_sim::Scalar> ::core::default::Default for GyroscopeMaximal<T> {
     fn default() -> Self {
         Self {
-            scalar: core::marker::PhantomData,
+            scalar: ::core::marker::PhantomData,
         }
     }
 }
@@ -52,7 +47,7 @@ impl<T> GyroscopeMaximal<T> {
         false
     }
 }
-impl<T: Scalar> Ode for GyroscopeMaximal<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Ode for GyroscopeMaximal<T> {
     type Scalar = T;
     type State = [T; 52];
     /// The assembled start, with all parameters at their defaults.
@@ -115,9 +110,9 @@ impl<T: Scalar> Ode for GyroscopeMaximal<T> {
     }
     /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 96 operations (32 ±, 64 ×, 0 ÷).
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut v = self.velocities();
-        let mut lambda = self.rows();
-        self.accelerations(t, y, &mut v, &mut lambda);
+        let mut v = gyro_sim::Equations::velocities(self);
+        let mut lambda = gyro_sim::Mechanism::rows(self);
+        gyro_sim::Equations::accelerations(self, t, y, &mut v, &mut lambda);
         let k = T::constant;
         let base_e0 = y[3];
         let base_e1 = y[4];
@@ -233,7 +228,7 @@ impl<T: Scalar> Ode for GyroscopeMaximal<T> {
         ];
     }
 }
-impl<T: Scalar> Mechanism for GyroscopeMaximal<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMaximal<T> {
     type Rows = [T; 21];
     type Constraints = [T; 25];
     type Readings = [T; 9];
@@ -277,31 +272,31 @@ impl<T: Scalar> Mechanism for GyroscopeMaximal<T> {
         let rotor_e1 = y[25];
         let rotor_e2 = y[26];
         let rotor_e3 = y[27];
-        let t0 = outer_ring_e0 * outer_ring_e3;
-        let t1 = outer_ring_e1 * outer_ring_e2;
-        let t2 = k(2.0) * (t1 - t0);
-        let t3 = base_e0 * base_e2;
-        let t4 = base_e1 * base_e3;
-        let t5 = outer_ring_e2 * outer_ring_e2;
-        let t6 = outer_ring_e0 * outer_ring_e0;
-        let t7 = k(2.0) * (k(0.5) - (t6 + t5));
-        let t8 = k(2.0) * (base_e2 * base_e3 - base_e0 * base_e1) * t7
-            - k(2.0) * (t4 + t3) * t2;
+        let t0 = outer_ring_e2 * outer_ring_e2;
+        let t1 = outer_ring_e0 * outer_ring_e0;
+        let t2 = k(2.0) * (k(0.5) - (t1 + t0));
+        let t3 = outer_ring_e0 * outer_ring_e3;
+        let t4 = outer_ring_e1 * outer_ring_e2;
+        let t5 = k(2.0) * (t4 - t3);
+        let t6 = base_e0 * base_e2;
+        let t7 = base_e1 * base_e3;
+        let t8 = k(2.0) * (t7 + t6) * t5
+            - k(2.0) * (base_e2 * base_e3 - base_e0 * base_e1) * t2;
         let t9 = k(2.0)
             * (outer_ring_e2 * outer_ring_e3 + outer_ring_e0 * outer_ring_e1);
         let t10 = base_e3 * base_e3;
         let t11 = base_e0 * base_e0;
         let t12 = t11 + base_e1 * base_e1;
-        let t13 = k(2.0) * (base_e1 * base_e2 + base_e0 * base_e3) * t7
-            + k(2.0) * (k(0.5) - t12) * t2;
+        let t13 = k(2.0) * (base_e1 * base_e2 + base_e0 * base_e3) * t2
+            + k(2.0) * (k(0.5) - t12) * t5;
         let t14 = inner_ring_e0 * inner_ring_e2;
         let t15 = inner_ring_e1 * inner_ring_e3;
         let t16 = k(2.0) * (t15 + t14);
-        let t17 = t6 + outer_ring_e1 * outer_ring_e1;
+        let t17 = t1 + outer_ring_e1 * outer_ring_e1;
         let t18 = inner_ring_e0 * inner_ring_e1;
         let t19 = inner_ring_e2 * inner_ring_e3;
         let t20 = k(2.0) * (t19 - t18);
-        let t21 = k(2.0) * (t1 + t0) * t20 - k(2.0) * (k(0.5) - t17) * t16;
+        let t21 = k(2.0) * (t4 + t3) * t20 - k(2.0) * (k(0.5) - t17) * t16;
         let t22 = inner_ring_e3 * inner_ring_e3;
         let t23 = inner_ring_e0 * inner_ring_e0;
         let t24 = k(2.0) * (k(0.5) - (t23 + t22));
@@ -324,8 +319,8 @@ impl<T: Scalar> Mechanism for GyroscopeMaximal<T> {
             outer_ring_rx - base_rx,
             outer_ring_ry - base_ry,
             outer_ring_rz - base_rz,
-            -(k(2.0) * (k(0.5) - (t11 + t10)) * t9 + t8),
-            k(2.0) * (t4 - t3) * t9 - t13,
+            t8 - k(2.0) * (k(0.5) - (t11 + t10)) * t9,
+            k(2.0) * (t7 - t6) * t9 - t13,
             inner_ring_rx - outer_ring_rx,
             inner_ring_ry - outer_ring_ry,
             inner_ring_rz - outer_ring_rz,
@@ -333,14 +328,14 @@ impl<T: Scalar> Mechanism for GyroscopeMaximal<T> {
                 - k(2.0)
                     * (outer_ring_e1 * outer_ring_e3 - outer_ring_e0 * outer_ring_e2)
                     * t24,
-            -(t9 * t24 + (t7 * t20 - t2 * t16)),
+            t5 * t16 - t2 * t20 - t9 * t24,
             rotor_rx - (inner_ring_rx - k(0.00025) * (k(0.5) - t25)),
             rotor_ry - (inner_ring_ry + k(0.00025) * (t27 + t26)),
             rotor_rz - (inner_ring_rz + k(0.00025) * (t15 - t14)),
             k(2.0) * (t19 + t18) * t33 - t32,
             t20 * t30 - t16 * t29 - t24 * t33,
             t10 + (t12 + base_e2 * base_e2) - k(1.0),
-            outer_ring_e3 * outer_ring_e3 + (t17 + t5) - k(1.0),
+            outer_ring_e3 * outer_ring_e3 + (t17 + t0) - k(1.0),
             t22 + (t25 + t31) - k(1.0),
             rotor_e3 * rotor_e3 + (t28 + rotor_e2 * rotor_e2) - k(1.0),
         ];
@@ -403,8 +398,8 @@ impl<T: Scalar> Mechanism for GyroscopeMaximal<T> {
         let t13 = base_e0 * base_e2;
         let t14 = base_e1 * base_e3;
         let t15 = k(2.0) * (t14 - t13);
-        let t16 = k(2.0) * (k(0.5) - (t3 + base_e2 * base_e2)) * t6
-            + k(2.0) * (t8 - t7) * t2;
+        let t16 = k(2.0) * (t8 - t7) * t2
+            + k(2.0) * (k(0.5) - (t3 + base_e2 * base_e2)) * t6;
         let t17 = base_e0 * base_e1;
         let t18 = base_e2 * base_e3;
         let t19 = k(2.0) * (t18 + t17) * t12 + t16;
@@ -417,38 +412,38 @@ impl<T: Scalar> Mechanism for GyroscopeMaximal<T> {
         let t26 = outer_ring_e1 * outer_ring_e3;
         let t27 = k(2.0) * (t26 - t25);
         let t28 = k(2.0) * (k(0.5) - (t3 + base_e3 * base_e3));
-        let t29 = k(2.0) * (t26 + t25);
+        let t29 = k(2.0) * (k(0.5) - (t5 + outer_ring_e3 * outer_ring_e3));
         let t30 = k(2.0) * (t11 - t10);
-        let t31 = k(2.0) * (k(0.5) - (t5 + outer_ring_e3 * outer_ring_e3));
-        let t32 = outer_ring_wx * (t28 * t31 + (t24 * t30 + t22 * t29))
+        let t31 = k(2.0) * (t26 + t25);
+        let t32 = outer_ring_wx * (t22 * t31 + t24 * t30 + t28 * t29)
             + outer_ring_wz * (t28 * t27 - (t24 * t23 - t22 * t21));
-        let t33 = base_wy * (t28 * t12 + (t24 * t6 - t22 * t2)) + base_wz * t19;
-        let t34 = outer_ring_wx * (t15 * t31 - (t9 * t30 - t4 * t29))
+        let t33 = base_wy * (t28 * t12 - (t22 * t2 - t24 * t6)) + base_wz * t19;
+        let t34 = outer_ring_wx * (t15 * t29 - (t9 * t30 - t4 * t31))
             + outer_ring_wz * (t15 * t27 + (t9 * t23 + t4 * t21));
-        let t35 = inner_ring_e0 * inner_ring_e2;
-        let t36 = inner_ring_e1 * inner_ring_e3;
-        let t37 = k(2.0) * (t36 + t35);
-        let t38 = inner_ring_e0 * inner_ring_e1;
-        let t39 = inner_ring_e2 * inner_ring_e3;
-        let t40 = k(2.0) * (t39 - t38);
+        let t35 = inner_ring_e0 * inner_ring_e1;
+        let t36 = inner_ring_e2 * inner_ring_e3;
+        let t37 = k(2.0) * (t36 - t35);
+        let t38 = inner_ring_e0 * inner_ring_e2;
+        let t39 = inner_ring_e1 * inner_ring_e3;
+        let t40 = k(2.0) * (t39 + t38);
         let t41 = inner_ring_e0 * inner_ring_e0;
         let t42 = k(2.0) * (k(0.5) - (t41 + inner_ring_e3 * inner_ring_e3));
-        let t43 = t31 * t42 + (t30 * t40 + t29 * t37);
+        let t43 = t31 * t40 + t30 * t37 + t29 * t42;
         let t44 = outer_ring_wy * t43
-            + outer_ring_wz * (t12 * t42 + (t6 * t40 - t2 * t37));
+            + outer_ring_wz * (t12 * t42 - (t2 * t40 - t6 * t37));
         let t45 = k(2.0) * (k(0.5) - (t41 + inner_ring_e1 * inner_ring_e1));
         let t46 = inner_ring_e0 * inner_ring_e3;
         let t47 = inner_ring_e1 * inner_ring_e2;
         let t48 = k(2.0) * (t47 + t46);
-        let t49 = k(2.0) * (t36 - t35);
+        let t49 = k(2.0) * (t39 - t38);
         let t50 = k(2.0) * (t47 - t46);
         let t51 = k(2.0) * (k(0.5) - (t41 + inner_ring_e2 * inner_ring_e2));
-        let t52 = k(2.0) * (t39 + t38);
+        let t52 = k(2.0) * (t36 + t35);
         let t53 = inner_ring_wx * (t27 * t52 - (t23 * t51 + t21 * t50))
             - inner_ring_wy * (t27 * t49 + (t23 * t48 + t21 * t45));
         let t54 = outer_ring_wx * t43
-            + outer_ring_wz * (t27 * t42 - (t23 * t40 - t21 * t37));
-        let t55 = inner_ring_wx * (t12 * t52 + (t6 * t51 + t2 * t50))
+            + outer_ring_wz * (t27 * t42 - (t23 * t37 - t21 * t40));
+        let t55 = inner_ring_wx * (t12 * t52 + (t2 * t50 + t6 * t51))
             - inner_ring_wy * (t12 * t49 - (t6 * t48 + t2 * t45));
         let t56 = rotor_e0 * rotor_e0;
         let t57 = k(2.0) * (k(0.5) - (t56 + rotor_e1 * rotor_e1));
@@ -459,22 +454,22 @@ impl<T: Scalar> Mechanism for GyroscopeMaximal<T> {
         let t62 = rotor_e1 * rotor_e3;
         let t63 = k(2.0) * (t62 - t61);
         let t64 = t49 * t63 + (t48 * t60 + t45 * t57);
-        let t65 = inner_ring_wx * (t42 * t63 - (t40 * t60 - t37 * t57))
+        let t65 = inner_ring_wx * (t42 * t63 - (t37 * t60 - t40 * t57))
             + inner_ring_wz * t64;
-        let t66 = k(2.0) * (t59 - t58);
-        let t67 = k(2.0) * (k(0.5) - (t56 + rotor_e2 * rotor_e2));
+        let t66 = k(2.0) * (k(0.5) - (t56 + rotor_e2 * rotor_e2));
+        let t67 = k(2.0) * (t59 - t58);
         let t68 = rotor_e0 * rotor_e1;
         let t69 = rotor_e2 * rotor_e3;
         let t70 = k(2.0) * (t69 + t68);
-        let t71 = k(2.0) * (t62 + t61);
-        let t72 = k(2.0) * (t69 - t68);
+        let t71 = k(2.0) * (t69 - t68);
+        let t72 = k(2.0) * (t62 + t61);
         let t73 = k(2.0) * (k(0.5) - (t56 + rotor_e3 * rotor_e3));
-        let t74 = rotor_wy * (t52 * t73 + (t51 * t72 - t50 * t71))
-            + rotor_wz * (t52 * t70 + (t51 * t67 + t50 * t66));
+        let t74 = rotor_wy * (t52 * t73 - (t50 * t72 - t51 * t71))
+            + rotor_wz * (t52 * t70 + (t50 * t67 + t51 * t66));
         let t75 = inner_ring_wx * (t52 * t63 - (t51 * t60 + t50 * t57))
             - inner_ring_wy * t64;
-        let t76 = rotor_wy * (t42 * t73 + (t40 * t72 + t37 * t71))
-            + rotor_wz * (t42 * t70 + (t40 * t67 - t37 * t66));
+        let t76 = rotor_wy * (t40 * t72 + t37 * t71 + t42 * t73)
+            + rotor_wz * (t42 * t70 - (t40 * t67 - t37 * t66));
         *out = [
             base_sx,
             base_sy,
@@ -494,10 +489,10 @@ impl<T: Scalar> Mechanism for GyroscopeMaximal<T> {
             t54 - t55,
             rotor_sx
                 - (inner_ring_sx
-                    - k(0.000125) * (t37 * inner_ring_wy - t50 * inner_ring_wz)),
+                    - k(0.000125) * (t40 * inner_ring_wy - t50 * inner_ring_wz)),
             rotor_sy
                 - (inner_ring_sy
-                    - k(0.000125) * (t40 * inner_ring_wy + t51 * inner_ring_wz)),
+                    - k(0.000125) * (t37 * inner_ring_wy + t51 * inner_ring_wz)),
             rotor_sz
                 - (inner_ring_sz
                     + k(0.000125) * (t42 * inner_ring_wy + t52 * inner_ring_wz)),
@@ -506,7 +501,7 @@ impl<T: Scalar> Mechanism for GyroscopeMaximal<T> {
         ];
     }
     /// Kinetic and potential energy: 71 operations (26 ±, 45 ×, 0 ÷).
-    fn energy(&self, y: &Self::State) -> Energy<T> {
+    fn energy(&self, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let base_ry = y[1];
         let outer_ring_ry = y[8];
@@ -561,12 +556,12 @@ impl<T: Scalar> Mechanism for GyroscopeMaximal<T> {
             + k(0.001) * (base_sx * base_sx + base_sy * base_sy + base_sz * base_sz);
         let t8 = k(0.01) * base_ry + k(0.1) * outer_ring_ry + k(0.1) * inner_ring_ry
             + k(0.8) * rotor_ry;
-        Energy {
+        gyro_sim::Energy {
             kinetic: k(0.5) * (t7 + t5 + t3 + t1),
             potential: t8,
         }
     }
-    /// Writes the joint readings: 131 operations (51 ±, 80 ×, 0 ÷).
+    /// Writes the joint readings: 156 operations (73 ±, 83 ×, 0 ÷).
     fn read_joints(&self, y: &Self::State, out: &mut Self::Readings) {
         let k = T::constant;
         let base_e0 = y[3];
@@ -591,52 +586,65 @@ impl<T: Scalar> Mechanism for GyroscopeMaximal<T> {
         let inner_ring_wx = y[43];
         let inner_ring_wz = y[45];
         let rotor_wx = y[49];
-        let t0 = outer_ring_e0 * outer_ring_e2;
-        let t1 = outer_ring_e1 * outer_ring_e3;
-        let t2 = k(2.0) * (t1 + t0);
-        let t3 = base_e0 * base_e0;
-        let t4 = outer_ring_e0 * outer_ring_e1;
-        let t5 = outer_ring_e2 * outer_ring_e3;
-        let t6 = k(2.0) * (t5 - t4);
-        let t7 = k(2.0) * (base_e1 * base_e2 + base_e0 * base_e3) * t6
-            - k(2.0) * (k(0.5) - (t3 + base_e1 * base_e1)) * t2;
-        let t8 = outer_ring_e0 * outer_ring_e0;
-        let t9 = k(2.0) * (k(0.5) - (t8 + outer_ring_e3 * outer_ring_e3));
-        let t10 = base_e0 * base_e2;
-        let t11 = base_e1 * base_e3;
-        let t12 = k(2.0) * (base_e2 * base_e3 - base_e0 * base_e1) * t6
-            + k(2.0) * (t11 + t10) * t2;
-        let t13 = inner_ring_e0 * inner_ring_e0;
-        let t14 = k(2.0) * (k(0.5) - (t13 + inner_ring_e1 * inner_ring_e1));
-        let t15 = outer_ring_e0 * outer_ring_e3;
-        let t16 = outer_ring_e1 * outer_ring_e2;
-        let t17 = inner_ring_e0 * inner_ring_e3;
-        let t18 = inner_ring_e1 * inner_ring_e2;
-        let t19 = k(2.0) * (t18 + t17);
-        let t20 = k(2.0) * (k(0.5) - (t8 + outer_ring_e2 * outer_ring_e2)) * t19
-            + k(2.0) * (t16 - t15) * t14;
-        let t21 = inner_ring_e0 * inner_ring_e2;
-        let t22 = inner_ring_e1 * inner_ring_e3;
-        let t23 = k(2.0) * (t22 - t21);
-        let t24 = k(2.0) * (t16 + t15) * t19
-            + k(2.0) * (k(0.5) - (t8 + outer_ring_e1 * outer_ring_e1)) * t14;
-        let t25 = k(2.0) * (rotor_e1 * rotor_e2 - rotor_e0 * rotor_e3);
-        let t26 = k(2.0) * (k(0.5) - (rotor_e0 * rotor_e0 + rotor_e2 * rotor_e2));
-        let t27 = inner_ring_e0 * inner_ring_e1;
-        let t28 = inner_ring_e2 * inner_ring_e3;
-        let t29 = k(2.0) * (t28 - t27) * t26 - k(2.0) * (t22 + t21) * t25;
-        let t30 = k(2.0) * (rotor_e2 * rotor_e3 + rotor_e0 * rotor_e1);
-        let t31 = k(2.0) * (k(0.5) - (t13 + inner_ring_e2 * inner_ring_e2)) * t26
-            + k(2.0) * (t18 - t17) * t25;
+        let t0 = outer_ring_e2 * outer_ring_e2;
+        let t1 = outer_ring_e0 * outer_ring_e0;
+        let t2 = t1 + outer_ring_e1 * outer_ring_e1;
+        let t3 = outer_ring_e3 * outer_ring_e3;
+        let t4 = k(1.0) - (t3 + (t2 + t0));
+        let t5 = k(2.0) * (k(0.5) - (t1 + t3)) - t4;
+        let t6 = base_e0 * base_e2;
+        let t7 = base_e1 * base_e3;
+        let t8 = outer_ring_e0 * outer_ring_e1;
+        let t9 = outer_ring_e2 * outer_ring_e3;
+        let t10 = k(2.0) * (t9 - t8);
+        let t11 = base_e0 * base_e0;
+        let t12 = t11 + base_e1 * base_e1;
+        let t13 = base_e3 * base_e3;
+        let t14 = k(1.0) - (t13 + (t12 + base_e2 * base_e2));
+        let t15 = outer_ring_e0 * outer_ring_e2;
+        let t16 = outer_ring_e1 * outer_ring_e3;
+        let t17 = k(2.0) * (t16 + t15);
+        let t18 = t17 * (k(2.0) * (k(0.5) - t12) - t14)
+            - k(2.0) * (base_e1 * base_e2 + base_e0 * base_e3) * t10;
+        let t19 = k(2.0) * (t7 + t6) * t17
+            + k(2.0) * (base_e2 * base_e3 - base_e0 * base_e1) * t10;
+        let t20 = inner_ring_e0 * inner_ring_e2;
+        let t21 = inner_ring_e1 * inner_ring_e3;
+        let t22 = k(2.0) * (t21 - t20);
+        let t23 = inner_ring_e0 * inner_ring_e3;
+        let t24 = inner_ring_e1 * inner_ring_e2;
+        let t25 = k(2.0) * (t24 + t23);
+        let t26 = inner_ring_e2 * inner_ring_e2;
+        let t27 = inner_ring_e0 * inner_ring_e0;
+        let t28 = t27 + inner_ring_e1 * inner_ring_e1;
+        let t29 = inner_ring_e3 * inner_ring_e3;
+        let t30 = k(1.0) - (t29 + (t28 + t26));
+        let t31 = k(2.0) * (k(0.5) - t28) - t30;
+        let t32 = outer_ring_e0 * outer_ring_e3;
+        let t33 = outer_ring_e1 * outer_ring_e2;
+        let t34 = k(2.0) * (t33 - t32) * t31
+            + t25 * (k(2.0) * (k(0.5) - (t1 + t0)) - t4);
+        let t35 = (k(2.0) * (k(0.5) - t2) - t4) * t31 + k(2.0) * (t33 + t32) * t25;
+        let t36 = k(2.0) * (rotor_e2 * rotor_e3 + rotor_e0 * rotor_e1);
+        let t37 = rotor_e2 * rotor_e2;
+        let t38 = rotor_e0 * rotor_e0;
+        let t39 = k(2.0) * (k(0.5) - (t38 + t37))
+            - (k(1.0) - (rotor_e3 * rotor_e3 + (t38 + rotor_e1 * rotor_e1 + t37)));
+        let t40 = inner_ring_e0 * inner_ring_e1;
+        let t41 = inner_ring_e2 * inner_ring_e3;
+        let t42 = k(2.0) * (rotor_e1 * rotor_e2 - rotor_e0 * rotor_e3);
+        let t43 = k(2.0) * (t21 + t20) * t42 - k(2.0) * (t41 - t40) * t39;
+        let t44 = k(2.0) * (t24 - t23) * t42
+            + (k(2.0) * (k(0.5) - (t27 + t26)) - t30) * t39;
         *out = [
-            t7 - k(2.0) * (t11 - t10) * t9,
-            k(2.0) * (k(0.5) - (t3 + base_e3 * base_e3)) * t9 + t12,
+            -(t18 + k(2.0) * (t7 - t6) * t5),
+            t19 + (k(2.0) * (k(0.5) - (t11 + t13)) - t14) * t5,
             outer_ring_wy - base_wy,
-            k(2.0) * (t5 + t4) * t23 - t20,
-            k(2.0) * (t1 - t0) * t23 + t24,
+            k(2.0) * (t9 + t8) * t22 - t34,
+            t35 + k(2.0) * (t16 - t15) * t22,
             inner_ring_wz - outer_ring_wz,
-            -(k(2.0) * (k(0.5) - (t13 + inner_ring_e3 * inner_ring_e3)) * t30 + t29),
-            k(2.0) * (t28 + t27) * t30 + t31,
+            t43 - t36 * (k(2.0) * (k(0.5) - (t27 + t29)) - t30),
+            t44 + k(2.0) * (t41 + t40) * t36,
             rotor_wx - inner_ring_wx,
         ];
     }
@@ -650,120 +658,120 @@ impl<T: Scalar> Mechanism for GyroscopeMaximal<T> {
         const BODIES: [&str; 4] = ["base", "outer_ring", "inner_ring", "rotor"];
         BODIES.get(body).copied().unwrap_or_default()
     }
-    fn joint(&self, joint: usize) -> JointInfo<'_> {
-        const JOINTS: [JointInfo<'static>; 3] = [
-            JointInfo {
+    fn joint(&self, joint: usize) -> gyro_sim::JointInfo<'_> {
+        const JOINTS: [gyro_sim::JointInfo<'static>; 3] = [
+            gyro_sim::JointInfo {
                 name: "alpha",
-                coordinate: Coordinate::Angle,
+                coordinate: gyro_sim::Coordinate::Angle,
             },
-            JointInfo {
+            gyro_sim::JointInfo {
                 name: "beta",
-                coordinate: Coordinate::Angle,
+                coordinate: gyro_sim::Coordinate::Angle,
             },
-            JointInfo {
+            gyro_sim::JointInfo {
                 name: "phi",
-                coordinate: Coordinate::Angle,
+                coordinate: gyro_sim::Coordinate::Angle,
             },
         ];
         JOINTS
             .get(joint)
             .copied()
-            .unwrap_or(JointInfo {
+            .unwrap_or(gyro_sim::JointInfo {
                 name: "",
-                coordinate: Coordinate::None,
+                coordinate: gyro_sim::Coordinate::None,
             })
     }
-    fn row(&self, row: usize) -> RowInfo {
-        const ROWS: [RowInfo; 21] = [
-            RowInfo {
-                owner: Owner::Body(0),
+    fn row(&self, row: usize) -> gyro_sim::RowInfo {
+        const ROWS: [gyro_sim::RowInfo; 21] = [
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Body(0),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Body(0),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Body(0),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Body(0),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Body(0),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Body(0),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Body(0),
                 is_length: false,
             },
-            RowInfo {
-                owner: Owner::Body(0),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Body(0),
                 is_length: false,
             },
-            RowInfo {
-                owner: Owner::Body(0),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Body(0),
                 is_length: false,
             },
-            RowInfo {
-                owner: Owner::Joint(0),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(0),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(0),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(0),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(0),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(0),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(0),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(0),
                 is_length: false,
             },
-            RowInfo {
-                owner: Owner::Joint(0),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(0),
                 is_length: false,
             },
-            RowInfo {
-                owner: Owner::Joint(1),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(1),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(1),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(1),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(1),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(1),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(1),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(1),
                 is_length: false,
             },
-            RowInfo {
-                owner: Owner::Joint(1),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(1),
                 is_length: false,
             },
-            RowInfo {
-                owner: Owner::Joint(2),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(2),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(2),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(2),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(2),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(2),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(2),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(2),
                 is_length: false,
             },
-            RowInfo {
-                owner: Owner::Joint(2),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(2),
                 is_length: false,
             },
         ];
         ROWS.get(row)
             .copied()
-            .unwrap_or(RowInfo {
-                owner: Owner::Body(0),
+            .unwrap_or(gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Body(0),
                 is_length: false,
             })
     }
@@ -774,7 +782,7 @@ impl<T: Scalar> Mechanism for GyroscopeMaximal<T> {
         T::constant(0.0)
     }
 }
-impl<T: Scalar> GyroscopeMaximal<T> {
+impl<T: gyro_sim::Scalar> GyroscopeMaximal<T> {
     /// The four-vectors whose largest components are the special Euler parameters: 0 operations (0 ±, 0 ×, 0 ÷).
     fn chart_vectors(&self, y: &[T; 52]) -> [[T; 4]; 3] {
         let outer_ring_e0 = y[10];
@@ -796,13 +804,13 @@ impl<T: Scalar> GyroscopeMaximal<T> {
         ]
     }
 }
-impl<T: Real> Partition for GyroscopeMaximal<T> {
-    type Independent = Charts<3>;
+impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeMaximal<T> {
+    type Independent = gyro_sim::charts::Charts<3>;
     fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
-        charts::best(&self.chart_vectors(y))
+        gyro_sim::charts::best(&self.chart_vectors(y))
     }
     fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
-        charts::follow(&self.chart_vectors(y), choice)
+        gyro_sim::charts::follow(&self.chart_vectors(y), choice)
     }
     /// One Newton step of the dependent positions: 514 operations (193 ±, 318 ×, 3 ÷).
     fn newton_step(
@@ -810,8 +818,8 @@ impl<T: Real> Partition for GyroscopeMaximal<T> {
         _t: T,
         choice: &Self::Independent,
         y: &mut Self::State,
-    ) -> Result<(), Error> {
-        let charts = charts::one_hot::<T, _>(choice);
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
         let k = T::constant;
         let outer_ring_e0 = y[10];
         let outer_ring_e1 = y[11];
@@ -1026,8 +1034,8 @@ impl<T: Real> Partition for GyroscopeMaximal<T> {
         _t: T,
         choice: &Self::Independent,
         y: &mut Self::State,
-    ) -> Result<(), Error> {
-        let charts = charts::one_hot::<T, _>(choice);
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
         let k = T::constant;
         let base_e0 = y[3];
         let base_e1 = y[4];
@@ -1095,7 +1103,7 @@ impl<T: Real> Partition for GyroscopeMaximal<T> {
         let t25 = k(2.0) * (k(0.5) - (t2 + outer_ring_e3 * outer_ring_e3));
         let t26 = t19 * t25 - (t18 * t24 - t17 * t21);
         let t27 = outer_ring_wx * t26 + outer_ring_wz * t20;
-        let t28 = t15 * t25 + (t10 * t24 + t6 * t21);
+        let t28 = t6 * t21 + t10 * t24 + t15 * t25;
         let t29 = outer_ring_wx * t28 + outer_ring_wz * t16;
         let t30 = k(1.0) / (t1 * (t16 * t26 - t28 * t20));
         let t31 = outer_ring_wx + t30 * (t29 * (t20 * t1) - t27 * (t16 * t1));
@@ -1124,20 +1132,20 @@ impl<T: Real> Partition for GyroscopeMaximal<T> {
         let t51 = k(2.0) * (k(0.5) - (t2 + outer_ring_e2 * outer_ring_e2));
         let t52 = k(2.0) * (t23 + t22);
         let t53 = t52 * t48 - (t51 * t45 + t50 * t42);
-        let t54 = k(2.0) * (t44 - t43);
-        let t55 = k(2.0) * (k(0.5) - (t41 + inner_ring_e2 * inner_ring_e2));
+        let t54 = k(2.0) * (k(0.5) - (t41 + inner_ring_e2 * inner_ring_e2));
+        let t55 = k(2.0) * (t44 - t43);
         let t56 = inner_ring_e0 * inner_ring_e1;
         let t57 = inner_ring_e2 * inner_ring_e3;
         let t58 = k(2.0) * (t57 + t56);
-        let t59 = t52 * t58 + (t51 * t55 + t50 * t54);
+        let t59 = t52 * t58 + (t50 * t55 + t51 * t54);
         let t60 = k(2.0) * (t47 + t46);
         let t61 = k(2.0) * (t57 - t56);
         let t62 = k(2.0) * (k(0.5) - (t41 + inner_ring_e3 * inner_ring_e3));
-        let t63 = t25 * t62 + (t24 * t61 + t21 * t60);
+        let t63 = t21 * t60 + t24 * t61 + t25 * t62;
         let t64 = t31 * t63 + t38 * (t13 * t62 - (t9 * t61 - t3 * t60));
         let t65 = t64 - (inner_ring_wx * t59 - inner_ring_wy * t53);
-        let t66 = t13 * t58 - (t9 * t55 + t3 * t54);
-        let t67 = t37 * t63 + t38 * (t52 * t62 + (t51 * t61 - t50 * t60));
+        let t66 = t13 * t58 - (t9 * t54 + t3 * t55);
+        let t67 = t37 * t63 + t38 * (t52 * t62 - (t50 * t60 - t51 * t61));
         let t68 = t67 + (inner_ring_wx * t66 - inner_ring_wy * t49);
         let t69 = k(1.0) / (t40 * (t66 * t53 - t49 * t59));
         let t70 = inner_ring_wx - t69 * (t68 * (t53 * t40) + t65 * (t49 * t40));
@@ -1153,31 +1161,31 @@ impl<T: Real> Partition for GyroscopeMaximal<T> {
         let t78 = rotor_e3 * chart2_0 - rotor_e2 * chart2_1 + rotor_e1 * chart2_2
             - rotor_e0 * chart2_3;
         let t79 = k(0.5) * t78;
-        let t80 = rotor_e0 * rotor_e2;
-        let t81 = rotor_e1 * rotor_e3;
-        let t82 = k(2.0) * (t81 + t80);
-        let t83 = rotor_e0 * rotor_e1;
-        let t84 = rotor_e2 * rotor_e3;
-        let t85 = k(2.0) * (t84 - t83);
+        let t80 = rotor_e0 * rotor_e1;
+        let t81 = rotor_e2 * rotor_e3;
+        let t82 = k(2.0) * (t81 - t80);
+        let t83 = rotor_e0 * rotor_e2;
+        let t84 = rotor_e1 * rotor_e3;
+        let t85 = k(2.0) * (t84 + t83);
         let t86 = rotor_e0 * rotor_e0;
         let t87 = k(2.0) * (k(0.5) - (t86 + rotor_e3 * rotor_e3));
-        let t88 = t58 * t87 + (t55 * t85 - t54 * t82);
+        let t88 = t58 * t87 - (t55 * t85 - t54 * t82);
         let t89 = rotor_e2 * chart2_0 + rotor_e3 * chart2_1 - rotor_e0 * chart2_2
             - rotor_e1 * chart2_3;
         let t90 = k(0.5) * t89;
-        let t91 = rotor_e0 * rotor_e3;
-        let t92 = rotor_e1 * rotor_e2;
-        let t93 = k(2.0) * (t92 - t91);
-        let t94 = k(2.0) * (k(0.5) - (t86 + rotor_e2 * rotor_e2));
-        let t95 = k(2.0) * (t84 + t83);
-        let t96 = t58 * t95 + (t55 * t94 + t54 * t93);
-        let t97 = t62 * t95 + (t61 * t94 - t60 * t93);
-        let t98 = t62 * t87 + (t61 * t85 + t60 * t82);
+        let t91 = k(2.0) * (k(0.5) - (t86 + rotor_e2 * rotor_e2));
+        let t92 = rotor_e0 * rotor_e3;
+        let t93 = rotor_e1 * rotor_e2;
+        let t94 = k(2.0) * (t93 - t92);
+        let t95 = k(2.0) * (t81 + t80);
+        let t96 = t58 * t95 + (t55 * t94 + t54 * t91);
+        let t97 = t62 * t95 - (t60 * t94 - t61 * t91);
+        let t98 = t60 * t85 + t61 * t82 + t62 * t87;
         let t99 = k(2.0) * (k(0.5) - (t86 + rotor_e1 * rotor_e1));
-        let t100 = k(2.0) * (t92 + t91);
-        let t101 = k(2.0) * (t81 - t80);
+        let t100 = k(2.0) * (t93 + t92);
+        let t101 = k(2.0) * (t84 - t83);
         let t102 = t48 * t101 + (t45 * t100 + t42 * t99);
-        let t103 = t70 * (t58 * t101 - (t55 * t100 + t54 * t99)) - t71 * t102;
+        let t103 = t70 * (t58 * t101 - (t54 * t100 + t55 * t99)) - t71 * t102;
         let t104 = t103 + (rotor_wy * t98 + rotor_wz * t97);
         let t105 = t70 * (t62 * t101 - (t61 * t100 - t60 * t99)) + t77 * t102;
         let t106 = t105 - (rotor_wy * t88 + rotor_wz * t96);
@@ -1206,8 +1214,8 @@ impl<T: Real> Partition for GyroscopeMaximal<T> {
         y[43] = t70;
         y[44] = t71;
         y[45] = t77;
-        y[46] = -(k(0.000125) * (t60 * t71 - t54 * t77));
-        y[47] = -(k(0.000125) * (t61 * t71 + t55 * t77));
+        y[46] = -(k(0.000125) * (t60 * t71 - t55 * t77));
+        y[47] = -(k(0.000125) * (t61 * t71 + t54 * t77));
         y[48] = k(0.000125) * (t62 * t71 + t58 * t77);
         y[49] = rotor_wx + t110 * t107;
         y[50] = t111;
@@ -1215,7 +1223,7 @@ impl<T: Real> Partition for GyroscopeMaximal<T> {
         Ok(())
     }
 }
-impl<T: Scalar> Equations for GyroscopeMaximal<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
     type Velocities = [T; 24];
     type PhiQ = [T; 98];
     type PhiPi = [T; 60];
@@ -1610,61 +1618,61 @@ impl<T: Scalar> Equations for GyroscopeMaximal<T> {
         let t1 = k(0.5) * base_e3;
         let t2 = k(0.5) * base_e2;
         let t3 = k(0.5) * base_e1;
-        let t4 = outer_ring_e0 * outer_ring_e3;
-        let t5 = outer_ring_e1 * outer_ring_e2;
-        let t6 = k(2.0) * (t5 - t4);
-        let t7 = base_e0 * base_e3;
-        let t8 = base_e1 * base_e2;
-        let t9 = outer_ring_e0 * outer_ring_e0;
-        let t10 = k(2.0) * (k(0.5) - (t9 + outer_ring_e2 * outer_ring_e2));
-        let t11 = base_e0 * base_e0;
-        let t12 = k(2.0) * (k(0.5) - (t11 + base_e2 * base_e2)) * t10
-            + k(2.0) * (t8 - t7) * t6;
+        let t4 = outer_ring_e0 * outer_ring_e0;
+        let t5 = k(2.0) * (k(0.5) - (t4 + outer_ring_e2 * outer_ring_e2));
+        let t6 = base_e0 * base_e0;
+        let t7 = outer_ring_e0 * outer_ring_e3;
+        let t8 = outer_ring_e1 * outer_ring_e2;
+        let t9 = k(2.0) * (t8 - t7);
+        let t10 = base_e0 * base_e3;
+        let t11 = base_e1 * base_e2;
+        let t12 = k(2.0) * (t11 - t10) * t9
+            + k(2.0) * (k(0.5) - (t6 + base_e2 * base_e2)) * t5;
         let t13 = outer_ring_e0 * outer_ring_e1;
         let t14 = outer_ring_e2 * outer_ring_e3;
         let t15 = k(2.0) * (t14 + t13);
         let t16 = base_e0 * base_e1;
         let t17 = base_e2 * base_e3;
         let t18 = k(2.0) * (t17 + t16) * t15 + t12;
-        let t19 = k(2.0) * (k(0.5) - (t11 + base_e1 * base_e1));
-        let t20 = k(2.0) * (t8 + t7);
+        let t19 = k(2.0) * (k(0.5) - (t6 + base_e1 * base_e1));
+        let t20 = k(2.0) * (t11 + t10);
         let t21 = base_e0 * base_e2;
         let t22 = base_e1 * base_e3;
         let t23 = k(2.0) * (t22 - t21);
-        let t24 = outer_ring_e0 * outer_ring_e2;
-        let t25 = outer_ring_e1 * outer_ring_e3;
-        let t26 = k(2.0) * (t25 + t24);
-        let t27 = k(2.0) * (t22 + t21);
-        let t28 = k(2.0) * (t14 - t13);
-        let t29 = k(2.0) * (t17 - t16);
-        let t30 = k(2.0) * (k(0.5) - (t9 + outer_ring_e3 * outer_ring_e3));
-        let t31 = k(2.0) * (k(0.5) - (t11 + base_e3 * base_e3));
-        let t32 = k(2.0) * (k(0.5) - (t9 + outer_ring_e1 * outer_ring_e1));
-        let t33 = k(2.0) * (t5 + t4);
-        let t34 = k(2.0) * (t25 - t24);
-        let t35 = inner_ring_e0 * inner_ring_e2;
-        let t36 = inner_ring_e1 * inner_ring_e3;
-        let t37 = t36 + t35;
-        let t38 = k(2.0) * t37;
-        let t39 = inner_ring_e0 * inner_ring_e1;
-        let t40 = inner_ring_e2 * inner_ring_e3;
-        let t41 = t40 - t39;
-        let t42 = k(2.0) * t41;
-        let t43 = inner_ring_e0 * inner_ring_e0;
-        let t44 = k(0.5) - (t43 + inner_ring_e3 * inner_ring_e3);
+        let t24 = k(2.0) * (k(0.5) - (t4 + outer_ring_e3 * outer_ring_e3));
+        let t25 = k(2.0) * (k(0.5) - (t6 + base_e3 * base_e3));
+        let t26 = k(2.0) * (t14 - t13);
+        let t27 = k(2.0) * (t17 - t16);
+        let t28 = outer_ring_e0 * outer_ring_e2;
+        let t29 = outer_ring_e1 * outer_ring_e3;
+        let t30 = k(2.0) * (t29 + t28);
+        let t31 = k(2.0) * (t22 + t21);
+        let t32 = k(2.0) * (k(0.5) - (t4 + outer_ring_e1 * outer_ring_e1));
+        let t33 = k(2.0) * (t8 + t7);
+        let t34 = k(2.0) * (t29 - t28);
+        let t35 = inner_ring_e0 * inner_ring_e0;
+        let t36 = k(0.5) - (t35 + inner_ring_e3 * inner_ring_e3);
+        let t37 = k(2.0) * t36;
+        let t38 = inner_ring_e0 * inner_ring_e1;
+        let t39 = inner_ring_e2 * inner_ring_e3;
+        let t40 = t39 - t38;
+        let t41 = k(2.0) * t40;
+        let t42 = inner_ring_e0 * inner_ring_e2;
+        let t43 = inner_ring_e1 * inner_ring_e3;
+        let t44 = t43 + t42;
         let t45 = k(2.0) * t44;
-        let t46 = t30 * t45 + (t28 * t42 + t26 * t38);
+        let t46 = t30 * t45 + t26 * t41 + t24 * t37;
         let t47 = inner_ring_e0 * inner_ring_e3;
         let t48 = inner_ring_e1 * inner_ring_e2;
         let t49 = t48 - t47;
         let t50 = k(2.0) * t49;
-        let t51 = k(0.5) - (t43 + inner_ring_e2 * inner_ring_e2);
+        let t51 = k(0.5) - (t35 + inner_ring_e2 * inner_ring_e2);
         let t52 = k(2.0) * t51;
-        let t53 = t40 + t39;
+        let t53 = t39 + t38;
         let t54 = k(2.0) * t53;
-        let t55 = k(2.0) * (k(0.5) - (t43 + inner_ring_e1 * inner_ring_e1));
+        let t55 = k(2.0) * (k(0.5) - (t35 + inner_ring_e1 * inner_ring_e1));
         let t56 = k(2.0) * (t48 + t47);
-        let t57 = k(2.0) * (t36 - t35);
+        let t57 = k(2.0) * (t43 - t42);
         let t58 = rotor_e0 * rotor_e0;
         let t59 = k(2.0) * (k(0.5) - (t58 + rotor_e1 * rotor_e1));
         let t60 = rotor_e0 * rotor_e3;
@@ -1674,14 +1682,14 @@ impl<T: Scalar> Equations for GyroscopeMaximal<T> {
         let t64 = rotor_e1 * rotor_e3;
         let t65 = k(2.0) * (t64 - t63);
         let t66 = t57 * t65 + (t56 * t62 + t55 * t59);
-        let t67 = k(2.0) * (t64 + t63);
-        let t68 = rotor_e0 * rotor_e1;
-        let t69 = rotor_e2 * rotor_e3;
-        let t70 = k(2.0) * (t69 - t68);
+        let t67 = rotor_e0 * rotor_e1;
+        let t68 = rotor_e2 * rotor_e3;
+        let t69 = k(2.0) * (t68 - t67);
+        let t70 = k(2.0) * (t64 + t63);
         let t71 = k(2.0) * (k(0.5) - (t58 + rotor_e3 * rotor_e3));
-        let t72 = k(2.0) * (t61 - t60);
-        let t73 = k(2.0) * (k(0.5) - (t58 + rotor_e2 * rotor_e2));
-        let t74 = k(2.0) * (t69 + t68);
+        let t72 = k(2.0) * (k(0.5) - (t58 + rotor_e2 * rotor_e2));
+        let t73 = k(2.0) * (t61 - t60);
+        let t74 = k(2.0) * (t68 + t67);
         *out = [
             k(1.0),
             k(1.0),
@@ -1702,12 +1710,12 @@ impl<T: Scalar> Equations for GyroscopeMaximal<T> {
             k(-1.0),
             k(1.0),
             -t18,
-            t23 * t15 - (t20 * t10 + t19 * t6),
-            t31 * t30 + (t29 * t28 + t27 * t26),
-            t31 * t34 - (t29 * t33 - t27 * t32),
-            t31 * t15 + (t29 * t10 - t27 * t6),
+            t23 * t15 - (t20 * t5 + t19 * t9),
+            t31 * t30 + t27 * t26 + t25 * t24,
+            t25 * t34 - (t27 * t33 - t31 * t32),
+            t25 * t15 - (t31 * t9 - t27 * t5),
             t18,
-            t20 * t28 - t19 * t26 - t23 * t30,
+            t20 * t26 - t19 * t30 - t23 * t24,
             -(t23 * t34 + (t20 * t33 + t19 * t32)),
             k(-1.0),
             k(1.0),
@@ -1716,33 +1724,33 @@ impl<T: Scalar> Equations for GyroscopeMaximal<T> {
             k(-1.0),
             k(1.0),
             -t46,
-            -(t15 * t45 + (t10 * t42 - t6 * t38)),
+            t9 * t45 - t5 * t41 - t15 * t37,
             t33 * t52 + t32 * t50 - t34 * t54,
             t34 * t57 + (t33 * t56 + t32 * t55),
             t46,
-            t34 * t45 - (t33 * t42 - t32 * t38),
-            -(t15 * t54 + (t10 * t52 + t6 * t50)),
-            t15 * t57 - (t10 * t56 + t6 * t55),
+            t34 * t37 - (t33 * t41 - t32 * t45),
+            -(t15 * t54 + (t9 * t50 + t5 * t52)),
+            t15 * t57 - (t5 * t56 + t9 * t55),
             k(-1.0),
-            k(0.00025) * t37,
+            k(0.00025) * t44,
             -(k(0.00025) * t49),
             k(1.0),
             k(-1.0),
-            k(0.00025) * t41,
+            k(0.00025) * t40,
             k(0.00025) * t51,
             k(1.0),
             k(-1.0),
-            -(k(0.00025) * t44),
+            -(k(0.00025) * t36),
             -(k(0.00025) * t53),
             k(1.0),
-            t42 * t62 - t38 * t59 - t45 * t65,
+            t41 * t62 - t45 * t59 - t37 * t65,
             -t66,
-            t54 * t71 + (t52 * t70 - t50 * t67),
-            t54 * t74 + (t52 * t73 + t50 * t72),
+            t54 * t71 - (t50 * t70 - t52 * t69),
+            t54 * t74 + (t50 * t73 + t52 * t72),
             t52 * t62 + t50 * t59 - t54 * t65,
             t66,
-            -(t45 * t71 + (t42 * t70 + t38 * t67)),
-            -(t45 * t74 + (t42 * t73 - t38 * t72)),
+            -(t45 * t70 + t41 * t69 + t37 * t71),
+            t45 * t73 - t41 * t72 - t37 * t74,
         ];
     }
     /// Writes ν: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -1825,16 +1833,16 @@ impl<T: Scalar> Equations for GyroscopeMaximal<T> {
         let t19 = k(2.0) * (t18 - t17);
         let t20 = t19 * t16 - (t13 * t10 + t8 * t6);
         let t21 = base_wx * base_wz;
-        let t22 = k(2.0) * (t12 - t11);
-        let t23 = k(2.0) * (k(0.5) - (t7 + base_e2 * base_e2));
+        let t22 = k(2.0) * (k(0.5) - (t7 + base_e2 * base_e2));
+        let t23 = k(2.0) * (t12 - t11);
         let t24 = base_e0 * base_e1;
         let t25 = base_e2 * base_e3;
         let t26 = k(2.0) * (t25 + t24);
-        let t27 = t26 * t16 + (t23 * t10 + t22 * t6);
-        let t28 = k(2.0) * (t18 + t17);
-        let t29 = k(2.0) * (t25 - t24);
+        let t27 = t26 * t16 + (t23 * t6 + t22 * t10);
+        let t28 = k(2.0) * (t25 - t24);
+        let t29 = k(2.0) * (t18 + t17);
         let t30 = k(2.0) * (k(0.5) - (t7 + base_e3 * base_e3));
-        let t31 = t30 * t16 + (t29 * t10 - t28 * t6);
+        let t31 = t30 * t16 - (t29 * t6 - t28 * t10);
         let t32 = base_wy * base_wy;
         let t33 = (t32 + base_wx * base_wx) * t31
             + (base_wy * base_wz * t27 + t21 * t20);
@@ -1848,15 +1856,15 @@ impl<T: Scalar> Equations for GyroscopeMaximal<T> {
         let t41 = k(2.0) * (t15 - t14);
         let t42 = k(2.0) * (k(0.5) - (t9 + outer_ring_e3 * outer_ring_e3));
         let t43 = t19 * t42 - (t13 * t41 - t8 * t40);
-        let t44 = outer_ring_wx * (t26 * t42 + (t23 * t41 - t22 * t40))
-            + outer_ring_wz * (t26 * t38 - (t23 * t35 + t22 * t34));
+        let t44 = outer_ring_wx * (t26 * t42 - (t23 * t40 - t22 * t41))
+            + outer_ring_wz * (t26 * t38 - (t22 * t35 + t23 * t34));
         let t45 = k(2.0)
             * (base_wx * t44 - base_wy * (outer_ring_wx * t43 + outer_ring_wz * t39));
-        let t46 = t30 * t38 - (t29 * t35 - t28 * t34);
+        let t46 = t30 * t38 - (t28 * t35 - t29 * t34);
         let t47 = outer_ring_wx * outer_ring_wy;
         let t48 = outer_ring_wz * outer_ring_wz;
         let t49 = t48 + outer_ring_wx * outer_ring_wx;
-        let t50 = t30 * t42 + (t29 * t41 + t28 * t40);
+        let t50 = t29 * t40 + t28 * t41 + t30 * t42;
         let t51 = outer_ring_wy * outer_ring_wz;
         let t52 = t51 * t50 + (t49 * t31 - t47 * t46) + t45 + t33;
         let t53 = t21 * t31
@@ -1873,8 +1881,8 @@ impl<T: Scalar> Equations for GyroscopeMaximal<T> {
         let t62 = inner_ring_e0 * inner_ring_e0;
         let t63 = k(2.0) * (k(0.5) - (t62 + inner_ring_e3 * inner_ring_e3));
         let t64 = t38 * t63 - (t35 * t61 - t34 * t58);
-        let t65 = t16 * t63 + (t10 * t61 - t6 * t58);
-        let t66 = t42 * t63 + (t41 * t61 + t40 * t58);
+        let t65 = t16 * t63 - (t6 * t58 - t10 * t61);
+        let t66 = t40 * t58 + t41 * t61 + t42 * t63;
         let t67 = outer_ring_wx * outer_ring_wz * t66
             - (t47 * t65 - (t48 + outer_ring_wy * outer_ring_wy) * t64);
         let t68 = k(2.0) * (k(0.5) - (t62 + inner_ring_e1 * inner_ring_e1));
@@ -1883,18 +1891,18 @@ impl<T: Scalar> Equations for GyroscopeMaximal<T> {
         let t71 = k(2.0) * (t70 + t69);
         let t72 = k(2.0) * (t57 - t56);
         let t73 = t16 * t72 - (t10 * t71 + t6 * t68);
-        let t74 = k(2.0) * (t70 - t69);
-        let t75 = k(2.0) * (k(0.5) - (t62 + inner_ring_e2 * inner_ring_e2));
+        let t74 = k(2.0) * (k(0.5) - (t62 + inner_ring_e2 * inner_ring_e2));
+        let t75 = k(2.0) * (t70 - t69);
         let t76 = k(2.0) * (t60 + t59);
-        let t77 = t16 * t76 + (t10 * t75 + t6 * t74);
-        let t78 = inner_ring_wx * (t42 * t76 + (t41 * t75 - t40 * t74))
+        let t77 = t16 * t76 + (t6 * t75 + t10 * t74);
+        let t78 = inner_ring_wx * (t42 * t76 - (t40 * t75 - t41 * t74))
             - inner_ring_wy * (t42 * t72 - (t41 * t71 - t40 * t68));
         let t79 = k(2.0)
             * (outer_ring_wy * t78
                 + outer_ring_wz * (inner_ring_wx * t77 - inner_ring_wy * t73));
         let t80 = t38 * t72 + (t35 * t71 + t34 * t68);
         let t81 = inner_ring_wx * inner_ring_wz;
-        let t82 = t38 * t76 - (t35 * t75 + t34 * t74);
+        let t82 = t38 * t76 - (t35 * t74 + t34 * t75);
         let t83 = inner_ring_wy * inner_ring_wz;
         let t84 = inner_ring_wx * inner_ring_wx;
         let t85 = inner_ring_wy * inner_ring_wy;
@@ -1917,7 +1925,7 @@ impl<T: Scalar> Equations for GyroscopeMaximal<T> {
         let t99 = rotor_e1 * rotor_e3;
         let t100 = k(2.0) * (t99 - t98);
         let t101 = t72 * t100 + (t71 * t97 + t68 * t94);
-        let t102 = t76 * t100 - (t75 * t97 + t74 * t94);
+        let t102 = t76 * t100 - (t74 * t97 + t75 * t94);
         let t103 = t63 * t100 - (t61 * t97 - t58 * t94);
         let t104 = k(2.0) * (t96 - t95);
         let t105 = k(2.0) * (k(0.5) - (t93 + rotor_e2 * rotor_e2));
@@ -1929,15 +1937,15 @@ impl<T: Scalar> Equations for GyroscopeMaximal<T> {
         let t111 = k(2.0) * (k(0.5) - (t93 + rotor_e3 * rotor_e3));
         let t112 = rotor_wy * (t72 * t111 - (t71 * t110 - t68 * t109))
             + rotor_wz * (t72 * t108 - (t71 * t105 + t68 * t104));
-        let t113 = t63 * t108 + (t61 * t105 - t58 * t104);
-        let t114 = t63 * t111 + (t61 * t110 + t58 * t109);
+        let t113 = t63 * t108 - (t58 * t104 - t61 * t105);
+        let t114 = t58 * t109 + t61 * t110 + t63 * t111;
         let t115 = k(2.0)
             * (inner_ring_wx * (rotor_wy * t114 + rotor_wz * t113)
                 + inner_ring_wz * t112);
         let t116 = rotor_wz * rotor_wz + rotor_wy * rotor_wy;
-        let t117 = t76 * t108 + (t75 * t105 + t74 * t104);
+        let t117 = t76 * t108 + (t75 * t104 + t74 * t105);
         let t118 = rotor_wx * rotor_wy;
-        let t119 = t76 * t111 + (t75 * t110 - t74 * t109);
+        let t119 = t76 * t111 - (t75 * t109 - t74 * t110);
         let t120 = rotor_wx * rotor_wz;
         let t121 = t120 * t119 - (t118 * t117 - t116 * t102) + t115
             + (t83 * t103 + ((t90 + t84) * t102 - t92 * t101));
@@ -1963,8 +1971,8 @@ impl<T: Scalar> Equations for GyroscopeMaximal<T> {
             k(0.0),
             -t87,
             -t89,
-            k(0.000125) * (t58 * t81 + (t74 * t92 + t68 * t91)),
-            k(0.000125) * (t61 * t81 - (t75 * t92 + t71 * t91)),
+            k(0.000125) * (t58 * t81 + (t75 * t92 + t68 * t91)),
+            k(0.000125) * (t61 * t81 - (t74 * t92 + t71 * t91)),
             -(k(0.000125) * (t63 * t81 - (t76 * t92 - t72 * t91))),
             t121,
             -t123,
@@ -2047,21 +2055,21 @@ impl<T: Scalar> Equations for GyroscopeMaximal<T> {
         let rotor_wy = y[50];
         let rotor_wz = y[51];
         let (
-            t2,
-            t6,
-            t8,
+            t1,
+            t4,
+            t7,
             t11,
             t14,
             t18,
             t19,
             t20,
-            t23,
+            t21,
             t24,
             t25,
             t26,
             t27,
             t28,
-            t32,
+            t30,
             t34,
             t36,
             t37,
@@ -2180,17 +2188,17 @@ impl<T: Scalar> Equations for GyroscopeMaximal<T> {
             t198,
             t199,
         ) = {
-            let t0 = rotor_e0 * rotor_e3;
-            let t1 = rotor_e1 * rotor_e2;
-            let t2 = k(2.0) * (t1 - t0);
-            let t3 = inner_ring_e0 * inner_ring_e3;
-            let t4 = inner_ring_e1 * inner_ring_e2;
-            let t5 = t4 - t3;
-            let t6 = k(2.0) * t5;
-            let t7 = rotor_e0 * rotor_e0;
-            let t8 = k(2.0) * (k(0.5) - (t7 + rotor_e2 * rotor_e2));
-            let t9 = inner_ring_e0 * inner_ring_e0;
-            let t10 = k(0.5) - (t9 + inner_ring_e2 * inner_ring_e2);
+            let t0 = rotor_e0 * rotor_e0;
+            let t1 = k(2.0) * (k(0.5) - (t0 + rotor_e2 * rotor_e2));
+            let t2 = inner_ring_e0 * inner_ring_e0;
+            let t3 = k(0.5) - (t2 + inner_ring_e2 * inner_ring_e2);
+            let t4 = k(2.0) * t3;
+            let t5 = rotor_e0 * rotor_e3;
+            let t6 = rotor_e1 * rotor_e2;
+            let t7 = k(2.0) * (t6 - t5);
+            let t8 = inner_ring_e0 * inner_ring_e3;
+            let t9 = inner_ring_e1 * inner_ring_e2;
+            let t10 = t9 - t8;
             let t11 = k(2.0) * t10;
             let t12 = rotor_e0 * rotor_e1;
             let t13 = rotor_e2 * rotor_e3;
@@ -2199,53 +2207,53 @@ impl<T: Scalar> Equations for GyroscopeMaximal<T> {
             let t16 = inner_ring_e2 * inner_ring_e3;
             let t17 = t16 + t15;
             let t18 = k(2.0) * t17;
-            let t19 = t18 * t14 + (t11 * t8 + t6 * t2);
+            let t19 = t18 * t14 + (t11 * t7 + t4 * t1);
             let t20 = k(200000.0) * t19;
-            let t21 = rotor_e0 * rotor_e2;
-            let t22 = rotor_e1 * rotor_e3;
-            let t23 = k(2.0) * (t22 + t21);
-            let t24 = k(2.0) * (t13 - t12);
-            let t25 = k(2.0) * (k(0.5) - (t7 + rotor_e3 * rotor_e3));
-            let t26 = t18 * t25 + (t11 * t24 - t6 * t23);
+            let t21 = k(2.0) * (t13 - t12);
+            let t22 = rotor_e0 * rotor_e2;
+            let t23 = rotor_e1 * rotor_e3;
+            let t24 = k(2.0) * (t23 + t22);
+            let t25 = k(2.0) * (k(0.5) - (t0 + rotor_e3 * rotor_e3));
+            let t26 = t18 * t25 - (t11 * t24 - t4 * t21);
             let t27 = k(200000.0) * t26;
             let t28 = k(1.0) / (t26 * t27 + t19 * t20);
-            let t29 = inner_ring_e0 * inner_ring_e2;
-            let t30 = inner_ring_e1 * inner_ring_e3;
-            let t31 = t30 + t29;
-            let t32 = k(2.0) * t31;
-            let t33 = t16 - t15;
+            let t29 = t16 - t15;
+            let t30 = k(2.0) * t29;
+            let t31 = inner_ring_e0 * inner_ring_e2;
+            let t32 = inner_ring_e1 * inner_ring_e3;
+            let t33 = t32 + t31;
             let t34 = k(2.0) * t33;
-            let t35 = k(0.5) - (t9 + inner_ring_e3 * inner_ring_e3);
+            let t35 = k(0.5) - (t2 + inner_ring_e3 * inner_ring_e3);
             let t36 = k(2.0) * t35;
-            let t37 = t36 * t14 + (t34 * t8 - t32 * t2);
+            let t37 = t36 * t14 - (t34 * t7 - t30 * t1);
             let t38 = k(200000.0) * t37;
-            let t39 = t36 * t25 + (t34 * t24 + t32 * t23);
+            let t39 = t34 * t24 + t30 * t21 + t36 * t25;
             let t40 = k(200000.0) * t39;
             let t41 = t26 * t40 + t19 * t38;
             let t42 = t41 * t28;
             let t43 = k(1.0) / (t39 * t40 + t37 * t38 - t41 * t42);
-            let t44 = k(2.0) * (k(0.5) - (t7 + rotor_e1 * rotor_e1));
-            let t45 = k(2.0) * (t1 + t0);
-            let t46 = k(2.0) * (t22 - t21);
-            let t47 = t36 * t46 - (t34 * t45 - t32 * t44);
-            let t48 = t18 * t46 - (t11 * t45 + t6 * t44);
+            let t44 = k(2.0) * (k(0.5) - (t0 + rotor_e1 * rotor_e1));
+            let t45 = k(2.0) * (t6 + t5);
+            let t46 = k(2.0) * (t23 - t22);
+            let t47 = t36 * t46 - (t30 * t45 - t34 * t44);
+            let t48 = t18 * t46 - (t4 * t45 + t11 * t44);
             let t49 = t48 + t47 * t42;
             let t50 = t49 * t43;
             let t51 = t47 * t28;
             let t52 = k(1.0) / (k(1e-6) + t47 * t51 + t49 * t50);
-            let t53 = k(2.0) * (k(0.5) - (t9 + inner_ring_e1 * inner_ring_e1));
-            let t54 = k(2.0) * (t4 + t3);
-            let t55 = k(2.0) * (t30 - t29);
+            let t53 = k(2.0) * (k(0.5) - (t2 + inner_ring_e1 * inner_ring_e1));
+            let t54 = k(2.0) * (t9 + t8);
+            let t55 = k(2.0) * (t32 - t31);
             let t56 = t55 * t46 + (t54 * t45 + t53 * t44);
             let t57 = t56 * t43;
             let t58 = t49 * t57;
             let t59 = t58 * t52;
             let t60 = k(2.222222222222222e-6) * t35;
             let t61 = k(0.00025) * t35;
-            let t62 = k(2.222222222222222e-6) * t33;
-            let t63 = k(0.00025) * t33;
-            let t64 = k(2.222222222222222e-6) * t31;
-            let t65 = k(0.00025) * t31;
+            let t62 = k(2.222222222222222e-6) * t29;
+            let t63 = k(0.00025) * t29;
+            let t64 = k(2.222222222222222e-6) * t33;
+            let t65 = k(0.00025) * t33;
             let t66 = k(2e-6) + t65 * t64 + t63 * t62 + t61 * t60 + t56 * t57;
             let t67 = k(1.0) / (t66 - t58 * t59);
             let t68 = t56 * t42;
@@ -2254,23 +2262,23 @@ impl<T: Scalar> Equations for GyroscopeMaximal<T> {
             let t71 = t47 * t70 + t49 * t69;
             let t72 = t71 * t52;
             let t73 = k(2.222222222222222e-6) * t17;
-            let t74 = k(2.222222222222222e-6) * t10;
-            let t75 = k(2.222222222222222e-6) * t5;
+            let t74 = k(2.222222222222222e-6) * t3;
+            let t75 = k(2.222222222222222e-6) * t10;
             let t76 = t65 * t75 - t63 * t74 - t61 * t73 + t56 * t69;
             let t77 = t76 - t58 * t72;
             let t78 = t77 * t67;
-            let t79 = k(1e-6) + k(0.00025) * t5 * t75 + k(0.00025) * t10 * t74
+            let t79 = k(1e-6) + k(0.00025) * t10 * t75 + k(0.00025) * t3 * t74
                 + k(0.00025) * t17 * t73;
             let t80 = t79 + t56 * t70 + t68 * t69 - t71 * t72 - t77 * t78;
             let t81 = k(1.0) / t80;
-            let t82 = k(0.00022222222222222223) * t31;
+            let t82 = k(0.00022222222222222223) * t33;
             let t83 = t82 * t67;
-            let t84 = k(0.00022222222222222223) * t5 - t77 * t83;
+            let t84 = k(0.00022222222222222223) * t10 - t77 * t83;
             let t85 = t84 * t81;
             let t86 = k(1.0) / (t82 * t83 + k(11.11111111111111) + t84 * t85);
-            let t87 = k(0.00022222222222222223) * t33;
+            let t87 = k(0.00022222222222222223) * t29;
             let t88 = t87 * t67;
-            let t89 = k(0.00022222222222222223) * t10 + t77 * t88;
+            let t89 = k(0.00022222222222222223) * t3 + t77 * t88;
             let t90 = t89 * t81;
             let t91 = t82 * t88 - t84 * t90;
             let t92 = t91 * t86;
@@ -2295,7 +2303,7 @@ impl<T: Scalar> Equations for GyroscopeMaximal<T> {
             let t109 = outer_ring_e0 * outer_ring_e2;
             let t110 = outer_ring_e1 * outer_ring_e3;
             let t111 = k(2.0) * (t110 - t109);
-            let t112 = t111 * t18 - (t108 * t11 + t105 * t6);
+            let t112 = t111 * t18 - (t108 * t4 + t105 * t11);
             let t113 = t112 * t52;
             let t114 = t111 * t55 + (t108 * t54 + t105 * t53);
             let t115 = t114 - t58 * t113;
@@ -2344,12 +2352,12 @@ impl<T: Scalar> Equations for GyroscopeMaximal<T> {
             let t158 = k(2.0) * (t157 - t156);
             let t159 = t158 * t155 - (t152 * t149 + t148 * t146);
             let t160 = k(10000000.0) * t159;
-            let t161 = k(2.0) * (t151 - t150);
-            let t162 = k(2.0) * (k(0.5) - (t147 + base_e2 * base_e2));
+            let t161 = k(2.0) * (k(0.5) - (t147 + base_e2 * base_e2));
+            let t162 = k(2.0) * (t151 - t150);
             let t163 = base_e0 * base_e1;
             let t164 = base_e2 * base_e3;
             let t165 = k(2.0) * (t164 + t163);
-            let t166 = t165 * t155 + (t162 * t149 + t161 * t146);
+            let t166 = t165 * t155 + (t162 * t146 + t161 * t149);
             let t167 = k(10000000.0) * t166;
             let t168 = t128 * t167;
             let t169 = t168 + t132 * t160;
@@ -2365,14 +2373,14 @@ impl<T: Scalar> Equations for GyroscopeMaximal<T> {
             let t179 = k(2.0) * (k(0.5) - (t147 + base_e3 * base_e3));
             let t180 = t179 * t111 - (t178 * t108 - t177 * t105);
             let t181 = k(1000000.0) * t180;
-            let t182 = k(2.0) * (t110 + t109);
+            let t182 = k(2.0) * (k(0.5) - (t104 + outer_ring_e3 * outer_ring_e3));
             let t183 = k(2.0) * (t154 - t153);
-            let t184 = k(2.0) * (k(0.5) - (t104 + outer_ring_e3 * outer_ring_e3));
-            let t185 = t179 * t184 + (t178 * t183 + t177 * t182);
+            let t184 = k(2.0) * (t110 + t109);
+            let t185 = t177 * t184 + t178 * t183 + t179 * t182;
             let t186 = k(500000.0) * t185;
             let t187 = t185 * t186 + t180 * t181 + t176 + t159 * t160 - t169 * t170;
             let t188 = k(1.0) / (t187 - t171 * t172 - t174 * t175);
-            let t189 = t179 * t155 + (t178 * t149 - t177 * t146);
+            let t189 = t179 * t155 - (t177 * t146 - t178 * t149);
             let t190 = k(10000000.0) * t189;
             let t191 = t173 - t132 * t190;
             let t192 = t191 * t134;
@@ -2382,23 +2390,23 @@ impl<T: Scalar> Equations for GyroscopeMaximal<T> {
             let t196 = t195 * t145;
             let t197 = t158 * t111 + (t152 * t108 + t148 * t105);
             let t198 = k(1000000.0) * t197;
-            let t199 = t158 * t184 - (t152 * t183 - t148 * t182);
+            let t199 = t158 * t182 - (t152 * t183 - t148 * t184);
             (
-                t2,
-                t6,
-                t8,
+                t1,
+                t4,
+                t7,
                 t11,
                 t14,
                 t18,
                 t19,
                 t20,
-                t23,
+                t21,
                 t24,
                 t25,
                 t26,
                 t27,
                 t28,
-                t32,
+                t30,
                 t34,
                 t36,
                 t37,
@@ -2557,18 +2565,18 @@ impl<T: Scalar> Equations for GyroscopeMaximal<T> {
             let t203 = t202 * t188;
             let t204 = t199 * t200 + t197 * t198 + t176 + t189 * t190 - t191 * t192;
             let t205 = k(1.0) / (t204 - t193 * t194 - t195 * t196 - t202 * t203);
-            let t206 = t155 * t36 + (t149 * t34 - t146 * t32);
+            let t206 = t155 * t36 - (t146 * t34 - t149 * t30);
             let t207 = k(1000000.0) * t206;
             let t208 = t180 * t207;
             let t209 = t208 * t188;
             let t210 = t197 * t207 - t202 * t209;
             let t211 = t210 * t205;
-            let t212 = t184 * t36 + (t183 * t34 + t182 * t32);
+            let t212 = t184 * t34 + t183 * t30 + t182 * t36;
             let t213 = k(1000000.0) * t212;
             let t214 = t212 * t213 + t112 * t113 + t206 * t207 - t208 * t209;
             let t215 = t214 - t210 * t211 + t115 * t116 + t117 * t118 - t119 * t120;
             let t216 = k(1.0) / (t215 - t121 * t122 - t123 * t124);
-            let t217 = t155 * t18 + (t149 * t11 + t146 * t6);
+            let t217 = t155 * t18 + (t146 * t11 + t149 * t4);
             let t218 = t217 * t52;
             let t219 = t155 * t55 - (t149 * t54 + t146 * t53);
             let t220 = t219 - t58 * t218;
@@ -2581,7 +2589,7 @@ impl<T: Scalar> Equations for GyroscopeMaximal<T> {
             let t227 = t226 * t93;
             let t228 = t94 * t221 + t96 * t223 - t98 * t225 - t100 * t227;
             let t229 = t228 * t103;
-            let t230 = t111 * t36 - (t108 * t34 - t105 * t32);
+            let t230 = t111 * t36 - (t108 * t30 - t105 * t34);
             let t231 = k(1000000.0) * t230;
             let t232 = k(500000.0) * t212;
             let t233 = t185 * t232 + t180 * t231;
@@ -2602,8 +2610,8 @@ impl<T: Scalar> Equations for GyroscopeMaximal<T> {
             let t248 = inner_ring_wx * inner_ring_wx;
             let t249 = inner_ring_wz * inner_ring_wz;
             let t250 = inner_ring_wy * inner_ring_wz;
-            let t251 = rotor_wy * (t55 * t25 - (t54 * t24 - t53 * t23))
-                + rotor_wz * (t55 * t14 - (t54 * t8 + t53 * t2));
+            let t251 = rotor_wy * (t55 * t25 - (t54 * t21 - t53 * t24))
+                + rotor_wz * (t55 * t14 - (t54 * t1 + t53 * t7));
             let t252 = k(2.0)
                 * (inner_ring_wx * (rotor_wy * t39 + rotor_wz * t37)
                     + inner_ring_wz * t251);
@@ -2624,9 +2632,9 @@ impl<T: Scalar> Equations for GyroscopeMaximal<T> {
             let t263 = t249 + t257;
             let t264 = t36 * t256 - (t18 * t247 - t55 * t263);
             let t265 = k(0.000125) * t264;
-            let t266 = k(0.000125) * (t34 * t256 - (t11 * t247 + t54 * t263)) + k(10.0);
+            let t266 = k(0.000125) * (t30 * t256 - (t4 * t247 + t54 * t263)) + k(10.0);
             let t267 = k(10.0) - t266;
-            let t268 = t32 * t256 + (t6 * t247 + t53 * t263);
+            let t268 = t34 * t256 + (t11 * t247 + t53 * t263);
             let t269 = k(0.000125) * t268;
             let t270 = t269 * t64 - t267 * t62 + t265 * t60 - t261 * t57;
             let t271 = t270 + t262 * t59;
@@ -2658,8 +2666,8 @@ impl<T: Scalar> Equations for GyroscopeMaximal<T> {
             let t289 = base_wy * base_wy;
             let t290 = (t289 + base_wx * base_wx) * t189
                 + (base_wy * base_wz * t166 + t288 * t159);
-            let t291 = outer_ring_wx * (t165 * t184 + (t162 * t183 - t161 * t182))
-                + outer_ring_wz * (t165 * t111 - (t162 * t108 + t161 * t105));
+            let t291 = outer_ring_wx * (t165 * t182 - (t162 * t184 - t161 * t183))
+                + outer_ring_wz * (t165 * t111 - (t161 * t108 + t162 * t105));
             let t292 = k(2.0)
                 * (base_wx * t291
                     - base_wy * (outer_ring_wx * t199 + outer_ring_wz * t197));
@@ -2679,8 +2687,8 @@ impl<T: Scalar> Equations for GyroscopeMaximal<T> {
             let t303 = outer_ring_wx * outer_ring_wz;
             let t304 = t303 * t212
                 - (t286 * t206 - (t293 + outer_ring_wy * outer_ring_wy) * t230);
-            let t305 = inner_ring_wx * (t184 * t18 + (t183 * t11 - t182 * t6))
-                - inner_ring_wy * (t184 * t55 - (t183 * t54 - t182 * t53));
+            let t305 = inner_ring_wx * (t182 * t18 - (t184 * t11 - t183 * t4))
+                - inner_ring_wy * (t182 * t55 - (t183 * t54 - t184 * t53));
             let t306 = k(2.0)
                 * (outer_ring_wy * t305
                     + outer_ring_wz * (inner_ring_wx * t217 - inner_ring_wy * t219));

@@ -22,16 +22,11 @@
 //! | accelerations | (s̈, ẇ') and λ, eq. (17) | 334 | 524 | 16 | 874 | 3 of 33 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | energy | T and V | 19 | 36 | 0 | 55 | 0 of 2 |
-//! | read_joints | joint coordinates and rates | 37 | 58 | 0 | 95 | 0 of 9 |
+//! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 |
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
 //! | newton_step | dependent positions, one Newton step | 193 | 321 | 3 | 517 | 6 of 21 |
 //! | solve_velocities | dependent velocities, eq. (19) | 135 | 233 | 3 | 371 | 6 of 18 |
 
-use gyro_sim::charts::{self, Charts};
-use gyro_sim::{
-    Coordinate, Energy, Equations, Error, JointInfo, Mechanism, Ode, Owner, Partition,
-    Real, RowInfo, Scalar,
-};
 /// The mechanism `gyroscope_parameters`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GyroscopeParameters<T> {
@@ -46,7 +41,7 @@ pub struct GyroscopeParameters<T> {
     /// Parameter; default 1e-6.
     pub ring_diametral_inertia: T,
 }
-impl<T: Scalar> Default for GyroscopeParameters<T> {
+impl<T: gyro_sim::Scalar> ::core::default::Default for GyroscopeParameters<T> {
     fn default() -> Self {
         Self {
             gravity: T::constant(10.0),
@@ -79,7 +74,7 @@ impl<T> GyroscopeParameters<T> {
         true
     }
 }
-impl<T: Scalar> Ode for GyroscopeParameters<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Ode for GyroscopeParameters<T> {
     type Scalar = T;
     type State = [T; 39];
     /// The assembled start, with all parameters at their defaults.
@@ -129,9 +124,9 @@ impl<T: Scalar> Ode for GyroscopeParameters<T> {
     }
     /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 72 operations (24 ±, 48 ×, 0 ÷).
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut v = self.velocities();
-        let mut lambda = self.rows();
-        self.accelerations(t, y, &mut v, &mut lambda);
+        let mut v = gyro_sim::Equations::velocities(self);
+        let mut lambda = gyro_sim::Mechanism::rows(self);
+        gyro_sim::Equations::accelerations(self, t, y, &mut v, &mut lambda);
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -224,7 +219,7 @@ impl<T: Scalar> Ode for GyroscopeParameters<T> {
         ];
     }
 }
-impl<T: Scalar> Mechanism for GyroscopeParameters<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeParameters<T> {
     type Rows = [T; 15];
     type Constraints = [T; 18];
     type Readings = [T; 9];
@@ -279,7 +274,7 @@ impl<T: Scalar> Mechanism for GyroscopeParameters<T> {
         let t14 = inner_ring_e0 * inner_ring_e0;
         let t15 = k(2.0) * (k(0.5) - (t14 + t13));
         let t16 = outer_ring_e2 * outer_ring_e2;
-        let t17 = t0 * t15 + (k(2.0) * (k(0.5) - (t7 + t16)) * t11 - t3 * t6);
+        let t17 = t0 * t15 - (t3 * t6 - k(2.0) * (k(0.5) - (t7 + t16)) * t11);
         let t18 = t14 + inner_ring_e1 * inner_ring_e1;
         let t19 = inner_ring_e0 * inner_ring_e3;
         let t20 = inner_ring_e1 * inner_ring_e2;
@@ -352,39 +347,39 @@ impl<T: Scalar> Mechanism for GyroscopeParameters<T> {
         let t4 = k(2.0) * (k(0.5) - (t3 + outer_ring_e3 * outer_ring_e3));
         let t5 = k(2.0) * (k(0.5) - (t3 + outer_ring_e1 * outer_ring_e1));
         let t6 = k(2.0) * (t1 + t0);
-        let t7 = inner_ring_e0 * inner_ring_e2;
-        let t8 = inner_ring_e1 * inner_ring_e3;
-        let t9 = k(2.0) * (t8 + t7);
-        let t10 = outer_ring_e0 * outer_ring_e3;
-        let t11 = outer_ring_e1 * outer_ring_e2;
-        let t12 = k(2.0) * (t11 - t10);
-        let t13 = inner_ring_e0 * inner_ring_e1;
-        let t14 = inner_ring_e2 * inner_ring_e3;
-        let t15 = k(2.0) * (t14 - t13);
-        let t16 = k(2.0) * (k(0.5) - (t3 + outer_ring_e2 * outer_ring_e2));
+        let t7 = inner_ring_e0 * inner_ring_e1;
+        let t8 = inner_ring_e2 * inner_ring_e3;
+        let t9 = k(2.0) * (t8 - t7);
+        let t10 = k(2.0) * (k(0.5) - (t3 + outer_ring_e2 * outer_ring_e2));
+        let t11 = inner_ring_e0 * inner_ring_e2;
+        let t12 = inner_ring_e1 * inner_ring_e3;
+        let t13 = k(2.0) * (t12 + t11);
+        let t14 = outer_ring_e0 * outer_ring_e3;
+        let t15 = outer_ring_e1 * outer_ring_e2;
+        let t16 = k(2.0) * (t15 - t14);
         let t17 = inner_ring_e0 * inner_ring_e0;
         let t18 = k(2.0) * (k(0.5) - (t17 + inner_ring_e3 * inner_ring_e3));
         let t19 = outer_ring_e0 * outer_ring_e1;
         let t20 = outer_ring_e2 * outer_ring_e3;
         let t21 = k(2.0) * (t20 + t19);
-        let t22 = t4 * t18 + (k(2.0) * (t20 - t19) * t15 + t6 * t9);
+        let t22 = t6 * t13 + k(2.0) * (t20 - t19) * t9 + t4 * t18;
         let t23 = outer_ring_wy * t22
-            + outer_ring_wz * (t21 * t18 + (t16 * t15 - t12 * t9));
+            + outer_ring_wz * (t21 * t18 - (t16 * t13 - t10 * t9));
         let t24 = k(2.0) * (k(0.5) - (t17 + inner_ring_e1 * inner_ring_e1));
         let t25 = inner_ring_e0 * inner_ring_e3;
         let t26 = inner_ring_e1 * inner_ring_e2;
         let t27 = k(2.0) * (t26 + t25);
-        let t28 = k(2.0) * (t11 + t10);
-        let t29 = k(2.0) * (t8 - t7);
+        let t28 = k(2.0) * (t15 + t14);
+        let t29 = k(2.0) * (t12 - t11);
         let t30 = k(2.0) * (t26 - t25);
         let t31 = k(2.0) * (k(0.5) - (t17 + inner_ring_e2 * inner_ring_e2));
-        let t32 = k(2.0) * (t14 + t13);
+        let t32 = k(2.0) * (t8 + t7);
         let t33 = inner_ring_wx * (t2 * t32 - (t28 * t31 + t5 * t30))
             - inner_ring_wy * (t2 * t29 + (t28 * t27 + t5 * t24));
         let t34 = outer_ring_wx * t22
-            + outer_ring_wz * (t2 * t18 - (t28 * t15 - t5 * t9));
-        let t35 = inner_ring_wx * (t21 * t32 + (t16 * t31 + t12 * t30))
-            - inner_ring_wy * (t21 * t29 - (t16 * t27 + t12 * t24));
+            + outer_ring_wz * (t2 * t18 - (t28 * t9 - t5 * t13));
+        let t35 = inner_ring_wx * (t21 * t32 + (t16 * t30 + t10 * t31))
+            - inner_ring_wy * (t21 * t29 - (t10 * t27 + t16 * t24));
         let t36 = rotor_e0 * rotor_e0;
         let t37 = k(2.0) * (k(0.5) - (t36 + rotor_e1 * rotor_e1));
         let t38 = rotor_e0 * rotor_e3;
@@ -394,22 +389,22 @@ impl<T: Scalar> Mechanism for GyroscopeParameters<T> {
         let t42 = rotor_e1 * rotor_e3;
         let t43 = k(2.0) * (t42 - t41);
         let t44 = t29 * t43 + (t27 * t40 + t24 * t37);
-        let t45 = inner_ring_wx * (t18 * t43 - (t15 * t40 - t9 * t37))
+        let t45 = inner_ring_wx * (t18 * t43 - (t9 * t40 - t13 * t37))
             + inner_ring_wz * t44;
-        let t46 = k(2.0) * (t39 - t38);
-        let t47 = k(2.0) * (k(0.5) - (t36 + rotor_e2 * rotor_e2));
+        let t46 = k(2.0) * (k(0.5) - (t36 + rotor_e2 * rotor_e2));
+        let t47 = k(2.0) * (t39 - t38);
         let t48 = rotor_e0 * rotor_e1;
         let t49 = rotor_e2 * rotor_e3;
         let t50 = k(2.0) * (t49 + t48);
-        let t51 = k(2.0) * (t42 + t41);
-        let t52 = k(2.0) * (t49 - t48);
+        let t51 = k(2.0) * (t49 - t48);
+        let t52 = k(2.0) * (t42 + t41);
         let t53 = k(2.0) * (k(0.5) - (t36 + rotor_e3 * rotor_e3));
-        let t54 = rotor_wy * (t32 * t53 + (t31 * t52 - t30 * t51))
-            + rotor_wz * (t32 * t50 + (t31 * t47 + t30 * t46));
+        let t54 = rotor_wy * (t32 * t53 - (t30 * t52 - t31 * t51))
+            + rotor_wz * (t32 * t50 + (t30 * t47 + t31 * t46));
         let t55 = inner_ring_wx * (t32 * t43 - (t31 * t40 + t30 * t37))
             - inner_ring_wy * t44;
-        let t56 = rotor_wy * (t18 * t53 + (t15 * t52 + t9 * t51))
-            + rotor_wz * (t18 * t50 + (t15 * t47 - t9 * t46));
+        let t56 = rotor_wy * (t13 * t52 + t9 * t51 + t18 * t53)
+            + rotor_wz * (t18 * t50 - (t13 * t47 - t9 * t46));
         *out = [
             outer_ring_sx,
             outer_ring_sy,
@@ -423,10 +418,10 @@ impl<T: Scalar> Mechanism for GyroscopeParameters<T> {
             t34 - t35,
             rotor_sx
                 - (inner_ring_sx
-                    - self.rotor_offset * (t9 * inner_ring_wy - t30 * inner_ring_wz)),
+                    - self.rotor_offset * (t13 * inner_ring_wy - t30 * inner_ring_wz)),
             rotor_sy
                 - (inner_ring_sy
-                    - self.rotor_offset * (t15 * inner_ring_wy + t31 * inner_ring_wz)),
+                    - self.rotor_offset * (t9 * inner_ring_wy + t31 * inner_ring_wz)),
             rotor_sz
                 - (inner_ring_sz
                     + self.rotor_offset * (t18 * inner_ring_wy + t32 * inner_ring_wz)),
@@ -435,7 +430,7 @@ impl<T: Scalar> Mechanism for GyroscopeParameters<T> {
         ];
     }
     /// Kinetic and potential energy: 55 operations (19 ±, 36 ×, 0 ÷).
-    fn energy(&self, y: &Self::State) -> Energy<T> {
+    fn energy(&self, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let outer_ring_ry = y[1];
         let inner_ring_ry = y[8];
@@ -478,13 +473,13 @@ impl<T: Scalar> Mechanism for GyroscopeParameters<T> {
                 * (outer_ring_sx * outer_ring_sx + outer_ring_sy * outer_ring_sy
                     + outer_ring_sz * outer_ring_sz);
         let t6 = k(0.01) * self.gravity;
-        Energy {
+        gyro_sim::Energy {
             kinetic: k(0.5) * (t5 + t3 + t1),
             potential: outer_ring_ry * t6 + inner_ring_ry * t6
                 + rotor_ry * (self.gravity * self.rotor_mass),
         }
     }
-    /// Writes the joint readings: 95 operations (37 ±, 58 ×, 0 ÷).
+    /// Writes the joint readings: 114 operations (54 ±, 60 ×, 0 ÷).
     fn read_joints(&self, y: &Self::State, out: &mut Self::Readings) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -506,39 +501,49 @@ impl<T: Scalar> Mechanism for GyroscopeParameters<T> {
         let rotor_wx = y[36];
         let t0 = outer_ring_e0 * outer_ring_e2;
         let t1 = outer_ring_e1 * outer_ring_e3;
-        let t2 = outer_ring_e0 * outer_ring_e0;
-        let t3 = inner_ring_e0 * inner_ring_e0;
-        let t4 = k(2.0) * (k(0.5) - (t3 + inner_ring_e1 * inner_ring_e1));
-        let t5 = outer_ring_e0 * outer_ring_e3;
-        let t6 = outer_ring_e1 * outer_ring_e2;
-        let t7 = inner_ring_e0 * inner_ring_e3;
-        let t8 = inner_ring_e1 * inner_ring_e2;
-        let t9 = k(2.0) * (t8 + t7);
-        let t10 = k(2.0) * (k(0.5) - (t2 + outer_ring_e2 * outer_ring_e2)) * t9
-            + k(2.0) * (t6 - t5) * t4;
-        let t11 = inner_ring_e0 * inner_ring_e2;
-        let t12 = inner_ring_e1 * inner_ring_e3;
-        let t13 = k(2.0) * (t12 - t11);
-        let t14 = k(2.0) * (t6 + t5) * t9
-            + k(2.0) * (k(0.5) - (t2 + outer_ring_e1 * outer_ring_e1)) * t4;
-        let t15 = k(2.0) * (rotor_e1 * rotor_e2 - rotor_e0 * rotor_e3);
-        let t16 = k(2.0) * (k(0.5) - (rotor_e0 * rotor_e0 + rotor_e2 * rotor_e2));
-        let t17 = inner_ring_e0 * inner_ring_e1;
-        let t18 = inner_ring_e2 * inner_ring_e3;
-        let t19 = k(2.0) * (t18 - t17) * t16 - k(2.0) * (t12 + t11) * t15;
-        let t20 = k(2.0) * (rotor_e2 * rotor_e3 + rotor_e0 * rotor_e1);
-        let t21 = k(2.0) * (k(0.5) - (t3 + inner_ring_e2 * inner_ring_e2)) * t16
-            + k(2.0) * (t8 - t7) * t15;
+        let t2 = outer_ring_e2 * outer_ring_e2;
+        let t3 = outer_ring_e0 * outer_ring_e0;
+        let t4 = t3 + outer_ring_e1 * outer_ring_e1;
+        let t5 = outer_ring_e3 * outer_ring_e3;
+        let t6 = k(1.0) - (t5 + (t4 + t2));
+        let t7 = inner_ring_e0 * inner_ring_e2;
+        let t8 = inner_ring_e1 * inner_ring_e3;
+        let t9 = k(2.0) * (t8 - t7);
+        let t10 = inner_ring_e0 * inner_ring_e3;
+        let t11 = inner_ring_e1 * inner_ring_e2;
+        let t12 = k(2.0) * (t11 + t10);
+        let t13 = inner_ring_e2 * inner_ring_e2;
+        let t14 = inner_ring_e0 * inner_ring_e0;
+        let t15 = t14 + inner_ring_e1 * inner_ring_e1;
+        let t16 = inner_ring_e3 * inner_ring_e3;
+        let t17 = k(1.0) - (t16 + (t15 + t13));
+        let t18 = k(2.0) * (k(0.5) - t15) - t17;
+        let t19 = outer_ring_e0 * outer_ring_e3;
+        let t20 = outer_ring_e1 * outer_ring_e2;
+        let t21 = k(2.0) * (t20 - t19) * t18
+            + t12 * (k(2.0) * (k(0.5) - (t3 + t2)) - t6);
+        let t22 = (k(2.0) * (k(0.5) - t4) - t6) * t18 + k(2.0) * (t20 + t19) * t12;
+        let t23 = k(2.0) * (rotor_e2 * rotor_e3 + rotor_e0 * rotor_e1);
+        let t24 = rotor_e2 * rotor_e2;
+        let t25 = rotor_e0 * rotor_e0;
+        let t26 = k(2.0) * (k(0.5) - (t25 + t24))
+            - (k(1.0) - (rotor_e3 * rotor_e3 + (t25 + rotor_e1 * rotor_e1 + t24)));
+        let t27 = inner_ring_e0 * inner_ring_e1;
+        let t28 = inner_ring_e2 * inner_ring_e3;
+        let t29 = k(2.0) * (rotor_e1 * rotor_e2 - rotor_e0 * rotor_e3);
+        let t30 = k(2.0) * (t8 + t7) * t29 - k(2.0) * (t28 - t27) * t26;
+        let t31 = k(2.0) * (t11 - t10) * t29
+            + (k(2.0) * (k(0.5) - (t14 + t13)) - t17) * t26;
         *out = [
             k(2.0) * (t1 + t0),
-            -(k(2.0) * (k(0.5) - (t2 + outer_ring_e3 * outer_ring_e3))),
+            t6 - k(2.0) * (k(0.5) - (t3 + t5)),
             outer_ring_wy,
-            k(2.0) * (outer_ring_e2 * outer_ring_e3 + outer_ring_e0 * outer_ring_e1)
-                * t13 - t10,
-            k(2.0) * (t1 - t0) * t13 + t14,
+            k(2.0) * (outer_ring_e2 * outer_ring_e3 + outer_ring_e0 * outer_ring_e1) * t9
+                - t21,
+            t22 + k(2.0) * (t1 - t0) * t9,
             inner_ring_wz - outer_ring_wz,
-            -(k(2.0) * (k(0.5) - (t3 + inner_ring_e3 * inner_ring_e3)) * t20 + t19),
-            k(2.0) * (t18 + t17) * t20 + t21,
+            t30 - t23 * (k(2.0) * (k(0.5) - (t14 + t16)) - t17),
+            t31 + k(2.0) * (t28 + t27) * t23,
             rotor_wx - inner_ring_wx,
         ];
     }
@@ -552,96 +557,96 @@ impl<T: Scalar> Mechanism for GyroscopeParameters<T> {
         const BODIES: [&str; 3] = ["outer_ring", "inner_ring", "rotor"];
         BODIES.get(body).copied().unwrap_or_default()
     }
-    fn joint(&self, joint: usize) -> JointInfo<'_> {
-        const JOINTS: [JointInfo<'static>; 3] = [
-            JointInfo {
+    fn joint(&self, joint: usize) -> gyro_sim::JointInfo<'_> {
+        const JOINTS: [gyro_sim::JointInfo<'static>; 3] = [
+            gyro_sim::JointInfo {
                 name: "alpha",
-                coordinate: Coordinate::Angle,
+                coordinate: gyro_sim::Coordinate::Angle,
             },
-            JointInfo {
+            gyro_sim::JointInfo {
                 name: "beta",
-                coordinate: Coordinate::Angle,
+                coordinate: gyro_sim::Coordinate::Angle,
             },
-            JointInfo {
+            gyro_sim::JointInfo {
                 name: "phi",
-                coordinate: Coordinate::Angle,
+                coordinate: gyro_sim::Coordinate::Angle,
             },
         ];
         JOINTS
             .get(joint)
             .copied()
-            .unwrap_or(JointInfo {
+            .unwrap_or(gyro_sim::JointInfo {
                 name: "",
-                coordinate: Coordinate::None,
+                coordinate: gyro_sim::Coordinate::None,
             })
     }
-    fn row(&self, row: usize) -> RowInfo {
-        const ROWS: [RowInfo; 15] = [
-            RowInfo {
-                owner: Owner::Joint(0),
+    fn row(&self, row: usize) -> gyro_sim::RowInfo {
+        const ROWS: [gyro_sim::RowInfo; 15] = [
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(0),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(0),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(0),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(0),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(0),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(0),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(0),
                 is_length: false,
             },
-            RowInfo {
-                owner: Owner::Joint(0),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(0),
                 is_length: false,
             },
-            RowInfo {
-                owner: Owner::Joint(1),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(1),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(1),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(1),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(1),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(1),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(1),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(1),
                 is_length: false,
             },
-            RowInfo {
-                owner: Owner::Joint(1),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(1),
                 is_length: false,
             },
-            RowInfo {
-                owner: Owner::Joint(2),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(2),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(2),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(2),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(2),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(2),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(2),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(2),
                 is_length: false,
             },
-            RowInfo {
-                owner: Owner::Joint(2),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(2),
                 is_length: false,
             },
         ];
         ROWS.get(row)
             .copied()
-            .unwrap_or(RowInfo {
-                owner: Owner::Body(0),
+            .unwrap_or(gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Body(0),
                 is_length: false,
             })
     }
@@ -652,7 +657,7 @@ impl<T: Scalar> Mechanism for GyroscopeParameters<T> {
         T::constant(0.0)
     }
 }
-impl<T: Scalar> GyroscopeParameters<T> {
+impl<T: gyro_sim::Scalar> GyroscopeParameters<T> {
     /// The four-vectors whose largest components are the special Euler parameters: 0 operations (0 ±, 0 ×, 0 ÷).
     fn chart_vectors(&self, y: &[T; 39]) -> [[T; 4]; 3] {
         let outer_ring_e0 = y[3];
@@ -674,13 +679,13 @@ impl<T: Scalar> GyroscopeParameters<T> {
         ]
     }
 }
-impl<T: Real> Partition for GyroscopeParameters<T> {
-    type Independent = Charts<3>;
+impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeParameters<T> {
+    type Independent = gyro_sim::charts::Charts<3>;
     fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
-        charts::best(&self.chart_vectors(y))
+        gyro_sim::charts::best(&self.chart_vectors(y))
     }
     fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
-        charts::follow(&self.chart_vectors(y), choice)
+        gyro_sim::charts::follow(&self.chart_vectors(y), choice)
     }
     /// One Newton step of the dependent positions: 517 operations (193 ±, 321 ×, 3 ÷).
     fn newton_step(
@@ -688,8 +693,8 @@ impl<T: Real> Partition for GyroscopeParameters<T> {
         _t: T,
         choice: &Self::Independent,
         y: &mut Self::State,
-    ) -> Result<(), Error> {
-        let charts = charts::one_hot::<T, _>(choice);
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -897,8 +902,8 @@ impl<T: Real> Partition for GyroscopeParameters<T> {
         _t: T,
         choice: &Self::Independent,
         y: &mut Self::State,
-    ) -> Result<(), Error> {
-        let charts = charts::one_hot::<T, _>(choice);
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -977,20 +982,20 @@ impl<T: Real> Partition for GyroscopeParameters<T> {
         let t37 = outer_ring_e2 * outer_ring_e3;
         let t38 = k(2.0) * (t37 + t36);
         let t39 = t38 * t32 - (t35 * t26 + t34 * t23);
-        let t40 = k(2.0) * (t25 - t24);
-        let t41 = k(2.0) * (k(0.5) - (t22 + inner_ring_e2 * inner_ring_e2));
+        let t40 = k(2.0) * (k(0.5) - (t22 + inner_ring_e2 * inner_ring_e2));
+        let t41 = k(2.0) * (t25 - t24);
         let t42 = inner_ring_e0 * inner_ring_e1;
         let t43 = inner_ring_e2 * inner_ring_e3;
         let t44 = k(2.0) * (t43 + t42);
-        let t45 = t38 * t44 + (t35 * t41 + t34 * t40);
+        let t45 = t38 * t44 + (t34 * t41 + t35 * t40);
         let t46 = k(2.0) * (t31 + t30);
         let t47 = k(2.0) * (t43 - t42);
         let t48 = k(2.0) * (k(0.5) - (t22 + inner_ring_e3 * inner_ring_e3));
-        let t49 = t9 * t48 + (k(2.0) * (t37 - t36) * t47 + t7 * t46);
+        let t49 = t7 * t46 + k(2.0) * (t37 - t36) * t47 + t9 * t48;
         let t50 = t12 * t49 + t19 * (t4 * t48 - (t29 * t47 - t6 * t46));
         let t51 = t50 - (inner_ring_wx * t45 - inner_ring_wy * t39);
-        let t52 = t4 * t44 - (t29 * t41 + t6 * t40);
-        let t53 = t18 * t49 + t19 * (t38 * t48 + (t35 * t47 - t34 * t46));
+        let t52 = t4 * t44 - (t29 * t40 + t6 * t41);
+        let t53 = t18 * t49 + t19 * (t38 * t48 - (t34 * t46 - t35 * t47));
         let t54 = t53 + (inner_ring_wx * t52 - inner_ring_wy * t33);
         let t55 = k(1.0) / (t21 * (t52 * t39 - t33 * t45));
         let t56 = inner_ring_wx - t55 * (t54 * (t39 * t21) + t51 * (t33 * t21));
@@ -1006,31 +1011,31 @@ impl<T: Real> Partition for GyroscopeParameters<T> {
         let t64 = rotor_e3 * chart2_0 - rotor_e2 * chart2_1 + rotor_e1 * chart2_2
             - rotor_e0 * chart2_3;
         let t65 = k(0.5) * t64;
-        let t66 = rotor_e0 * rotor_e2;
-        let t67 = rotor_e1 * rotor_e3;
-        let t68 = k(2.0) * (t67 + t66);
-        let t69 = rotor_e0 * rotor_e1;
-        let t70 = rotor_e2 * rotor_e3;
-        let t71 = k(2.0) * (t70 - t69);
+        let t66 = rotor_e0 * rotor_e1;
+        let t67 = rotor_e2 * rotor_e3;
+        let t68 = k(2.0) * (t67 - t66);
+        let t69 = rotor_e0 * rotor_e2;
+        let t70 = rotor_e1 * rotor_e3;
+        let t71 = k(2.0) * (t70 + t69);
         let t72 = rotor_e0 * rotor_e0;
         let t73 = k(2.0) * (k(0.5) - (t72 + rotor_e3 * rotor_e3));
-        let t74 = t44 * t73 + (t41 * t71 - t40 * t68);
+        let t74 = t44 * t73 - (t41 * t71 - t40 * t68);
         let t75 = rotor_e2 * chart2_0 + rotor_e3 * chart2_1 - rotor_e0 * chart2_2
             - rotor_e1 * chart2_3;
         let t76 = k(0.5) * t75;
-        let t77 = rotor_e0 * rotor_e3;
-        let t78 = rotor_e1 * rotor_e2;
-        let t79 = k(2.0) * (t78 - t77);
-        let t80 = k(2.0) * (k(0.5) - (t72 + rotor_e2 * rotor_e2));
-        let t81 = k(2.0) * (t70 + t69);
-        let t82 = t44 * t81 + (t41 * t80 + t40 * t79);
-        let t83 = t48 * t81 + (t47 * t80 - t46 * t79);
-        let t84 = t48 * t73 + (t47 * t71 + t46 * t68);
+        let t77 = k(2.0) * (k(0.5) - (t72 + rotor_e2 * rotor_e2));
+        let t78 = rotor_e0 * rotor_e3;
+        let t79 = rotor_e1 * rotor_e2;
+        let t80 = k(2.0) * (t79 - t78);
+        let t81 = k(2.0) * (t67 + t66);
+        let t82 = t44 * t81 + (t41 * t80 + t40 * t77);
+        let t83 = t48 * t81 - (t46 * t80 - t47 * t77);
+        let t84 = t46 * t71 + t47 * t68 + t48 * t73;
         let t85 = k(2.0) * (k(0.5) - (t72 + rotor_e1 * rotor_e1));
-        let t86 = k(2.0) * (t78 + t77);
-        let t87 = k(2.0) * (t67 - t66);
+        let t86 = k(2.0) * (t79 + t78);
+        let t87 = k(2.0) * (t70 - t69);
         let t88 = t32 * t87 + (t26 * t86 + t23 * t85);
-        let t89 = t56 * (t44 * t87 - (t41 * t86 + t40 * t85)) - t57 * t88;
+        let t89 = t56 * (t44 * t87 - (t40 * t86 + t41 * t85)) - t57 * t88;
         let t90 = t89 + (rotor_wy * t84 + rotor_wz * t83);
         let t91 = t56 * (t48 * t87 - (t47 * t86 - t46 * t85)) + t63 * t88;
         let t92 = t91 - (rotor_wy * t74 + rotor_wz * t82);
@@ -1053,8 +1058,8 @@ impl<T: Real> Partition for GyroscopeParameters<T> {
         y[30] = t56;
         y[31] = t57;
         y[32] = t63;
-        y[33] = -(self.rotor_offset * (t46 * t57 - t40 * t63));
-        y[34] = -(self.rotor_offset * (t47 * t57 + t41 * t63));
+        y[33] = -(self.rotor_offset * (t46 * t57 - t41 * t63));
+        y[34] = -(self.rotor_offset * (t47 * t57 + t40 * t63));
         y[35] = self.rotor_offset * (t48 * t57 + t44 * t63);
         y[36] = rotor_wx + t96 * t93;
         y[37] = t97;
@@ -1062,7 +1067,7 @@ impl<T: Real> Partition for GyroscopeParameters<T> {
         Ok(())
     }
 }
-impl<T: Scalar> Equations for GyroscopeParameters<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeParameters<T> {
     type Velocities = [T; 18];
     type PhiQ = [T; 77];
     type PhiPi = [T; 41];
@@ -1372,31 +1377,31 @@ impl<T: Scalar> Equations for GyroscopeParameters<T> {
         let t4 = k(2.0) * (t3 - t2);
         let t5 = k(2.0) * (t3 + t2);
         let t6 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
-        let t7 = inner_ring_e0 * inner_ring_e2;
-        let t8 = inner_ring_e1 * inner_ring_e3;
-        let t9 = k(2.0) * (t8 + t7);
-        let t10 = inner_ring_e0 * inner_ring_e1;
-        let t11 = inner_ring_e2 * inner_ring_e3;
-        let t12 = k(2.0) * (t11 - t10);
-        let t13 = outer_ring_e0 * outer_ring_e1;
-        let t14 = outer_ring_e2 * outer_ring_e3;
-        let t15 = inner_ring_e0 * inner_ring_e0;
-        let t16 = k(2.0) * (k(0.5) - (t15 + inner_ring_e3 * inner_ring_e3));
-        let t17 = t1 * t16 + (k(2.0) * (t14 - t13) * t12 + t5 * t9);
-        let t18 = outer_ring_e0 * outer_ring_e3;
-        let t19 = outer_ring_e1 * outer_ring_e2;
-        let t20 = k(2.0) * (t19 - t18);
-        let t21 = k(2.0) * (k(0.5) - (t0 + outer_ring_e2 * outer_ring_e2));
-        let t22 = k(2.0) * (t14 + t13);
+        let t7 = inner_ring_e0 * inner_ring_e0;
+        let t8 = k(2.0) * (k(0.5) - (t7 + inner_ring_e3 * inner_ring_e3));
+        let t9 = inner_ring_e0 * inner_ring_e1;
+        let t10 = inner_ring_e2 * inner_ring_e3;
+        let t11 = k(2.0) * (t10 - t9);
+        let t12 = outer_ring_e0 * outer_ring_e1;
+        let t13 = outer_ring_e2 * outer_ring_e3;
+        let t14 = inner_ring_e0 * inner_ring_e2;
+        let t15 = inner_ring_e1 * inner_ring_e3;
+        let t16 = k(2.0) * (t15 + t14);
+        let t17 = t5 * t16 + k(2.0) * (t13 - t12) * t11 + t1 * t8;
+        let t18 = k(2.0) * (k(0.5) - (t0 + outer_ring_e2 * outer_ring_e2));
+        let t19 = outer_ring_e0 * outer_ring_e3;
+        let t20 = outer_ring_e1 * outer_ring_e2;
+        let t21 = k(2.0) * (t20 - t19);
+        let t22 = k(2.0) * (t13 + t12);
         let t23 = inner_ring_e0 * inner_ring_e3;
         let t24 = inner_ring_e1 * inner_ring_e2;
         let t25 = k(2.0) * (t24 - t23);
-        let t26 = k(2.0) * (k(0.5) - (t15 + inner_ring_e2 * inner_ring_e2));
-        let t27 = k(2.0) * (t19 + t18);
-        let t28 = k(2.0) * (t11 + t10);
-        let t29 = k(2.0) * (k(0.5) - (t15 + inner_ring_e1 * inner_ring_e1));
+        let t26 = k(2.0) * (k(0.5) - (t7 + inner_ring_e2 * inner_ring_e2));
+        let t27 = k(2.0) * (t20 + t19);
+        let t28 = k(2.0) * (t10 + t9);
+        let t29 = k(2.0) * (k(0.5) - (t7 + inner_ring_e1 * inner_ring_e1));
         let t30 = k(2.0) * (t24 + t23);
-        let t31 = k(2.0) * (t8 - t7);
+        let t31 = k(2.0) * (t15 - t14);
         let t32 = rotor_e0 * rotor_e0;
         let t33 = k(2.0) * (k(0.5) - (t32 + rotor_e1 * rotor_e1));
         let t34 = rotor_e0 * rotor_e3;
@@ -1406,14 +1411,14 @@ impl<T: Scalar> Equations for GyroscopeParameters<T> {
         let t38 = rotor_e1 * rotor_e3;
         let t39 = k(2.0) * (t38 - t37);
         let t40 = t31 * t39 + (t30 * t36 + t29 * t33);
-        let t41 = k(2.0) * (t38 + t37);
-        let t42 = rotor_e0 * rotor_e1;
-        let t43 = rotor_e2 * rotor_e3;
-        let t44 = k(2.0) * (t43 - t42);
+        let t41 = rotor_e0 * rotor_e1;
+        let t42 = rotor_e2 * rotor_e3;
+        let t43 = k(2.0) * (t42 - t41);
+        let t44 = k(2.0) * (t38 + t37);
         let t45 = k(2.0) * (k(0.5) - (t32 + rotor_e3 * rotor_e3));
-        let t46 = k(2.0) * (t35 - t34);
-        let t47 = k(2.0) * (k(0.5) - (t32 + rotor_e2 * rotor_e2));
-        let t48 = k(2.0) * (t43 + t42);
+        let t46 = k(2.0) * (k(0.5) - (t32 + rotor_e2 * rotor_e2));
+        let t47 = k(2.0) * (t35 - t34);
+        let t48 = k(2.0) * (t42 + t41);
         *out = [
             k(1.0),
             k(1.0),
@@ -1429,33 +1434,33 @@ impl<T: Scalar> Equations for GyroscopeParameters<T> {
             k(-1.0),
             k(1.0),
             -t17,
-            -(t22 * t16 + (t21 * t12 - t20 * t9)),
+            t21 * t16 - t18 * t11 - t22 * t8,
             t27 * t26 + t6 * t25 - t4 * t28,
             t4 * t31 + (t27 * t30 + t6 * t29),
             t17,
-            t4 * t16 - (t27 * t12 - t6 * t9),
-            -(t22 * t28 + (t21 * t26 + t20 * t25)),
-            t22 * t31 - (t21 * t30 + t20 * t29),
+            t4 * t8 - (t27 * t11 - t6 * t16),
+            -(t22 * t28 + (t21 * t25 + t18 * t26)),
+            t22 * t31 - (t18 * t30 + t21 * t29),
             k(-1.0),
-            t9 * self.rotor_offset,
+            t16 * self.rotor_offset,
             -(t25 * self.rotor_offset),
             k(1.0),
             k(-1.0),
-            t12 * self.rotor_offset,
+            t11 * self.rotor_offset,
             t26 * self.rotor_offset,
             k(1.0),
             k(-1.0),
-            -(t16 * self.rotor_offset),
+            -(t8 * self.rotor_offset),
             -(t28 * self.rotor_offset),
             k(1.0),
-            t12 * t36 - t9 * t33 - t16 * t39,
+            t11 * t36 - t16 * t33 - t8 * t39,
             -t40,
-            t28 * t45 + (t26 * t44 - t25 * t41),
-            t28 * t48 + (t26 * t47 + t25 * t46),
+            t28 * t45 - (t25 * t44 - t26 * t43),
+            t28 * t48 + (t25 * t47 + t26 * t46),
             t26 * t36 + t25 * t33 - t28 * t39,
             t40,
-            -(t16 * t45 + (t12 * t44 + t9 * t41)),
-            -(t16 * t48 + (t12 * t47 - t9 * t46)),
+            -(t16 * t44 + t11 * t43 + t8 * t45),
+            t16 * t47 - t11 * t46 - t8 * t48,
         ];
     }
     /// Writes ν: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -1531,9 +1536,9 @@ impl<T: Scalar> Equations for GyroscopeParameters<T> {
         let t25 = k(2.0) * (k(0.5) - (t24 + inner_ring_e3 * inner_ring_e3));
         let t26 = t3 * t25 - (t23 * t22 - t12 * t19);
         let t27 = k(2.0) * (k(0.5) - (t10 + outer_ring_e2 * outer_ring_e2));
-        let t28 = t8 * t25 + (t27 * t22 - t15 * t19);
+        let t28 = t8 * t25 - (t15 * t19 - t27 * t22);
         let t29 = k(2.0) * (t7 - t6);
-        let t30 = t11 * t25 + (t29 * t22 + t16 * t19);
+        let t30 = t16 * t19 + t29 * t22 + t11 * t25;
         let t31 = outer_ring_wx * outer_ring_wz * t30
             - (t0 * t28 - (t4 + outer_ring_wy * outer_ring_wy) * t26);
         let t32 = k(2.0) * (k(0.5) - (t24 + inner_ring_e1 * inner_ring_e1));
@@ -1542,18 +1547,18 @@ impl<T: Scalar> Equations for GyroscopeParameters<T> {
         let t35 = k(2.0) * (t34 + t33);
         let t36 = k(2.0) * (t18 - t17);
         let t37 = t8 * t36 - (t27 * t35 + t15 * t32);
-        let t38 = k(2.0) * (t34 - t33);
-        let t39 = k(2.0) * (k(0.5) - (t24 + inner_ring_e2 * inner_ring_e2));
+        let t38 = k(2.0) * (k(0.5) - (t24 + inner_ring_e2 * inner_ring_e2));
+        let t39 = k(2.0) * (t34 - t33);
         let t40 = k(2.0) * (t21 + t20);
-        let t41 = t8 * t40 + (t27 * t39 + t15 * t38);
-        let t42 = inner_ring_wx * (t11 * t40 + (t29 * t39 - t16 * t38))
+        let t41 = t8 * t40 + (t15 * t39 + t27 * t38);
+        let t42 = inner_ring_wx * (t11 * t40 - (t16 * t39 - t29 * t38))
             - inner_ring_wy * (t11 * t36 - (t29 * t35 - t16 * t32));
         let t43 = k(2.0)
             * (outer_ring_wy * t42
                 + outer_ring_wz * (inner_ring_wx * t41 - inner_ring_wy * t37));
         let t44 = t3 * t36 + (t23 * t35 + t12 * t32);
         let t45 = inner_ring_wx * inner_ring_wz;
-        let t46 = t3 * t40 - (t23 * t39 + t12 * t38);
+        let t46 = t3 * t40 - (t23 * t38 + t12 * t39);
         let t47 = inner_ring_wy * inner_ring_wz;
         let t48 = inner_ring_wx * inner_ring_wx;
         let t49 = inner_ring_wy * inner_ring_wy;
@@ -1576,7 +1581,7 @@ impl<T: Scalar> Equations for GyroscopeParameters<T> {
         let t63 = rotor_e1 * rotor_e3;
         let t64 = k(2.0) * (t63 - t62);
         let t65 = t36 * t64 + (t35 * t61 + t32 * t58);
-        let t66 = t40 * t64 - (t39 * t61 + t38 * t58);
+        let t66 = t40 * t64 - (t38 * t61 + t39 * t58);
         let t67 = t25 * t64 - (t22 * t61 - t19 * t58);
         let t68 = k(2.0) * (t60 - t59);
         let t69 = k(2.0) * (k(0.5) - (t57 + rotor_e2 * rotor_e2));
@@ -1588,14 +1593,14 @@ impl<T: Scalar> Equations for GyroscopeParameters<T> {
         let t75 = k(2.0) * (k(0.5) - (t57 + rotor_e3 * rotor_e3));
         let t76 = rotor_wy * (t36 * t75 - (t35 * t74 - t32 * t73))
             + rotor_wz * (t36 * t72 - (t35 * t69 + t32 * t68));
-        let t77 = t25 * t72 + (t22 * t69 - t19 * t68);
-        let t78 = t25 * t75 + (t22 * t74 + t19 * t73);
+        let t77 = t25 * t72 - (t19 * t68 - t22 * t69);
+        let t78 = t19 * t73 + t22 * t74 + t25 * t75;
         let t79 = k(2.0)
             * (inner_ring_wx * (rotor_wy * t78 + rotor_wz * t77) + inner_ring_wz * t76);
         let t80 = rotor_wz * rotor_wz + rotor_wy * rotor_wy;
-        let t81 = t40 * t72 + (t39 * t69 + t38 * t68);
+        let t81 = t40 * t72 + (t39 * t68 + t38 * t69);
         let t82 = rotor_wx * rotor_wy;
-        let t83 = t40 * t75 + (t39 * t74 - t38 * t73);
+        let t83 = t40 * t75 - (t39 * t73 - t38 * t74);
         let t84 = rotor_wx * rotor_wz;
         let t85 = t84 * t83 - (t82 * t81 - t80 * t66) + t79
             + (t47 * t67 + ((t54 + t48) * t66 - t56 * t65));
@@ -1614,8 +1619,8 @@ impl<T: Scalar> Equations for GyroscopeParameters<T> {
             k(0.0),
             -t51,
             -t53,
-            self.rotor_offset * (t19 * t45 + (t38 * t56 + t32 * t55)),
-            self.rotor_offset * (t22 * t45 - (t39 * t56 + t35 * t55)),
+            self.rotor_offset * (t19 * t45 + (t39 * t56 + t32 * t55)),
+            self.rotor_offset * (t22 * t45 - (t38 * t56 + t35 * t55)),
             -(self.rotor_offset * (t25 * t45 - (t40 * t56 - t36 * t55))),
             t85,
             -t87,
@@ -1687,13 +1692,13 @@ impl<T: Scalar> Equations for GyroscopeParameters<T> {
         let rotor_wy = y[37];
         let rotor_wz = y[38];
         let (
-            t5,
+            t3,
             t9,
             t15,
             t17,
             t24,
             t25,
-            t28,
+            t26,
             t29,
             t30,
             t32,
@@ -1755,7 +1760,7 @@ impl<T: Scalar> Equations for GyroscopeParameters<T> {
             t133,
             t135,
             t136,
-            t137,
+            t138,
             t141,
             t142,
             t143,
@@ -1795,56 +1800,56 @@ impl<T: Scalar> Equations for GyroscopeParameters<T> {
             t198,
             t199,
         ) = {
-            let t0 = rotor_e0 * rotor_e3;
-            let t1 = rotor_e1 * rotor_e2;
-            let t2 = k(2.0) * (t1 - t0);
-            let t3 = inner_ring_e0 * inner_ring_e3;
-            let t4 = inner_ring_e1 * inner_ring_e2;
-            let t5 = k(2.0) * (t4 - t3);
-            let t6 = rotor_e0 * rotor_e0;
-            let t7 = k(2.0) * (k(0.5) - (t6 + rotor_e2 * rotor_e2));
-            let t8 = inner_ring_e0 * inner_ring_e0;
-            let t9 = k(2.0) * (k(0.5) - (t8 + inner_ring_e2 * inner_ring_e2));
+            let t0 = rotor_e0 * rotor_e0;
+            let t1 = k(2.0) * (k(0.5) - (t0 + rotor_e2 * rotor_e2));
+            let t2 = inner_ring_e0 * inner_ring_e0;
+            let t3 = k(2.0) * (k(0.5) - (t2 + inner_ring_e2 * inner_ring_e2));
+            let t4 = rotor_e0 * rotor_e3;
+            let t5 = rotor_e1 * rotor_e2;
+            let t6 = k(2.0) * (t5 - t4);
+            let t7 = inner_ring_e0 * inner_ring_e3;
+            let t8 = inner_ring_e1 * inner_ring_e2;
+            let t9 = k(2.0) * (t8 - t7);
             let t10 = rotor_e0 * rotor_e1;
             let t11 = rotor_e2 * rotor_e3;
             let t12 = k(2.0) * (t11 + t10);
             let t13 = inner_ring_e0 * inner_ring_e1;
             let t14 = inner_ring_e2 * inner_ring_e3;
             let t15 = k(2.0) * (t14 + t13);
-            let t16 = t15 * t12 + (t9 * t7 + t5 * t2);
+            let t16 = t15 * t12 + (t9 * t6 + t3 * t1);
             let t17 = k(200000.0) * t16;
-            let t18 = rotor_e0 * rotor_e2;
-            let t19 = rotor_e1 * rotor_e3;
-            let t20 = k(2.0) * (t19 + t18);
-            let t21 = k(2.0) * (t11 - t10);
-            let t22 = k(2.0) * (k(0.5) - (t6 + rotor_e3 * rotor_e3));
-            let t23 = t15 * t22 + (t9 * t21 - t5 * t20);
+            let t18 = k(2.0) * (t11 - t10);
+            let t19 = rotor_e0 * rotor_e2;
+            let t20 = rotor_e1 * rotor_e3;
+            let t21 = k(2.0) * (t20 + t19);
+            let t22 = k(2.0) * (k(0.5) - (t0 + rotor_e3 * rotor_e3));
+            let t23 = t15 * t22 - (t9 * t21 - t3 * t18);
             let t24 = k(200000.0) * t23;
             let t25 = k(1.0) / (t23 * t24 + t16 * t17);
-            let t26 = inner_ring_e0 * inner_ring_e2;
-            let t27 = inner_ring_e1 * inner_ring_e3;
-            let t28 = k(2.0) * (t27 + t26);
-            let t29 = k(2.0) * (t14 - t13);
-            let t30 = k(2.0) * (k(0.5) - (t8 + inner_ring_e3 * inner_ring_e3));
-            let t31 = t30 * t12 + (t29 * t7 - t28 * t2);
+            let t26 = k(2.0) * (t14 - t13);
+            let t27 = inner_ring_e0 * inner_ring_e2;
+            let t28 = inner_ring_e1 * inner_ring_e3;
+            let t29 = k(2.0) * (t28 + t27);
+            let t30 = k(2.0) * (k(0.5) - (t2 + inner_ring_e3 * inner_ring_e3));
+            let t31 = t30 * t12 - (t29 * t6 - t26 * t1);
             let t32 = k(200000.0) * t31;
-            let t33 = t30 * t22 + (t29 * t21 + t28 * t20);
+            let t33 = t29 * t21 + t26 * t18 + t30 * t22;
             let t34 = k(200000.0) * t33;
             let t35 = t23 * t34 + t16 * t32;
             let t36 = t35 * t25;
             let t37 = k(1.0) / (t33 * t34 + t31 * t32 - t35 * t36);
-            let t38 = k(2.0) * (k(0.5) - (t6 + rotor_e1 * rotor_e1));
-            let t39 = k(2.0) * (t1 + t0);
-            let t40 = k(2.0) * (t19 - t18);
-            let t41 = t30 * t40 - (t29 * t39 - t28 * t38);
-            let t42 = t15 * t40 - (t9 * t39 + t5 * t38);
+            let t38 = k(2.0) * (k(0.5) - (t0 + rotor_e1 * rotor_e1));
+            let t39 = k(2.0) * (t5 + t4);
+            let t40 = k(2.0) * (t20 - t19);
+            let t41 = t30 * t40 - (t26 * t39 - t29 * t38);
+            let t42 = t15 * t40 - (t3 * t39 + t9 * t38);
             let t43 = t42 + t41 * t36;
             let t44 = t43 * t37;
             let t45 = t41 * t25;
             let t46 = k(1.0) / (self.ring_diametral_inertia + t41 * t45 + t43 * t44);
-            let t47 = k(2.0) * (k(0.5) - (t8 + inner_ring_e1 * inner_ring_e1));
-            let t48 = k(2.0) * (t4 + t3);
-            let t49 = k(2.0) * (t27 - t26);
+            let t47 = k(2.0) * (k(0.5) - (t2 + inner_ring_e1 * inner_ring_e1));
+            let t48 = k(2.0) * (t8 + t7);
+            let t49 = k(2.0) * (t28 - t27);
             let t50 = t49 * t40 + (t48 * t39 + t47 * t38);
             let t51 = t50 * t37;
             let t52 = t43 * t51;
@@ -1853,9 +1858,9 @@ impl<T: Scalar> Equations for GyroscopeParameters<T> {
             let t55 = k(1.0) / (t54 + k(100.0));
             let t56 = t30 * self.rotor_offset;
             let t57 = t56 * t55;
-            let t58 = t29 * self.rotor_offset;
+            let t58 = t26 * self.rotor_offset;
             let t59 = t58 * t55;
-            let t60 = t28 * self.rotor_offset;
+            let t60 = t29 * self.rotor_offset;
             let t61 = t60 * t55;
             let t62 = self.ring_axial_inertia + t60 * t61 + t58 * t59 + t56 * t57
                 + t50 * t51;
@@ -1867,9 +1872,9 @@ impl<T: Scalar> Equations for GyroscopeParameters<T> {
             let t68 = t67 * t46;
             let t69 = t15 * self.rotor_offset;
             let t70 = t69 * t55;
-            let t71 = t9 * self.rotor_offset;
+            let t71 = t3 * self.rotor_offset;
             let t72 = t71 * t55;
-            let t73 = t5 * self.rotor_offset;
+            let t73 = t9 * self.rotor_offset;
             let t74 = t73 * t55;
             let t75 = t60 * t74 - t58 * t72 - t56 * t70 + t50 * t65;
             let t76 = t75 - t52 * t68;
@@ -1909,7 +1914,7 @@ impl<T: Scalar> Equations for GyroscopeParameters<T> {
             let t109 = outer_ring_e0 * outer_ring_e2;
             let t110 = outer_ring_e1 * outer_ring_e3;
             let t111 = k(2.0) * (t110 - t109);
-            let t112 = t111 * t15 - (t108 * t9 + t105 * t5);
+            let t112 = t111 * t15 - (t108 * t3 + t105 * t9);
             let t113 = t112 * t46;
             let t114 = t111 * t49 + (t108 * t48 + t105 * t47);
             let t115 = t114 - t52 * t113;
@@ -1934,26 +1939,26 @@ impl<T: Scalar> Equations for GyroscopeParameters<T> {
             let t134 = t128 * t133 + t111 * t131;
             let t135 = t134 * t130;
             let t136 = k(1.0) / (t132 * t133 + t105 * t131 - t134 * t135);
-            let t137 = k(2.0) * (t107 - t106);
-            let t138 = k(2.0) * (k(0.5) - (t104 + outer_ring_e2 * outer_ring_e2));
+            let t137 = k(2.0) * (k(0.5) - (t104 + outer_ring_e2 * outer_ring_e2));
+            let t138 = k(2.0) * (t107 - t106);
             let t139 = outer_ring_e0 * outer_ring_e1;
             let t140 = outer_ring_e2 * outer_ring_e3;
             let t141 = k(2.0) * (t140 + t139);
-            let t142 = t141 * t30 + (t138 * t29 - t137 * t28);
+            let t142 = t141 * t30 - (t138 * t29 - t137 * t26);
             let t143 = t142 * t125;
             let t144 = t111 * t143;
             let t145 = t144 * t130;
             let t146 = t105 * t143 - t134 * t145;
             let t147 = t146 * t136;
             let t148 = k(2.0) * (t140 - t139);
-            let t149 = t128 * t30 + (t148 * t29 + t132 * t28);
+            let t149 = t132 * t29 + t148 * t26 + t128 * t30;
             let t150 = t149 * t125;
             let t151 = t149 * t150 + t112 * t113 + t142 * t143 - t144 * t145;
             let t152 = t151 - t146 * t147 + t115 * t116 + t117 * t118 + t119 * t120;
             let t153 = k(1.0) / (t152 + t121 * t122 + t123 * t124);
-            let t154 = t141 * t15 + (t138 * t9 + t137 * t5);
+            let t154 = t141 * t15 + (t138 * t9 + t137 * t3);
             let t155 = t154 * t46;
-            let t156 = t141 * t49 - (t138 * t48 + t137 * t47);
+            let t156 = t141 * t49 - (t137 * t48 + t138 * t47);
             let t157 = t156 - t52 * t155;
             let t158 = t157 * t63;
             let t159 = t67 * t155 + t76 * t158;
@@ -1964,7 +1969,7 @@ impl<T: Scalar> Equations for GyroscopeParameters<T> {
             let t164 = t163 * t93;
             let t165 = t94 * t158 + t96 * t160 + t98 * t162 + t100 * t164;
             let t166 = t165 * t103;
-            let t167 = t111 * t30 - (t108 * t29 - t105 * t28);
+            let t167 = t111 * t30 - (t108 * t26 - t105 * t29);
             let t168 = t167 * t125;
             let t169 = t149 * t127;
             let t170 = t128 * t169 + t111 * t168;
@@ -1985,8 +1990,8 @@ impl<T: Scalar> Equations for GyroscopeParameters<T> {
             let t185 = inner_ring_wx * inner_ring_wx;
             let t186 = inner_ring_wz * inner_ring_wz;
             let t187 = inner_ring_wy * inner_ring_wz;
-            let t188 = rotor_wy * (t49 * t22 - (t48 * t21 - t47 * t20))
-                + rotor_wz * (t49 * t12 - (t48 * t7 + t47 * t2));
+            let t188 = rotor_wy * (t49 * t22 - (t48 * t18 - t47 * t21))
+                + rotor_wz * (t49 * t12 - (t48 * t1 + t47 * t6));
             let t189 = k(2.0)
                 * (inner_ring_wx * (rotor_wy * t33 + rotor_wz * t31)
                     + inner_ring_wz * t188);
@@ -2005,13 +2010,13 @@ impl<T: Scalar> Equations for GyroscopeParameters<T> {
             let t198 = t197 + t183 * t34 - t181 * t32 - t192 * t36;
             let t199 = self.ring_axial_inertia - self.ring_diametral_inertia;
             (
-                t5,
+                t3,
                 t9,
                 t15,
                 t17,
                 t24,
                 t25,
-                t28,
+                t26,
                 t29,
                 t30,
                 t32,
@@ -2073,7 +2078,7 @@ impl<T: Scalar> Equations for GyroscopeParameters<T> {
                 t133,
                 t135,
                 t136,
-                t137,
+                t138,
                 t141,
                 t142,
                 t143,
@@ -2140,10 +2145,10 @@ impl<T: Scalar> Equations for GyroscopeParameters<T> {
             let t201 = t186 + t194;
             let t202 = self.rotor_offset * (t30 * t193 - (t15 * t184 - t49 * t201));
             let t203 = self.gravity * self.rotor_mass * t54;
-            let t204 = self.rotor_offset * (t29 * t193 - (t9 * t184 + t48 * t201))
+            let t204 = self.rotor_offset * (t26 * t193 - (t3 * t184 + t48 * t201))
                 + t203;
             let t205 = self.gravity - t204;
-            let t206 = self.rotor_offset * (t28 * t193 + (t5 * t184 + t47 * t201));
+            let t206 = self.rotor_offset * (t29 * t193 + (t9 * t184 + t47 * t201));
             let t207 = t206 * t61 - t205 * t59 + t202 * t57 - t198 * t51;
             let t208 = t207 + t200 * t53;
             let t209 = t184 * t199 + t206 * t74 + t205 * t72 - t202 * t70;
@@ -2158,13 +2163,13 @@ impl<T: Scalar> Equations for GyroscopeParameters<T> {
             let t218 = t217 + outer_ring_wx * outer_ring_wx;
             let t219 = outer_ring_wy * outer_ring_wz;
             let t220 = t128 * t219 + (t141 * t218 - t111 * t215) + t216 * t126;
-            let t221 = t132 * t219 - (t137 * t218 + t105 * t215) + t216 * t131;
+            let t221 = t132 * t219 - (t138 * t218 + t105 * t215) + t216 * t131;
             let t222 = t221 - t220 * t135;
             let t223 = outer_ring_wx * outer_ring_wz;
             let t224 = t223 * t199;
             let t225 = t223 * t149
                 - (t215 * t142 - (t217 + outer_ring_wy * outer_ring_wy) * t167);
-            let t226 = inner_ring_wx * (t128 * t15 + (t148 * t9 - t132 * t5))
+            let t226 = inner_ring_wx * (t128 * t15 - (t132 * t9 - t148 * t3))
                 - inner_ring_wy * (t128 * t49 - (t148 * t48 - t132 * t47));
             let t227 = k(2.0)
                 * (outer_ring_wy * t226

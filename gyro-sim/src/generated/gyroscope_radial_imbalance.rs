@@ -22,26 +22,21 @@
 //! | accelerations | (s̈, ẇ') and λ, eq. (17) | 370 | 577 | 13 | 960 | 0 of 33 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
-//! | read_joints | joint coordinates and rates | 37 | 58 | 0 | 95 | 0 of 9 |
+//! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 |
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
 //! | newton_step | dependent positions, one Newton step | 193 | 323 | 3 | 519 | 6 of 21 |
 //! | solve_velocities | dependent velocities, eq. (19) | 135 | 233 | 3 | 371 | 6 of 18 |
 
-use gyro_sim::charts::{self, Charts};
-use gyro_sim::{
-    Coordinate, Energy, Equations, Error, JointInfo, Mechanism, Ode, Owner, Partition,
-    Real, RowInfo, Scalar,
-};
 /// The mechanism `gyroscope_radial_imbalance`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GyroscopeRadialImbalance<T> {
     /// The model has no parameters.
-    scalar: core::marker::PhantomData<T>,
+    scalar: ::core::marker::PhantomData<T>,
 }
-impl<T: Scalar> Default for GyroscopeRadialImbalance<T> {
+impl<T: gyro_sim::Scalar> ::core::default::Default for GyroscopeRadialImbalance<T> {
     fn default() -> Self {
         Self {
-            scalar: core::marker::PhantomData,
+            scalar: ::core::marker::PhantomData,
         }
     }
 }
@@ -53,7 +48,7 @@ impl<T> GyroscopeRadialImbalance<T> {
         false
     }
 }
-impl<T: Scalar> Ode for GyroscopeRadialImbalance<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Ode for GyroscopeRadialImbalance<T> {
     type Scalar = T;
     type State = [T; 39];
     /// The assembled start, with all parameters at their defaults.
@@ -103,9 +98,9 @@ impl<T: Scalar> Ode for GyroscopeRadialImbalance<T> {
     }
     /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 72 operations (24 ±, 48 ×, 0 ÷).
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut v = self.velocities();
-        let mut lambda = self.rows();
-        self.accelerations(t, y, &mut v, &mut lambda);
+        let mut v = gyro_sim::Equations::velocities(self);
+        let mut lambda = gyro_sim::Mechanism::rows(self);
+        gyro_sim::Equations::accelerations(self, t, y, &mut v, &mut lambda);
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -198,7 +193,7 @@ impl<T: Scalar> Ode for GyroscopeRadialImbalance<T> {
         ];
     }
 }
-impl<T: Scalar> Mechanism for GyroscopeRadialImbalance<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeRadialImbalance<T> {
     type Rows = [T; 15];
     type Constraints = [T; 18];
     type Readings = [T; 9];
@@ -252,7 +247,7 @@ impl<T: Scalar> Mechanism for GyroscopeRadialImbalance<T> {
         let t12 = inner_ring_e0 * inner_ring_e0;
         let t13 = k(2.0) * (k(0.5) - (t12 + t11));
         let t14 = outer_ring_e2 * outer_ring_e2;
-        let t15 = t0 * t13 + (k(2.0) * (k(0.5) - (t5 + t14)) * t9 - t3 * t4);
+        let t15 = t0 * t13 - (t3 * t4 - k(2.0) * (k(0.5) - (t5 + t14)) * t9);
         let t16 = rotor_e0 * rotor_e3;
         let t17 = rotor_e1 * rotor_e2;
         let t18 = rotor_e2 * rotor_e2;
@@ -330,39 +325,39 @@ impl<T: Scalar> Mechanism for GyroscopeRadialImbalance<T> {
         let t4 = k(2.0) * (k(0.5) - (t3 + outer_ring_e3 * outer_ring_e3));
         let t5 = k(2.0) * (k(0.5) - (t3 + outer_ring_e1 * outer_ring_e1));
         let t6 = k(2.0) * (t1 + t0);
-        let t7 = inner_ring_e0 * inner_ring_e2;
-        let t8 = inner_ring_e1 * inner_ring_e3;
-        let t9 = k(2.0) * (t8 + t7);
-        let t10 = outer_ring_e0 * outer_ring_e3;
-        let t11 = outer_ring_e1 * outer_ring_e2;
-        let t12 = k(2.0) * (t11 - t10);
-        let t13 = inner_ring_e0 * inner_ring_e1;
-        let t14 = inner_ring_e2 * inner_ring_e3;
-        let t15 = k(2.0) * (t14 - t13);
-        let t16 = k(2.0) * (k(0.5) - (t3 + outer_ring_e2 * outer_ring_e2));
+        let t7 = inner_ring_e0 * inner_ring_e1;
+        let t8 = inner_ring_e2 * inner_ring_e3;
+        let t9 = k(2.0) * (t8 - t7);
+        let t10 = k(2.0) * (k(0.5) - (t3 + outer_ring_e2 * outer_ring_e2));
+        let t11 = inner_ring_e0 * inner_ring_e2;
+        let t12 = inner_ring_e1 * inner_ring_e3;
+        let t13 = k(2.0) * (t12 + t11);
+        let t14 = outer_ring_e0 * outer_ring_e3;
+        let t15 = outer_ring_e1 * outer_ring_e2;
+        let t16 = k(2.0) * (t15 - t14);
         let t17 = inner_ring_e0 * inner_ring_e0;
         let t18 = k(2.0) * (k(0.5) - (t17 + inner_ring_e3 * inner_ring_e3));
         let t19 = outer_ring_e0 * outer_ring_e1;
         let t20 = outer_ring_e2 * outer_ring_e3;
         let t21 = k(2.0) * (t20 + t19);
-        let t22 = t4 * t18 + (k(2.0) * (t20 - t19) * t15 + t6 * t9);
+        let t22 = t6 * t13 + k(2.0) * (t20 - t19) * t9 + t4 * t18;
         let t23 = outer_ring_wy * t22
-            + outer_ring_wz * (t21 * t18 + (t16 * t15 - t12 * t9));
+            + outer_ring_wz * (t21 * t18 - (t16 * t13 - t10 * t9));
         let t24 = k(2.0) * (k(0.5) - (t17 + inner_ring_e1 * inner_ring_e1));
         let t25 = inner_ring_e0 * inner_ring_e3;
         let t26 = inner_ring_e1 * inner_ring_e2;
         let t27 = k(2.0) * (t26 + t25);
-        let t28 = k(2.0) * (t11 + t10);
-        let t29 = k(2.0) * (t8 - t7);
+        let t28 = k(2.0) * (t15 + t14);
+        let t29 = k(2.0) * (t12 - t11);
         let t30 = k(2.0) * (t26 - t25);
         let t31 = k(2.0) * (k(0.5) - (t17 + inner_ring_e2 * inner_ring_e2));
-        let t32 = k(2.0) * (t14 + t13);
+        let t32 = k(2.0) * (t8 + t7);
         let t33 = inner_ring_wx * (t2 * t32 - (t28 * t31 + t5 * t30))
             - inner_ring_wy * (t2 * t29 + (t28 * t27 + t5 * t24));
         let t34 = outer_ring_wx * t22
-            + outer_ring_wz * (t2 * t18 - (t28 * t15 - t5 * t9));
-        let t35 = inner_ring_wx * (t21 * t32 + (t16 * t31 + t12 * t30))
-            - inner_ring_wy * (t21 * t29 - (t16 * t27 + t12 * t24));
+            + outer_ring_wz * (t2 * t18 - (t28 * t9 - t5 * t13));
+        let t35 = inner_ring_wx * (t21 * t32 + (t16 * t30 + t10 * t31))
+            - inner_ring_wy * (t21 * t29 - (t10 * t27 + t16 * t24));
         let t36 = rotor_e0 * rotor_e0;
         let t37 = k(2.0) * (k(0.5) - (t36 + rotor_e1 * rotor_e1));
         let t38 = rotor_e0 * rotor_e2;
@@ -377,17 +372,17 @@ impl<T: Scalar> Mechanism for GyroscopeRadialImbalance<T> {
         let t47 = k(2.0) * (t39 - t38);
         let t48 = k(2.0) * (k(0.5) - (t36 + rotor_e3 * rotor_e3));
         let t49 = t29 * t47 + (t27 * t43 + t24 * t37);
-        let t50 = inner_ring_wx * (t18 * t47 - (t15 * t43 - t9 * t37))
+        let t50 = inner_ring_wx * (t18 * t47 - (t9 * t43 - t13 * t37))
             + inner_ring_wz * t49;
-        let t51 = k(2.0) * (t42 - t41);
-        let t52 = k(2.0) * (k(0.5) - (t36 + rotor_e2 * rotor_e2));
+        let t51 = k(2.0) * (k(0.5) - (t36 + rotor_e2 * rotor_e2));
+        let t52 = k(2.0) * (t42 - t41);
         let t53 = k(2.0) * (t45 + t44);
-        let t54 = rotor_wy * (t32 * t48 + (t31 * t46 - t30 * t40))
-            + rotor_wz * (t32 * t53 + (t31 * t52 + t30 * t51));
+        let t54 = rotor_wy * (t32 * t48 - (t30 * t40 - t31 * t46))
+            + rotor_wz * (t32 * t53 + (t30 * t52 + t31 * t51));
         let t55 = inner_ring_wx * (t32 * t47 - (t31 * t43 + t30 * t37))
             - inner_ring_wy * t49;
-        let t56 = rotor_wy * (t18 * t48 + (t15 * t46 + t9 * t40))
-            + rotor_wz * (t18 * t53 + (t15 * t52 - t9 * t51));
+        let t56 = rotor_wy * (t13 * t40 + t9 * t46 + t18 * t48)
+            + rotor_wz * (t18 * t53 - (t13 * t52 - t9 * t51));
         *out = [
             outer_ring_sx,
             outer_ring_sy,
@@ -407,7 +402,7 @@ impl<T: Scalar> Mechanism for GyroscopeRadialImbalance<T> {
         ];
     }
     /// Kinetic and potential energy: 52 operations (19 ±, 33 ×, 0 ÷).
-    fn energy(&self, y: &Self::State) -> Energy<T> {
+    fn energy(&self, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let outer_ring_ry = y[1];
         let inner_ring_ry = y[8];
@@ -449,12 +444,12 @@ impl<T: Scalar> Mechanism for GyroscopeRadialImbalance<T> {
             + k(0.01)
                 * (outer_ring_sx * outer_ring_sx + outer_ring_sy * outer_ring_sy
                     + outer_ring_sz * outer_ring_sz);
-        Energy {
+        gyro_sim::Energy {
             kinetic: k(0.5) * (t5 + t3 + t1),
             potential: k(0.1) * (outer_ring_ry + inner_ring_ry) + k(0.8) * rotor_ry,
         }
     }
-    /// Writes the joint readings: 95 operations (37 ±, 58 ×, 0 ÷).
+    /// Writes the joint readings: 114 operations (54 ±, 60 ×, 0 ÷).
     fn read_joints(&self, y: &Self::State, out: &mut Self::Readings) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -476,39 +471,49 @@ impl<T: Scalar> Mechanism for GyroscopeRadialImbalance<T> {
         let rotor_wx = y[36];
         let t0 = outer_ring_e0 * outer_ring_e2;
         let t1 = outer_ring_e1 * outer_ring_e3;
-        let t2 = outer_ring_e0 * outer_ring_e0;
-        let t3 = inner_ring_e0 * inner_ring_e0;
-        let t4 = k(2.0) * (k(0.5) - (t3 + inner_ring_e1 * inner_ring_e1));
-        let t5 = outer_ring_e0 * outer_ring_e3;
-        let t6 = outer_ring_e1 * outer_ring_e2;
-        let t7 = inner_ring_e0 * inner_ring_e3;
-        let t8 = inner_ring_e1 * inner_ring_e2;
-        let t9 = k(2.0) * (t8 + t7);
-        let t10 = k(2.0) * (k(0.5) - (t2 + outer_ring_e2 * outer_ring_e2)) * t9
-            + k(2.0) * (t6 - t5) * t4;
-        let t11 = inner_ring_e0 * inner_ring_e2;
-        let t12 = inner_ring_e1 * inner_ring_e3;
-        let t13 = k(2.0) * (t12 - t11);
-        let t14 = k(2.0) * (t6 + t5) * t9
-            + k(2.0) * (k(0.5) - (t2 + outer_ring_e1 * outer_ring_e1)) * t4;
-        let t15 = k(2.0) * (rotor_e1 * rotor_e2 - rotor_e0 * rotor_e3);
-        let t16 = k(2.0) * (k(0.5) - (rotor_e0 * rotor_e0 + rotor_e2 * rotor_e2));
-        let t17 = inner_ring_e0 * inner_ring_e1;
-        let t18 = inner_ring_e2 * inner_ring_e3;
-        let t19 = k(2.0) * (t18 - t17) * t16 - k(2.0) * (t12 + t11) * t15;
-        let t20 = k(2.0) * (rotor_e2 * rotor_e3 + rotor_e0 * rotor_e1);
-        let t21 = k(2.0) * (k(0.5) - (t3 + inner_ring_e2 * inner_ring_e2)) * t16
-            + k(2.0) * (t8 - t7) * t15;
+        let t2 = outer_ring_e2 * outer_ring_e2;
+        let t3 = outer_ring_e0 * outer_ring_e0;
+        let t4 = t3 + outer_ring_e1 * outer_ring_e1;
+        let t5 = outer_ring_e3 * outer_ring_e3;
+        let t6 = k(1.0) - (t5 + (t4 + t2));
+        let t7 = inner_ring_e0 * inner_ring_e2;
+        let t8 = inner_ring_e1 * inner_ring_e3;
+        let t9 = k(2.0) * (t8 - t7);
+        let t10 = inner_ring_e0 * inner_ring_e3;
+        let t11 = inner_ring_e1 * inner_ring_e2;
+        let t12 = k(2.0) * (t11 + t10);
+        let t13 = inner_ring_e2 * inner_ring_e2;
+        let t14 = inner_ring_e0 * inner_ring_e0;
+        let t15 = t14 + inner_ring_e1 * inner_ring_e1;
+        let t16 = inner_ring_e3 * inner_ring_e3;
+        let t17 = k(1.0) - (t16 + (t15 + t13));
+        let t18 = k(2.0) * (k(0.5) - t15) - t17;
+        let t19 = outer_ring_e0 * outer_ring_e3;
+        let t20 = outer_ring_e1 * outer_ring_e2;
+        let t21 = k(2.0) * (t20 - t19) * t18
+            + t12 * (k(2.0) * (k(0.5) - (t3 + t2)) - t6);
+        let t22 = (k(2.0) * (k(0.5) - t4) - t6) * t18 + k(2.0) * (t20 + t19) * t12;
+        let t23 = k(2.0) * (rotor_e2 * rotor_e3 + rotor_e0 * rotor_e1);
+        let t24 = rotor_e2 * rotor_e2;
+        let t25 = rotor_e0 * rotor_e0;
+        let t26 = k(2.0) * (k(0.5) - (t25 + t24))
+            - (k(1.0) - (rotor_e3 * rotor_e3 + (t25 + rotor_e1 * rotor_e1 + t24)));
+        let t27 = inner_ring_e0 * inner_ring_e1;
+        let t28 = inner_ring_e2 * inner_ring_e3;
+        let t29 = k(2.0) * (rotor_e1 * rotor_e2 - rotor_e0 * rotor_e3);
+        let t30 = k(2.0) * (t8 + t7) * t29 - k(2.0) * (t28 - t27) * t26;
+        let t31 = k(2.0) * (t11 - t10) * t29
+            + (k(2.0) * (k(0.5) - (t14 + t13)) - t17) * t26;
         *out = [
             k(2.0) * (t1 + t0),
-            -(k(2.0) * (k(0.5) - (t2 + outer_ring_e3 * outer_ring_e3))),
+            t6 - k(2.0) * (k(0.5) - (t3 + t5)),
             outer_ring_wy,
-            k(2.0) * (outer_ring_e2 * outer_ring_e3 + outer_ring_e0 * outer_ring_e1)
-                * t13 - t10,
-            k(2.0) * (t1 - t0) * t13 + t14,
+            k(2.0) * (outer_ring_e2 * outer_ring_e3 + outer_ring_e0 * outer_ring_e1) * t9
+                - t21,
+            t22 + k(2.0) * (t1 - t0) * t9,
             inner_ring_wz - outer_ring_wz,
-            -(k(2.0) * (k(0.5) - (t3 + inner_ring_e3 * inner_ring_e3)) * t20 + t19),
-            k(2.0) * (t18 + t17) * t20 + t21,
+            t30 - t23 * (k(2.0) * (k(0.5) - (t14 + t16)) - t17),
+            t31 + k(2.0) * (t28 + t27) * t23,
             rotor_wx - inner_ring_wx,
         ];
     }
@@ -522,96 +527,96 @@ impl<T: Scalar> Mechanism for GyroscopeRadialImbalance<T> {
         const BODIES: [&str; 3] = ["outer_ring", "inner_ring", "rotor"];
         BODIES.get(body).copied().unwrap_or_default()
     }
-    fn joint(&self, joint: usize) -> JointInfo<'_> {
-        const JOINTS: [JointInfo<'static>; 3] = [
-            JointInfo {
+    fn joint(&self, joint: usize) -> gyro_sim::JointInfo<'_> {
+        const JOINTS: [gyro_sim::JointInfo<'static>; 3] = [
+            gyro_sim::JointInfo {
                 name: "alpha",
-                coordinate: Coordinate::Angle,
+                coordinate: gyro_sim::Coordinate::Angle,
             },
-            JointInfo {
+            gyro_sim::JointInfo {
                 name: "beta",
-                coordinate: Coordinate::Angle,
+                coordinate: gyro_sim::Coordinate::Angle,
             },
-            JointInfo {
+            gyro_sim::JointInfo {
                 name: "phi",
-                coordinate: Coordinate::Angle,
+                coordinate: gyro_sim::Coordinate::Angle,
             },
         ];
         JOINTS
             .get(joint)
             .copied()
-            .unwrap_or(JointInfo {
+            .unwrap_or(gyro_sim::JointInfo {
                 name: "",
-                coordinate: Coordinate::None,
+                coordinate: gyro_sim::Coordinate::None,
             })
     }
-    fn row(&self, row: usize) -> RowInfo {
-        const ROWS: [RowInfo; 15] = [
-            RowInfo {
-                owner: Owner::Joint(0),
+    fn row(&self, row: usize) -> gyro_sim::RowInfo {
+        const ROWS: [gyro_sim::RowInfo; 15] = [
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(0),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(0),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(0),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(0),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(0),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(0),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(0),
                 is_length: false,
             },
-            RowInfo {
-                owner: Owner::Joint(0),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(0),
                 is_length: false,
             },
-            RowInfo {
-                owner: Owner::Joint(1),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(1),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(1),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(1),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(1),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(1),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(1),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(1),
                 is_length: false,
             },
-            RowInfo {
-                owner: Owner::Joint(1),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(1),
                 is_length: false,
             },
-            RowInfo {
-                owner: Owner::Joint(2),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(2),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(2),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(2),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(2),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(2),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(2),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(2),
                 is_length: false,
             },
-            RowInfo {
-                owner: Owner::Joint(2),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(2),
                 is_length: false,
             },
         ];
         ROWS.get(row)
             .copied()
-            .unwrap_or(RowInfo {
-                owner: Owner::Body(0),
+            .unwrap_or(gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Body(0),
                 is_length: false,
             })
     }
@@ -622,7 +627,7 @@ impl<T: Scalar> Mechanism for GyroscopeRadialImbalance<T> {
         T::constant(0.0)
     }
 }
-impl<T: Scalar> GyroscopeRadialImbalance<T> {
+impl<T: gyro_sim::Scalar> GyroscopeRadialImbalance<T> {
     /// The four-vectors whose largest components are the special Euler parameters: 0 operations (0 ±, 0 ×, 0 ÷).
     fn chart_vectors(&self, y: &[T; 39]) -> [[T; 4]; 3] {
         let outer_ring_e0 = y[3];
@@ -644,13 +649,13 @@ impl<T: Scalar> GyroscopeRadialImbalance<T> {
         ]
     }
 }
-impl<T: Real> Partition for GyroscopeRadialImbalance<T> {
-    type Independent = Charts<3>;
+impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeRadialImbalance<T> {
+    type Independent = gyro_sim::charts::Charts<3>;
     fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
-        charts::best(&self.chart_vectors(y))
+        gyro_sim::charts::best(&self.chart_vectors(y))
     }
     fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
-        charts::follow(&self.chart_vectors(y), choice)
+        gyro_sim::charts::follow(&self.chart_vectors(y), choice)
     }
     /// One Newton step of the dependent positions: 519 operations (193 ±, 323 ×, 3 ÷).
     fn newton_step(
@@ -658,8 +663,8 @@ impl<T: Real> Partition for GyroscopeRadialImbalance<T> {
         _t: T,
         choice: &Self::Independent,
         y: &mut Self::State,
-    ) -> Result<(), Error> {
-        let charts = charts::one_hot::<T, _>(choice);
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -863,8 +868,8 @@ impl<T: Real> Partition for GyroscopeRadialImbalance<T> {
         _t: T,
         choice: &Self::Independent,
         y: &mut Self::State,
-    ) -> Result<(), Error> {
-        let charts = charts::one_hot::<T, _>(choice);
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -943,20 +948,20 @@ impl<T: Real> Partition for GyroscopeRadialImbalance<T> {
         let t37 = outer_ring_e2 * outer_ring_e3;
         let t38 = k(2.0) * (t37 + t36);
         let t39 = t38 * t32 - (t35 * t26 + t34 * t23);
-        let t40 = k(2.0) * (t25 - t24);
-        let t41 = k(2.0) * (k(0.5) - (t22 + inner_ring_e2 * inner_ring_e2));
+        let t40 = k(2.0) * (k(0.5) - (t22 + inner_ring_e2 * inner_ring_e2));
+        let t41 = k(2.0) * (t25 - t24);
         let t42 = inner_ring_e0 * inner_ring_e1;
         let t43 = inner_ring_e2 * inner_ring_e3;
         let t44 = k(2.0) * (t43 + t42);
-        let t45 = t38 * t44 + (t35 * t41 + t34 * t40);
+        let t45 = t38 * t44 + (t34 * t41 + t35 * t40);
         let t46 = k(2.0) * (t31 + t30);
         let t47 = k(2.0) * (t43 - t42);
         let t48 = k(2.0) * (k(0.5) - (t22 + inner_ring_e3 * inner_ring_e3));
-        let t49 = t9 * t48 + (k(2.0) * (t37 - t36) * t47 + t7 * t46);
+        let t49 = t7 * t46 + k(2.0) * (t37 - t36) * t47 + t9 * t48;
         let t50 = t12 * t49 + t19 * (t4 * t48 - (t29 * t47 - t6 * t46));
         let t51 = t50 - (inner_ring_wx * t45 - inner_ring_wy * t39);
-        let t52 = t4 * t44 - (t29 * t41 + t6 * t40);
-        let t53 = t18 * t49 + t19 * (t38 * t48 + (t35 * t47 - t34 * t46));
+        let t52 = t4 * t44 - (t29 * t40 + t6 * t41);
+        let t53 = t18 * t49 + t19 * (t38 * t48 - (t34 * t46 - t35 * t47));
         let t54 = t53 + (inner_ring_wx * t52 - inner_ring_wy * t33);
         let t55 = k(1.0) / (t21 * (t52 * t39 - t33 * t45));
         let t56 = inner_ring_wx - t55 * (t54 * (t39 * t21) + t51 * (t33 * t21));
@@ -972,29 +977,29 @@ impl<T: Real> Partition for GyroscopeRadialImbalance<T> {
         let t64 = rotor_e1 * chart2_0 - rotor_e0 * chart2_1 - rotor_e3 * chart2_2
             + rotor_e2 * chart2_3;
         let t65 = k(0.5) * t64;
-        let t66 = rotor_e0 * rotor_e2;
-        let t67 = rotor_e1 * rotor_e3;
-        let t68 = k(2.0) * (t67 + t66);
-        let t69 = rotor_e0 * rotor_e1;
-        let t70 = rotor_e2 * rotor_e3;
-        let t71 = k(2.0) * (t70 - t69);
+        let t66 = rotor_e0 * rotor_e1;
+        let t67 = rotor_e2 * rotor_e3;
+        let t68 = k(2.0) * (t67 - t66);
+        let t69 = rotor_e0 * rotor_e2;
+        let t70 = rotor_e1 * rotor_e3;
+        let t71 = k(2.0) * (t70 + t69);
         let t72 = rotor_e0 * rotor_e0;
         let t73 = k(2.0) * (k(0.5) - (t72 + rotor_e3 * rotor_e3));
-        let t74 = t44 * t73 + (t41 * t71 - t40 * t68);
-        let t75 = rotor_e0 * rotor_e3;
-        let t76 = rotor_e1 * rotor_e2;
-        let t77 = k(2.0) * (t76 - t75);
-        let t78 = k(2.0) * (k(0.5) - (t72 + rotor_e2 * rotor_e2));
-        let t79 = k(2.0) * (t70 + t69);
-        let t80 = t48 * t79 + (t47 * t78 - t46 * t77);
-        let t81 = t48 * t73 + (t47 * t71 + t46 * t68);
+        let t74 = t44 * t73 - (t41 * t71 - t40 * t68);
+        let t75 = k(2.0) * (k(0.5) - (t72 + rotor_e2 * rotor_e2));
+        let t76 = rotor_e0 * rotor_e3;
+        let t77 = rotor_e1 * rotor_e2;
+        let t78 = k(2.0) * (t77 - t76);
+        let t79 = k(2.0) * (t67 + t66);
+        let t80 = t48 * t79 - (t46 * t78 - t47 * t75);
+        let t81 = t46 * t71 + t47 * t68 + t48 * t73;
         let t82 = k(2.0) * (k(0.5) - (t72 + rotor_e1 * rotor_e1));
-        let t83 = k(2.0) * (t76 + t75);
-        let t84 = k(2.0) * (t67 - t66);
+        let t83 = k(2.0) * (t77 + t76);
+        let t84 = k(2.0) * (t70 - t69);
         let t85 = t32 * t84 + (t26 * t83 + t23 * t82);
-        let t86 = t56 * (t44 * t84 - (t41 * t83 + t40 * t82)) - t57 * t85;
+        let t86 = t56 * (t44 * t84 - (t40 * t83 + t41 * t82)) - t57 * t85;
         let t87 = t86 + (rotor_wy * t81 + rotor_wz * t80);
-        let t88 = t44 * t79 + (t41 * t78 + t40 * t77);
+        let t88 = t44 * t79 + (t41 * t78 + t40 * t75);
         let t89 = t56 * (t48 * t84 - (t47 * t83 - t46 * t82)) + t63 * t85;
         let t90 = t89 - (rotor_wy * t74 + rotor_wz * t88);
         let t91 = k(1.0) / (t65 * (t74 * t80 - t88 * t81));
@@ -1020,8 +1025,8 @@ impl<T: Real> Partition for GyroscopeRadialImbalance<T> {
         y[30] = t56;
         y[31] = t57;
         y[32] = t63;
-        y[33] = -(k(0.0002) * (t68 * t98 + t82 * t92));
-        y[34] = -(k(0.0002) * (t71 * t98 - t83 * t92));
+        y[33] = -(k(0.0002) * (t71 * t98 + t82 * t92));
+        y[34] = -(k(0.0002) * (t68 * t98 - t83 * t92));
         y[35] = k(0.0002) * (t73 * t98 + t84 * t92);
         y[36] = t98;
         y[37] = t99;
@@ -1029,7 +1034,7 @@ impl<T: Real> Partition for GyroscopeRadialImbalance<T> {
         Ok(())
     }
 }
-impl<T: Scalar> Equations for GyroscopeRadialImbalance<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
     type Velocities = [T; 18];
     type PhiQ = [T; 77];
     type PhiPi = [T; 41];
@@ -1339,31 +1344,31 @@ impl<T: Scalar> Equations for GyroscopeRadialImbalance<T> {
         let t4 = k(2.0) * (t3 - t2);
         let t5 = k(2.0) * (t3 + t2);
         let t6 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
-        let t7 = inner_ring_e0 * inner_ring_e2;
-        let t8 = inner_ring_e1 * inner_ring_e3;
-        let t9 = k(2.0) * (t8 + t7);
-        let t10 = inner_ring_e0 * inner_ring_e1;
-        let t11 = inner_ring_e2 * inner_ring_e3;
-        let t12 = k(2.0) * (t11 - t10);
-        let t13 = outer_ring_e0 * outer_ring_e1;
-        let t14 = outer_ring_e2 * outer_ring_e3;
-        let t15 = inner_ring_e0 * inner_ring_e0;
-        let t16 = k(2.0) * (k(0.5) - (t15 + inner_ring_e3 * inner_ring_e3));
-        let t17 = t1 * t16 + (k(2.0) * (t14 - t13) * t12 + t5 * t9);
-        let t18 = outer_ring_e0 * outer_ring_e3;
-        let t19 = outer_ring_e1 * outer_ring_e2;
-        let t20 = k(2.0) * (t19 - t18);
-        let t21 = k(2.0) * (k(0.5) - (t0 + outer_ring_e2 * outer_ring_e2));
-        let t22 = k(2.0) * (t14 + t13);
+        let t7 = inner_ring_e0 * inner_ring_e0;
+        let t8 = k(2.0) * (k(0.5) - (t7 + inner_ring_e3 * inner_ring_e3));
+        let t9 = inner_ring_e0 * inner_ring_e1;
+        let t10 = inner_ring_e2 * inner_ring_e3;
+        let t11 = k(2.0) * (t10 - t9);
+        let t12 = outer_ring_e0 * outer_ring_e1;
+        let t13 = outer_ring_e2 * outer_ring_e3;
+        let t14 = inner_ring_e0 * inner_ring_e2;
+        let t15 = inner_ring_e1 * inner_ring_e3;
+        let t16 = k(2.0) * (t15 + t14);
+        let t17 = t5 * t16 + k(2.0) * (t13 - t12) * t11 + t1 * t8;
+        let t18 = k(2.0) * (k(0.5) - (t0 + outer_ring_e2 * outer_ring_e2));
+        let t19 = outer_ring_e0 * outer_ring_e3;
+        let t20 = outer_ring_e1 * outer_ring_e2;
+        let t21 = k(2.0) * (t20 - t19);
+        let t22 = k(2.0) * (t13 + t12);
         let t23 = inner_ring_e0 * inner_ring_e3;
         let t24 = inner_ring_e1 * inner_ring_e2;
         let t25 = k(2.0) * (t24 - t23);
-        let t26 = k(2.0) * (k(0.5) - (t15 + inner_ring_e2 * inner_ring_e2));
-        let t27 = k(2.0) * (t19 + t18);
-        let t28 = k(2.0) * (t11 + t10);
-        let t29 = k(2.0) * (k(0.5) - (t15 + inner_ring_e1 * inner_ring_e1));
+        let t26 = k(2.0) * (k(0.5) - (t7 + inner_ring_e2 * inner_ring_e2));
+        let t27 = k(2.0) * (t20 + t19);
+        let t28 = k(2.0) * (t10 + t9);
+        let t29 = k(2.0) * (k(0.5) - (t7 + inner_ring_e1 * inner_ring_e1));
         let t30 = k(2.0) * (t24 + t23);
-        let t31 = k(2.0) * (t8 - t7);
+        let t31 = k(2.0) * (t15 - t14);
         let t32 = rotor_e0 * rotor_e2;
         let t33 = rotor_e1 * rotor_e3;
         let t34 = t33 + t32;
@@ -1381,11 +1386,11 @@ impl<T: Scalar> Equations for GyroscopeRadialImbalance<T> {
         let t46 = k(2.0) * t42;
         let t47 = k(2.0) * t44;
         let t48 = t31 * t47 + (t30 * t46 + t29 * t45);
-        let t49 = k(2.0) * t34;
-        let t50 = k(2.0) * t39;
+        let t49 = k(2.0) * t39;
+        let t50 = k(2.0) * t34;
         let t51 = k(2.0) * t43;
-        let t52 = k(2.0) * (t41 - t40);
-        let t53 = k(2.0) * (k(0.5) - (t35 + rotor_e2 * rotor_e2));
+        let t52 = k(2.0) * (k(0.5) - (t35 + rotor_e2 * rotor_e2));
+        let t53 = k(2.0) * (t41 - t40);
         let t54 = k(2.0) * (t38 + t37);
         *out = [
             k(1.0),
@@ -1402,13 +1407,13 @@ impl<T: Scalar> Equations for GyroscopeRadialImbalance<T> {
             k(-1.0),
             k(1.0),
             -t17,
-            -(t22 * t16 + (t21 * t12 - t20 * t9)),
+            t21 * t16 - t18 * t11 - t22 * t8,
             t27 * t26 + t6 * t25 - t4 * t28,
             t4 * t31 + (t27 * t30 + t6 * t29),
             t17,
-            t4 * t16 - (t27 * t12 - t6 * t9),
-            -(t22 * t28 + (t21 * t26 + t20 * t25)),
-            t22 * t31 - (t21 * t30 + t20 * t29),
+            t4 * t8 - (t27 * t11 - t6 * t16),
+            -(t22 * t28 + (t21 * t25 + t18 * t26)),
+            t22 * t31 - (t18 * t30 + t21 * t29),
             k(-1.0),
             k(1.0),
             k(0.0004) * t34,
@@ -1421,14 +1426,14 @@ impl<T: Scalar> Equations for GyroscopeRadialImbalance<T> {
             k(1.0),
             -(k(0.0004) * t43),
             -(k(0.0004) * t44),
-            t12 * t46 - t9 * t45 - t16 * t47,
+            t11 * t46 - t16 * t45 - t8 * t47,
             -t48,
-            t28 * t51 + (t26 * t50 - t25 * t49),
-            t28 * t54 + (t26 * t53 + t25 * t52),
+            t28 * t51 - (t25 * t50 - t26 * t49),
+            t28 * t54 + (t25 * t53 + t26 * t52),
             t26 * t46 + t25 * t45 - t28 * t47,
             t48,
-            -(t16 * t51 + (t12 * t50 + t9 * t49)),
-            -(t16 * t54 + (t12 * t53 - t9 * t52)),
+            -(t16 * t50 + t11 * t49 + t8 * t51),
+            t16 * t53 - t11 * t52 - t8 * t54,
         ];
     }
     /// Writes ν: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -1504,9 +1509,9 @@ impl<T: Scalar> Equations for GyroscopeRadialImbalance<T> {
         let t25 = k(2.0) * (k(0.5) - (t24 + inner_ring_e3 * inner_ring_e3));
         let t26 = t3 * t25 - (t23 * t22 - t12 * t19);
         let t27 = k(2.0) * (k(0.5) - (t10 + outer_ring_e2 * outer_ring_e2));
-        let t28 = t8 * t25 + (t27 * t22 - t15 * t19);
+        let t28 = t8 * t25 - (t15 * t19 - t27 * t22);
         let t29 = k(2.0) * (t7 - t6);
-        let t30 = t11 * t25 + (t29 * t22 + t16 * t19);
+        let t30 = t16 * t19 + t29 * t22 + t11 * t25;
         let t31 = outer_ring_wx * outer_ring_wz * t30
             - (t0 * t28 - (t4 + outer_ring_wy * outer_ring_wy) * t26);
         let t32 = k(2.0) * (k(0.5) - (t24 + inner_ring_e1 * inner_ring_e1));
@@ -1515,18 +1520,18 @@ impl<T: Scalar> Equations for GyroscopeRadialImbalance<T> {
         let t35 = k(2.0) * (t34 + t33);
         let t36 = k(2.0) * (t18 - t17);
         let t37 = t8 * t36 - (t27 * t35 + t15 * t32);
-        let t38 = k(2.0) * (t34 - t33);
-        let t39 = k(2.0) * (k(0.5) - (t24 + inner_ring_e2 * inner_ring_e2));
+        let t38 = k(2.0) * (k(0.5) - (t24 + inner_ring_e2 * inner_ring_e2));
+        let t39 = k(2.0) * (t34 - t33);
         let t40 = k(2.0) * (t21 + t20);
-        let t41 = t8 * t40 + (t27 * t39 + t15 * t38);
-        let t42 = inner_ring_wx * (t11 * t40 + (t29 * t39 - t16 * t38))
+        let t41 = t8 * t40 + (t15 * t39 + t27 * t38);
+        let t42 = inner_ring_wx * (t11 * t40 - (t16 * t39 - t29 * t38))
             - inner_ring_wy * (t11 * t36 - (t29 * t35 - t16 * t32));
         let t43 = k(2.0)
             * (outer_ring_wy * t42
                 + outer_ring_wz * (inner_ring_wx * t41 - inner_ring_wy * t37));
         let t44 = t3 * t36 + (t23 * t35 + t12 * t32);
         let t45 = inner_ring_wx * inner_ring_wz;
-        let t46 = t3 * t40 - (t23 * t39 + t12 * t38);
+        let t46 = t3 * t40 - (t23 * t38 + t12 * t39);
         let t47 = inner_ring_wy * inner_ring_wz;
         let t48 = inner_ring_wx * inner_ring_wx;
         let t49 = inner_ring_wy * inner_ring_wy + t48;
@@ -1557,20 +1562,20 @@ impl<T: Scalar> Equations for GyroscopeRadialImbalance<T> {
         let t71 = k(2.0) * (t68 + t67);
         let t72 = k(2.0) * (k(0.5) - (t54 + rotor_e3 * rotor_e3));
         let t73 = t36 * t70 + (t35 * t65 + t32 * t55);
-        let t74 = t40 * t70 - (t39 * t65 + t38 * t55);
+        let t74 = t40 * t70 - (t38 * t65 + t39 * t55);
         let t75 = t25 * t70 - (t22 * t65 - t19 * t55);
         let t76 = t47 * t75
             + ((inner_ring_wz * inner_ring_wz + t48) * t74
                 - inner_ring_wx * inner_ring_wy * t73);
         let t77 = rotor_wy * (t36 * t72 - (t35 * t69 - t32 * t64))
             + rotor_wz * (t36 * t71 - (t35 * t66 + t32 * t60));
-        let t78 = t25 * t71 + (t22 * t66 - t19 * t60);
-        let t79 = t25 * t72 + (t22 * t69 + t19 * t64);
+        let t78 = t25 * t71 - (t19 * t60 - t22 * t66);
+        let t79 = t19 * t64 + t22 * t69 + t25 * t72;
         let t80 = k(2.0)
             * (inner_ring_wx * (rotor_wy * t79 + rotor_wz * t78) + inner_ring_wz * t77);
         let t81 = t56 + rotor_wy * rotor_wy;
-        let t82 = t40 * t71 + (t39 * t66 + t38 * t60);
-        let t83 = t40 * t72 + (t39 * t69 - t38 * t64);
+        let t82 = t40 * t71 + (t39 * t60 + t38 * t66);
+        let t83 = t40 * t72 - (t39 * t64 - t38 * t69);
         let t84 = rotor_wx * rotor_wz;
         let t85 = t84 * t83 - (t53 * t82 - t81 * t74) + t80 + t76;
         let t86 = k(2.0)
@@ -1677,7 +1682,7 @@ impl<T: Scalar> Equations for GyroscopeRadialImbalance<T> {
             t35,
             t36,
             t37,
-            t38,
+            t39,
             t40,
             t41,
             t42,
@@ -1804,51 +1809,51 @@ impl<T: Scalar> Equations for GyroscopeRadialImbalance<T> {
             let t22 = k(2.0) * (t21 - t20);
             let t23 = t15 * t22 + (t9 * t19 + t4 * t18);
             let t24 = k(500000.0) * t23;
-            let t25 = k(2.0) * (t21 + t20);
-            let t26 = t14 + t13;
+            let t25 = k(2.0) * (k(0.5) - (t5 + inner_ring_e3 * inner_ring_e3));
+            let t26 = k(0.5) - (t3 + outer_ring_e3 * outer_ring_e3);
             let t27 = k(2.0) * t26;
             let t28 = k(2.0) * (t11 - t10);
             let t29 = outer_ring_e0 * outer_ring_e1;
             let t30 = outer_ring_e2 * outer_ring_e3;
             let t31 = k(2.0) * (t30 - t29);
-            let t32 = k(2.0) * (k(0.5) - (t5 + inner_ring_e3 * inner_ring_e3));
-            let t33 = k(0.5) - (t3 + outer_ring_e3 * outer_ring_e3);
+            let t32 = k(2.0) * (t21 + t20);
+            let t33 = t14 + t13;
             let t34 = k(2.0) * t33;
-            let t35 = t34 * t32 + (t31 * t28 + t27 * t25);
+            let t35 = t34 * t32 + t31 * t28 + t27 * t25;
             let t36 = k(1000000.0) * t35;
             let t37 = k(1.0) / (t35 * t36 + t23 * t24 + t16 * t17);
-            let t38 = k(2.0) * (t8 - t7);
-            let t39 = k(2.0) * (k(0.5) - (t3 + outer_ring_e2 * outer_ring_e2));
+            let t38 = k(2.0) * (k(0.5) - (t3 + outer_ring_e2 * outer_ring_e2));
+            let t39 = k(2.0) * (t8 - t7);
             let t40 = k(2.0) * (t30 + t29);
-            let t41 = t40 * t12 + (t39 * t6 + t38 * t2);
+            let t41 = t40 * t12 + (t39 * t2 + t38 * t6);
             let t42 = k(1000000.0) * t41;
-            let t43 = t40 * t22 - (t39 * t19 + t38 * t18);
+            let t43 = t40 * t22 - (t38 * t19 + t39 * t18);
             let t44 = k(500000.0) * t43;
             let t45 = t23 * t44 + t16 * t42;
             let t46 = t45 * t37;
             let t47 = k(500000.0) * t35;
             let t48 = t43 * t44 + t35 * t47 + t41 * t42 - t45 * t46;
             let t49 = k(1.0) / t48;
-            let t50 = t40 * t32 + (t39 * t28 - t38 * t25);
-            let t51 = t15 * t32 - (t9 * t28 - t4 * t25);
+            let t50 = t40 * t25 - (t39 * t32 - t38 * t28);
+            let t51 = t15 * t25 - (t9 * t28 - t4 * t32);
             let t52 = t51 + t50 * t46;
             let t53 = t52 * t49;
             let t54 = t50 * t37;
             let t55 = k(1.0) / (k(1e-6) + t50 * t54 + t52 * t53);
-            let t56 = t34 * t47;
+            let t56 = t27 * t47;
             let t57 = t56 * t49;
             let t58 = t15 - t52 * t57;
             let t59 = t58 * t55;
-            let t60 = k(1000000.0) * t33;
-            let t61 = k(1.0) / (t34 * t60 - t56 * t57 + t58 * t59);
-            let t62 = t27 * t47;
+            let t60 = k(1000000.0) * t26;
+            let t61 = k(1.0) / (t27 * t60 - t56 * t57 + t58 * t59);
+            let t62 = t34 * t47;
             let t63 = t62 * t49;
             let t64 = t4 - t52 * t63;
             let t65 = t64 * t55;
-            let t66 = k(1000000.0) * t26;
-            let t67 = t34 * t66 - t56 * t63 + t58 * t65;
+            let t66 = k(1000000.0) * t33;
+            let t67 = t27 * t66 - t56 * t63 + t58 * t65;
             let t68 = t67 * t61;
-            let t69 = t27 * t66 - t62 * t63 + t64 * t65 - t67 * t68;
+            let t69 = t34 * t66 - t62 * t63 + t64 * t65 - t67 * t68;
             let t70 = k(1.0) / t69;
             let t71 = rotor_e0 * rotor_e0;
             let t72 = k(0.5) - (t71 + rotor_e1 * rotor_e1);
@@ -1861,7 +1866,7 @@ impl<T: Scalar> Equations for GyroscopeRadialImbalance<T> {
             let t79 = rotor_e1 * rotor_e3;
             let t80 = t79 - t78;
             let t81 = k(2.0) * t80;
-            let t82 = t32 * t81 - (t28 * t77 - t25 * t73);
+            let t82 = t25 * t81 - (t28 * t77 - t32 * t73);
             let t83 = k(1000000.0) * t82;
             let t84 = t16 * t83;
             let t85 = t84 * t37;
@@ -1901,10 +1906,10 @@ impl<T: Scalar> Equations for GyroscopeRadialImbalance<T> {
             let t119 = k(112.5) + k(0.0004) * t112 * t113 - k(50.0) + t118 * t111
                 - t114 * t115;
             let t120 = k(1.0) / (t119 - t116 * t117);
-            let t121 = k(2.0) * (t75 - t74);
-            let t122 = k(2.0) * (k(0.5) - (t71 + rotor_e2 * rotor_e2));
+            let t121 = k(2.0) * (k(0.5) - (t71 + rotor_e2 * rotor_e2));
+            let t122 = k(2.0) * (t75 - t74);
             let t123 = k(2.0) * (t102 + t101);
-            let t124 = t12 * t123 + (t6 * t122 + t2 * t121);
+            let t124 = t12 * t123 + (t2 * t122 + t6 * t121);
             let t125 = k(200000.0) * t124;
             let t126 = t95 * t125;
             let t127 = t126 * t99;
@@ -1912,10 +1917,10 @@ impl<T: Scalar> Equations for GyroscopeRadialImbalance<T> {
             let t129 = t128 * t110;
             let t130 = t118 * t125 - t114 * t127 + t116 * t129;
             let t131 = t130 * t120;
-            let t132 = k(2.0) * t96;
-            let t133 = k(2.0) * t103;
+            let t132 = k(2.0) * t103;
+            let t133 = k(2.0) * t96;
             let t134 = k(2.0) * t112;
-            let t135 = t12 * t134 + (t6 * t133 - t2 * t132);
+            let t135 = t12 * t134 - (t2 * t133 - t6 * t132);
             let t136 = k(200000.0) * t135;
             let t137 = t22 * t81 + (t19 * t77 + t18 * t73);
             let t138 = k(1000000.0) * t137;
@@ -1936,7 +1941,7 @@ impl<T: Scalar> Equations for GyroscopeRadialImbalance<T> {
             let t153 = t152 * t61;
             let t154 = t62 * t149 - t64 * t151 - t67 * t153;
             let t155 = t154 * t70;
-            let t156 = t32 * t123 + (t28 * t122 - t25 * t121);
+            let t156 = t25 * t123 - (t32 * t122 - t28 * t121);
             let t157 = k(200000.0) * t156;
             let t158 = t95 * t157;
             let t159 = t158 * t99;
@@ -1944,7 +1949,7 @@ impl<T: Scalar> Equations for GyroscopeRadialImbalance<T> {
             let t161 = t160 * t110;
             let t162 = t118 * t157 - t114 * t159 + t116 * t161;
             let t163 = t162 * t120;
-            let t164 = t32 * t134 + (t28 * t133 + t25 * t132);
+            let t164 = t32 * t133 + t28 * t132 + t25 * t134;
             let t165 = k(200000.0) * t164;
             let t166 = t135 * t165 - t82 * t144 + t84 * t147 + t124 * t157;
             let t167 = t166 - t126 * t159 - t128 * t161 - t130 * t163 + t86 * t149;
@@ -2001,7 +2006,7 @@ impl<T: Scalar> Equations for GyroscopeRadialImbalance<T> {
                 t35,
                 t36,
                 t37,
-                t38,
+                t39,
                 t40,
                 t41,
                 t42,
@@ -2143,8 +2148,8 @@ impl<T: Scalar> Equations for GyroscopeRadialImbalance<T> {
             let t209 = outer_ring_wx * outer_ring_wy;
             let t210 = t207 * t35
                 - (t209 * t50 - (t208 + outer_ring_wy * outer_ring_wy) * t51);
-            let t211 = inner_ring_wx * (t34 * t12 + (t31 * t6 - t27 * t2))
-                - inner_ring_wy * (t34 * t22 - (t31 * t19 - t27 * t18));
+            let t211 = inner_ring_wx * (t27 * t12 - (t34 * t2 - t31 * t6))
+                - inner_ring_wy * (t27 * t22 - (t31 * t19 - t34 * t18));
             let t212 = k(2.0)
                 * (outer_ring_wy * t211
                     + outer_ring_wz * (inner_ring_wx * t41 - inner_ring_wy * t43));
@@ -2162,18 +2167,18 @@ impl<T: Scalar> Equations for GyroscopeRadialImbalance<T> {
                 + (t219 * t35 + (t218 * t50 - t209 * t51));
             let t222 = t221 - t206 * t42 - t217 * t46;
             let t223 = k(1e-6) * t209 + t217 * t54 - t222 * t53;
-            let t224 = t34 * t219 + (t40 * t218 - t15 * t209) - t222 * t57;
+            let t224 = t27 * t219 + (t40 * t218 - t15 * t209) - t222 * t57;
             let t225 = t224 + t223 * t59;
-            let t226 = t27 * t219 - (t38 * t218 + t4 * t209) - t222 * t63;
+            let t226 = t34 * t219 - (t39 * t218 + t4 * t209) - t222 * t63;
             let t227 = t226 + t223 * t65 - t225 * t68;
             let t228 = rotor_wx * rotor_wy;
             let t229 = k(5e-6) * t228;
             let t230 = rotor_wz * rotor_wz;
             let t231 = t230 + rotor_wx * rotor_wx;
             let t232 = rotor_wy * rotor_wz;
-            let t233 = k(0.0002) * (t132 * t232 - (t121 * t231 + t73 * t228))
+            let t233 = k(0.0002) * (t133 * t232 - (t122 * t231 + t73 * t228))
                 + t229 * t94;
-            let t234 = k(0.0002) * (t133 * t232 + (t122 * t231 + t77 * t228)) - k(10.0);
+            let t234 = k(0.0002) * (t132 * t232 + (t121 * t231 + t77 * t228)) - k(10.0);
             let t235 = k(10.0) + t234 - t229 * t100 - t233 * t106;
             let t236 = k(0.0002) * (t134 * t232 + (t123 * t231 - t81 * t228))
                 + t229 * t111;
@@ -2183,8 +2188,8 @@ impl<T: Scalar> Equations for GyroscopeRadialImbalance<T> {
             let t240 = inner_ring_wx * inner_ring_wy;
             let t241 = t205 * t82
                 + ((inner_ring_wz * inner_ring_wz + t214) * t143 - t240 * t137);
-            let t242 = rotor_wy * (t22 * t134 - (t19 * t133 - t18 * t132))
-                + rotor_wz * (t22 * t123 - (t19 * t122 + t18 * t121));
+            let t242 = rotor_wy * (t22 * t134 - (t19 * t132 - t18 * t133))
+                + rotor_wz * (t22 * t123 - (t19 * t121 + t18 * t122));
             let t243 = k(2.0)
                 * (inner_ring_wx * (rotor_wy * t164 + rotor_wz * t156)
                     + inner_ring_wz * t242);

@@ -21,26 +21,21 @@
 //! | accelerations | (s̈, ẇ') and λ, eq. (17) | 336 | 518 | 12 | 866 | 2 of 33 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 28 | 52 | 0 | 80 | 0 of 22 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
-//! | read_joints | joint coordinates and rates | 37 | 58 | 0 | 95 | 0 of 9 |
+//! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 |
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
 //! | newton_step | dependent positions, one Newton step | 193 | 318 | 3 | 514 | 6 of 21 |
 //! | solve_velocities | dependent velocities, eq. (19) | 135 | 233 | 3 | 371 | 6 of 18 |
 
-use gyro_sim::charts::{self, Charts};
-use gyro_sim::{
-    Coordinate, Energy, Equations, Error, JointInfo, Mechanism, Ode, Owner, Partition,
-    Real, RowInfo, Scalar,
-};
 /// The mechanism `gyroscope_viscous`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GyroscopeViscous<T> {
     /// The model has no parameters.
-    scalar: core::marker::PhantomData<T>,
+    scalar: ::core::marker::PhantomData<T>,
 }
-impl<T: Scalar> Default for GyroscopeViscous<T> {
+impl<T: gyro_sim::Scalar> ::core::default::Default for GyroscopeViscous<T> {
     fn default() -> Self {
         Self {
-            scalar: core::marker::PhantomData,
+            scalar: ::core::marker::PhantomData,
         }
     }
 }
@@ -52,7 +47,7 @@ impl<T> GyroscopeViscous<T> {
         false
     }
 }
-impl<T: Scalar> Ode for GyroscopeViscous<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Ode for GyroscopeViscous<T> {
     type Scalar = T;
     type State = [T; 40];
     /// The assembled start, with all parameters at their defaults.
@@ -103,9 +98,9 @@ impl<T: Scalar> Ode for GyroscopeViscous<T> {
     }
     /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 80 operations (28 ±, 52 ×, 0 ÷).
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut v = self.velocities();
-        let mut lambda = self.rows();
-        self.accelerations(t, y, &mut v, &mut lambda);
+        let mut v = gyro_sim::Equations::velocities(self);
+        let mut lambda = gyro_sim::Mechanism::rows(self);
+        gyro_sim::Equations::accelerations(self, t, y, &mut v, &mut lambda);
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -201,7 +196,7 @@ impl<T: Scalar> Ode for GyroscopeViscous<T> {
         ];
     }
 }
-impl<T: Scalar> Mechanism for GyroscopeViscous<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeViscous<T> {
     type Rows = [T; 15];
     type Constraints = [T; 18];
     type Readings = [T; 9];
@@ -256,7 +251,7 @@ impl<T: Scalar> Mechanism for GyroscopeViscous<T> {
         let t14 = inner_ring_e0 * inner_ring_e0;
         let t15 = k(2.0) * (k(0.5) - (t14 + t13));
         let t16 = outer_ring_e2 * outer_ring_e2;
-        let t17 = t0 * t15 + (k(2.0) * (k(0.5) - (t7 + t16)) * t11 - t3 * t6);
+        let t17 = t0 * t15 - (t3 * t6 - k(2.0) * (k(0.5) - (t7 + t16)) * t11);
         let t18 = t14 + inner_ring_e1 * inner_ring_e1;
         let t19 = inner_ring_e0 * inner_ring_e3;
         let t20 = inner_ring_e1 * inner_ring_e2;
@@ -329,39 +324,39 @@ impl<T: Scalar> Mechanism for GyroscopeViscous<T> {
         let t4 = k(2.0) * (k(0.5) - (t3 + outer_ring_e3 * outer_ring_e3));
         let t5 = k(2.0) * (k(0.5) - (t3 + outer_ring_e1 * outer_ring_e1));
         let t6 = k(2.0) * (t1 + t0);
-        let t7 = inner_ring_e0 * inner_ring_e2;
-        let t8 = inner_ring_e1 * inner_ring_e3;
-        let t9 = k(2.0) * (t8 + t7);
-        let t10 = outer_ring_e0 * outer_ring_e3;
-        let t11 = outer_ring_e1 * outer_ring_e2;
-        let t12 = k(2.0) * (t11 - t10);
-        let t13 = inner_ring_e0 * inner_ring_e1;
-        let t14 = inner_ring_e2 * inner_ring_e3;
-        let t15 = k(2.0) * (t14 - t13);
-        let t16 = k(2.0) * (k(0.5) - (t3 + outer_ring_e2 * outer_ring_e2));
+        let t7 = inner_ring_e0 * inner_ring_e1;
+        let t8 = inner_ring_e2 * inner_ring_e3;
+        let t9 = k(2.0) * (t8 - t7);
+        let t10 = k(2.0) * (k(0.5) - (t3 + outer_ring_e2 * outer_ring_e2));
+        let t11 = inner_ring_e0 * inner_ring_e2;
+        let t12 = inner_ring_e1 * inner_ring_e3;
+        let t13 = k(2.0) * (t12 + t11);
+        let t14 = outer_ring_e0 * outer_ring_e3;
+        let t15 = outer_ring_e1 * outer_ring_e2;
+        let t16 = k(2.0) * (t15 - t14);
         let t17 = inner_ring_e0 * inner_ring_e0;
         let t18 = k(2.0) * (k(0.5) - (t17 + inner_ring_e3 * inner_ring_e3));
         let t19 = outer_ring_e0 * outer_ring_e1;
         let t20 = outer_ring_e2 * outer_ring_e3;
         let t21 = k(2.0) * (t20 + t19);
-        let t22 = t4 * t18 + (k(2.0) * (t20 - t19) * t15 + t6 * t9);
+        let t22 = t6 * t13 + k(2.0) * (t20 - t19) * t9 + t4 * t18;
         let t23 = outer_ring_wy * t22
-            + outer_ring_wz * (t21 * t18 + (t16 * t15 - t12 * t9));
+            + outer_ring_wz * (t21 * t18 - (t16 * t13 - t10 * t9));
         let t24 = k(2.0) * (k(0.5) - (t17 + inner_ring_e1 * inner_ring_e1));
         let t25 = inner_ring_e0 * inner_ring_e3;
         let t26 = inner_ring_e1 * inner_ring_e2;
         let t27 = k(2.0) * (t26 + t25);
-        let t28 = k(2.0) * (t11 + t10);
-        let t29 = k(2.0) * (t8 - t7);
+        let t28 = k(2.0) * (t15 + t14);
+        let t29 = k(2.0) * (t12 - t11);
         let t30 = k(2.0) * (t26 - t25);
         let t31 = k(2.0) * (k(0.5) - (t17 + inner_ring_e2 * inner_ring_e2));
-        let t32 = k(2.0) * (t14 + t13);
+        let t32 = k(2.0) * (t8 + t7);
         let t33 = inner_ring_wx * (t2 * t32 - (t28 * t31 + t5 * t30))
             - inner_ring_wy * (t2 * t29 + (t28 * t27 + t5 * t24));
         let t34 = outer_ring_wx * t22
-            + outer_ring_wz * (t2 * t18 - (t28 * t15 - t5 * t9));
-        let t35 = inner_ring_wx * (t21 * t32 + (t16 * t31 + t12 * t30))
-            - inner_ring_wy * (t21 * t29 - (t16 * t27 + t12 * t24));
+            + outer_ring_wz * (t2 * t18 - (t28 * t9 - t5 * t13));
+        let t35 = inner_ring_wx * (t21 * t32 + (t16 * t30 + t10 * t31))
+            - inner_ring_wy * (t21 * t29 - (t10 * t27 + t16 * t24));
         let t36 = rotor_e0 * rotor_e0;
         let t37 = k(2.0) * (k(0.5) - (t36 + rotor_e1 * rotor_e1));
         let t38 = rotor_e0 * rotor_e3;
@@ -371,22 +366,22 @@ impl<T: Scalar> Mechanism for GyroscopeViscous<T> {
         let t42 = rotor_e1 * rotor_e3;
         let t43 = k(2.0) * (t42 - t41);
         let t44 = t29 * t43 + (t27 * t40 + t24 * t37);
-        let t45 = inner_ring_wx * (t18 * t43 - (t15 * t40 - t9 * t37))
+        let t45 = inner_ring_wx * (t18 * t43 - (t9 * t40 - t13 * t37))
             + inner_ring_wz * t44;
-        let t46 = k(2.0) * (t39 - t38);
-        let t47 = k(2.0) * (k(0.5) - (t36 + rotor_e2 * rotor_e2));
+        let t46 = k(2.0) * (k(0.5) - (t36 + rotor_e2 * rotor_e2));
+        let t47 = k(2.0) * (t39 - t38);
         let t48 = rotor_e0 * rotor_e1;
         let t49 = rotor_e2 * rotor_e3;
         let t50 = k(2.0) * (t49 + t48);
-        let t51 = k(2.0) * (t42 + t41);
-        let t52 = k(2.0) * (t49 - t48);
+        let t51 = k(2.0) * (t49 - t48);
+        let t52 = k(2.0) * (t42 + t41);
         let t53 = k(2.0) * (k(0.5) - (t36 + rotor_e3 * rotor_e3));
-        let t54 = rotor_wy * (t32 * t53 + (t31 * t52 - t30 * t51))
-            + rotor_wz * (t32 * t50 + (t31 * t47 + t30 * t46));
+        let t54 = rotor_wy * (t32 * t53 - (t30 * t52 - t31 * t51))
+            + rotor_wz * (t32 * t50 + (t30 * t47 + t31 * t46));
         let t55 = inner_ring_wx * (t32 * t43 - (t31 * t40 + t30 * t37))
             - inner_ring_wy * t44;
-        let t56 = rotor_wy * (t18 * t53 + (t15 * t52 + t9 * t51))
-            + rotor_wz * (t18 * t50 + (t15 * t47 - t9 * t46));
+        let t56 = rotor_wy * (t13 * t52 + t9 * t51 + t18 * t53)
+            + rotor_wz * (t18 * t50 - (t13 * t47 - t9 * t46));
         *out = [
             outer_ring_sx,
             outer_ring_sy,
@@ -400,10 +395,10 @@ impl<T: Scalar> Mechanism for GyroscopeViscous<T> {
             t34 - t35,
             rotor_sx
                 - (inner_ring_sx
-                    - k(0.000125) * (t9 * inner_ring_wy - t30 * inner_ring_wz)),
+                    - k(0.000125) * (t13 * inner_ring_wy - t30 * inner_ring_wz)),
             rotor_sy
                 - (inner_ring_sy
-                    - k(0.000125) * (t15 * inner_ring_wy + t31 * inner_ring_wz)),
+                    - k(0.000125) * (t9 * inner_ring_wy + t31 * inner_ring_wz)),
             rotor_sz
                 - (inner_ring_sz
                     + k(0.000125) * (t18 * inner_ring_wy + t32 * inner_ring_wz)),
@@ -412,7 +407,7 @@ impl<T: Scalar> Mechanism for GyroscopeViscous<T> {
         ];
     }
     /// Kinetic and potential energy: 52 operations (19 ±, 33 ×, 0 ÷).
-    fn energy(&self, y: &Self::State) -> Energy<T> {
+    fn energy(&self, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let outer_ring_ry = y[1];
         let inner_ring_ry = y[8];
@@ -454,12 +449,12 @@ impl<T: Scalar> Mechanism for GyroscopeViscous<T> {
             + k(0.01)
                 * (outer_ring_sx * outer_ring_sx + outer_ring_sy * outer_ring_sy
                     + outer_ring_sz * outer_ring_sz);
-        Energy {
+        gyro_sim::Energy {
             kinetic: k(0.5) * (t5 + t3 + t1),
             potential: k(0.1) * (outer_ring_ry + inner_ring_ry) + k(0.8) * rotor_ry,
         }
     }
-    /// Writes the joint readings: 95 operations (37 ±, 58 ×, 0 ÷).
+    /// Writes the joint readings: 114 operations (54 ±, 60 ×, 0 ÷).
     fn read_joints(&self, y: &Self::State, out: &mut Self::Readings) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -481,39 +476,49 @@ impl<T: Scalar> Mechanism for GyroscopeViscous<T> {
         let rotor_wx = y[36];
         let t0 = outer_ring_e0 * outer_ring_e2;
         let t1 = outer_ring_e1 * outer_ring_e3;
-        let t2 = outer_ring_e0 * outer_ring_e0;
-        let t3 = inner_ring_e0 * inner_ring_e0;
-        let t4 = k(2.0) * (k(0.5) - (t3 + inner_ring_e1 * inner_ring_e1));
-        let t5 = outer_ring_e0 * outer_ring_e3;
-        let t6 = outer_ring_e1 * outer_ring_e2;
-        let t7 = inner_ring_e0 * inner_ring_e3;
-        let t8 = inner_ring_e1 * inner_ring_e2;
-        let t9 = k(2.0) * (t8 + t7);
-        let t10 = k(2.0) * (k(0.5) - (t2 + outer_ring_e2 * outer_ring_e2)) * t9
-            + k(2.0) * (t6 - t5) * t4;
-        let t11 = inner_ring_e0 * inner_ring_e2;
-        let t12 = inner_ring_e1 * inner_ring_e3;
-        let t13 = k(2.0) * (t12 - t11);
-        let t14 = k(2.0) * (t6 + t5) * t9
-            + k(2.0) * (k(0.5) - (t2 + outer_ring_e1 * outer_ring_e1)) * t4;
-        let t15 = k(2.0) * (rotor_e1 * rotor_e2 - rotor_e0 * rotor_e3);
-        let t16 = k(2.0) * (k(0.5) - (rotor_e0 * rotor_e0 + rotor_e2 * rotor_e2));
-        let t17 = inner_ring_e0 * inner_ring_e1;
-        let t18 = inner_ring_e2 * inner_ring_e3;
-        let t19 = k(2.0) * (t18 - t17) * t16 - k(2.0) * (t12 + t11) * t15;
-        let t20 = k(2.0) * (rotor_e2 * rotor_e3 + rotor_e0 * rotor_e1);
-        let t21 = k(2.0) * (k(0.5) - (t3 + inner_ring_e2 * inner_ring_e2)) * t16
-            + k(2.0) * (t8 - t7) * t15;
+        let t2 = outer_ring_e2 * outer_ring_e2;
+        let t3 = outer_ring_e0 * outer_ring_e0;
+        let t4 = t3 + outer_ring_e1 * outer_ring_e1;
+        let t5 = outer_ring_e3 * outer_ring_e3;
+        let t6 = k(1.0) - (t5 + (t4 + t2));
+        let t7 = inner_ring_e0 * inner_ring_e2;
+        let t8 = inner_ring_e1 * inner_ring_e3;
+        let t9 = k(2.0) * (t8 - t7);
+        let t10 = inner_ring_e0 * inner_ring_e3;
+        let t11 = inner_ring_e1 * inner_ring_e2;
+        let t12 = k(2.0) * (t11 + t10);
+        let t13 = inner_ring_e2 * inner_ring_e2;
+        let t14 = inner_ring_e0 * inner_ring_e0;
+        let t15 = t14 + inner_ring_e1 * inner_ring_e1;
+        let t16 = inner_ring_e3 * inner_ring_e3;
+        let t17 = k(1.0) - (t16 + (t15 + t13));
+        let t18 = k(2.0) * (k(0.5) - t15) - t17;
+        let t19 = outer_ring_e0 * outer_ring_e3;
+        let t20 = outer_ring_e1 * outer_ring_e2;
+        let t21 = k(2.0) * (t20 - t19) * t18
+            + t12 * (k(2.0) * (k(0.5) - (t3 + t2)) - t6);
+        let t22 = (k(2.0) * (k(0.5) - t4) - t6) * t18 + k(2.0) * (t20 + t19) * t12;
+        let t23 = k(2.0) * (rotor_e2 * rotor_e3 + rotor_e0 * rotor_e1);
+        let t24 = rotor_e2 * rotor_e2;
+        let t25 = rotor_e0 * rotor_e0;
+        let t26 = k(2.0) * (k(0.5) - (t25 + t24))
+            - (k(1.0) - (rotor_e3 * rotor_e3 + (t25 + rotor_e1 * rotor_e1 + t24)));
+        let t27 = inner_ring_e0 * inner_ring_e1;
+        let t28 = inner_ring_e2 * inner_ring_e3;
+        let t29 = k(2.0) * (rotor_e1 * rotor_e2 - rotor_e0 * rotor_e3);
+        let t30 = k(2.0) * (t8 + t7) * t29 - k(2.0) * (t28 - t27) * t26;
+        let t31 = k(2.0) * (t11 - t10) * t29
+            + (k(2.0) * (k(0.5) - (t14 + t13)) - t17) * t26;
         *out = [
             k(2.0) * (t1 + t0),
-            -(k(2.0) * (k(0.5) - (t2 + outer_ring_e3 * outer_ring_e3))),
+            t6 - k(2.0) * (k(0.5) - (t3 + t5)),
             outer_ring_wy,
-            k(2.0) * (outer_ring_e2 * outer_ring_e3 + outer_ring_e0 * outer_ring_e1)
-                * t13 - t10,
-            k(2.0) * (t1 - t0) * t13 + t14,
+            k(2.0) * (outer_ring_e2 * outer_ring_e3 + outer_ring_e0 * outer_ring_e1) * t9
+                - t21,
+            t22 + k(2.0) * (t1 - t0) * t9,
             inner_ring_wz - outer_ring_wz,
-            -(k(2.0) * (k(0.5) - (t3 + inner_ring_e3 * inner_ring_e3)) * t20 + t19),
-            k(2.0) * (t18 + t17) * t20 + t21,
+            t30 - t23 * (k(2.0) * (k(0.5) - (t14 + t16)) - t17),
+            t31 + k(2.0) * (t28 + t27) * t23,
             rotor_wx - inner_ring_wx,
         ];
     }
@@ -527,96 +532,96 @@ impl<T: Scalar> Mechanism for GyroscopeViscous<T> {
         const BODIES: [&str; 3] = ["outer_ring", "inner_ring", "rotor"];
         BODIES.get(body).copied().unwrap_or_default()
     }
-    fn joint(&self, joint: usize) -> JointInfo<'_> {
-        const JOINTS: [JointInfo<'static>; 3] = [
-            JointInfo {
+    fn joint(&self, joint: usize) -> gyro_sim::JointInfo<'_> {
+        const JOINTS: [gyro_sim::JointInfo<'static>; 3] = [
+            gyro_sim::JointInfo {
                 name: "alpha",
-                coordinate: Coordinate::Angle,
+                coordinate: gyro_sim::Coordinate::Angle,
             },
-            JointInfo {
+            gyro_sim::JointInfo {
                 name: "beta",
-                coordinate: Coordinate::Angle,
+                coordinate: gyro_sim::Coordinate::Angle,
             },
-            JointInfo {
+            gyro_sim::JointInfo {
                 name: "phi",
-                coordinate: Coordinate::Angle,
+                coordinate: gyro_sim::Coordinate::Angle,
             },
         ];
         JOINTS
             .get(joint)
             .copied()
-            .unwrap_or(JointInfo {
+            .unwrap_or(gyro_sim::JointInfo {
                 name: "",
-                coordinate: Coordinate::None,
+                coordinate: gyro_sim::Coordinate::None,
             })
     }
-    fn row(&self, row: usize) -> RowInfo {
-        const ROWS: [RowInfo; 15] = [
-            RowInfo {
-                owner: Owner::Joint(0),
+    fn row(&self, row: usize) -> gyro_sim::RowInfo {
+        const ROWS: [gyro_sim::RowInfo; 15] = [
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(0),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(0),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(0),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(0),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(0),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(0),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(0),
                 is_length: false,
             },
-            RowInfo {
-                owner: Owner::Joint(0),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(0),
                 is_length: false,
             },
-            RowInfo {
-                owner: Owner::Joint(1),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(1),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(1),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(1),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(1),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(1),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(1),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(1),
                 is_length: false,
             },
-            RowInfo {
-                owner: Owner::Joint(1),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(1),
                 is_length: false,
             },
-            RowInfo {
-                owner: Owner::Joint(2),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(2),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(2),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(2),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(2),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(2),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(2),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(2),
                 is_length: false,
             },
-            RowInfo {
-                owner: Owner::Joint(2),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(2),
                 is_length: false,
             },
         ];
         ROWS.get(row)
             .copied()
-            .unwrap_or(RowInfo {
-                owner: Owner::Body(0),
+            .unwrap_or(gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Body(0),
                 is_length: false,
             })
     }
@@ -627,7 +632,7 @@ impl<T: Scalar> Mechanism for GyroscopeViscous<T> {
         y[39]
     }
 }
-impl<T: Scalar> GyroscopeViscous<T> {
+impl<T: gyro_sim::Scalar> GyroscopeViscous<T> {
     /// The four-vectors whose largest components are the special Euler parameters: 0 operations (0 ±, 0 ×, 0 ÷).
     fn chart_vectors(&self, y: &[T; 40]) -> [[T; 4]; 3] {
         let outer_ring_e0 = y[3];
@@ -649,13 +654,13 @@ impl<T: Scalar> GyroscopeViscous<T> {
         ]
     }
 }
-impl<T: Real> Partition for GyroscopeViscous<T> {
-    type Independent = Charts<3>;
+impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeViscous<T> {
+    type Independent = gyro_sim::charts::Charts<3>;
     fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
-        charts::best(&self.chart_vectors(y))
+        gyro_sim::charts::best(&self.chart_vectors(y))
     }
     fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
-        charts::follow(&self.chart_vectors(y), choice)
+        gyro_sim::charts::follow(&self.chart_vectors(y), choice)
     }
     /// One Newton step of the dependent positions: 514 operations (193 ±, 318 ×, 3 ÷).
     fn newton_step(
@@ -663,8 +668,8 @@ impl<T: Real> Partition for GyroscopeViscous<T> {
         _t: T,
         choice: &Self::Independent,
         y: &mut Self::State,
-    ) -> Result<(), Error> {
-        let charts = charts::one_hot::<T, _>(choice);
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -872,8 +877,8 @@ impl<T: Real> Partition for GyroscopeViscous<T> {
         _t: T,
         choice: &Self::Independent,
         y: &mut Self::State,
-    ) -> Result<(), Error> {
-        let charts = charts::one_hot::<T, _>(choice);
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -952,20 +957,20 @@ impl<T: Real> Partition for GyroscopeViscous<T> {
         let t37 = outer_ring_e2 * outer_ring_e3;
         let t38 = k(2.0) * (t37 + t36);
         let t39 = t38 * t32 - (t35 * t26 + t34 * t23);
-        let t40 = k(2.0) * (t25 - t24);
-        let t41 = k(2.0) * (k(0.5) - (t22 + inner_ring_e2 * inner_ring_e2));
+        let t40 = k(2.0) * (k(0.5) - (t22 + inner_ring_e2 * inner_ring_e2));
+        let t41 = k(2.0) * (t25 - t24);
         let t42 = inner_ring_e0 * inner_ring_e1;
         let t43 = inner_ring_e2 * inner_ring_e3;
         let t44 = k(2.0) * (t43 + t42);
-        let t45 = t38 * t44 + (t35 * t41 + t34 * t40);
+        let t45 = t38 * t44 + (t34 * t41 + t35 * t40);
         let t46 = k(2.0) * (t31 + t30);
         let t47 = k(2.0) * (t43 - t42);
         let t48 = k(2.0) * (k(0.5) - (t22 + inner_ring_e3 * inner_ring_e3));
-        let t49 = t9 * t48 + (k(2.0) * (t37 - t36) * t47 + t7 * t46);
+        let t49 = t7 * t46 + k(2.0) * (t37 - t36) * t47 + t9 * t48;
         let t50 = t12 * t49 + t19 * (t4 * t48 - (t29 * t47 - t6 * t46));
         let t51 = t50 - (inner_ring_wx * t45 - inner_ring_wy * t39);
-        let t52 = t4 * t44 - (t29 * t41 + t6 * t40);
-        let t53 = t18 * t49 + t19 * (t38 * t48 + (t35 * t47 - t34 * t46));
+        let t52 = t4 * t44 - (t29 * t40 + t6 * t41);
+        let t53 = t18 * t49 + t19 * (t38 * t48 - (t34 * t46 - t35 * t47));
         let t54 = t53 + (inner_ring_wx * t52 - inner_ring_wy * t33);
         let t55 = k(1.0) / (t21 * (t52 * t39 - t33 * t45));
         let t56 = inner_ring_wx - t55 * (t54 * (t39 * t21) + t51 * (t33 * t21));
@@ -981,31 +986,31 @@ impl<T: Real> Partition for GyroscopeViscous<T> {
         let t64 = rotor_e3 * chart2_0 - rotor_e2 * chart2_1 + rotor_e1 * chart2_2
             - rotor_e0 * chart2_3;
         let t65 = k(0.5) * t64;
-        let t66 = rotor_e0 * rotor_e2;
-        let t67 = rotor_e1 * rotor_e3;
-        let t68 = k(2.0) * (t67 + t66);
-        let t69 = rotor_e0 * rotor_e1;
-        let t70 = rotor_e2 * rotor_e3;
-        let t71 = k(2.0) * (t70 - t69);
+        let t66 = rotor_e0 * rotor_e1;
+        let t67 = rotor_e2 * rotor_e3;
+        let t68 = k(2.0) * (t67 - t66);
+        let t69 = rotor_e0 * rotor_e2;
+        let t70 = rotor_e1 * rotor_e3;
+        let t71 = k(2.0) * (t70 + t69);
         let t72 = rotor_e0 * rotor_e0;
         let t73 = k(2.0) * (k(0.5) - (t72 + rotor_e3 * rotor_e3));
-        let t74 = t44 * t73 + (t41 * t71 - t40 * t68);
+        let t74 = t44 * t73 - (t41 * t71 - t40 * t68);
         let t75 = rotor_e2 * chart2_0 + rotor_e3 * chart2_1 - rotor_e0 * chart2_2
             - rotor_e1 * chart2_3;
         let t76 = k(0.5) * t75;
-        let t77 = rotor_e0 * rotor_e3;
-        let t78 = rotor_e1 * rotor_e2;
-        let t79 = k(2.0) * (t78 - t77);
-        let t80 = k(2.0) * (k(0.5) - (t72 + rotor_e2 * rotor_e2));
-        let t81 = k(2.0) * (t70 + t69);
-        let t82 = t44 * t81 + (t41 * t80 + t40 * t79);
-        let t83 = t48 * t81 + (t47 * t80 - t46 * t79);
-        let t84 = t48 * t73 + (t47 * t71 + t46 * t68);
+        let t77 = k(2.0) * (k(0.5) - (t72 + rotor_e2 * rotor_e2));
+        let t78 = rotor_e0 * rotor_e3;
+        let t79 = rotor_e1 * rotor_e2;
+        let t80 = k(2.0) * (t79 - t78);
+        let t81 = k(2.0) * (t67 + t66);
+        let t82 = t44 * t81 + (t41 * t80 + t40 * t77);
+        let t83 = t48 * t81 - (t46 * t80 - t47 * t77);
+        let t84 = t46 * t71 + t47 * t68 + t48 * t73;
         let t85 = k(2.0) * (k(0.5) - (t72 + rotor_e1 * rotor_e1));
-        let t86 = k(2.0) * (t78 + t77);
-        let t87 = k(2.0) * (t67 - t66);
+        let t86 = k(2.0) * (t79 + t78);
+        let t87 = k(2.0) * (t70 - t69);
         let t88 = t32 * t87 + (t26 * t86 + t23 * t85);
-        let t89 = t56 * (t44 * t87 - (t41 * t86 + t40 * t85)) - t57 * t88;
+        let t89 = t56 * (t44 * t87 - (t40 * t86 + t41 * t85)) - t57 * t88;
         let t90 = t89 + (rotor_wy * t84 + rotor_wz * t83);
         let t91 = t56 * (t48 * t87 - (t47 * t86 - t46 * t85)) + t63 * t88;
         let t92 = t91 - (rotor_wy * t74 + rotor_wz * t82);
@@ -1028,8 +1033,8 @@ impl<T: Real> Partition for GyroscopeViscous<T> {
         y[30] = t56;
         y[31] = t57;
         y[32] = t63;
-        y[33] = -(k(0.000125) * (t46 * t57 - t40 * t63));
-        y[34] = -(k(0.000125) * (t47 * t57 + t41 * t63));
+        y[33] = -(k(0.000125) * (t46 * t57 - t41 * t63));
+        y[34] = -(k(0.000125) * (t47 * t57 + t40 * t63));
         y[35] = k(0.000125) * (t48 * t57 + t44 * t63);
         y[36] = rotor_wx + t96 * t93;
         y[37] = t97;
@@ -1037,7 +1042,7 @@ impl<T: Real> Partition for GyroscopeViscous<T> {
         Ok(())
     }
 }
-impl<T: Scalar> Equations for GyroscopeViscous<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeViscous<T> {
     type Velocities = [T; 18];
     type PhiQ = [T; 77];
     type PhiPi = [T; 41];
@@ -1347,37 +1352,37 @@ impl<T: Scalar> Equations for GyroscopeViscous<T> {
         let t4 = k(2.0) * (t3 - t2);
         let t5 = k(2.0) * (t3 + t2);
         let t6 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
-        let t7 = inner_ring_e0 * inner_ring_e2;
-        let t8 = inner_ring_e1 * inner_ring_e3;
-        let t9 = t8 + t7;
-        let t10 = k(2.0) * t9;
-        let t11 = inner_ring_e0 * inner_ring_e1;
-        let t12 = inner_ring_e2 * inner_ring_e3;
-        let t13 = t12 - t11;
-        let t14 = k(2.0) * t13;
-        let t15 = outer_ring_e0 * outer_ring_e1;
-        let t16 = outer_ring_e2 * outer_ring_e3;
-        let t17 = inner_ring_e0 * inner_ring_e0;
-        let t18 = k(0.5) - (t17 + inner_ring_e3 * inner_ring_e3);
+        let t7 = inner_ring_e0 * inner_ring_e0;
+        let t8 = k(0.5) - (t7 + inner_ring_e3 * inner_ring_e3);
+        let t9 = k(2.0) * t8;
+        let t10 = inner_ring_e0 * inner_ring_e1;
+        let t11 = inner_ring_e2 * inner_ring_e3;
+        let t12 = t11 - t10;
+        let t13 = k(2.0) * t12;
+        let t14 = outer_ring_e0 * outer_ring_e1;
+        let t15 = outer_ring_e2 * outer_ring_e3;
+        let t16 = inner_ring_e0 * inner_ring_e2;
+        let t17 = inner_ring_e1 * inner_ring_e3;
+        let t18 = t17 + t16;
         let t19 = k(2.0) * t18;
-        let t20 = t1 * t19 + (k(2.0) * (t16 - t15) * t14 + t5 * t10);
-        let t21 = outer_ring_e0 * outer_ring_e3;
-        let t22 = outer_ring_e1 * outer_ring_e2;
-        let t23 = k(2.0) * (t22 - t21);
-        let t24 = k(2.0) * (k(0.5) - (t0 + outer_ring_e2 * outer_ring_e2));
-        let t25 = k(2.0) * (t16 + t15);
+        let t20 = t5 * t19 + k(2.0) * (t15 - t14) * t13 + t1 * t9;
+        let t21 = k(2.0) * (k(0.5) - (t0 + outer_ring_e2 * outer_ring_e2));
+        let t22 = outer_ring_e0 * outer_ring_e3;
+        let t23 = outer_ring_e1 * outer_ring_e2;
+        let t24 = k(2.0) * (t23 - t22);
+        let t25 = k(2.0) * (t15 + t14);
         let t26 = inner_ring_e0 * inner_ring_e3;
         let t27 = inner_ring_e1 * inner_ring_e2;
         let t28 = t27 - t26;
         let t29 = k(2.0) * t28;
-        let t30 = k(0.5) - (t17 + inner_ring_e2 * inner_ring_e2);
+        let t30 = k(0.5) - (t7 + inner_ring_e2 * inner_ring_e2);
         let t31 = k(2.0) * t30;
-        let t32 = k(2.0) * (t22 + t21);
-        let t33 = t12 + t11;
+        let t32 = k(2.0) * (t23 + t22);
+        let t33 = t11 + t10;
         let t34 = k(2.0) * t33;
-        let t35 = k(2.0) * (k(0.5) - (t17 + inner_ring_e1 * inner_ring_e1));
+        let t35 = k(2.0) * (k(0.5) - (t7 + inner_ring_e1 * inner_ring_e1));
         let t36 = k(2.0) * (t27 + t26);
-        let t37 = k(2.0) * (t8 - t7);
+        let t37 = k(2.0) * (t17 - t16);
         let t38 = rotor_e0 * rotor_e0;
         let t39 = k(2.0) * (k(0.5) - (t38 + rotor_e1 * rotor_e1));
         let t40 = rotor_e0 * rotor_e3;
@@ -1387,14 +1392,14 @@ impl<T: Scalar> Equations for GyroscopeViscous<T> {
         let t44 = rotor_e1 * rotor_e3;
         let t45 = k(2.0) * (t44 - t43);
         let t46 = t37 * t45 + (t36 * t42 + t35 * t39);
-        let t47 = k(2.0) * (t44 + t43);
-        let t48 = rotor_e0 * rotor_e1;
-        let t49 = rotor_e2 * rotor_e3;
-        let t50 = k(2.0) * (t49 - t48);
+        let t47 = rotor_e0 * rotor_e1;
+        let t48 = rotor_e2 * rotor_e3;
+        let t49 = k(2.0) * (t48 - t47);
+        let t50 = k(2.0) * (t44 + t43);
         let t51 = k(2.0) * (k(0.5) - (t38 + rotor_e3 * rotor_e3));
-        let t52 = k(2.0) * (t41 - t40);
-        let t53 = k(2.0) * (k(0.5) - (t38 + rotor_e2 * rotor_e2));
-        let t54 = k(2.0) * (t49 + t48);
+        let t52 = k(2.0) * (k(0.5) - (t38 + rotor_e2 * rotor_e2));
+        let t53 = k(2.0) * (t41 - t40);
+        let t54 = k(2.0) * (t48 + t47);
         *out = [
             k(1.0),
             k(1.0),
@@ -1410,33 +1415,33 @@ impl<T: Scalar> Equations for GyroscopeViscous<T> {
             k(-1.0),
             k(1.0),
             -t20,
-            -(t25 * t19 + (t24 * t14 - t23 * t10)),
+            t24 * t19 - t21 * t13 - t25 * t9,
             t32 * t31 + t6 * t29 - t4 * t34,
             t4 * t37 + (t32 * t36 + t6 * t35),
             t20,
-            t4 * t19 - (t32 * t14 - t6 * t10),
-            -(t25 * t34 + (t24 * t31 + t23 * t29)),
-            t25 * t37 - (t24 * t36 + t23 * t35),
+            t4 * t9 - (t32 * t13 - t6 * t19),
+            -(t25 * t34 + (t24 * t29 + t21 * t31)),
+            t25 * t37 - (t21 * t36 + t24 * t35),
             k(-1.0),
-            k(0.00025) * t9,
+            k(0.00025) * t18,
             -(k(0.00025) * t28),
             k(1.0),
             k(-1.0),
-            k(0.00025) * t13,
+            k(0.00025) * t12,
             k(0.00025) * t30,
             k(1.0),
             k(-1.0),
-            -(k(0.00025) * t18),
+            -(k(0.00025) * t8),
             -(k(0.00025) * t33),
             k(1.0),
-            t14 * t42 - t10 * t39 - t19 * t45,
+            t13 * t42 - t19 * t39 - t9 * t45,
             -t46,
-            t34 * t51 + (t31 * t50 - t29 * t47),
-            t34 * t54 + (t31 * t53 + t29 * t52),
+            t34 * t51 - (t29 * t50 - t31 * t49),
+            t34 * t54 + (t29 * t53 + t31 * t52),
             t31 * t42 + t29 * t39 - t34 * t45,
             t46,
-            -(t19 * t51 + (t14 * t50 + t10 * t47)),
-            -(t19 * t54 + (t14 * t53 - t10 * t52)),
+            -(t19 * t50 + t13 * t49 + t9 * t51),
+            t19 * t53 - t13 * t52 - t9 * t54,
         ];
     }
     /// Writes ν: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -1512,9 +1517,9 @@ impl<T: Scalar> Equations for GyroscopeViscous<T> {
         let t25 = k(2.0) * (k(0.5) - (t24 + inner_ring_e3 * inner_ring_e3));
         let t26 = t3 * t25 - (t23 * t22 - t12 * t19);
         let t27 = k(2.0) * (k(0.5) - (t10 + outer_ring_e2 * outer_ring_e2));
-        let t28 = t8 * t25 + (t27 * t22 - t15 * t19);
+        let t28 = t8 * t25 - (t15 * t19 - t27 * t22);
         let t29 = k(2.0) * (t7 - t6);
-        let t30 = t11 * t25 + (t29 * t22 + t16 * t19);
+        let t30 = t16 * t19 + t29 * t22 + t11 * t25;
         let t31 = outer_ring_wx * outer_ring_wz * t30
             - (t0 * t28 - (t4 + outer_ring_wy * outer_ring_wy) * t26);
         let t32 = k(2.0) * (k(0.5) - (t24 + inner_ring_e1 * inner_ring_e1));
@@ -1523,18 +1528,18 @@ impl<T: Scalar> Equations for GyroscopeViscous<T> {
         let t35 = k(2.0) * (t34 + t33);
         let t36 = k(2.0) * (t18 - t17);
         let t37 = t8 * t36 - (t27 * t35 + t15 * t32);
-        let t38 = k(2.0) * (t34 - t33);
-        let t39 = k(2.0) * (k(0.5) - (t24 + inner_ring_e2 * inner_ring_e2));
+        let t38 = k(2.0) * (k(0.5) - (t24 + inner_ring_e2 * inner_ring_e2));
+        let t39 = k(2.0) * (t34 - t33);
         let t40 = k(2.0) * (t21 + t20);
-        let t41 = t8 * t40 + (t27 * t39 + t15 * t38);
-        let t42 = inner_ring_wx * (t11 * t40 + (t29 * t39 - t16 * t38))
+        let t41 = t8 * t40 + (t15 * t39 + t27 * t38);
+        let t42 = inner_ring_wx * (t11 * t40 - (t16 * t39 - t29 * t38))
             - inner_ring_wy * (t11 * t36 - (t29 * t35 - t16 * t32));
         let t43 = k(2.0)
             * (outer_ring_wy * t42
                 + outer_ring_wz * (inner_ring_wx * t41 - inner_ring_wy * t37));
         let t44 = t3 * t36 + (t23 * t35 + t12 * t32);
         let t45 = inner_ring_wx * inner_ring_wz;
-        let t46 = t3 * t40 - (t23 * t39 + t12 * t38);
+        let t46 = t3 * t40 - (t23 * t38 + t12 * t39);
         let t47 = inner_ring_wy * inner_ring_wz;
         let t48 = inner_ring_wx * inner_ring_wx;
         let t49 = inner_ring_wy * inner_ring_wy;
@@ -1557,7 +1562,7 @@ impl<T: Scalar> Equations for GyroscopeViscous<T> {
         let t63 = rotor_e1 * rotor_e3;
         let t64 = k(2.0) * (t63 - t62);
         let t65 = t36 * t64 + (t35 * t61 + t32 * t58);
-        let t66 = t40 * t64 - (t39 * t61 + t38 * t58);
+        let t66 = t40 * t64 - (t38 * t61 + t39 * t58);
         let t67 = t25 * t64 - (t22 * t61 - t19 * t58);
         let t68 = k(2.0) * (t60 - t59);
         let t69 = k(2.0) * (k(0.5) - (t57 + rotor_e2 * rotor_e2));
@@ -1569,14 +1574,14 @@ impl<T: Scalar> Equations for GyroscopeViscous<T> {
         let t75 = k(2.0) * (k(0.5) - (t57 + rotor_e3 * rotor_e3));
         let t76 = rotor_wy * (t36 * t75 - (t35 * t74 - t32 * t73))
             + rotor_wz * (t36 * t72 - (t35 * t69 + t32 * t68));
-        let t77 = t25 * t72 + (t22 * t69 - t19 * t68);
-        let t78 = t25 * t75 + (t22 * t74 + t19 * t73);
+        let t77 = t25 * t72 - (t19 * t68 - t22 * t69);
+        let t78 = t19 * t73 + t22 * t74 + t25 * t75;
         let t79 = k(2.0)
             * (inner_ring_wx * (rotor_wy * t78 + rotor_wz * t77) + inner_ring_wz * t76);
         let t80 = rotor_wz * rotor_wz + rotor_wy * rotor_wy;
-        let t81 = t40 * t72 + (t39 * t69 + t38 * t68);
+        let t81 = t40 * t72 + (t39 * t68 + t38 * t69);
         let t82 = rotor_wx * rotor_wy;
-        let t83 = t40 * t75 + (t39 * t74 - t38 * t73);
+        let t83 = t40 * t75 - (t39 * t73 - t38 * t74);
         let t84 = rotor_wx * rotor_wz;
         let t85 = t84 * t83 - (t82 * t81 - t80 * t66) + t79
             + (t47 * t67 + ((t54 + t48) * t66 - t56 * t65));
@@ -1595,8 +1600,8 @@ impl<T: Scalar> Equations for GyroscopeViscous<T> {
             k(0.0),
             -t51,
             -t53,
-            k(0.000125) * (t19 * t45 + (t38 * t56 + t32 * t55)),
-            k(0.000125) * (t22 * t45 - (t39 * t56 + t35 * t55)),
+            k(0.000125) * (t19 * t45 + (t39 * t56 + t32 * t55)),
+            k(0.000125) * (t22 * t45 - (t38 * t56 + t35 * t55)),
             -(k(0.000125) * (t25 * t45 - (t40 * t56 - t36 * t55))),
             t85,
             -t87,
@@ -1668,13 +1673,13 @@ impl<T: Scalar> Equations for GyroscopeViscous<T> {
         let rotor_wy = y[37];
         let rotor_wz = y[38];
         let (
-            t6,
+            t4,
             t11,
             t18,
             t20,
             t27,
             t28,
-            t32,
+            t30,
             t34,
             t36,
             t38,
@@ -1732,7 +1737,7 @@ impl<T: Scalar> Equations for GyroscopeViscous<T> {
             t136,
             t137,
             t138,
-            t139,
+            t140,
             t143,
             t144,
             t145,
@@ -1773,17 +1778,17 @@ impl<T: Scalar> Equations for GyroscopeViscous<T> {
             t197,
             t199,
         ) = {
-            let t0 = rotor_e0 * rotor_e3;
-            let t1 = rotor_e1 * rotor_e2;
-            let t2 = k(2.0) * (t1 - t0);
-            let t3 = inner_ring_e0 * inner_ring_e3;
-            let t4 = inner_ring_e1 * inner_ring_e2;
-            let t5 = t4 - t3;
-            let t6 = k(2.0) * t5;
-            let t7 = rotor_e0 * rotor_e0;
-            let t8 = k(2.0) * (k(0.5) - (t7 + rotor_e2 * rotor_e2));
-            let t9 = inner_ring_e0 * inner_ring_e0;
-            let t10 = k(0.5) - (t9 + inner_ring_e2 * inner_ring_e2);
+            let t0 = rotor_e0 * rotor_e0;
+            let t1 = k(2.0) * (k(0.5) - (t0 + rotor_e2 * rotor_e2));
+            let t2 = inner_ring_e0 * inner_ring_e0;
+            let t3 = k(0.5) - (t2 + inner_ring_e2 * inner_ring_e2);
+            let t4 = k(2.0) * t3;
+            let t5 = rotor_e0 * rotor_e3;
+            let t6 = rotor_e1 * rotor_e2;
+            let t7 = k(2.0) * (t6 - t5);
+            let t8 = inner_ring_e0 * inner_ring_e3;
+            let t9 = inner_ring_e1 * inner_ring_e2;
+            let t10 = t9 - t8;
             let t11 = k(2.0) * t10;
             let t12 = rotor_e0 * rotor_e1;
             let t13 = rotor_e2 * rotor_e3;
@@ -1792,53 +1797,53 @@ impl<T: Scalar> Equations for GyroscopeViscous<T> {
             let t16 = inner_ring_e2 * inner_ring_e3;
             let t17 = t16 + t15;
             let t18 = k(2.0) * t17;
-            let t19 = t18 * t14 + (t11 * t8 + t6 * t2);
+            let t19 = t18 * t14 + (t11 * t7 + t4 * t1);
             let t20 = k(200000.0) * t19;
-            let t21 = rotor_e0 * rotor_e2;
-            let t22 = rotor_e1 * rotor_e3;
-            let t23 = k(2.0) * (t22 + t21);
-            let t24 = k(2.0) * (t13 - t12);
-            let t25 = k(2.0) * (k(0.5) - (t7 + rotor_e3 * rotor_e3));
-            let t26 = t18 * t25 + (t11 * t24 - t6 * t23);
+            let t21 = k(2.0) * (t13 - t12);
+            let t22 = rotor_e0 * rotor_e2;
+            let t23 = rotor_e1 * rotor_e3;
+            let t24 = k(2.0) * (t23 + t22);
+            let t25 = k(2.0) * (k(0.5) - (t0 + rotor_e3 * rotor_e3));
+            let t26 = t18 * t25 - (t11 * t24 - t4 * t21);
             let t27 = k(200000.0) * t26;
             let t28 = k(1.0) / (t26 * t27 + t19 * t20);
-            let t29 = inner_ring_e0 * inner_ring_e2;
-            let t30 = inner_ring_e1 * inner_ring_e3;
-            let t31 = t30 + t29;
-            let t32 = k(2.0) * t31;
-            let t33 = t16 - t15;
+            let t29 = t16 - t15;
+            let t30 = k(2.0) * t29;
+            let t31 = inner_ring_e0 * inner_ring_e2;
+            let t32 = inner_ring_e1 * inner_ring_e3;
+            let t33 = t32 + t31;
             let t34 = k(2.0) * t33;
-            let t35 = k(0.5) - (t9 + inner_ring_e3 * inner_ring_e3);
+            let t35 = k(0.5) - (t2 + inner_ring_e3 * inner_ring_e3);
             let t36 = k(2.0) * t35;
-            let t37 = t36 * t14 + (t34 * t8 - t32 * t2);
+            let t37 = t36 * t14 - (t34 * t7 - t30 * t1);
             let t38 = k(200000.0) * t37;
-            let t39 = t36 * t25 + (t34 * t24 + t32 * t23);
+            let t39 = t34 * t24 + t30 * t21 + t36 * t25;
             let t40 = k(200000.0) * t39;
             let t41 = t26 * t40 + t19 * t38;
             let t42 = t41 * t28;
             let t43 = k(1.0) / (t39 * t40 + t37 * t38 - t41 * t42);
-            let t44 = k(2.0) * (k(0.5) - (t7 + rotor_e1 * rotor_e1));
-            let t45 = k(2.0) * (t1 + t0);
-            let t46 = k(2.0) * (t22 - t21);
-            let t47 = t36 * t46 - (t34 * t45 - t32 * t44);
-            let t48 = t18 * t46 - (t11 * t45 + t6 * t44);
+            let t44 = k(2.0) * (k(0.5) - (t0 + rotor_e1 * rotor_e1));
+            let t45 = k(2.0) * (t6 + t5);
+            let t46 = k(2.0) * (t23 - t22);
+            let t47 = t36 * t46 - (t30 * t45 - t34 * t44);
+            let t48 = t18 * t46 - (t4 * t45 + t11 * t44);
             let t49 = t48 + t47 * t42;
             let t50 = t49 * t43;
             let t51 = t47 * t28;
             let t52 = k(1.0) / (k(1e-6) + t47 * t51 + t49 * t50);
-            let t53 = k(2.0) * (k(0.5) - (t9 + inner_ring_e1 * inner_ring_e1));
-            let t54 = k(2.0) * (t4 + t3);
-            let t55 = k(2.0) * (t30 - t29);
+            let t53 = k(2.0) * (k(0.5) - (t2 + inner_ring_e1 * inner_ring_e1));
+            let t54 = k(2.0) * (t9 + t8);
+            let t55 = k(2.0) * (t32 - t31);
             let t56 = t55 * t46 + (t54 * t45 + t53 * t44);
             let t57 = t56 * t43;
             let t58 = t49 * t57;
             let t59 = t58 * t52;
             let t60 = k(2.222222222222222e-6) * t35;
             let t61 = k(0.00025) * t35;
-            let t62 = k(2.222222222222222e-6) * t33;
-            let t63 = k(0.00025) * t33;
-            let t64 = k(2.222222222222222e-6) * t31;
-            let t65 = k(0.00025) * t31;
+            let t62 = k(2.222222222222222e-6) * t29;
+            let t63 = k(0.00025) * t29;
+            let t64 = k(2.222222222222222e-6) * t33;
+            let t65 = k(0.00025) * t33;
             let t66 = k(2e-6) + t65 * t64 + t63 * t62 + t61 * t60 + t56 * t57;
             let t67 = k(1.0) / (t66 - t58 * t59);
             let t68 = t56 * t42;
@@ -1847,23 +1852,23 @@ impl<T: Scalar> Equations for GyroscopeViscous<T> {
             let t71 = t47 * t70 + t49 * t69;
             let t72 = t71 * t52;
             let t73 = k(2.222222222222222e-6) * t17;
-            let t74 = k(2.222222222222222e-6) * t10;
-            let t75 = k(2.222222222222222e-6) * t5;
+            let t74 = k(2.222222222222222e-6) * t3;
+            let t75 = k(2.222222222222222e-6) * t10;
             let t76 = t65 * t75 - t63 * t74 - t61 * t73 + t56 * t69;
             let t77 = t76 - t58 * t72;
             let t78 = t77 * t67;
-            let t79 = k(1e-6) + k(0.00025) * t5 * t75 + k(0.00025) * t10 * t74
+            let t79 = k(1e-6) + k(0.00025) * t10 * t75 + k(0.00025) * t3 * t74
                 + k(0.00025) * t17 * t73;
             let t80 = t79 + t56 * t70 + t68 * t69 - t71 * t72 - t77 * t78;
             let t81 = k(1.0) / t80;
-            let t82 = k(0.00022222222222222223) * t31;
+            let t82 = k(0.00022222222222222223) * t33;
             let t83 = t82 * t67;
-            let t84 = k(0.00022222222222222223) * t5 - t77 * t83;
+            let t84 = k(0.00022222222222222223) * t10 - t77 * t83;
             let t85 = t84 * t81;
             let t86 = k(1.0) / (t82 * t83 + k(11.11111111111111) + t84 * t85);
-            let t87 = k(0.00022222222222222223) * t33;
+            let t87 = k(0.00022222222222222223) * t29;
             let t88 = t87 * t67;
-            let t89 = k(0.00022222222222222223) * t10 + t77 * t88;
+            let t89 = k(0.00022222222222222223) * t3 + t77 * t88;
             let t90 = t89 * t81;
             let t91 = t82 * t88 - t84 * t90;
             let t92 = t91 * t86;
@@ -1890,7 +1895,7 @@ impl<T: Scalar> Equations for GyroscopeViscous<T> {
             let t111 = outer_ring_e1 * outer_ring_e3;
             let t112 = t111 - t110;
             let t113 = k(2.0) * t112;
-            let t114 = t113 * t18 - (t109 * t11 + t106 * t6);
+            let t114 = t113 * t18 - (t109 * t4 + t106 * t11);
             let t115 = t114 * t52;
             let t116 = t113 * t55 + (t109 * t54 + t106 * t53);
             let t117 = t116 - t58 * t115;
@@ -1915,26 +1920,26 @@ impl<T: Scalar> Equations for GyroscopeViscous<T> {
             let t136 = t135 * t131;
             let t137 = k(2.0) * t133;
             let t138 = k(1.0) / (t137 * t134 + t106 * t132 - t135 * t136);
-            let t139 = k(2.0) * (t108 - t107);
-            let t140 = k(2.0) * (k(0.5) - (t104 + outer_ring_e2 * outer_ring_e2));
+            let t139 = k(2.0) * (k(0.5) - (t104 + outer_ring_e2 * outer_ring_e2));
+            let t140 = k(2.0) * (t108 - t107);
             let t141 = outer_ring_e0 * outer_ring_e1;
             let t142 = outer_ring_e2 * outer_ring_e3;
             let t143 = k(2.0) * (t142 + t141);
-            let t144 = t143 * t36 + (t140 * t34 - t139 * t32);
+            let t144 = t143 * t36 - (t140 * t34 - t139 * t30);
             let t145 = k(1000000.0) * t144;
             let t146 = t113 * t145;
             let t147 = t146 * t131;
             let t148 = t106 * t145 - t135 * t147;
             let t149 = t148 * t138;
             let t150 = k(2.0) * (t142 - t141);
-            let t151 = t130 * t36 + (t150 * t34 + t137 * t32);
+            let t151 = t137 * t34 + t150 * t30 + t130 * t36;
             let t152 = k(1000000.0) * t151;
             let t153 = t151 * t152 + t114 * t115 + t144 * t145 - t146 * t147;
             let t154 = t153 - t148 * t149 + t117 * t118 + t119 * t120 - t121 * t122;
             let t155 = k(1.0) / (t154 - t123 * t124 - t125 * t126);
-            let t156 = t143 * t18 + (t140 * t11 + t139 * t6);
+            let t156 = t143 * t18 + (t140 * t11 + t139 * t4);
             let t157 = t156 * t52;
-            let t158 = t143 * t55 - (t140 * t54 + t139 * t53);
+            let t158 = t143 * t55 - (t139 * t54 + t140 * t53);
             let t159 = t158 - t58 * t157;
             let t160 = t159 * t67;
             let t161 = t71 * t157 + t77 * t160;
@@ -1945,7 +1950,7 @@ impl<T: Scalar> Equations for GyroscopeViscous<T> {
             let t166 = t165 * t93;
             let t167 = t94 * t160 + t96 * t162 - t98 * t164 - t100 * t166;
             let t168 = t167 * t103;
-            let t169 = t113 * t36 - (t109 * t34 - t106 * t32);
+            let t169 = t113 * t36 - (t109 * t30 - t106 * t34);
             let t170 = k(1000000.0) * t169;
             let t171 = k(500000.0) * t151;
             let t172 = t130 * t171 + t113 * t170;
@@ -1966,8 +1971,8 @@ impl<T: Scalar> Equations for GyroscopeViscous<T> {
             let t187 = inner_ring_wx * inner_ring_wx;
             let t188 = inner_ring_wz * inner_ring_wz;
             let t189 = inner_ring_wy * inner_ring_wz;
-            let t190 = rotor_wy * (t55 * t25 - (t54 * t24 - t53 * t23))
-                + rotor_wz * (t55 * t14 - (t54 * t8 + t53 * t2));
+            let t190 = rotor_wy * (t55 * t25 - (t54 * t21 - t53 * t24))
+                + rotor_wz * (t55 * t14 - (t54 * t1 + t53 * t7));
             let t191 = k(2.0)
                 * (inner_ring_wx * (rotor_wy * t39 + rotor_wz * t37)
                     + inner_ring_wz * t190);
@@ -1984,13 +1989,13 @@ impl<T: Scalar> Equations for GyroscopeViscous<T> {
             let t199 = t184 * t39 - (t182 * t37 - t192 * t47) - t198
                 + (t197 * t47 + (t189 * t48 + t195 * t56));
             (
-                t6,
+                t4,
                 t11,
                 t18,
                 t20,
                 t27,
                 t28,
-                t32,
+                t30,
                 t34,
                 t36,
                 t38,
@@ -2048,7 +2053,7 @@ impl<T: Scalar> Equations for GyroscopeViscous<T> {
                 t136,
                 t137,
                 t138,
-                t139,
+                t140,
                 t143,
                 t144,
                 t145,
@@ -2118,9 +2123,9 @@ impl<T: Scalar> Equations for GyroscopeViscous<T> {
             let t203 = t188 + t196;
             let t204 = t36 * t195 - (t18 * t186 - t55 * t203);
             let t205 = k(0.000125) * t204;
-            let t206 = k(0.000125) * (t34 * t195 - (t11 * t186 + t54 * t203)) + k(10.0);
+            let t206 = k(0.000125) * (t30 * t195 - (t4 * t186 + t54 * t203)) + k(10.0);
             let t207 = k(10.0) - t206;
-            let t208 = t32 * t195 + (t6 * t186 + t53 * t203);
+            let t208 = t34 * t195 + (t11 * t186 + t53 * t203);
             let t209 = k(0.000125) * t208;
             let t210 = t209 * t64 - t207 * t62 + t205 * t60 - t200 * t57;
             let t211 = t210 + t202 * t59;
@@ -2140,13 +2145,13 @@ impl<T: Scalar> Equations for GyroscopeViscous<T> {
             let t223 = t222 + outer_ring_wx * outer_ring_wx;
             let t224 = outer_ring_wy * outer_ring_wz;
             let t225 = t130 * t224 + (t143 * t223 - t113 * t219) + t221 * t127;
-            let t226 = t137 * t224 - (t139 * t223 + t106 * t219) + t221 * t132;
+            let t226 = t137 * t224 - (t140 * t223 + t106 * t219) + t221 * t132;
             let t227 = t226 - t225 * t136;
             let t228 = outer_ring_wx * outer_ring_wz;
             let t229 = outer_ring_wy + t228;
             let t230 = t228 * t151
                 - (t219 * t144 - (t222 + outer_ring_wy * outer_ring_wy) * t169);
-            let t231 = inner_ring_wx * (t130 * t18 + (t150 * t11 - t137 * t6))
+            let t231 = inner_ring_wx * (t130 * t18 - (t137 * t11 - t150 * t4))
                 - inner_ring_wy * (t130 * t55 - (t150 * t54 - t137 * t53));
             let t232 = k(2.0)
                 * (outer_ring_wy * t231

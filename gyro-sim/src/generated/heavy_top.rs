@@ -27,21 +27,16 @@
 //! | newton_step | dependent positions, one Newton step | 15 | 22 | 1 | 38 | 0 of 7 |
 //! | solve_velocities | dependent velocities, eq. (19) | 11 | 24 | 0 | 35 | 0 of 6 |
 
-use gyro_sim::charts::{self, Charts};
-use gyro_sim::{
-    Coordinate, Energy, Equations, Error, JointInfo, Mechanism, Ode, Owner, Partition,
-    Real, RowInfo, Scalar,
-};
 /// The mechanism `heavy_top`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeavyTop<T> {
     /// The model has no parameters.
-    scalar: core::marker::PhantomData<T>,
+    scalar: ::core::marker::PhantomData<T>,
 }
-impl<T: Scalar> Default for HeavyTop<T> {
+impl<T: gyro_sim::Scalar> ::core::default::Default for HeavyTop<T> {
     fn default() -> Self {
         Self {
-            scalar: core::marker::PhantomData,
+            scalar: ::core::marker::PhantomData,
         }
     }
 }
@@ -53,7 +48,7 @@ impl<T> HeavyTop<T> {
         false
     }
 }
-impl<T: Scalar> Ode for HeavyTop<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Ode for HeavyTop<T> {
     type Scalar = T;
     type State = [T; 13];
     /// The assembled start, with all parameters at their defaults.
@@ -77,9 +72,9 @@ impl<T: Scalar> Ode for HeavyTop<T> {
     }
     /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut v = self.velocities();
-        let mut lambda = self.rows();
-        self.accelerations(t, y, &mut v, &mut lambda);
+        let mut v = gyro_sim::Equations::velocities(self);
+        let mut lambda = gyro_sim::Mechanism::rows(self);
+        gyro_sim::Equations::accelerations(self, t, y, &mut v, &mut lambda);
         let k = T::constant;
         let top_e0 = y[3];
         let top_e1 = y[4];
@@ -108,7 +103,7 @@ impl<T: Scalar> Ode for HeavyTop<T> {
         ];
     }
 }
-impl<T: Scalar> Mechanism for HeavyTop<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for HeavyTop<T> {
     type Rows = [T; 3];
     type Constraints = [T; 4];
     type Readings = [T; 7];
@@ -164,7 +159,7 @@ impl<T: Scalar> Mechanism for HeavyTop<T> {
         *out = [top_sx + k(0.04) * t3, top_sy - k(0.04) * t4, top_sz + k(0.04) * t5];
     }
     /// Kinetic and potential energy: 17 operations (5 ±, 12 ×, 0 ÷).
-    fn energy(&self, y: &Self::State) -> Energy<T> {
+    fn energy(&self, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let top_rz = y[2];
         let top_sx = y[7];
@@ -176,7 +171,7 @@ impl<T: Scalar> Mechanism for HeavyTop<T> {
         let t0 = top_wx * (k(0.0003) * top_wx) + top_wy * (k(0.0003) * top_wy)
             + top_wz * (k(0.0005) * top_wz);
         let t1 = t0 + k(0.5) * (top_sx * top_sx + top_sy * top_sy + top_sz * top_sz);
-        Energy {
+        gyro_sim::Energy {
             kinetic: k(0.5) * t1,
             potential: k(4.905) * top_rz,
         }
@@ -202,40 +197,40 @@ impl<T: Scalar> Mechanism for HeavyTop<T> {
         const BODIES: [&str; 1] = ["top"];
         BODIES.get(body).copied().unwrap_or_default()
     }
-    fn joint(&self, joint: usize) -> JointInfo<'_> {
-        const JOINTS: [JointInfo<'static>; 1] = [
-            JointInfo {
+    fn joint(&self, joint: usize) -> gyro_sim::JointInfo<'_> {
+        const JOINTS: [gyro_sim::JointInfo<'static>; 1] = [
+            gyro_sim::JointInfo {
                 name: "tip",
-                coordinate: Coordinate::Orientation,
+                coordinate: gyro_sim::Coordinate::Orientation,
             },
         ];
         JOINTS
             .get(joint)
             .copied()
-            .unwrap_or(JointInfo {
+            .unwrap_or(gyro_sim::JointInfo {
                 name: "",
-                coordinate: Coordinate::None,
+                coordinate: gyro_sim::Coordinate::None,
             })
     }
-    fn row(&self, row: usize) -> RowInfo {
-        const ROWS: [RowInfo; 3] = [
-            RowInfo {
-                owner: Owner::Joint(0),
+    fn row(&self, row: usize) -> gyro_sim::RowInfo {
+        const ROWS: [gyro_sim::RowInfo; 3] = [
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(0),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(0),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(0),
                 is_length: true,
             },
-            RowInfo {
-                owner: Owner::Joint(0),
+            gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Joint(0),
                 is_length: true,
             },
         ];
         ROWS.get(row)
             .copied()
-            .unwrap_or(RowInfo {
-                owner: Owner::Body(0),
+            .unwrap_or(gyro_sim::RowInfo {
+                owner: gyro_sim::Owner::Body(0),
                 is_length: false,
             })
     }
@@ -246,7 +241,7 @@ impl<T: Scalar> Mechanism for HeavyTop<T> {
         T::constant(0.0)
     }
 }
-impl<T: Scalar> HeavyTop<T> {
+impl<T: gyro_sim::Scalar> HeavyTop<T> {
     /// The four-vectors whose largest components are the special Euler parameters: 0 operations (0 ±, 0 ×, 0 ÷).
     fn chart_vectors(&self, y: &[T; 13]) -> [[T; 4]; 1] {
         let top_e0 = y[3];
@@ -256,13 +251,13 @@ impl<T: Scalar> HeavyTop<T> {
         [[top_e0, top_e1, top_e2, top_e3]]
     }
 }
-impl<T: Real> Partition for HeavyTop<T> {
-    type Independent = Charts<1>;
+impl<T: gyro_sim::Real> gyro_sim::Partition for HeavyTop<T> {
+    type Independent = gyro_sim::charts::Charts<1>;
     fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
-        charts::best(&self.chart_vectors(y))
+        gyro_sim::charts::best(&self.chart_vectors(y))
     }
     fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
-        charts::follow(&self.chart_vectors(y), choice)
+        gyro_sim::charts::follow(&self.chart_vectors(y), choice)
     }
     /// One Newton step of the dependent positions: 38 operations (15 ±, 22 ×, 1 ÷).
     fn newton_step(
@@ -270,8 +265,8 @@ impl<T: Real> Partition for HeavyTop<T> {
         _t: T,
         choice: &Self::Independent,
         y: &mut Self::State,
-    ) -> Result<(), Error> {
-        let charts = charts::one_hot::<T, _>(choice);
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
         let k = T::constant;
         let top_e0 = y[3];
         let top_e1 = y[4];
@@ -304,7 +299,7 @@ impl<T: Real> Partition for HeavyTop<T> {
         _t: T,
         _choice: &Self::Independent,
         y: &mut Self::State,
-    ) -> Result<(), Error> {
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
         let k = T::constant;
         let top_e0 = y[3];
         let top_e1 = y[4];
@@ -327,7 +322,7 @@ impl<T: Real> Partition for HeavyTop<T> {
         Ok(())
     }
 }
-impl<T: Scalar> Equations for HeavyTop<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Equations for HeavyTop<T> {
     type Velocities = [T; 6];
     type PhiQ = [T; 17];
     type PhiPi = [T; 9];

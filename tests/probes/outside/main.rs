@@ -6,6 +6,11 @@ mod generated {
     include!(concat!(env!("OUT_DIR"), "/chain.rs"));
 }
 
+#[allow(warnings, clippy::all, reason = "generated: it is enough that it compiles")]
+mod odd_names {
+    include!(concat!(env!("OUT_DIR"), "/odd_names.rs"));
+}
+
 use generated::{chain::Chain, double_pendulum::DoublePendulum};
 use gyro_sim::{Error, Partition, Partitioned};
 
