@@ -98,11 +98,12 @@ impl Reply {
             Self::Sample(sample) => sample_line(sample),
             Self::Progress(t) => format!("progress {t:?}"),
             Self::Done(s) => format!(
-                "done {} {} {:?} {:?} {:?} {:?}",
+                "done {} {} {:?} {:?} {:?} {:?} {:?}",
                 s.steps,
                 s.chart_switches,
                 s.position_violation,
                 s.velocity_violation,
+                s.norm_violation,
                 s.energy_drift,
                 s.run_time_s
             ),
@@ -154,6 +155,7 @@ impl Words<'_> {
             chart_switches: self.next()?,
             position_violation: self.next()?,
             velocity_violation: self.next()?,
+            norm_violation: self.next()?,
             energy_drift: self.next()?,
             run_time_s: self.next()?,
         })
@@ -167,6 +169,7 @@ impl Words<'_> {
             work: self.next()?,
             position_violation: self.next()?,
             velocity_violation: self.next()?,
+            norm_violation: self.next()?,
             chart_switches: self.next()?,
             joints: Vec::new(),
             bodies: Vec::new(),
@@ -191,11 +194,10 @@ impl Words<'_> {
 
 /// One sample as a reply line, without its end.
 pub(crate) fn sample_line(sample: &Sample) -> String {
-    let Sample { t, kinetic, potential, work, position_violation, velocity_violation, .. } = sample;
-    let mut text = format!(
-        "sample {t:?} {kinetic:?} {potential:?} {work:?} {position_violation:?} {velocity_violation:?} {}",
-        sample.chart_switches
-    );
+    let mut text = format!("sample {:?}", sample.t);
+    words(&mut text, "", &[sample.kinetic, sample.potential, sample.work]);
+    words(&mut text, "", &[sample.position_violation, sample.velocity_violation, sample.norm_violation]);
+    words(&mut text, "", &[sample.chart_switches]);
     for joint in &sample.joints {
         match joint {
             JointSample::Angle { position, rate } => words(&mut text, " angle", &[*position, *rate]),
@@ -268,6 +270,7 @@ mod tests {
             work: -0.0,
             position_violation: 1e-17,
             velocity_violation: 0.0,
+            norm_violation: 1e-18,
             chart_switches: 7,
         };
         let summary =

@@ -21,6 +21,8 @@ pub struct Sample {
     pub position_violation: f64,
     /// Worst joint row of `Φ_r s + Φ_π' w' − ν`, 1/s; lengths divided by the mechanism's size.
     pub velocity_violation: f64,
+    /// Worst `|pᵀp − 1|` of all bodies, eq. (12).
+    pub norm_violation: f64,
     /// How often independent coordinates have been chosen anew so far.
     pub chart_switches: u64,
 }
@@ -62,7 +64,7 @@ impl<'a, M: Mechanism<Scalar: Real>> Observer<'a, M> {
     pub(crate) fn sample(&mut self, t: f64, y: &M::State, turns: &Turns<M>, chart_switches: u64) -> Sample {
         let mechanism = self.mechanism;
         let energy = mechanism.energy(y);
-        let (position_violation, velocity_violation) = self.violations(t, y);
+        let [position_violation, velocity_violation, norm_violation] = self.violations(t, y);
         Sample {
             t,
             joints: (0..mechanism.n_joints()).map(|j| in_f64(turns.joint(mechanism, j))).collect(),
@@ -72,18 +74,21 @@ impl<'a, M: Mechanism<Scalar: Real>> Observer<'a, M> {
             work: mechanism.work(y).to_f64(),
             position_violation,
             velocity_violation,
+            norm_violation,
             chart_switches,
         }
     }
 
-    fn violations(&mut self, t: f64, y: &M::State) -> (f64, f64) {
+    /// Of the joint rows of Φ, of the velocity residual, and of the normalisations.
+    fn violations(&mut self, t: f64, y: &M::State) -> [f64; 3] {
         let (mechanism, t) = (self.mechanism, <M::Scalar as gyro_sim::Scalar>::constant(t));
         mechanism.phi(t, y, &mut self.phi);
         mechanism.velocity_residual(t, y, &mut self.residual);
         let phi = self.phi.as_ref();
-        let joint_rows = &phi[..phi.len() - mechanism.n_bodies()];
+        let (joint_rows, norms) = phi.split_at(phi.len() - mechanism.n_bodies());
         let worst = |rows| violation(mechanism, rows).value.to_f64();
-        (worst(joint_rows), worst(self.residual.as_ref()))
+        let worst_norm = norms.iter().map(|norm| norm.abs().to_f64()).fold(0.0, f64::max);
+        [worst(joint_rows), worst(self.residual.as_ref()), worst_norm]
     }
 }
 

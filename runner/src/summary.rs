@@ -13,6 +13,8 @@ pub struct Summary {
     pub position_violation: f64,
     /// Worst velocity violation of all samples, 1/s.
     pub velocity_violation: f64,
+    /// Worst `|pᵀp − 1|` of all samples.
+    pub norm_violation: f64,
     /// Worst `|E − E₀ − work|` of all samples over the largest kinetic energy or change of potential energy of any.
     pub energy_drift: f64,
     /// Seconds spent stepping and correcting, without samples and their output.
@@ -25,6 +27,7 @@ pub struct Tracker {
     first: Option<Sample>,
     position_violation: f64,
     velocity_violation: f64,
+    norm_violation: f64,
     energy_error: f64,
     energy_scale: f64,
 }
@@ -37,6 +40,7 @@ impl Tracker {
         let scale = sample.kinetic.max((sample.potential - first.potential).abs());
         self.position_violation = self.position_violation.max(sample.position_violation);
         self.velocity_violation = self.velocity_violation.max(sample.velocity_violation);
+        self.norm_violation = self.norm_violation.max(sample.norm_violation);
         self.energy_error = self.energy_error.max(error);
         self.energy_scale = self.energy_scale.max(scale);
     }
@@ -45,6 +49,7 @@ impl Tracker {
     pub fn finish(&self, summary: &mut Summary) {
         summary.position_violation = self.position_violation;
         summary.velocity_violation = self.velocity_violation;
+        summary.norm_violation = self.norm_violation;
         // Nothing moves and nothing has changed: no drift, not 0/0.
         summary.energy_drift =
             if self.energy_error == 0.0 { 0.0 } else { self.energy_error / self.energy_scale };
@@ -71,6 +76,7 @@ mod tests {
             work,
             position_violation: kinetic * 1e-3,
             velocity_violation: 0.5,
+            norm_violation: 0.0,
             chart_switches: 0,
         }
     }

@@ -35,6 +35,7 @@ pub(crate) fn columns(model: &Model, samples: &[Sample]) -> Vec<Column> {
     }
     table.add("constraint violation", "1", |s| s.position_violation);
     table.add("velocity violation", "1/s", |s| s.velocity_violation);
+    table.add("norm violation", "1", |s| s.norm_violation);
     #[expect(clippy::cast_precision_loss, reason = "a count")]
     table.add("chart switches", "1", |s| s.chart_switches as f64);
     table.columns

@@ -203,9 +203,9 @@ mod tests {
 
     #[test]
     fn replies_are_heard_to_their_end() {
-        let sample = "sample 0.0 1.0 0.0 0.0 0.0 0.0 0 angle 0.0 1.0\n";
+        let sample = "sample 0.0 1.0 0.0 0.0 0.0 0.0 0.0 0 angle 0.0 1.0\n";
         let (outcome, n_samples) =
-            heard(&format!("{sample}progress 0.5\n{sample}done 10 0 0.0 0.0 0.0 0.1\n"));
+            heard(&format!("{sample}progress 0.5\n{sample}done 10 0 0.0 0.0 0.0 0.0 0.1\n"));
         assert_eq!((outcome.unwrap().unwrap().steps, n_samples), (10, 2));
         let (outcome, n_samples) = heard(&format!("{sample}failed at t = 0.5 s\n"));
         assert!(matches!(outcome, Err(Failure::Run(words)) if words == "at t = 0.5 s"));

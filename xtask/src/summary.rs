@@ -87,11 +87,12 @@ fn quality(scene: &Scene, samples: &[Sample], run: &Summary, last: &Sample) -> S
     let mut rows = vec![
         vec!["worst constraint violation".to_owned(), number(run.position_violation, FEW)],
         vec!["worst velocity violation".to_owned(), format!("{} 1/s", number(run.velocity_violation, FEW))],
+        vec!["worst |p'p - 1|".to_owned(), number(run.norm_violation, FEW)],
         vec!["energy".to_owned(), format!("{} J", number(last.energy(), DIGITS))],
         vec!["energy drift".to_owned(), number(run.energy_drift, FEW)],
     ];
     if scene.model.has_work() {
-        rows.insert(3, vec!["work of friction".to_owned(), format!("{} J", number(last.work, DIGITS))]);
+        rows.insert(4, vec!["work of friction".to_owned(), format!("{} J", number(last.work, DIGITS))]);
     }
     if scene.settings.correct_every.is_some() {
         rows.push(vec!["chart switches".to_owned(), run.chart_switches.to_string()]);
