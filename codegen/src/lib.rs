@@ -80,7 +80,7 @@ impl Module {
 }
 
 /// Why a page gives no module.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub enum Error {
     /// Mistakes on the page.
     Page(Diagnostics),
@@ -94,6 +94,13 @@ impl fmt::Display for Error {
             Self::Page(diagnostics) => diagnostics.fmt(f),
             Self::Start(error) => error.fmt(f),
         }
+    }
+}
+
+/// The same words as [`fmt::Display`]: a `main` or `build.rs` that returns the error shows it in this form.
+impl fmt::Debug for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "\n{self}")
     }
 }
 
