@@ -99,8 +99,8 @@ impl<T: Number> Solver<T> for Elimination<T> {
         charts::newton_step(lowered, &self.links, choice, y)
     }
 
-    fn solve_velocities(&self, lowered: &Lowered<T>, choice: &Vec<u8>, y: &mut [T]) -> Result<(), T> {
-        charts::solve_velocities(lowered, &self.links, choice, y)
+    fn solve_velocities(&self, lowered: &Lowered<T>, _: &Vec<u8>, y: &mut [T]) -> Result<(), T> {
+        charts::solve_velocities(lowered, &self.links, y)
     }
 }
 

@@ -6,10 +6,10 @@
 use crate::careful::{Hinge, Hold, Link, Side};
 use crate::lowered::{Constrained, Dot, Lowered, Motion};
 use crate::number::{Number, number, resolvable};
-use crate::textbook::{angular_velocity, p_dot, rotated_gradient, rotation};
+use crate::textbook::{p_dot, rotated_gradient, rotation};
 use gyro_model::JointKind;
 use gyro_sim::charts;
-use nalgebra::{Matrix4, Vector3, Vector4};
+use nalgebra::{Matrix3, Matrix4, Vector3, Vector4};
 
 /// The best chart of each body.
 pub(crate) fn best<T: Number>(lowered: &Lowered<T>, links: &[Link], y: &[T]) -> Vec<u8> {
@@ -64,19 +64,18 @@ pub(crate) fn newton_step<T: Number>(
 pub(crate) fn solve_velocities<T: Number>(
     lowered: &Lowered<T>,
     links: &[Link],
-    choice: &[u8],
     y: &mut [T],
 ) -> Result<(), T> {
-    for (link, &chart) in links.iter().zip(choice) {
+    for link in links {
         let slot = link.slot;
-        let kept = p_dot(&lowered.p(y, slot), &lowered.w(y, slot));
         let (s, w) = match &link.hold {
             Hold::Constrained(_) => (Vector3::zeros(), Vector3::zeros()),
-            Hold::Free => (lowered.s(y, slot), parameter_rates(lowered, slot, &[], chart, &kept, y)?),
+            Hold::Free => (lowered.s(y, slot), lowered.w(y, slot)),
             Hold::Joint(hinge) => {
                 let joint = &lowered.joints[hinge.joint];
                 let (facing, parent) = facing_dots(lowered, hinge, y);
-                let w = parameter_rates(lowered, slot, &facing[..joint.dots.len()], chart, &kept, y)?;
+                let w = lowered.w(y, slot)
+                    - excess_spin(lowered, slot, &facing[..joint.dots.len()], &hinge.ends(joint).1.h, y)?;
                 let (parent_end, child_end) = hinge.ends(joint);
                 let tip_velocity = parent.s + parent.a * parent.w.cross(&parent_end.point);
                 (tip_velocity - rotation(&lowered.p(y, slot)) * w.cross(&child_end.point), w)
@@ -148,25 +147,28 @@ fn parameter_step<T: Number>(
     solve(&matrix(&p, facing, chart), &right)
 }
 
-/// The body's w' from the rates of its Euler parameters.
-fn parameter_rates<T: Number>(
+/// The part of the body's w' that its dot-1 rows forbid. It has no component along the free axis, whose rate is the independent
+/// velocity: were a component of ṗ held instead, the parent's drift would leak into a spin.
+fn excess_spin<T: Number>(
     lowered: &Lowered<T>,
     slot: usize,
     facing: &[Facing<T>],
-    chart: u8,
-    kept: &Vector4<T>,
+    axis: &Vector3<T>,
     y: &[T],
 ) -> Result<Vector3<T>, T> {
-    let p = lowered.p(y, slot);
-    let a = rotation(&p);
-    let mut right = Vector4::zeros();
+    let (a, w) = (rotation(&lowered.p(y, slot)), lowered.w(y, slot));
+    let (mut rows, mut residuals) = (Matrix3::identity(), Vector3::zeros());
     for (k, facing) in facing.iter().enumerate() {
-        right[k] = -facing.parent_dot.dot(&(a * facing.child));
+        let gradient = facing.child.cross(&a.tr_mul(&facing.parent));
+        residuals[k] = facing.parent_dot.dot(&(a * facing.child)) + gradient.dot(&w);
+        rows.set_row(k, &gradient.transpose());
     }
-    for (row, k) in (facing.len() + 1..4).zip(independent(facing.len(), chart)) {
-        right[row] = kept[k];
+    if facing.len() == 2 {
+        rows.set_row(2, &axis.transpose());
     }
-    Ok(angular_velocity(&p, &solve(&matrix(&p, facing, chart), &right)?))
+    let lu = rows.lu();
+    let pivot = resolvable((0..3).map(|k| lu.lu_internal()[(k, k)]))?;
+    lu.solve(&residuals).ok_or(pivot)
 }
 
 /// Dot-1 rows, the normalisation, and a unit row for each independent parameter.

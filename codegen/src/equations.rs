@@ -1,11 +1,13 @@
 //! Everything that a module computes, as final expressions of one graph.
 
+use crate::Elimination;
 use crate::definitions::Expansion;
 use crate::dynamics::{self, Dynamics};
 use crate::graph::{ExprId, Graph};
 use crate::kinematics::{Kinematics, Matrix, non_zeros};
+use crate::null_space;
 use crate::partition::Partition;
-use crate::saddle::Saddle;
+use crate::saddle;
 use crate::system::System;
 use gyro_model::Model;
 
@@ -41,10 +43,14 @@ pub struct Equations<'m> {
 }
 
 impl<'m> Equations<'m> {
-    pub fn derive(model: &'m Model) -> Self {
+    pub fn derive(model: &'m Model, elimination: Elimination) -> Self {
         let mut system = System::new(model);
         let kinematics = Kinematics::derive(&mut system);
         let dynamics = Dynamics::derive(&mut system);
+        let solution = match elimination {
+            Elimination::NullSpace => null_space::solve(&mut system, &kinematics, &dynamics),
+            Elimination::Saddle => saddle::solve(&mut system, &kinematics, &dynamics),
+        };
         let readings = dynamics::readings(&mut system);
         let partition = Partition::derive(&mut system, &kinematics);
 
@@ -66,9 +72,8 @@ impl<'m> Equations<'m> {
         let solved_velocities = expansion.all(graph, &partition.velocities);
         let power = expansion.of(graph, dynamics.power);
 
-        let saddle = Saddle::new(&dynamics.mass_matrix, &phi_pi, &applied_force, &gamma);
-        let mut accelerations = saddle.solve(&mut system);
-        let lambda = accelerations.split_off(6 * system.slots.len());
+        let accelerations = expansion.all(graph, &solution.accelerations);
+        let lambda = expansion.all(graph, &solution.lambda);
         let position_rates = position_rates(&mut system);
         Self {
             model,

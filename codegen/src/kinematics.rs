@@ -3,6 +3,7 @@
 use crate::constraints;
 use crate::differentiate::Derivative;
 use crate::graph::{ExprId, Graph};
+use crate::linear::Vec3;
 use crate::symbol::Symbol;
 use crate::system::{Direction, System};
 
@@ -47,6 +48,11 @@ impl Kinematics {
         let second = motion_derivative(system, &velocity_residual);
         let gamma = second.iter().map(|&row| system.graph.neg(row)).collect();
         Self { phi, normalisations, phi_q, phi_pi, velocity_residual, nu, gamma }
+    }
+
+    /// Columns π' of a slot in a row of Φ_π'.
+    pub fn rotation(&self, row: usize, slot: usize) -> Vec3 {
+        std::array::from_fn(|k| self.phi_pi[row][6 * slot + 3 + k])
     }
 }
 

@@ -33,8 +33,8 @@
 //! ```
 //!
 //! The pipeline, one file an arrow: `system` lowers the model to poses and frames, `constraints` writes Φ, `kinematics`
-//! differentiates it (`differentiate`), `dynamics` adds masses and forces, `definitions` expands, `saddle` and `partition`
-//! solve, `schedule` orders, `emit` and `module` write.
+//! differentiates it (`differentiate`), `dynamics` adds masses and forces, `freedom` and `null_space` solve eq. (17), `partition` the coordinate
+//! partition, `definitions` expands, `schedule` orders, `emit` and `module` write.
 #![deny(missing_docs)]
 
 mod constant;
@@ -46,11 +46,13 @@ mod emit;
 mod equations;
 #[cfg(test)]
 mod evaluate;
+mod freedom;
 mod functions;
 mod graph;
 mod kinematics;
 mod linear;
 mod module;
+mod null_space;
 mod partition;
 mod saddle;
 mod schedule;
@@ -115,13 +117,30 @@ pub fn generate(file_name: &str, text: &str) -> Result<Module, Error> {
     generate_model(file_name, &model)
 }
 
+/// How eq. (17) is solved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Elimination {
+    /// Through the null space of the joints: the fewest operations and the smallest errors. What [`generate`] takes.
+    NullSpace,
+    /// By a factorisation of the whole saddle matrix, for comparison.
+    Saddle,
+}
+
 /// Writes the module of a model that was read already.
 ///
 /// # Errors
 /// Why no consistent start exists.
 pub fn generate_model(file_name: &str, model: &Model) -> Result<Module, Error> {
+    generate_by(Elimination::NullSpace, file_name, model)
+}
+
+/// The same with a given way of solving eq. (17).
+///
+/// # Errors
+/// Why no consistent start exists.
+pub fn generate_by(elimination: Elimination, file_name: &str, model: &Model) -> Result<Module, Error> {
     let start = model.assemble().map_err(Error::Start)?;
-    let equations = equations::Equations::derive(model);
+    let equations = equations::Equations::derive(model, elimination);
     let type_name = module::type_name(&model.name);
     let code = module::write(file_name, &type_name, &equations, &start);
     Ok(Module { name: model.name.clone(), type_name, code })

@@ -4,10 +4,12 @@
 //! Both solves are block-triangular from root to leaf: once a body's parent is corrected, the body's own joint rows determine
 //! its dependent coordinates. The Jacobian of a block is the body's part of Φ_π', derived once and evaluated at the
 //! corrected parent and the body's own unit p by expansion. Of a revolute joint one Euler parameter is independent, so a third row holds it; of a
-//! spherical joint or a free body three are, so the fourth follows from the normalisation.
+//! spherical joint or a free body three are, so the fourth follows from the normalisation. The independent velocity of a
+//! revolute joint is the rate about its axis: holding a component of ṗ instead would let the parent's drift leak into a spin.
 
 use crate::definitions::Expansion;
 use crate::dynamics::needs_chart;
+use crate::freedom::Freedom;
 use crate::graph::{ExprId, Graph};
 use crate::kinematics::Kinematics;
 use crate::linear::{Mat3, Vec3, Vec4, ZERO3};
@@ -36,7 +38,7 @@ impl Partition {
         let links = system.tree.links.clone();
         let mut blocks = Vec::new();
         for link in links {
-            blocks.push(Block::new(system, link, blocks.len()));
+            blocks.push(Block::new(system, kinematics, link, blocks.len()));
         }
         let n_slots = system.slots.len();
         let (mut positions, mut velocities) = (Values::new(), Values::new());
@@ -62,26 +64,22 @@ impl Partition {
 struct Block {
     slot: usize,
     attachment: Attachment,
-    /// Rows of its joint among the joint rows: three of the point, then dot-1 rows.
-    rows: std::ops::Range<usize>,
+    freedom: Freedom,
     /// The chart, as symbols.
     chart: Option<Vec4>,
 }
 
 impl Block {
-    fn new(system: &mut System, link: Link, index: usize) -> Self {
+    fn new(system: &mut System, kinematics: &Kinematics, link: Link, index: usize) -> Self {
+        let freedom = Freedom::of(system, kinematics, link);
         let earlier = &system.tree.links[..index];
         let chart = earlier.iter().filter(|l| needs_chart(system, l.attachment)).count();
         let graph = &mut system.graph;
         let symbols = from_fn(|k| graph.symbol(Symbol::Chart { chart, k }));
-        let rows = match link.attachment {
-            Attachment::Joint { joint, .. } => system.model.joint_rows(joint),
-            Attachment::Free | Attachment::Constrained => 0..0,
-        };
         Self {
-            slot: system.slot_of(link.body).expect("links have coordinates"),
+            slot: freedom.slot,
             attachment: link.attachment,
-            rows,
+            freedom,
             chart: needs_chart(system, link.attachment).then_some(symbols),
         }
     }
@@ -121,13 +119,13 @@ impl Block {
             }
             _ => {
                 let chart = self.chart.expect("free and spherical orientations have a chart");
-                let r = if self.rows.is_empty() { pose.r } else { ZERO3 };
+                let r = if self.freedom.rows.is_empty() { pose.r } else { ZERO3 };
                 (r, normalise_along(&mut system.graph, &pose.p, &chart))
             }
         };
         corrected.extend((0..4).map(|k| (Symbol::Euler { slot, k }, p[k])));
         corrected.extend((0..3).map(|k| (Symbol::Position { slot, k }, r[k])));
-        if !self.rows.is_empty() {
+        if !self.freedom.rows.is_empty() {
             // The point rows are r plus or minus a rotation's arm: with p corrected they give r in closed form.
             let residual = self.point_rows(system, &kinematics.phi, corrected);
             let r = system.graph.sub_vec(&r, &residual);
@@ -143,8 +141,8 @@ impl Block {
         values.extend((0..4).map(|k| (Symbol::Euler { slot: self.slot, k }, unit[k])));
         let (mut jacobian, mut residuals) = (Vec::new(), Vec::new());
         let mut expansion = Expansion::with_values(&system.definitions, values);
-        for row in self.rows.clone().skip(3) {
-            jacobian.push(self.own_rotation(kinematics, row).map(|e| expansion.of(&mut system.graph, e)));
+        for row in self.freedom.rows.clone().skip(3) {
+            jacobian.push(kinematics.rotation(row, self.slot).map(|e| expansion.of(&mut system.graph, e)));
             residuals.push(expansion.of(&mut system.graph, kinematics.phi[row]));
         }
         let graph = &mut system.graph;
@@ -170,7 +168,7 @@ impl Block {
             Attachment::Constrained | Attachment::Joint { .. } => ZERO3,
         };
         solved.extend((0..3).map(|k| (Symbol::Velocity { slot, k }, s[k])));
-        if !self.rows.is_empty() {
+        if !self.freedom.rows.is_empty() {
             let residual = self.point_rows(system, &kinematics.velocity_residual, solved);
             let s = system.graph.sub_vec(&s, &residual);
             solved.extend((0..3).map(|k| (Symbol::Velocity { slot, k }, s[k])));
@@ -188,34 +186,24 @@ impl Block {
         }
     }
 
-    /// w' from the body's dot-1 rows; the rate of its special Euler parameter keeps its integrated value. What is solved for is
-    /// the change of w', so that rounding is relative to the change: a large spin would else take a random walk.
+    /// w' changed so that the body's dot-1 rows hold. What is solved for is the change, across the free axis: the rate about
+    /// that axis is the independent velocity, and a large spin takes no part in the rounding.
     fn constrained_spin(&self, system: &mut System, kinematics: &Kinematics, solved: &Values) -> Vec3 {
         let mut expansion = Expansion::with_values(&system.definitions, solved.clone());
-        let (mut jacobian, mut rhs) = (Vec::new(), Vec::new());
-        for row in self.rows.clone().skip(3) {
-            jacobian.push(self.own_rotation(kinematics, row).map(|e| expansion.of(&mut system.graph, e)));
+        let mut w = system.poses[system.slots[self.slot]].w;
+        for (row, forced) in self.freedom.rows.clone().zip(&self.freedom.forced).skip(3) {
             let residual = expansion.of(&mut system.graph, kinematics.velocity_residual[row]);
-            rhs.push(system.graph.neg(residual));
+            let direction = forced.rho.map(|e| expansion.of(&mut system.graph, e));
+            let change = system.graph.scale_vec(residual, &direction);
+            w = system.graph.sub_vec(&w, &change);
         }
-        let pose = system.poses[system.slots[self.slot]];
-        if let Some(chart) = self.chart {
-            jacobian.push(chart_row(&mut system.graph, &pose.p, &chart));
-            rhs.push(Graph::ZERO);
-        }
-        let change = system.graph.solve3(&as_mat3(&jacobian), &as_vec3(&rhs));
-        system.graph.add_vec(&pose.w, &change)
-    }
-
-    /// Columns π' of this body in a row of Φ_π'.
-    fn own_rotation(&self, kinematics: &Kinematics, row: usize) -> Vec3 {
-        from_fn(|k| kinematics.phi_pi[row][6 * self.slot + 3 + k])
+        w
     }
 
     /// The joint's point rows of Φ or Φ̇ at the given values, with the sign that this body's own r or s has in them.
     fn point_rows(&self, system: &mut System, rows: &[ExprId], values: &Values) -> Vec3 {
         let mut expansion = Expansion::with_values(&system.definitions, values.clone());
-        let rows = from_fn(|k| expansion.of(&mut system.graph, rows[self.rows.start + k]));
+        let rows = from_fn(|k| expansion.of(&mut system.graph, rows[self.freedom.rows.start + k]));
         let reversed = matches!(self.attachment, Attachment::Joint { reversed: true, .. });
         if reversed { system.graph.neg_vec(&rows) } else { rows }
     }

@@ -1,11 +1,15 @@
-//! The solve of eq. (17): an unrolled LDLᵀ factorisation of the saddle matrix, its order chosen here.
+//! The solve of eq. (17) whole: an unrolled LDLᵀ factorisation of the saddle matrix, its order chosen here. It squares the
+//! condition of the joints' Jacobian, so `null_space` is preferred; this is what that is compared with.
 //!
 //! Without pivoting at run time the order must be safe by itself: *no multiplier before all six velocities of its child
 //! body*. Then every pivot is a composite inertia or minus a joint's effective inverse mass, never a mathematical zero.
 //! Within that rule several orders are tried and the one with the fewest operations wins.
 
+use crate::definitions::Expansion;
+use crate::dynamics::Dynamics;
 use crate::graph::{ExprId, Graph};
-use crate::kinematics::Matrix;
+use crate::kinematics::{Kinematics, Matrix};
+use crate::null_space::Solution;
 use crate::schedule::Operations;
 use crate::system::System;
 use gyro_model::{Attachment, RowOwner};
@@ -13,7 +17,7 @@ use std::collections::BTreeMap;
 
 /// `[M Φᵀ; Φ 0] [v̇; λ] = [f; γ]`, expanded: its entries are final expressions.
 #[derive(Debug)]
-pub struct Saddle {
+struct Saddle {
     /// Lower triangle, without zeros.
     entries: BTreeMap<(usize, usize), ExprId>,
     rhs: Vec<ExprId>,
@@ -39,8 +43,23 @@ const PREFERENCES: [Preference; 4] = [
     Preference::VelocitiesFirst,
 ];
 
+/// Solves eq. (17).
+pub fn solve(system: &mut System, kinematics: &Kinematics, dynamics: &Dynamics) -> Solution {
+    let definitions = std::mem::take(&mut system.definitions);
+    let mut expansion = Expansion::new(&definitions);
+    let graph = &mut system.graph;
+    let phi_pi: Matrix = kinematics.phi_pi.iter().map(|row| expansion.all(graph, row)).collect();
+    let (force, gamma) =
+        (expansion.all(graph, &dynamics.applied_force), expansion.all(graph, &kinematics.gamma));
+    system.definitions = definitions;
+    let saddle = Saddle::new(&dynamics.mass_matrix, &phi_pi, &force, &gamma);
+    let mut accelerations = saddle.solve(system);
+    let lambda = accelerations.split_off(force.len());
+    Solution { accelerations, lambda }
+}
+
 impl Saddle {
-    pub fn new(mass_matrix: &Matrix, phi_pi: &Matrix, force: &[ExprId], gamma: &[ExprId]) -> Self {
+    fn new(mass_matrix: &Matrix, phi_pi: &Matrix, force: &[ExprId], gamma: &[ExprId]) -> Self {
         let n_velocities = mass_matrix.len();
         let mut entries = BTreeMap::new();
         let lower = mass_matrix.iter().enumerate().flat_map(|(row, values)| {
@@ -54,7 +73,7 @@ impl Saddle {
     }
 
     /// Accelerations, then multipliers, by the cheapest safe order.
-    pub fn solve(&self, system: &mut System) -> Vec<ExprId> {
+    fn solve(&self, system: &mut System) -> Vec<ExprId> {
         let keys: Vec<_> = (0..self.rhs.len()).map(|unknown| Place::of(system, unknown)).collect();
         let solutions: Vec<_> =
             PREFERENCES.iter().map(|&p| self.eliminate(&mut system.graph, &keys, p)).collect();

@@ -84,8 +84,8 @@ pub trait Partition: Mechanism<Scalar: Real> {
         choice: &Self::Independent,
         y: &mut Self::State,
     ) -> Result<(), Error>;
-    /// Solves eq. (19) for the dependent velocities, at corrected positions; the independent ones (components of ṙ and of
-    /// `ṗ = ½ G(p)ᵀ w'`) keep the values that they have in `y`.
+    /// Solves eq. (19) for the dependent velocities, at corrected positions; the independent ones (components of ṙ and ṗ, or
+    /// the rate about a joint's axis) keep the values that they have in `y`.
     ///
     /// # Errors
     /// [`Error::Singular`] if the choice cannot be solved for.

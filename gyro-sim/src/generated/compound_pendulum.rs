@@ -19,13 +19,13 @@
 //! | gamma | γ | 24 | 43 | 0 | 67 | 0 of 5 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 19 | 31 | 0 | 50 | 0 of 5 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 4 | 0 | 4 | 3 of 6 |
-//! | accelerations | (s̈, ẇ') and λ, eq. (17) | 95 | 156 | 5 | 256 | 0 of 11 |
+//! | accelerations | (s̈, ẇ') and λ, eq. (17) | 44 | 81 | 1 | 126 | 0 of 11 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 |
 //! | energy | T and V | 5 | 12 | 0 | 17 | 0 of 2 |
 //! | read_joints | joint coordinates and rates | 7 | 8 | 0 | 15 | 0 of 3 |
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 4 |
 //! | newton_step | dependent positions, one Newton step | 51 | 86 | 1 | 138 | 0 of 7 |
-//! | solve_velocities | dependent velocities, eq. (19) | 34 | 66 | 1 | 101 | 0 of 6 |
+//! | solve_velocities | dependent velocities, eq. (19) | 21 | 41 | 1 | 63 | 0 of 6 |
 
 /// The mechanism `compound_pendulum`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -154,20 +154,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for CompoundPendulum<T> {
         let t0 = rod_e0 * rod_e3;
         let t1 = rod_e1 * rod_e2;
         let t2 = k(2.0) * (t1 - t0);
-        let t3 = k(2.0) * (rod_e1 * rod_e3 + rod_e0 * rod_e2) * rod_wy - t2 * rod_wz;
-        let t4 = rod_e0 * rod_e0;
-        let t5 = k(2.0) * (k(0.5) - (t4 + rod_e2 * rod_e2));
-        let t6 = rod_e0 * rod_e1;
-        let t7 = rod_e2 * rod_e3;
-        let t8 = rod_sy + k(0.5) * (k(2.0) * (t7 - t6) * rod_wy + t5 * rod_wz);
-        let t9 = k(2.0) * (k(0.5) - (t4 + rod_e3 * rod_e3)) * rod_wy
-            + k(2.0) * (t7 + t6) * rod_wz;
-        let t10 = t2 * rod_wx + k(2.0) * (k(0.5) - (t4 + rod_e1 * rod_e1)) * rod_wy;
+        let t3 = t2 * rod_wz - k(2.0) * (rod_e1 * rod_e3 + rod_e0 * rod_e2) * rod_wy;
+        let t4 = rod_e0 * rod_e1;
+        let t5 = rod_e2 * rod_e3;
+        let t6 = rod_e0 * rod_e0;
+        let t7 = k(2.0) * (k(0.5) - (t6 + rod_e2 * rod_e2));
+        let t8 = rod_sy + k(0.5) * (t7 * rod_wz + k(2.0) * (t5 - t4) * rod_wy);
+        let t9 = k(2.0) * (t5 + t4) * rod_wz
+            + k(2.0) * (k(0.5) - (t6 + rod_e3 * rod_e3)) * rod_wy;
+        let t10 = t2 * rod_wx + k(2.0) * (k(0.5) - (t6 + rod_e1 * rod_e1)) * rod_wy;
         *out = [
-            rod_sx + k(0.5) * t3,
+            rod_sx - k(0.5) * t3,
             t8,
             rod_sz - k(0.5) * t9,
-            -(t5 * rod_wx + k(2.0) * (t1 + t0) * rod_wy),
+            -(t7 * rod_wx + k(2.0) * (t1 + t0) * rod_wy),
             -t10,
         ];
     }
@@ -341,14 +341,13 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for CompoundPendulum<T> {
         y[6] = -t31;
         Ok(())
     }
-    /// Solves eq. (19) for the dependent velocities: 101 operations (34 ±, 66 ×, 1 ÷).
+    /// Solves eq. (19) for the dependent velocities: 63 operations (21 ±, 41 ×, 1 ÷).
     fn solve_velocities(
         &self,
         _t: T,
-        choice: &Self::Independent,
+        _choice: &Self::Independent,
         y: &mut Self::State,
     ) -> ::core::result::Result<(), gyro_sim::Error> {
-        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
         let k = T::constant;
         let rod_e0 = y[3];
         let rod_e1 = y[4];
@@ -357,44 +356,27 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for CompoundPendulum<T> {
         let rod_wx = y[10];
         let rod_wy = y[11];
         let rod_wz = y[12];
-        let chart0_0 = charts[0][0];
-        let chart0_1 = charts[0][1];
-        let chart0_2 = charts[0][2];
-        let chart0_3 = charts[0][3];
-        let t0 = rod_e2 * chart0_0 + rod_e3 * chart0_1 - rod_e0 * chart0_2
-            - rod_e1 * chart0_3;
-        let t1 = k(0.5) * t0;
-        let t2 = rod_e0 * rod_e0;
-        let t3 = k(2.0) * (k(0.5) - (t2 + rod_e2 * rod_e2));
-        let t4 = rod_e1 * chart0_0 - rod_e0 * chart0_1 - rod_e3 * chart0_2
-            + rod_e2 * chart0_3;
-        let t5 = k(0.5) * t4;
-        let t6 = rod_e0 * rod_e3;
-        let t7 = rod_e1 * rod_e2;
-        let t8 = k(2.0) * (t7 + t6);
-        let t9 = k(2.0) * (k(0.5) - (t2 + rod_e1 * rod_e1));
-        let t10 = k(2.0) * (t7 - t6);
-        let t11 = t10 * rod_wx + t9 * rod_wy;
-        let t12 = t3 * rod_wx + t8 * rod_wy;
-        let t13 = t12 * (t10 * t1 - t9 * t5) + t11 * (t8 * t5 - t3 * t1);
-        let t14 = rod_e3 * chart0_0 - rod_e2 * chart0_1 + rod_e1 * chart0_2
-            - rod_e0 * chart0_3;
-        let t15 = k(0.5) * t14;
-        let t16 = k(1.0) / (t15 * (t9 * t3 - t10 * t8));
-        let t17 = rod_wz - t16 * t13;
-        let t18 = rod_wy + t16 * (t12 * (t10 * t15) - t11 * (t3 * t15));
-        let t19 = k(2.0) * (rod_e1 * rod_e3 + rod_e0 * rod_e2) * t18 - t10 * t17;
-        let t20 = rod_e0 * rod_e1;
-        let t21 = rod_e2 * rod_e3;
-        let t22 = k(2.0) * (k(0.5) - (t2 + rod_e3 * rod_e3)) * t18
-            + k(2.0) * (t21 + t20) * t17;
-        let t23 = rod_wx - t16 * (t12 * (t9 * t15) - t11 * (t8 * t15));
-        y[7] = -(k(0.5) * t19);
-        y[8] = -(k(0.5) * (k(2.0) * (t21 - t20) * t18 + t3 * t17));
-        y[9] = k(0.5) * t22;
-        y[10] = t23;
-        y[11] = t18;
-        y[12] = t17;
+        let t0 = rod_e0 * rod_e3;
+        let t1 = rod_e1 * rod_e2;
+        let t2 = k(2.0) * (t1 - t0);
+        let t3 = rod_e0 * rod_e0;
+        let t4 = k(2.0) * (k(0.5) - (t3 + rod_e2 * rod_e2));
+        let t5 = k(2.0) * (k(0.5) - (t3 + rod_e1 * rod_e1));
+        let t6 = k(2.0) * (t1 + t0);
+        let t7 = k(1.0) / (t2 * t6 - t5 * t4);
+        let t8 = t2 * rod_wx + t5 * rod_wy;
+        let t9 = t4 * rod_wx + t6 * rod_wy;
+        let t10 = rod_wy - t9 * (t2 * t7) + t8 * (t4 * t7);
+        let t11 = k(2.0) * (rod_e1 * rod_e3 + rod_e0 * rod_e2) * t10 - t2 * rod_wz;
+        let t12 = rod_e0 * rod_e1;
+        let t13 = rod_e2 * rod_e3;
+        let t14 = k(2.0) * (k(0.5) - (t3 + rod_e3 * rod_e3)) * t10
+            + k(2.0) * (t13 + t12) * rod_wz;
+        y[7] = -(k(0.5) * t11);
+        y[8] = -(k(0.5) * (k(2.0) * (t13 - t12) * t10 + t4 * rod_wz));
+        y[9] = k(0.5) * t14;
+        y[10] = rod_wx + t9 * (t5 * t7) - t8 * (t6 * t7);
+        y[11] = t10;
         Ok(())
     }
 }
@@ -585,7 +567,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CompoundPendulum<T> {
             -(k(0.0999) * (rod_wx * rod_wy)),
         ];
     }
-    /// Solves eq. (17): 256 operations (95 ±, 156 ×, 5 ÷).
+    /// Solves eq. (17): 126 operations (44 ±, 81 ×, 1 ÷).
     fn accelerations(
         &self,
         _t: T,
@@ -601,100 +583,55 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CompoundPendulum<T> {
         let rod_wx = y[10];
         let rod_wy = y[11];
         let rod_wz = y[12];
-        let t0 = rod_e0 * rod_e2;
-        let t1 = rod_e1 * rod_e3;
-        let t2 = t1 + t0;
-        let t3 = k(10.0) * t2;
-        let t4 = rod_e0 * rod_e3;
-        let t5 = rod_e1 * rod_e2;
-        let t6 = t5 - t4;
-        let t7 = k(10.0) * t6;
-        let t8 = k(1.0) / (k(0.8333333333333334) + t6 * t7 + t2 * t3);
-        let t9 = rod_e0 * rod_e1;
-        let t10 = rod_e2 * rod_e3;
-        let t11 = t10 - t9;
-        let t12 = k(10.0) * t11;
-        let t13 = rod_e0 * rod_e0;
-        let t14 = k(0.5) - (t13 + rod_e2 * rod_e2);
-        let t15 = k(10.0) * t14;
-        let t16 = t6 * t15 - t2 * t12;
-        let t17 = t16 * t8;
-        let t18 = k(1.0) / (k(0.8333333333333334) + t14 * t15 + t11 * t12 - t16 * t17);
-        let t19 = k(0.5) - (t13 + rod_e3 * rod_e3);
-        let t20 = k(10.0) * t19;
-        let t21 = t10 + t9;
-        let t22 = k(10.0) * t21;
-        let t23 = t6 * t22 - t2 * t20;
-        let t24 = t23 * t8;
-        let t25 = t14 * t22 + t11 * t20 - t16 * t24;
-        let t26 = t25 * t18;
-        let t27 = k(0.8333333333333334) + t21 * t22 + t19 * t20 - t23 * t24 - t25 * t26;
-        let t28 = k(1.0) / t27;
-        let t29 = t5 + t4;
-        let t30 = k(20.0) * t29;
-        let t31 = t2 * t30;
-        let t32 = t31 * t8;
-        let t33 = t11 * t30 + t16 * t32;
-        let t34 = t33 * t18;
-        let t35 = t19 * t30 + t23 * t32 - t25 * t34;
-        let t36 = t35 * t28;
-        let t37 = k(2.0) * t29;
-        let t38 = k(20000.0) * t14;
-        let t39 = k(2.0) * t14;
-        let t40 = t39 * t38 + t37 * t30 - t31 * t32 - t33 * t34;
-        let t41 = k(1.0) / (t40 - t35 * t36);
-        let t42 = k(0.5) - (t13 + rod_e1 * rod_e1);
-        let t43 = k(20.0) * t42;
-        let t44 = t2 * t43;
-        let t45 = t44 * t8;
-        let t46 = t11 * t43 + t16 * t45;
-        let t47 = t46 * t18;
-        let t48 = t19 * t43 + t23 * t45 - t25 * t47;
-        let t49 = t48 * t28;
-        let t50 = k(20000.0) * t6;
-        let t51 = t39 * t50 + t37 * t43 - t31 * t45 - t33 * t47;
-        let t52 = t51 - t35 * t49;
-        let t53 = t52 * t41;
-        let t54 = k(2.0) * t42;
-        let t55 = k(2.0) * t6;
-        let t56 = t55 * t50 + t54 * t43 - t44 * t45 - t46 * t47;
-        let t57 = rod_wx * rod_wz;
-        let t58 = k(0.0999) * t57;
-        let t59 = rod_wx * rod_wy;
-        let t60 = k(0.0999) * t59;
-        let t61 = rod_wy * rod_wy;
-        let t62 = rod_wz * rod_wz + t61;
-        let t63 = k(2.0) * t2;
-        let t64 = k(0.5) * (t63 * t57 + (t55 * t59 + t54 * t62)) - t60 * t7;
-        let t65 = t64 - t58 * t3;
-        let t66 = k(2.0) * t11;
-        let t67 = k(0.5) * (t66 * t57 - (t39 * t59 + t37 * t62)) + k(9.81);
-        let t68 = t67 + t60 * t15 - t58 * t12 + t65 * t17;
-        let t69 = k(2.0) * t19 * t57 - (k(2.0) * t21 * t59 - k(2.0) * (t1 - t0) * t62);
-        let t70 = k(0.5) * t69 + t60 * t22 - t58 * t20 + t65 * t24;
-        let t71 = t70 - t68 * t26;
-        let t72 = rod_wy * rod_wz;
-        let t73 = t61 + rod_wx * rod_wx;
-        let t74 = t66 * t73 + (t39 * t72 - t37 * t57) - t58 * t30;
-        let t75 = t74 - t65 * t32 - t68 * t34 - t71 * t36;
-        let t76 = t63 * t73 - (t55 * t72 - t54 * t57) + t58 * t43;
-        let t77 = t76 + t65 * t45 + t68 * t47 + t71 * t49 + t75 * t53;
-        let t78 = t77 / (t56 - t48 * t49 - t52 * t53);
-        let t79 = t75 * t41 + t53 * t78;
-        let t80 = t71 * t28 - t36 * t79 + t49 * t78;
-        let t81 = t68 * t18 - t26 * t80 - t34 * t79 + t47 * t78;
-        let t82 = t65 * t8 + t17 * t81 + t24 * t80 - t32 * t79;
-        let t83 = t82 + t45 * t78;
-        let t84 = k(0.999) * t57 + t3 * t83 + t12 * t81 + t20 * t80;
-        let t85 = k(0.999) * t59 + t7 * t83 - t15 * t81 - t22 * t80;
-        *out = [
-            k(0.8333333333333334) * t83,
-            k(0.8333333333333334) * t81 - k(9.81),
-            -(k(0.8333333333333334) * t80),
-            t38 * t79 - t50 * t78,
-            t84 + t30 * t79 - t43 * t78,
-            -t85,
-        ];
-        *lambda = [-t83, -t81, t80, t79, -t78];
+        let t0 = rod_wx * rod_wz;
+        let t1 = rod_e0 * rod_e3;
+        let t2 = rod_e1 * rod_e2;
+        let t3 = k(2.0) * (t2 + t1);
+        let t4 = rod_wy * rod_wz;
+        let t5 = rod_e0 * rod_e0;
+        let t6 = k(0.5) - (t5 + rod_e2 * rod_e2);
+        let t7 = k(2.0) * t6;
+        let t8 = rod_wy * rod_wy;
+        let t9 = t8 + rod_wx * rod_wx;
+        let t10 = rod_e0 * rod_e1;
+        let t11 = rod_e2 * rod_e3;
+        let t12 = t11 - t10;
+        let t13 = k(2.0) * t12;
+        let t14 = t13 * t9 + (t7 * t4 - t3 * t0);
+        let t15 = k(2.0) * (k(0.5) - (t5 + rod_e1 * rod_e1));
+        let t16 = t2 - t1;
+        let t17 = k(2.0) * t16;
+        let t18 = k(1.0) / (t17 * t3 - t15 * t7);
+        let t19 = t17 * t18;
+        let t20 = rod_e0 * rod_e2;
+        let t21 = rod_e1 * rod_e3;
+        let t22 = t21 + t20;
+        let t23 = k(2.0) * t22;
+        let t24 = t23 * t9 - (t17 * t4 - t15 * t0);
+        let t25 = t7 * t18;
+        let t26 = t25 * t24 + t19 * t14;
+        let t27 = rod_wx * rod_wy;
+        let t28 = rod_wz * rod_wz + t8;
+        let t29 = k(0.5) * (t23 * t0 + (t17 * t27 + t15 * t28));
+        let t30 = k(0.5) * (t13 * t0 - (t7 * t27 + t3 * t28));
+        let t31 = t11 + t10;
+        let t32 = k(0.5) - (t5 + rod_e3 * rod_e3);
+        let t33 = k(2.0) * t32 * t0 - (k(2.0) * t31 * t27 - k(2.0) * (t21 - t20) * t28);
+        let t34 = k(0.5) * t33;
+        let t35 = t34 * (k(1.2) * t31) + (t30 * (k(1.2) * t6) - t29 * (k(1.2) * t16));
+        let t36 = k(2.5) * (t35 - (k(0.0999) * t27 - k(11.772) * t6));
+        let t37 = t29 + (t16 * t36 - t22 * t26);
+        let t38 = t30 - (t6 * t36 + t12 * t26);
+        let t39 = t34 - (t31 * t36 + t32 * t26);
+        let t40 = t15 * t18;
+        let t41 = t3 * t18;
+        let t42 = t41 * t24 + t40 * t14;
+        let t43 = k(1.2) * t37;
+        let t44 = k(11.772) + k(1.2) * t38;
+        let t45 = k(1.2) * t39;
+        let t46 = k(0.0001) * t42;
+        let t47 = t32 * t45 + (t12 * t44 + t22 * t43) + (k(0.0999) * t0 - k(0.1) * t26);
+        *out = [t37, t38, -t39, -t42, t26, t36];
+        *lambda = [-t43, -t44, t45, t40 * t46 - t19 * t47, t25 * t47 - t41 * t46];
     }
 }

@@ -19,13 +19,13 @@
 //! | gamma | γ | 169 | 255 | 0 | 424 | 6 of 15 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 120 | 173 | 0 | 293 | 0 of 15 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 |
-//! | accelerations | (s̈, ẇ') and λ, eq. (17) | 500 | 743 | 14 | 1257 | 2 of 33 |
+//! | accelerations | (s̈, ẇ') and λ, eq. (17) | 468 | 666 | 5 | 1139 | 6 of 33 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
 //! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 |
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
 //! | newton_step | dependent positions, one Newton step | 220 | 343 | 3 | 566 | 6 of 21 |
-//! | solve_velocities | dependent velocities, eq. (19) | 165 | 278 | 3 | 446 | 6 of 18 |
+//! | solve_velocities | dependent velocities, eq. (19) | 126 | 203 | 3 | 332 | 6 of 18 |
 
 /// The mechanism `gyroscope_combined_offsets`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -394,10 +394,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeCombinedOffsets<T> {
         let t43 = k(2.0) * (t42 + t41);
         let t44 = k(0.0001) * (t43 * rotor_wy - t40 * rotor_wz)
             - k(0.0002) * (t43 * rotor_wx + t37 * rotor_wz);
-        let t45 = k(0.000125) * (t13 * inner_ring_wy - t30 * inner_ring_wz)
-            - k(5e-5) * (t13 * inner_ring_wx + t24 * inner_ring_wz);
+        let t45 = k(0.000125) * (t30 * inner_ring_wz - t13 * inner_ring_wy)
+            + k(5e-5) * (t24 * inner_ring_wz + t13 * inner_ring_wx);
         let t46 = inner_ring_sx
-            - (t45 - k(3e-5) * (t30 * inner_ring_wx + t24 * inner_ring_wy))
+            + (t45 + k(3e-5) * (t30 * inner_ring_wx + t24 * inner_ring_wy))
             - (rotor_sx - (t44 - k(0.00015) * (t40 * rotor_wx + t37 * rotor_wy)));
         let t47 = k(2.0) * (t39 + t38);
         let t48 = k(2.0) * (k(0.5) - (t36 + rotor_e2 * rotor_e2));
@@ -406,8 +406,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeCombinedOffsets<T> {
         let t51 = k(2.0) * (t50 - t49);
         let t52 = k(0.0001) * (t51 * rotor_wy + t48 * rotor_wz)
             - k(0.0002) * (t51 * rotor_wx - t47 * rotor_wz);
-        let t53 = k(0.000125) * (t9 * inner_ring_wy + t31 * inner_ring_wz)
-            - k(5e-5) * (t9 * inner_ring_wx - t27 * inner_ring_wz);
+        let t53 = k(0.000125) * (t31 * inner_ring_wz + t9 * inner_ring_wy)
+            + k(5e-5) * (t27 * inner_ring_wz - t9 * inner_ring_wx);
         let t54 = inner_ring_sy
             - (t53 + k(3e-5) * (t31 * inner_ring_wx + t27 * inner_ring_wy))
             - (rotor_sy - (t52 + k(0.00015) * (t48 * rotor_wx + t47 * rotor_wy)));
@@ -416,14 +416,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeCombinedOffsets<T> {
         let t57 = k(2.0) * (k(0.5) - (t36 + rotor_e3 * rotor_e3));
         let t58 = k(0.0001) * (t57 * rotor_wy + t56 * rotor_wz)
             - k(0.0002) * (t57 * rotor_wx + t55 * rotor_wz);
-        let t59 = k(0.000125) * (t18 * inner_ring_wy + t32 * inner_ring_wz)
-            - k(5e-5) * (t18 * inner_ring_wx + t29 * inner_ring_wz);
+        let t59 = k(0.000125) * (t32 * inner_ring_wz + t18 * inner_ring_wy)
+            - k(5e-5) * (t29 * inner_ring_wz + t18 * inner_ring_wx);
         let t60 = inner_ring_sz
             + (t59 + k(3e-5) * (t32 * inner_ring_wx - t29 * inner_ring_wy))
             - (rotor_sz + (t58 + k(0.00015) * (t56 * rotor_wx - t55 * rotor_wy)));
         let t61 = t29 * t55 + (t27 * t47 + t24 * t37);
-        let t62 = inner_ring_wx * (t18 * t55 - (t9 * t47 - t13 * t37))
-            + inner_ring_wz * t61;
+        let t62 = inner_ring_wz * t61
+            + inner_ring_wx * (t18 * t55 - (t9 * t47 - t13 * t37));
         let t63 = rotor_wy * (t32 * t57 - (t30 * t43 - t31 * t51))
             + rotor_wz * (t32 * t56 + (t30 * t40 + t31 * t48));
         let t64 = inner_ring_wx * (t32 * t55 - (t31 * t47 + t30 * t37))
@@ -938,14 +938,13 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeCombinedOffsets<T> {
         y[20] = -t152;
         Ok(())
     }
-    /// Solves eq. (19) for the dependent velocities: 446 operations (165 ±, 278 ×, 3 ÷).
+    /// Solves eq. (19) for the dependent velocities: 332 operations (126 ±, 203 ×, 3 ÷).
     fn solve_velocities(
         &self,
         _t: T,
-        choice: &Self::Independent,
+        _choice: &Self::Independent,
         y: &mut Self::State,
     ) -> ::core::result::Result<(), gyro_sim::Error> {
-        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -968,163 +967,115 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeCombinedOffsets<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let chart0_0 = charts[0][0];
-        let chart0_1 = charts[0][1];
-        let chart0_2 = charts[0][2];
-        let chart0_3 = charts[0][3];
-        let chart1_0 = charts[1][0];
-        let chart1_1 = charts[1][1];
-        let chart1_2 = charts[1][2];
-        let chart1_3 = charts[1][3];
-        let chart2_0 = charts[2][0];
-        let chart2_1 = charts[2][1];
-        let chart2_2 = charts[2][2];
-        let chart2_3 = charts[2][3];
-        let t0 = outer_ring_e2 * chart0_0 + outer_ring_e3 * chart0_1
-            - outer_ring_e0 * chart0_2 - outer_ring_e1 * chart0_3;
-        let t1 = k(0.5) * t0;
-        let t2 = outer_ring_e0 * outer_ring_e2;
-        let t3 = outer_ring_e1 * outer_ring_e3;
-        let t4 = k(2.0) * (t3 - t2);
-        let t5 = outer_ring_e0 * outer_ring_e0;
-        let t6 = k(2.0) * (k(0.5) - (t5 + outer_ring_e1 * outer_ring_e1));
-        let t7 = k(2.0) * (t3 + t2);
-        let t8 = t7 * outer_ring_wx + t6 * outer_ring_wz;
-        let t9 = k(2.0) * (k(0.5) - (t5 + outer_ring_e3 * outer_ring_e3));
-        let t10 = t9 * outer_ring_wx + t4 * outer_ring_wz;
-        let t11 = k(1.0) / (t1 * (t7 * t4 - t6 * t9));
-        let t12 = outer_ring_wx + t11 * (t10 * (t6 * t1) - t8 * (t4 * t1));
-        let t13 = outer_ring_e1 * chart0_0 - outer_ring_e0 * chart0_1
-            - outer_ring_e3 * chart0_2 + outer_ring_e2 * chart0_3;
-        let t14 = k(0.5) * t13;
-        let t15 = outer_ring_e3 * chart0_0 - outer_ring_e2 * chart0_1
-            + outer_ring_e1 * chart0_2 - outer_ring_e0 * chart0_3;
-        let t16 = k(0.5) * t15;
-        let t17 = t10 * (t6 * t14 - t7 * t16) + t8 * (t9 * t16 - t4 * t14);
-        let t18 = outer_ring_wy - t11 * t17;
-        let t19 = outer_ring_wz - t11 * (t10 * (t7 * t1) - t8 * (t9 * t1));
-        let t20 = inner_ring_e3 * chart1_0 - inner_ring_e2 * chart1_1
-            + inner_ring_e1 * chart1_2 - inner_ring_e0 * chart1_3;
-        let t21 = k(0.5) * t20;
-        let t22 = inner_ring_e0 * inner_ring_e0;
-        let t23 = k(2.0) * (k(0.5) - (t22 + inner_ring_e1 * inner_ring_e1));
-        let t24 = inner_ring_e0 * inner_ring_e3;
-        let t25 = inner_ring_e1 * inner_ring_e2;
+        let t0 = outer_ring_e0 * outer_ring_e0;
+        let t1 = k(2.0) * (k(0.5) - (t0 + outer_ring_e3 * outer_ring_e3));
+        let t2 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
+        let t3 = outer_ring_e0 * outer_ring_e2;
+        let t4 = outer_ring_e1 * outer_ring_e3;
+        let t5 = k(2.0) * (t4 - t3);
+        let t6 = k(2.0) * (t4 + t3);
+        let t7 = k(1.0) / (t6 * t5 - t2 * t1);
+        let t8 = t6 * outer_ring_wx + t2 * outer_ring_wz;
+        let t9 = t1 * outer_ring_wx + t5 * outer_ring_wz;
+        let t10 = outer_ring_wx + t9 * (t2 * t7) - t8 * (t5 * t7);
+        let t11 = outer_ring_wz - t9 * (t6 * t7) + t8 * (t1 * t7);
+        let t12 = inner_ring_e0 * inner_ring_e0;
+        let t13 = k(2.0) * (k(0.5) - (t12 + inner_ring_e1 * inner_ring_e1));
+        let t14 = outer_ring_e0 * outer_ring_e3;
+        let t15 = outer_ring_e1 * outer_ring_e2;
+        let t16 = k(2.0) * (t15 - t14);
+        let t17 = inner_ring_e0 * inner_ring_e3;
+        let t18 = inner_ring_e1 * inner_ring_e2;
+        let t19 = k(2.0) * (t18 + t17);
+        let t20 = k(2.0) * (k(0.5) - (t0 + outer_ring_e2 * outer_ring_e2));
+        let t21 = inner_ring_e0 * inner_ring_e2;
+        let t22 = inner_ring_e1 * inner_ring_e3;
+        let t23 = k(2.0) * (t22 - t21);
+        let t24 = outer_ring_e0 * outer_ring_e1;
+        let t25 = outer_ring_e2 * outer_ring_e3;
         let t26 = k(2.0) * (t25 + t24);
-        let t27 = outer_ring_e0 * outer_ring_e3;
-        let t28 = outer_ring_e1 * outer_ring_e2;
-        let t29 = k(2.0) * (t28 + t27);
-        let t30 = inner_ring_e0 * inner_ring_e2;
-        let t31 = inner_ring_e1 * inner_ring_e3;
-        let t32 = k(2.0) * (t31 - t30);
-        let t33 = t4 * t32 + (t29 * t26 + t6 * t23);
-        let t34 = k(2.0) * (t28 - t27);
-        let t35 = k(2.0) * (k(0.5) - (t5 + outer_ring_e2 * outer_ring_e2));
-        let t36 = outer_ring_e0 * outer_ring_e1;
-        let t37 = outer_ring_e2 * outer_ring_e3;
-        let t38 = k(2.0) * (t37 + t36);
-        let t39 = t38 * t32 - (t35 * t26 + t34 * t23);
-        let t40 = k(2.0) * (k(0.5) - (t22 + inner_ring_e2 * inner_ring_e2));
-        let t41 = k(2.0) * (t25 - t24);
-        let t42 = inner_ring_e0 * inner_ring_e1;
-        let t43 = inner_ring_e2 * inner_ring_e3;
-        let t44 = k(2.0) * (t43 + t42);
-        let t45 = t38 * t44 + (t34 * t41 + t35 * t40);
-        let t46 = k(2.0) * (t31 + t30);
-        let t47 = k(2.0) * (t43 - t42);
-        let t48 = k(2.0) * (k(0.5) - (t22 + inner_ring_e3 * inner_ring_e3));
-        let t49 = t7 * t46 + k(2.0) * (t37 - t36) * t47 + t9 * t48;
-        let t50 = t12 * t49 + t19 * (t4 * t48 - (t29 * t47 - t6 * t46));
-        let t51 = t50 - (inner_ring_wx * t45 - inner_ring_wy * t39);
-        let t52 = t4 * t44 - (t29 * t40 + t6 * t41);
-        let t53 = t18 * t49 + t19 * (t38 * t48 - (t34 * t46 - t35 * t47));
-        let t54 = t53 + (inner_ring_wx * t52 - inner_ring_wy * t33);
-        let t55 = k(1.0) / (t21 * (t52 * t39 - t33 * t45));
-        let t56 = inner_ring_wx - t55 * (t54 * (t39 * t21) + t51 * (t33 * t21));
-        let t57 = inner_ring_wy - t55 * (t54 * (t45 * t21) + t51 * (t52 * t21));
-        let t58 = inner_ring_e2 * chart1_0 + inner_ring_e3 * chart1_1
-            - inner_ring_e0 * chart1_2 - inner_ring_e1 * chart1_3;
-        let t59 = k(0.5) * t58;
-        let t60 = inner_ring_e1 * chart1_0 - inner_ring_e0 * chart1_1
-            - inner_ring_e3 * chart1_2 + inner_ring_e2 * chart1_3;
-        let t61 = k(0.5) * t60;
-        let t62 = t54 * (t45 * t59 + t39 * t61) + t51 * (t33 * t61 + t52 * t59);
-        let t63 = inner_ring_wz + t55 * t62;
-        let t64 = rotor_e1 * chart2_0 - rotor_e0 * chart2_1 - rotor_e3 * chart2_2
-            + rotor_e2 * chart2_3;
-        let t65 = k(0.5) * t64;
-        let t66 = rotor_e0 * rotor_e0;
-        let t67 = k(2.0) * (k(0.5) - (t66 + rotor_e2 * rotor_e2));
-        let t68 = rotor_e0 * rotor_e3;
-        let t69 = rotor_e1 * rotor_e2;
-        let t70 = k(2.0) * (t69 - t68);
-        let t71 = rotor_e0 * rotor_e1;
-        let t72 = rotor_e2 * rotor_e3;
-        let t73 = k(2.0) * (t72 + t71);
-        let t74 = t44 * t73 + (t41 * t70 + t40 * t67);
-        let t75 = t48 * t73 - (t46 * t70 - t47 * t67);
-        let t76 = k(2.0) * (k(0.5) - (t66 + rotor_e3 * rotor_e3));
-        let t77 = k(2.0) * (t72 - t71);
-        let t78 = rotor_e0 * rotor_e2;
-        let t79 = rotor_e1 * rotor_e3;
-        let t80 = k(2.0) * (t79 + t78);
-        let t81 = t46 * t80 + t47 * t77 + t48 * t76;
-        let t82 = k(2.0) * (k(0.5) - (t66 + rotor_e1 * rotor_e1));
-        let t83 = k(2.0) * (t69 + t68);
-        let t84 = k(2.0) * (t79 - t78);
-        let t85 = t32 * t84 + (t26 * t83 + t23 * t82);
-        let t86 = t56 * (t44 * t84 - (t40 * t83 + t41 * t82)) - t57 * t85;
-        let t87 = t86 + (rotor_wy * t81 + rotor_wz * t75);
-        let t88 = t44 * t76 - (t41 * t80 - t40 * t77);
-        let t89 = t56 * (t48 * t84 - (t47 * t83 - t46 * t82)) + t63 * t85;
-        let t90 = t89 - (rotor_wy * t88 + rotor_wz * t74);
-        let t91 = k(1.0) / (t65 * (t88 * t75 - t74 * t81));
-        let t92 = rotor_wy + t91 * (t90 * (t75 * t65) + t87 * (t74 * t65));
-        let t93 = rotor_e3 * chart2_0 - rotor_e2 * chart2_1 + rotor_e1 * chart2_2
-            - rotor_e0 * chart2_3;
-        let t94 = k(0.5) * t93;
-        let t95 = rotor_e2 * chart2_0 + rotor_e3 * chart2_1 - rotor_e0 * chart2_2
-            - rotor_e1 * chart2_3;
-        let t96 = k(0.5) * t95;
-        let t97 = t90 * (t81 * t94 - t75 * t96) - t87 * (t74 * t96 - t88 * t94);
-        let t98 = rotor_wx + t91 * t97;
-        let t99 = rotor_wz - t91 * (t90 * (t81 * t65) + t87 * (t88 * t65));
-        let t100 = k(0.0001) * (t80 * t92 - t70 * t99)
-            - k(0.0002) * (t80 * t98 + t82 * t99);
-        let t101 = k(0.000125) * (t46 * t57 - t41 * t63)
-            - k(5e-5) * (t46 * t56 + t23 * t63);
-        let t102 = t101 - k(3e-5) * (t41 * t56 + t23 * t57)
-            - (t100 - k(0.00015) * (t70 * t98 + t82 * t92));
-        let t103 = k(0.0001) * (t77 * t92 + t67 * t99)
-            - k(0.0002) * (t77 * t98 - t83 * t99);
-        let t104 = k(0.000125) * (t47 * t57 + t40 * t63)
-            - k(5e-5) * (t47 * t56 - t26 * t63);
-        let t105 = t104 + k(3e-5) * (t40 * t56 + t26 * t57)
-            - (t103 + k(0.00015) * (t67 * t98 + t83 * t92));
-        let t106 = k(0.0001) * (t76 * t92 + t73 * t99)
-            - k(0.0002) * (t76 * t98 + t84 * t99);
-        let t107 = k(0.000125) * (t48 * t57 + t44 * t63)
-            - k(5e-5) * (t48 * t56 + t32 * t63);
-        let t108 = t107 + k(3e-5) * (t44 * t56 - t32 * t57)
-            - (t106 + k(0.00015) * (t73 * t98 - t84 * t92));
+        let t27 = t26 * t23 - (t20 * t19 + t16 * t13);
+        let t28 = k(2.0) * (t18 - t17);
+        let t29 = k(2.0) * (k(0.5) - (t12 + inner_ring_e2 * inner_ring_e2));
+        let t30 = k(2.0) * (t15 + t14);
+        let t31 = inner_ring_e0 * inner_ring_e1;
+        let t32 = inner_ring_e2 * inner_ring_e3;
+        let t33 = k(2.0) * (t32 + t31);
+        let t34 = t5 * t33 - (t30 * t29 + t2 * t28);
+        let t35 = t26 * t33 + (t16 * t28 + t20 * t29);
+        let t36 = t5 * t23 + (t30 * t19 + t2 * t13);
+        let t37 = k(1.0) / (t36 * t35 - t34 * t27);
+        let t38 = k(2.0) * (t22 + t21);
+        let t39 = k(2.0) * (t32 - t31);
+        let t40 = k(2.0) * (k(0.5) - (t12 + inner_ring_e3 * inner_ring_e3));
+        let t41 = t6 * t38 + k(2.0) * (t25 - t24) * t39 + t1 * t40;
+        let t42 = t10 * t41 + t11 * (t5 * t40 - (t30 * t39 - t2 * t38));
+        let t43 = t42 - (inner_ring_wx * t35 - inner_ring_wy * t27);
+        let t44 = outer_ring_wy * t41 + t11 * (t26 * t40 - (t16 * t38 - t20 * t39));
+        let t45 = t44 + (inner_ring_wx * t34 - inner_ring_wy * t36);
+        let t46 = inner_ring_wx + t45 * (t27 * t37) + t43 * (t36 * t37);
+        let t47 = inner_ring_wy + t45 * (t35 * t37) + t43 * (t34 * t37);
+        let t48 = rotor_e0 * rotor_e0;
+        let t49 = k(2.0) * (k(0.5) - (t48 + rotor_e2 * rotor_e2));
+        let t50 = rotor_e0 * rotor_e3;
+        let t51 = rotor_e1 * rotor_e2;
+        let t52 = k(2.0) * (t51 - t50);
+        let t53 = rotor_e0 * rotor_e1;
+        let t54 = rotor_e2 * rotor_e3;
+        let t55 = k(2.0) * (t54 + t53);
+        let t56 = t40 * t55 - (t38 * t52 - t39 * t49);
+        let t57 = k(2.0) * (t54 - t53);
+        let t58 = rotor_e0 * rotor_e2;
+        let t59 = rotor_e1 * rotor_e3;
+        let t60 = k(2.0) * (t59 + t58);
+        let t61 = k(2.0) * (k(0.5) - (t48 + rotor_e3 * rotor_e3));
+        let t62 = t33 * t61 - (t28 * t60 - t29 * t57);
+        let t63 = t38 * t60 + t39 * t57 + t40 * t61;
+        let t64 = t33 * t55 + (t28 * t52 + t29 * t49);
+        let t65 = k(1.0) / (t64 * t63 - t62 * t56);
+        let t66 = k(2.0) * (k(0.5) - (t48 + rotor_e1 * rotor_e1));
+        let t67 = k(2.0) * (t51 + t50);
+        let t68 = k(2.0) * (t59 - t58);
+        let t69 = t23 * t68 + (t19 * t67 + t13 * t66);
+        let t70 = t46 * (t33 * t68 - (t29 * t67 + t28 * t66)) - t47 * t69;
+        let t71 = t70 + (rotor_wy * t63 + rotor_wz * t56);
+        let t72 = t46 * (t40 * t68 - (t39 * t67 - t38 * t66)) + inner_ring_wz * t69;
+        let t73 = t72 - (rotor_wy * t62 + rotor_wz * t64);
+        let t74 = rotor_wy - t73 * (t56 * t65) - t71 * (t64 * t65);
+        let t75 = rotor_wz + t73 * (t63 * t65) + t71 * (t62 * t65);
+        let t76 = k(0.0001) * (t60 * t74 - t52 * t75)
+            - k(0.0002) * (t60 * rotor_wx + t66 * t75);
+        let t77 = k(0.000125) * (t38 * t47 - t28 * inner_ring_wz)
+            - k(5e-5) * (t38 * t46 + t13 * inner_ring_wz);
+        let t78 = t77 - k(3e-5) * (t28 * t46 + t13 * t47)
+            - (t76 - k(0.00015) * (t52 * rotor_wx + t66 * t74));
+        let t79 = k(0.0001) * (t57 * t74 + t49 * t75)
+            - k(0.0002) * (t57 * rotor_wx - t67 * t75);
+        let t80 = k(0.000125) * (t39 * t47 + t29 * inner_ring_wz)
+            - k(5e-5) * (t39 * t46 - t19 * inner_ring_wz);
+        let t81 = t80 + k(3e-5) * (t29 * t46 + t19 * t47)
+            - (t79 + k(0.00015) * (t49 * rotor_wx + t67 * t74));
+        let t82 = k(0.0001) * (t61 * t74 + t55 * t75)
+            - k(0.0002) * (t61 * rotor_wx + t68 * t75);
+        let t83 = k(0.000125) * (t40 * t47 + t33 * inner_ring_wz)
+            - k(5e-5) * (t40 * t46 + t23 * inner_ring_wz);
+        let t84 = t83 + k(3e-5) * (t33 * t46 - t23 * t47)
+            - (t82 + k(0.00015) * (t55 * rotor_wx - t68 * t74));
         y[21] = k(0.0);
         y[22] = k(0.0);
         y[23] = k(0.0);
-        y[24] = t12;
-        y[25] = t18;
-        y[26] = t19;
+        y[24] = t10;
+        y[26] = t11;
         y[27] = k(0.0);
         y[28] = k(0.0);
         y[29] = k(0.0);
-        y[30] = t56;
-        y[31] = t57;
-        y[32] = t63;
-        y[33] = -t102;
-        y[34] = -t105;
-        y[35] = t108;
-        y[36] = t98;
-        y[37] = t92;
-        y[38] = t99;
+        y[30] = t46;
+        y[31] = t47;
+        y[33] = -t78;
+        y[34] = -t81;
+        y[35] = t84;
+        y[37] = t74;
+        y[38] = t75;
         Ok(())
     }
 }
@@ -1834,7 +1785,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 1257 operations (500 ±, 743 ×, 14 ÷).
+    /// Solves eq. (17): 1139 operations (468 ±, 666 ×, 5 ÷).
     fn accelerations(
         &self,
         _t: T,
@@ -1865,120 +1816,102 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
         let rotor_wy = y[37];
         let rotor_wz = y[38];
         let (
-            t2,
+            t0,
+            t3,
+            t4,
             t5,
+            t6,
+            t7,
             t9,
+            t11,
+            t12,
             t13,
+            t14,
+            t15,
+            t16,
             t17,
+            t18,
+            t20,
             t21,
             t22,
-            t23,
-            t25,
             t29,
-            t31,
-            t32,
-            t33,
-            t35,
-            t37,
-            t39,
-            t41,
-            t43,
-            t47,
-            t48,
-            t49,
-            t50,
-            t52,
+            t36,
+            t44,
+            t45,
             t54,
-            t56,
             t57,
             t58,
             t59,
             t60,
-            t62,
             t63,
-            t69,
-            t70,
+            t64,
+            t65,
+            t66,
             t71,
             t72,
             t73,
-            t75,
+            t74,
             t77,
+            t78,
+            t79,
+            t80,
+            t82,
             t83,
-            t84,
-            t85,
             t86,
             t87,
+            t88,
             t89,
             t92,
+            t93,
             t94,
+            t95,
+            t98,
+            t99,
             t100,
             t101,
-            t102,
-            t103,
             t104,
+            t105,
             t106,
+            t107,
+            t108,
             t109,
-            t112,
-            t115,
-            t116,
-            t117,
+            t110,
+            t111,
+            t119,
+            t122,
+            t123,
             t124,
             t125,
-            t126,
             t127,
             t128,
+            t129,
             t130,
+            t131,
+            t132,
+            t133,
+            t134,
             t135,
-            t136,
-            t137,
-            t138,
-            t139,
-            t140,
-            t142,
-            t145,
-            t146,
             t147,
             t148,
             t149,
             t150,
             t151,
-            t153,
+            t152,
+            t154,
             t155,
             t156,
             t157,
             t158,
             t159,
-            t160,
-            t161,
-            t162,
+            t163,
             t164,
-            t165,
             t166,
             t167,
-            t168,
             t169,
-            t170,
-            t171,
-            t172,
             t173,
             t175,
-            t176,
-            t177,
-            t178,
-            t179,
-            t180,
-            t181,
             t182,
-            t183,
-            t185,
-            t186,
-            t187,
             t188,
-            t189,
-            t190,
-            t191,
-            t192,
-            t193,
             t194,
             t195,
             t196,
@@ -1986,324 +1919,325 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
             t198,
             t199,
         ) = {
-            let t0 = rotor_e0 * rotor_e0;
-            let t1 = k(0.5) - (t0 + rotor_e2 * rotor_e2);
-            let t2 = k(2.0) * t1;
-            let t3 = inner_ring_e0 * inner_ring_e0;
-            let t4 = k(0.5) - (t3 + inner_ring_e2 * inner_ring_e2);
-            let t5 = k(2.0) * t4;
-            let t6 = rotor_e0 * rotor_e3;
-            let t7 = rotor_e1 * rotor_e2;
-            let t8 = t7 - t6;
-            let t9 = k(2.0) * t8;
-            let t10 = inner_ring_e0 * inner_ring_e3;
-            let t11 = inner_ring_e1 * inner_ring_e2;
-            let t12 = t11 - t10;
-            let t13 = k(2.0) * t12;
-            let t14 = rotor_e0 * rotor_e1;
-            let t15 = rotor_e2 * rotor_e3;
-            let t16 = t15 + t14;
-            let t17 = k(2.0) * t16;
-            let t18 = inner_ring_e0 * inner_ring_e1;
-            let t19 = inner_ring_e2 * inner_ring_e3;
-            let t20 = t19 + t18;
-            let t21 = k(2.0) * t20;
-            let t22 = t21 * t17 + (t13 * t9 + t5 * t2);
-            let t23 = k(200000.0) * t22;
-            let t24 = t15 - t14;
-            let t25 = k(2.0) * t24;
-            let t26 = rotor_e0 * rotor_e2;
-            let t27 = rotor_e1 * rotor_e3;
-            let t28 = t27 + t26;
+            let t0 = outer_ring_wx * outer_ring_wy;
+            let t1 = outer_ring_e0 * outer_ring_e2;
+            let t2 = outer_ring_e1 * outer_ring_e3;
+            let t3 = k(2.0) * (t2 - t1);
+            let t4 = outer_ring_wz * outer_ring_wz;
+            let t5 = t4 + outer_ring_wx * outer_ring_wx;
+            let t6 = outer_ring_e0 * outer_ring_e1;
+            let t7 = outer_ring_e2 * outer_ring_e3;
+            let t8 = k(2.0) * (t7 + t6);
+            let t9 = outer_ring_wy * outer_ring_wz;
+            let t10 = outer_ring_e0 * outer_ring_e0;
+            let t11 = k(2.0) * (k(0.5) - (t10 + outer_ring_e3 * outer_ring_e3));
+            let t12 = t11 * t9 + (t8 * t5 - t3 * t0);
+            let t13 = k(2.0) * (k(0.5) - (t10 + outer_ring_e1 * outer_ring_e1));
+            let t14 = k(2.0) * (t2 + t1);
+            let t15 = k(1.0) / (t14 * t3 - t13 * t11);
+            let t16 = t13 * t15;
+            let t17 = outer_ring_e0 * outer_ring_e3;
+            let t18 = outer_ring_e1 * outer_ring_e2;
+            let t19 = k(2.0) * (t18 - t17);
+            let t20 = t14 * t9 - (t19 * t5 + t13 * t0);
+            let t21 = t3 * t15;
+            let t22 = t21 * t20 - t16 * t12;
+            let t23 = rotor_e0 * rotor_e3;
+            let t24 = rotor_e1 * rotor_e2;
+            let t25 = t24 - t23;
+            let t26 = k(2.0) * t25;
+            let t27 = inner_ring_e0 * inner_ring_e0;
+            let t28 = k(0.5) - (t27 + inner_ring_e1 * inner_ring_e1);
             let t29 = k(2.0) * t28;
-            let t30 = k(0.5) - (t0 + rotor_e3 * rotor_e3);
-            let t31 = k(2.0) * t30;
-            let t32 = t21 * t31 - (t13 * t29 - t5 * t25);
-            let t33 = k(200000.0) * t32;
-            let t34 = k(0.5) - (t0 + rotor_e1 * rotor_e1);
-            let t35 = k(2.0) * t34;
-            let t36 = k(0.5) - (t3 + inner_ring_e1 * inner_ring_e1);
-            let t37 = k(2.0) * t36;
-            let t38 = t7 + t6;
-            let t39 = k(2.0) * t38;
-            let t40 = t11 + t10;
-            let t41 = k(2.0) * t40;
-            let t42 = t27 - t26;
-            let t43 = k(2.0) * t42;
-            let t44 = inner_ring_e0 * inner_ring_e2;
-            let t45 = inner_ring_e1 * inner_ring_e3;
-            let t46 = t45 - t44;
-            let t47 = k(2.0) * t46;
-            let t48 = t47 * t43 + (t41 * t39 + t37 * t35);
-            let t49 = k(1000000.0) * t48;
-            let t50 = k(1.0) / (t48 * t49 + t32 * t33 + t22 * t23);
-            let t51 = t19 - t18;
-            let t52 = k(2.0) * t51;
-            let t53 = t45 + t44;
-            let t54 = k(2.0) * t53;
-            let t55 = k(0.5) - (t3 + inner_ring_e3 * inner_ring_e3);
-            let t56 = k(2.0) * t55;
-            let t57 = t56 * t17 - (t54 * t9 - t52 * t2);
-            let t58 = k(200000.0) * t57;
-            let t59 = t54 * t29 + t52 * t25 + t56 * t31;
-            let t60 = k(200000.0) * t59;
-            let t61 = t32 * t60 + t22 * t58;
-            let t62 = t61 * t50;
-            let t63 = k(1.0) / (t59 * t60 + t57 * t58 - t61 * t62);
-            let t64 = k(0.0002) * t8 + k(0.0004) * t34;
-            let t65 = k(0.0002) * t28 - k(0.0003) * t34;
-            let t66 = k(0.00025) * t12 + k(0.0001) * t36;
-            let t67 = t66 * t49 - t65 * t33 + t64 * t23;
-            let t68 = t65 * t60 - t64 * t58 + t67 * t62;
-            let t69 = t68 * t63;
-            let t70 = t67 * t50;
-            let t71 = k(200000.0) * t64;
-            let t72 = k(200000.0) * t65;
-            let t73 = k(1000000.0) * t66;
-            let t74 = k(0.0004) * t28 + k(0.0003) * t8;
-            let t75 = k(100000.0) * t74;
-            let t76 = t74 * t75 + k(112.5) + t66 * t73 + t65 * t72 + t64 * t71;
-            let t77 = k(1.0) / (t76 - t67 * t70 - t68 * t69);
-            let t78 = k(0.0002) * t1 + k(0.0004) * t38;
-            let t79 = k(0.0002) * t24 + k(0.0003) * t38;
-            let t80 = k(0.00025) * t4 + k(0.0001) * t40;
-            let t81 = t80 * t49 + t79 * t33 + t78 * t23;
-            let t82 = t79 * t60 + t78 * t58 - t81 * t62;
-            let t83 = t82 * t63;
-            let t84 = t81 * t50;
-            let t85 = k(200000.0) * t78;
-            let t86 = k(200000.0) * t79;
-            let t87 = k(1000000.0) * t80;
-            let t88 = k(0.0004) * t24 - k(0.0003) * t1;
-            let t89 = k(100000.0) * t88;
-            let t90 = t74 * t89 - t66 * t87 + t65 * t86 - t64 * t85;
-            let t91 = t90 + t67 * t84 - t68 * t83;
-            let t92 = t91 * t77;
-            let t93 = k(112.5) + t88 * t89 + t80 * t87 + t79 * t86 + t78 * t85;
-            let t94 = k(1.0) / (t93 - t81 * t84 - t82 * t83 - t91 * t92);
-            let t95 = k(0.0002) * t16 - k(0.0004) * t42;
-            let t96 = k(0.0002) * t30 - k(0.0003) * t42;
-            let t97 = k(0.00025) * t20 - k(0.0001) * t46;
-            let t98 = t97 * t49 + t96 * t33 + t95 * t23;
-            let t99 = t96 * t60 + t95 * t58 - t98 * t62;
-            let t100 = t99 * t63;
-            let t101 = t98 * t50;
-            let t102 = k(200000.0) * t95;
-            let t103 = k(200000.0) * t96;
-            let t104 = k(1000000.0) * t97;
-            let t105 = k(0.0004) * t30 - k(0.0003) * t16;
-            let t106 = k(100000.0) * t105;
-            let t107 = t74 * t106 - t66 * t104 + t65 * t103 - t64 * t102;
-            let t108 = t107 + t67 * t101 - t68 * t100;
-            let t109 = t108 * t77;
-            let t110 = t88 * t106 + t80 * t104 + t79 * t103 + t78 * t102;
-            let t111 = t110 - t81 * t101 - t82 * t100 - t91 * t109;
-            let t112 = t111 * t94;
-            let t113 = k(112.5) + t105 * t106 + t97 * t104 + t96 * t103 + t95 * t102;
-            let t114 = t113 - t98 * t101 - t99 * t100 - t108 * t109 - t111 * t112;
-            let t115 = k(1.0) / t114;
-            let t116 = t56 * t43 - (t52 * t39 - t54 * t35);
-            let t117 = t21 * t43 - (t5 * t39 + t13 * t35);
-            let t118 = t117 + t116 * t62;
-            let t119 = k(0.0001) * t53 + k(6e-5) * t12 - t116 * t70 - t118 * t69;
-            let t120 = k(0.0001) * t51 - k(6e-5) * t4 + t116 * t84 - t118 * t83;
-            let t121 = t120 - t119 * t92;
-            let t122 = k(0.0001) * t55 - k(6e-5) * t20 + t116 * t101 - t118 * t100;
-            let t123 = t122 - t119 * t109 - t121 * t112;
-            let t124 = t123 * t115;
-            let t125 = t121 * t94;
-            let t126 = t119 * t77;
-            let t127 = t118 * t63;
-            let t128 = t116 * t50;
-            let t129 = k(1e-6) + t116 * t128 + t118 * t127 + t119 * t126 + t121 * t125;
-            let t130 = k(1.0) / (t129 + t123 * t124);
-            let t131 = k(0.00025) * t53 - k(6e-5) * t36 - t48 * t69;
-            let t132 = k(0.00025) * t51 + k(6e-5) * t40 - t48 * t83 - t131 * t92;
-            let t133 = k(0.00025) * t55 - k(6e-5) * t46 - t48 * t100 - t131 * t109;
-            let t134 = t133 - t132 * t112;
-            let t135 = t134 * t115;
-            let t136 = t132 * t94;
-            let t137 = t131 * t77;
-            let t138 = t48 * t63;
-            let t139 = t118 * t138 + t119 * t137 + t121 * t136 + t123 * t135;
-            let t140 = t139 * t130;
-            let t141 = k(2e-6) + t48 * t138 + t131 * t137 + t132 * t136 + t134 * t135;
-            let t142 = k(1.0) / (t141 - t139 * t140);
-            let t143 = k(100.0) * t92;
-            let t144 = k(100.0) * t109 - t143 * t112;
-            let t145 = t144 * t115;
-            let t146 = t143 * t94;
-            let t147 = k(100.0) * t77;
-            let t148 = t119 * t147 - t121 * t146 - t123 * t145;
-            let t149 = t148 * t130;
-            let t150 = t131 * t147 - t132 * t146 - t134 * t145 - t139 * t149;
-            let t151 = t150 * t142;
-            let t152 = k(100.0) - k(10000.0) * t77 - t143 * t146 - t144 * t145
-                + t148 * t149;
-            let t153 = k(1.0) / (t152 + t150 * t151);
-            let t154 = k(100.0) * t112;
-            let t155 = t154 * t115;
-            let t156 = k(100.0) * t94;
-            let t157 = t121 * t156 - t123 * t155;
-            let t158 = t157 * t130;
-            let t159 = t132 * t156 - t134 * t155 - t139 * t158;
-            let t160 = t159 * t142;
-            let t161 = t143 * t156 - t144 * t155 + t148 * t158 + t150 * t160;
-            let t162 = t161 * t153;
-            let t163 = k(100.0) - k(10000.0) * t94 - t154 * t155 + t157 * t158
-                + t159 * t160;
-            let t164 = k(1.0) / (t163 - t161 * t162);
-            let t165 = k(100.0) * t115;
-            let t166 = t123 * t165;
-            let t167 = t166 * t130;
-            let t168 = t134 * t165 - t139 * t167;
-            let t169 = t168 * t142;
-            let t170 = t144 * t165 + t148 * t167 + t150 * t169;
-            let t171 = t170 * t153;
-            let t172 = t154 * t165 + t157 * t167 + t159 * t169 - t161 * t171;
-            let t173 = t172 * t164;
-            let t174 = k(100.0) - k(10000.0) * t115 + t166 * t167 + t168 * t169
-                - t170 * t171;
-            let t175 = k(1.0) / (t174 - t172 * t173);
-            let t176 = outer_ring_e0 * outer_ring_e0;
-            let t177 = k(0.5) - (t176 + outer_ring_e1 * outer_ring_e1);
-            let t178 = k(2.0) * t177;
-            let t179 = outer_ring_e0 * outer_ring_e3;
-            let t180 = outer_ring_e1 * outer_ring_e2;
-            let t181 = k(2.0) * (t180 + t179);
-            let t182 = outer_ring_e0 * outer_ring_e2;
-            let t183 = outer_ring_e1 * outer_ring_e3;
-            let t184 = t183 - t182;
-            let t185 = k(2.0) * t184;
-            let t186 = t185 * t21 - (t181 * t5 + t178 * t13);
-            let t187 = t186 * t130;
-            let t188 = t185 * t47 + (t181 * t41 + t178 * t37);
-            let t189 = t188 - t139 * t187;
-            let t190 = t189 * t142;
-            let t191 = t148 * t187 + t150 * t190;
-            let t192 = t191 * t153;
-            let t193 = t157 * t187 + t159 * t190 - t161 * t192;
-            let t194 = t193 * t164;
-            let t195 = t166 * t187 + t168 * t190 - t170 * t192 - t172 * t194;
-            let t196 = t195 * t175;
-            let t197 = k(2000000.0) * t184;
-            let t198 = k(0.5) - (t176 + outer_ring_e3 * outer_ring_e3);
-            let t199 = k(1000000.0) * t198;
+            let t30 = rotor_e0 * rotor_e0;
+            let t31 = k(0.5) - (t30 + rotor_e2 * rotor_e2);
+            let t32 = k(2.0) * t31;
+            let t33 = inner_ring_e0 * inner_ring_e3;
+            let t34 = inner_ring_e1 * inner_ring_e2;
+            let t35 = t34 + t33;
+            let t36 = k(2.0) * t35;
+            let t37 = rotor_e0 * rotor_e1;
+            let t38 = rotor_e2 * rotor_e3;
+            let t39 = t38 + t37;
+            let t40 = k(2.0) * t39;
+            let t41 = inner_ring_e0 * inner_ring_e2;
+            let t42 = inner_ring_e1 * inner_ring_e3;
+            let t43 = t42 - t41;
+            let t44 = k(2.0) * t43;
+            let t45 = t44 * t40 - (t36 * t32 + t29 * t26);
+            let t46 = rotor_e0 * rotor_e2;
+            let t47 = rotor_e1 * rotor_e3;
+            let t48 = t47 + t46;
+            let t49 = k(2.0) * t48;
+            let t50 = t38 - t37;
+            let t51 = k(2.0) * t50;
+            let t52 = k(0.5) - (t30 + rotor_e3 * rotor_e3);
+            let t53 = k(2.0) * t52;
+            let t54 = t44 * t53 - (t36 * t51 - t29 * t49);
+            let t55 = k(2.400191904047976e-9) * t54 - k(5.002599744127936e-6) * t45;
+            let t56 = k(5.003999856071964e-6) * t54 - k(2.400191904047976e-9) * t45;
+            let t57 = k(0.0004) * t48 + k(0.0003) * t25;
+            let t58 = k(0.08) * t57;
+            let t59 = k(7996.001999000499) * t57;
+            let t60 = t59 * t58;
+            let t61 = t34 - t33;
+            let t62 = t42 + t41;
+            let t63 = k(0.0001) * t62 + k(6e-5) * t61;
+            let t64 = k(0.0004) * t50 - k(0.0003) * t31;
+            let t65 = k(0.08) * t64;
+            let t66 = t59 * t65;
+            let t67 = k(0.5) - (t27 + inner_ring_e2 * inner_ring_e2);
+            let t68 = inner_ring_e0 * inner_ring_e1;
+            let t69 = inner_ring_e2 * inner_ring_e3;
+            let t70 = t69 - t68;
+            let t71 = k(0.0001) * t70 - k(6e-5) * t67;
+            let t72 = k(0.0004) * t52 - k(0.0003) * t39;
+            let t73 = k(0.08) * t72;
+            let t74 = t73 * t59;
+            let t75 = t69 + t68;
+            let t76 = k(0.5) - (t27 + inner_ring_e3 * inner_ring_e3);
+            let t77 = k(0.0001) * t76 - k(6e-5) * t75;
+            let t78 = k(7996.001999000499) * t64;
+            let t79 = t78 * t65;
+            let t80 = t73 * t78;
+            let t81 = t71 * (t77 * t80 + (t71 * t79 + t63 * t66))
+                + t63 * (t77 * t74 + (t71 * t66 + t63 * t60));
+            let t82 = k(7996.001999000499) * t72;
+            let t83 = t82 * t73;
+            let t84 = t77 * (t77 * t83 + (t71 * t80 + t63 * t74)) + t81;
+            let t85 = k(0.5) - (t30 + rotor_e1 * rotor_e1);
+            let t86 = k(0.0002) * t48 - k(0.0003) * t85;
+            let t87 = k(1.2793603198400799e-5) * t57 - k(0.08) * t86;
+            let t88 = k(0.0002) * t25 + k(0.0004) * t85;
+            let t89 = k(9.595202398800599e-6) * t57 - k(0.08) * t88;
+            let t90 = t54 * t89 + t45 * t87;
+            let t91 = t24 + t23;
+            let t92 = k(0.0002) * t50 + k(0.0003) * t91;
+            let t93 = k(1.2793603198400799e-5) * t64 - k(0.08) * t92;
+            let t94 = k(0.0002) * t31 + k(0.0004) * t91;
+            let t95 = k(9.595202398800599e-6) * t64 + k(0.08) * t94;
+            let t96 = t54 * t95 + t45 * t93;
+            let t97 = t47 - t46;
+            let t98 = k(0.0002) * t52 - k(0.0003) * t97;
+            let t99 = k(1.2793603198400799e-5) * t72 - k(0.08) * t98;
+            let t100 = k(0.0002) * t39 - k(0.0004) * t97;
+            let t101 = k(9.595202398800599e-6) * t72 + k(0.08) * t100;
+            let t102 = t54 * t101 + t45 * t99;
+            let t103 = k(2.0) * (t77 * t102 + (t71 * t96 + t63 * t90)) + t84;
+            let t104 = k(2.0) * t70;
+            let t105 = k(2.0) * t62;
+            let t106 = k(2.0) * t76;
+            let t107 = t106 * t40 - (t105 * t26 - t104 * t32);
+            let t108 = t105 * t49 + t104 * t51 + t106 * t53;
+            let t109 = k(0.00025) * t61 + k(0.0001) * t28;
+            let t110 = k(0.00025) * t67 + k(0.0001) * t35;
+            let t111 = k(0.00025) * t75 - k(0.0001) * t43;
+            let t112 = t111 * t74 + (t110 * t66 - t109 * t60);
+            let t113 = t111 * t80 + (t110 * t79 - t109 * t66);
+            let t114 = t111 * t83 + (t110 * t80 - t109 * t74);
+            let t115 = t108 * t89 + t107 * t87;
+            let t116 = t108 * t95 + t107 * t93;
+            let t117 = t108 * t101 + t107 * t99;
+            let t118 = t111 * t102 + (t110 * t96 - t109 * t90)
+                + (t77 * t117 + (t71 * t116 + t63 * t115));
+            let t119 = t118 + (t77 * t114 + (t71 * t113 + t63 * t112))
+                + (k(3e-10) - (t108 * t56 - t107 * t55));
+            let t120 = t108
+                * (k(5.003999856071964e-6) * t108 - k(2.400191904047976e-9) * t107)
+                - t107
+                    * (k(2.400191904047976e-9) * t108 - k(5.002599744127936e-6) * t107);
+            let t121 = k(2.0) * (t111 * t117 + (t110 * t116 - t109 * t115))
+                + (t111 * t114 + (t110 * t113 - t109 * t112));
+            let t122 = k(1e-6) - (t121 - (k(1.45e-9) + t120));
+            let t123 = k(1.0) / t122;
+            let t124 = t123 * t119;
+            let t125 = t119 * t124
+                - (k(1e-6) - (t103 - (k(2.72e-10) + (t54 * t56 - t45 * t55))));
+            let t126 = k(2.0) * (k(0.5) - (t10 + outer_ring_e2 * outer_ring_e2));
+            let t127 = t8 * t44 - (t126 * t36 + t19 * t29);
+            let t128 = k(2.0) * t67;
+            let t129 = k(2.0) * t61;
+            let t130 = k(2.0) * t75;
+            let t131 = t130 * t40 + (t129 * t26 + t128 * t32);
+            let t132 = t130 * t53 - (t129 * t49 - t128 * t51);
+            let t133 = k(0.00025) * t62 - k(6e-5) * t28;
+            let t134 = k(0.00025) * t70 + k(6e-5) * t35;
+            let t135 = k(0.00025) * t76 - k(6e-5) * t43;
+            let t136 = t135 * t74 + (t134 * t66 + t133 * t60);
+            let t137 = t135 * t80 + (t134 * t79 + t133 * t66);
+            let t138 = t135 * t83 + (t134 * t80 + t133 * t74);
+            let t139 = t132 * t89 + t131 * t87;
+            let t140 = t132 * t95 + t131 * t93;
+            let t141 = t132 * t101 + t131 * t99;
+            let t142 = t135 * t102 + (t134 * t96 + t133 * t90)
+                - (t77 * t141 + (t71 * t140 + t63 * t139));
+            let t143 = t142 + (t77 * t138 + (t71 * t137 + t63 * t136))
+                - (k(5e-10) - (t132 * t56 - t131 * t55));
+            let t144 = k(2.400191904047976e-9) * t132 - k(5.002599744127936e-6) * t131;
+            let t145 = k(5.003999856071964e-6) * t132 - k(2.400191904047976e-9) * t131;
+            let t146 = t111 * t141 + (t110 * t140 - t109 * t139)
+                - (t135 * t117 + (t134 * t116 + t133 * t115));
+            let t147 = t146 - (t135 * t114 + (t134 * t113 + t133 * t112))
+                + (k(1.2e-10) - (t108 * t145 - t107 * t144));
+            let t148 = t147 * t124 - t143;
+            let t149 = t8 * t130 + (t19 * t129 + t126 * t128);
+            let t150 = t119 - t122 * t124;
+            let t151 = t8 * t106 - (t19 * t105 - t126 * t104);
+            let t152 = t151 * t150 + (t149 * t148 + t127 * t125);
+            let t153 = k(2.0) * (t135 * t141 + (t134 * t140 + t133 * t139))
+                - (t135 * t138 + (t134 * t137 + t133 * t136));
+            let t154 = t123 * t147;
+            let t155 = t147 * t154
+                - (k(2e-6) + (t153 + (k(1.322e-9) + (t132 * t145 - t131 * t144))));
+            let t156 = t147 - t122 * t154;
+            let t157 = t151 * t156 + (t149 * t155 + t127 * t148);
+            let t158 = t149 * t156 + t127 * t150;
+            let t159 = rotor_wx * rotor_wz;
+            let t160 = inner_ring_wy * inner_ring_wy;
+            let t161 = inner_ring_wz * inner_ring_wz;
+            let t162 = t161 + t160;
+            let t163 = inner_ring_wx * inner_ring_wy;
+            let t164 = inner_ring_wx * inner_ring_wz;
+            let t165 = inner_ring_wx * inner_ring_wx;
+            let t166 = t161 + t165;
+            let t167 = inner_ring_wy * inner_ring_wz;
+            let t168 = k(5e-5) * (t105 * t167 - (t129 * t166 + t29 * t163))
+                + k(0.000125) * (t105 * t164 + (t129 * t163 + t29 * t162));
+            let t169 = t160 + t165;
+            let t170 = k(3e-5) * (t105 * t169 - (t129 * t167 - t29 * t164)) + t168;
+            let t171 = rotor_wy * rotor_wy;
+            let t172 = rotor_wz * rotor_wz;
+            let t173 = t172 + t171;
+            let t174 = k(2.0) * t85;
+            let t175 = rotor_wx * rotor_wy;
+            let t176 = rotor_wx * rotor_wx;
+            let t177 = t172 + t176;
+            let t178 = rotor_wy * rotor_wz;
+            let t179 = k(0.0002) * (t49 * t178 - (t26 * t177 + t174 * t175))
+                + k(0.0001) * (t49 * t159 + (t26 * t175 + t174 * t173));
+            let t180 = t171 + t176;
+            let t181 = k(0.00015) * (t49 * t180 - (t26 * t178 - t174 * t159)) + t179;
+            let t182 = t181 - t170;
+            let t183 = k(5e-5) * (t104 * t167 + (t128 * t166 + t36 * t163))
+                + k(0.000125) * (t104 * t164 - (t128 * t163 + t36 * t162));
+            let t184 = k(3e-5) * (t104 * t169 + (t128 * t167 - t36 * t164)) + t183;
+            let t185 = k(2.0) * t91;
+            let t186 = k(0.0002) * (t51 * t178 + (t32 * t177 + t185 * t175))
+                + k(0.0001) * (t51 * t159 - (t32 * t175 + t185 * t173));
+            let t187 = k(0.00015) * (t51 * t180 + (t32 * t178 - t185 * t159)) + t186;
+            let t188 = t187 - t184;
+            let t189 = k(5e-5) * (t106 * t167 + (t130 * t166 - t44 * t163))
+                + k(0.000125) * (t106 * t164 - (t130 * t163 - t44 * t162));
+            let t190 = k(3e-5) * (t106 * t169 + (t130 * t167 + t44 * t164)) + t189;
+            let t191 = k(2.0) * t97;
+            let t192 = k(0.0002) * (t53 * t178 + (t40 * t177 - t191 * t175))
+                + k(0.0001) * (t53 * t159 - (t40 * t175 - t191 * t173));
+            let t193 = k(0.00015) * (t53 * t180 + (t40 * t178 + t191 * t159)) + t192;
+            let t194 = t193 - t190;
+            let t195 = t44 * t191 + (t36 * t185 + t29 * t174);
+            let t196 = t130 * t191 - (t128 * t185 + t129 * t174);
+            let t197 = t106 * t191 - (t104 * t185 - t105 * t174);
+            let t198 = rotor_wy * t54 + rotor_wz * t45;
+            let t199 = k(2.0)
+                * (inner_ring_wx * (rotor_wy * t108 + rotor_wz * t107)
+                    + inner_ring_wz * t198);
             (
-                t2,
+                t0,
+                t3,
+                t4,
                 t5,
+                t6,
+                t7,
                 t9,
+                t11,
+                t12,
                 t13,
+                t14,
+                t15,
+                t16,
                 t17,
+                t18,
+                t20,
                 t21,
                 t22,
-                t23,
-                t25,
                 t29,
-                t31,
-                t32,
-                t33,
-                t35,
-                t37,
-                t39,
-                t41,
-                t43,
-                t47,
-                t48,
-                t49,
-                t50,
-                t52,
+                t36,
+                t44,
+                t45,
                 t54,
-                t56,
                 t57,
                 t58,
                 t59,
                 t60,
-                t62,
                 t63,
-                t69,
-                t70,
+                t64,
+                t65,
+                t66,
                 t71,
                 t72,
                 t73,
-                t75,
+                t74,
                 t77,
+                t78,
+                t79,
+                t80,
+                t82,
                 t83,
-                t84,
-                t85,
                 t86,
                 t87,
+                t88,
                 t89,
                 t92,
+                t93,
                 t94,
+                t95,
+                t98,
+                t99,
                 t100,
                 t101,
-                t102,
-                t103,
                 t104,
+                t105,
                 t106,
+                t107,
+                t108,
                 t109,
-                t112,
-                t115,
-                t116,
-                t117,
+                t110,
+                t111,
+                t119,
+                t122,
+                t123,
                 t124,
                 t125,
-                t126,
                 t127,
                 t128,
+                t129,
                 t130,
+                t131,
+                t132,
+                t133,
+                t134,
                 t135,
-                t136,
-                t137,
-                t138,
-                t139,
-                t140,
-                t142,
-                t145,
-                t146,
                 t147,
                 t148,
                 t149,
                 t150,
                 t151,
-                t153,
+                t152,
+                t154,
                 t155,
                 t156,
                 t157,
                 t158,
                 t159,
-                t160,
-                t161,
-                t162,
+                t163,
                 t164,
-                t165,
                 t166,
                 t167,
-                t168,
                 t169,
-                t170,
-                t171,
-                t172,
                 t173,
                 t175,
-                t176,
-                t177,
-                t178,
-                t179,
-                t180,
-                t181,
                 t182,
-                t183,
-                t185,
-                t186,
-                t187,
                 t188,
-                t189,
-                t190,
-                t191,
-                t192,
-                t193,
                 t194,
                 t195,
                 t196,
@@ -2313,267 +2247,220 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
             )
         };
         let (
-            t204,
-            t222,
-            t239,
-            t313,
-            t325,
-            t326,
-            t327,
-            t328,
-            t329,
-            t330,
-            t331,
-            t332,
-            t333,
-            t335,
-            t337,
-            t339,
-            t341,
-            t343,
-            t345,
-            t347,
-            t349,
-            t350,
-            t351,
-            t352,
+            t202,
+            t205,
+            t207,
+            t208,
+            t238,
+            t241,
+            t243,
+            t244,
+            t251,
+            t252,
+            t253,
+            t255,
+            t256,
+            t257,
+            t260,
+            t265,
+            t266,
+            t268,
+            t269,
+            t270,
+            t271,
+            t272,
+            t273,
+            t274,
+            t275,
+            t277,
+            t278,
+            t280,
+            t282,
+            t285,
+            t286,
         ) = {
-            let t200 = k(2.0) * t198;
-            let t201 = k(1.0) / (t200 * t199 + t185 * t197);
-            let t202 = k(2000000.0) * t177;
-            let t203 = t183 + t182;
-            let t204 = k(1000000.0) * t203;
-            let t205 = t200 * t204 + t185 * t202;
-            let t206 = t205 * t201;
-            let t207 = k(2.0) * t203;
-            let t208 = k(1.0) / (t207 * t204 + t178 * t202 - t205 * t206);
-            let t209 = k(2.0) * (k(0.5) - (t176 + outer_ring_e2 * outer_ring_e2));
-            let t210 = k(2.0) * (t180 - t179);
-            let t211 = outer_ring_e0 * outer_ring_e1;
-            let t212 = outer_ring_e2 * outer_ring_e3;
-            let t213 = k(2.0) * (t212 + t211);
-            let t214 = t213 * t56 - (t210 * t54 - t209 * t52);
-            let t215 = k(1000000.0) * t214;
-            let t216 = t185 * t215;
-            let t217 = t216 * t201;
-            let t218 = t178 * t215 - t205 * t217;
-            let t219 = t218 * t208;
-            let t220 = k(2.0) * (t212 - t211);
-            let t221 = t207 * t54 + t220 * t52 + t200 * t56;
-            let t222 = k(1000000.0) * t221;
-            let t223 = t221 * t222 + t214 * t215 - t216 * t217 - t218 * t219;
-            let t224 = t223 + t186 * t187 + t189 * t190 - t191 * t192 - t193 * t194;
-            let t225 = k(1.0) / (t224 - t195 * t196);
-            let t226 = t213 * t21 + (t210 * t13 + t209 * t5);
-            let t227 = t226 * t130;
-            let t228 = t213 * t47 - (t209 * t41 + t210 * t37);
-            let t229 = t228 - t139 * t227;
-            let t230 = t229 * t142;
-            let t231 = t148 * t227 + t150 * t230;
-            let t232 = t231 * t153;
-            let t233 = t157 * t227 + t159 * t230 - t161 * t232;
-            let t234 = t233 * t164;
-            let t235 = t166 * t227 + t168 * t230 - t170 * t232 - t172 * t234;
-            let t236 = t235 * t175;
-            let t237 = t185 * t56 - (t181 * t52 - t178 * t54);
-            let t238 = k(1000000.0) * t237;
-            let t239 = k(500000.0) * t221;
-            let t240 = t200 * t239 + t185 * t238;
-            let t241 = t240 * t201;
-            let t242 = t207 * t239 + t178 * t238 - t205 * t241;
-            let t243 = t242 * t208;
-            let t244 = t214 * t238 - t216 * t241 - t218 * t243 - t186 * t227;
-            let t245 = t244 - t189 * t230 + t191 * t232 + t193 * t234 + t195 * t236;
-            let t246 = t245 * t225;
-            let t247 = t221 * t239 + t237 * t238 - t240 * t241 - t242 * t243;
-            let t248 = t247 + t226 * t227 + t229 * t230 - t231 * t232 - t233 * t234;
-            let t249 = rotor_wx * rotor_wy;
-            let t250 = k(5e-6) * t249;
-            let t251 = rotor_wx * rotor_wz;
-            let t252 = k(5e-6) * t251;
-            let t253 = inner_ring_wx * inner_ring_wy;
-            let t254 = k(1e-6) * t253;
-            let t255 = inner_ring_wx * inner_ring_wx;
-            let t256 = inner_ring_wz * inner_ring_wz;
-            let t257 = t256 + t255;
-            let t258 = inner_ring_wy * inner_ring_wz;
-            let t259 = rotor_wy * (t47 * t31 - (t41 * t25 - t37 * t29))
-                + rotor_wz * (t47 * t17 - (t41 * t2 + t37 * t9));
-            let t260 = k(2.0)
-                * (inner_ring_wx * (rotor_wy * t59 + rotor_wz * t57)
-                    + inner_ring_wz * t259);
-            let t261 = rotor_wy * rotor_wy;
-            let t262 = rotor_wz * rotor_wz;
-            let t263 = t262 + t261;
-            let t264 = t251 * t32 - (t249 * t22 - t263 * t117) + t260
-                + (t258 * t116 + (t257 * t117 - t253 * t48));
-            let t265 = t264 - t254 * t49 + t252 * t33 - t250 * t23;
-            let t266 = inner_ring_wx * inner_ring_wz;
-            let t267 = inner_ring_wy * inner_ring_wy;
-            let t268 = t267 + t255;
-            let t269 = k(2.0)
-                * (inner_ring_wx * (rotor_wy * t32 + rotor_wz * t22)
-                    - inner_ring_wy * t259);
-            let t270 = t251 * t59 - (t249 * t57 - t263 * t116) - t269
-                + (t268 * t116 + (t258 * t117 + t266 * t48));
-            let t271 = t270 + t252 * t60 - t250 * t58 - t265 * t62;
-            let t272 = t256 + t267;
-            let t273 = k(5e-5) * (t54 * t258 - (t13 * t257 + t37 * t253))
-                + k(0.000125) * (t54 * t266 + (t13 * t253 + t37 * t272));
-            let t274 = k(3e-5) * (t54 * t268 - (t13 * t258 - t37 * t266)) + t273;
-            let t275 = rotor_wx * rotor_wx;
-            let t276 = t262 + t275;
-            let t277 = rotor_wy * rotor_wz;
-            let t278 = k(0.0002) * (t29 * t277 - (t9 * t276 + t35 * t249))
-                + k(0.0001) * (t29 * t251 + (t9 * t249 + t35 * t263));
-            let t279 = t261 + t275;
-            let t280 = k(0.00015) * (t29 * t279 - (t9 * t277 - t35 * t251)) + t278;
-            let t281 = t280 - t274 + t254 * t73 + t252 * t72 + t250 * t71;
-            let t282 = t281 + t265 * t70 - t271 * t69;
-            let t283 = k(5e-5) * (t52 * t258 + (t5 * t257 + t41 * t253))
-                + k(0.000125) * (t52 * t266 - (t5 * t253 + t41 * t272));
-            let t284 = k(3e-5) * (t52 * t268 + (t5 * t258 - t41 * t266)) + t283;
-            let t285 = k(0.0002) * (t25 * t277 + (t2 * t276 + t39 * t249))
-                + k(0.0001) * (t25 * t251 - (t2 * t249 + t39 * t263));
-            let t286 = k(0.00015) * (t25 * t279 + (t2 * t277 - t39 * t251)) + t285;
-            let t287 = k(10.0) + (t286 - t284 - k(10.0)) - t254 * t87 + t252 * t86;
-            let t288 = t287 - t250 * t85 - t265 * t84 - t271 * t83 - t282 * t92;
-            let t289 = k(5e-5) * (t56 * t258 + (t21 * t257 - t47 * t253))
-                + k(0.000125) * (t56 * t266 - (t21 * t253 - t47 * t272));
-            let t290 = k(3e-5) * (t56 * t268 + (t21 * t258 + t47 * t266)) + t289;
-            let t291 = k(0.0002) * (t31 * t277 + (t17 * t276 - t43 * t249))
-                + k(0.0001) * (t31 * t251 - (t17 * t249 - t43 * t263));
-            let t292 = k(0.00015) * (t31 * t279 + (t17 * t277 + t43 * t251)) + t291;
-            let t293 = t292 - t290 - t254 * t104 + t252 * t103 - t250 * t102;
-            let t294 = t293 - t265 * t101 - t271 * t100 - t282 * t109 - t288 * t112;
-            let t295 = k(1e-6) * t258 - t265 * t128 + t271 * t127 + t282 * t126;
-            let t296 = t295 + t288 * t125 + t294 * t124;
-            let t297 = t271 * t138 + t282 * t137 + t288 * t136 + t294 * t135;
-            let t298 = t297 - t296 * t140;
-            let t299 = t282 * t147 - t288 * t146 - t294 * t145 - t296 * t149;
-            let t300 = t299 - t298 * t151;
-            let t301 = k(10.0) - t288 * t156 + t294 * t155 + t296 * t158 + t298 * t160;
-            let t302 = t301 + t300 * t162;
-            let t303 = t294 * t165 - t296 * t167 - t298 * t169 - t300 * t171;
-            let t304 = t303 + t302 * t173;
-            let t305 = outer_ring_wx * outer_ring_wy;
-            let t306 = k(1e-6) * t305;
-            let t307 = outer_ring_wz * outer_ring_wz;
-            let t308 = t307 + outer_ring_wx * outer_ring_wx;
-            let t309 = outer_ring_wy * outer_ring_wz;
-            let t310 = t200 * t309 + (t213 * t308 - t185 * t305) + t306 * t197;
-            let t311 = t207 * t309 - (t210 * t308 + t178 * t305) + t306 * t202;
-            let t312 = t311 - t310 * t206;
-            let t313 = outer_ring_wx * outer_ring_wz;
-            let t314 = t313 * t221
-                - (t305 * t214 - (t307 + outer_ring_wy * outer_ring_wy) * t237);
-            let t315 = inner_ring_wx * (t200 * t21 - (t207 * t13 - t220 * t5))
-                - inner_ring_wy * (t200 * t47 - (t220 * t41 - t207 * t37));
-            let t316 = k(2.0)
-                * (outer_ring_wy * t315
-                    + outer_ring_wz * (inner_ring_wx * t226 - inner_ring_wy * t228));
-            let t317 = t268 * t237 + (t258 * t186 + t266 * t188) - t316 + t314;
-            let t318 = t317 + k(1e-6) * t313 * t222 - t306 * t215 + t310 * t217;
-            let t319 = t318 + t312 * t219 - t296 * t187 - t298 * t190 - t300 * t192;
-            let t320 = t319 + t302 * t194 - t304 * t196;
-            let t321 = k(2.0)
-                * (outer_ring_wx * t315
-                    + outer_ring_wz * (inner_ring_wx * t186 - inner_ring_wy * t188));
-            let t322 = t268 * t214 + (t258 * t226 + t266 * t228) + t321
-                + (t309 * t221 + (t308 * t214 - t305 * t237));
-            let t323 = t322 + t306 * t238 - t310 * t241 - t312 * t243 - t296 * t227;
-            let t324 = t323 - t298 * t230 - t300 * t232 + t302 * t234 - t304 * t236;
-            let t325 = (t324 + t320 * t246) / (t248 - t235 * t236 - t245 * t246);
-            let t326 = t320 * t225 + t246 * t325;
-            let t327 = t304 * t175 - t196 * t326 - t236 * t325;
-            let t328 = t302 * t164 + t173 * t327 + t194 * t326 + t234 * t325;
-            let t329 = k(100.0) * t328;
-            let t330 = k(0.1) + t328;
-            let t331 = t312 * t208 + t219 * t326 - t243 * t325;
-            let t332 = t310 * t201 - t206 * t331 + t217 * t326 - t241 * t325;
-            let t333 = t305 - t197 * t332 - t202 * t331 + t215 * t326 - t238 * t325;
-            let t334 = t300 * t153 + t162 * t328 - t171 * t327 - t192 * t326;
-            let t335 = t334 - t232 * t325;
-            let t336 = t298 * t142 + t151 * t335 - t160 * t328 + t169 * t327;
-            let t337 = t336 + t190 * t326 + t230 * t325;
-            let t338 = t296 * t130 - t140 * t337 + t149 * t335 - t158 * t328;
-            let t339 = t338 + t167 * t327 + t187 * t326 + t227 * t325;
-            let t340 = t294 * t115 - t124 * t339 - t135 * t337 - t145 * t335;
-            let t341 = t340 + t155 * t328 + t165 * t327;
-            let t342 = t288 * t94 - t125 * t339 - t136 * t337 - t146 * t335;
-            let t343 = t342 - t156 * t328 - t112 * t341;
-            let t344 = t282 * t77 - t126 * t339 - t137 * t337 + t147 * t335;
-            let t345 = t344 - t92 * t343 - t109 * t341;
-            let t346 = t271 * t63 - t127 * t339 - t138 * t337 - t69 * t345;
-            let t347 = t346 - t83 * t343 - t100 * t341;
-            let t348 = t265 * t50 + t128 * t339 + t70 * t345 - t84 * t343;
-            let t349 = t348 - t101 * t341 - t62 * t347;
-            let t350 = t253 - t73 * t345 + t87 * t343 + t104 * t341 + t49 * t349;
-            let t351 = t251 - t72 * t345 - t86 * t343 - t103 * t341 - t33 * t349;
-            let t352 = t249 - t71 * t345 + t85 * t343 + t102 * t341 + t23 * t349;
+            let t200 = t159 * t132 - (t175 * t131 - t173 * t196) + t199
+                + (t167 * t197 + (t166 * t196 - t163 * t195));
+            let t201 = k(1.0) / (t131 * t108 - t132 * t107);
+            let t202 = t107 * t201;
+            let t203 = k(2.0)
+                * (inner_ring_wx * (rotor_wy * t132 + rotor_wz * t131)
+                    - inner_ring_wy * t198);
+            let t204 = t159 * t108 - (t175 * t107 - t173 * t197) - t203
+                + (t169 * t197 + (t167 * t196 + t164 * t195));
+            let t205 = t131 * t201;
+            let t206 = t205 * t204 - t202 * t200;
+            let t207 = t108 * t201;
+            let t208 = t132 * t201;
+            let t209 = t208 * t204 - t207 * t200;
+            let t210 = k(2.400191904047976e-9) * t209 - k(5.002599744127936e-6) * t206
+                - (t194 * t99 + (t188 * t93 + t182 * t87));
+            let t211 = t210
+                + (k(0.000127936031984008) * t64 - (k(5e-6) * t159 + k(0.8) * t92));
+            let t212 = k(5.003999856071964e-6) * t209 - k(2.400191904047976e-9) * t206
+                + (t194 * t101 + (t188 * t95 + t182 * t89));
+            let t213 = t212
+                - (k(9.595202398800599e-5) * t64 - (k(5e-6) * t175 - k(0.8) * t94));
+            let t214 = k(0.8) * t64;
+            let t215 = t194 * t74 + (t188 * t66 + t182 * t60) - k(0.08) * t182;
+            let t216 = t89 * t209 + t87 * t206 - t215 + t59 * t214;
+            let t217 = t194 * t80 + (t188 * t79 + t182 * t66) - k(0.08) * t188;
+            let t218 = t95 * t209 + t93 * t206 - t217 - (k(0.8) - t78 * t214);
+            let t219 = t194 * t83 + (t188 * t80 + t182 * t74) - k(0.08) * t194;
+            let t220 = t101 * t209 + t99 * t206 - t219 + t82 * t214;
+            let t221 = t77 * t220 + (t71 * t218 + t63 * t216)
+                - (t54 * t213 - t45 * t211);
+            let t222 = t111 * t220 + (t110 * t218 - t109 * t216)
+                - (t108 * t213 - t107 * t211);
+            let t223 = k(1e-6) * t163 + t222;
+            let t224 = k(2.0) * (t18 + t17);
+            let t225 = t3 * t106 - (t224 * t104 - t13 * t105);
+            let t226 = k(2.0) * (t7 - t6);
+            let t227 = t14 * t105 + t226 * t104 + t11 * t106;
+            let t228 = outer_ring_wx * outer_ring_wz;
+            let t229 = t228 * t227
+                - (t0 * t151 - (t4 + outer_ring_wy * outer_ring_wy) * t225);
+            let t230 = t11 * t44 - (t226 * t36 - t14 * t29);
+            let t231 = t11 * t130 - (t14 * t129 - t226 * t128);
+            let t232 = inner_ring_wx * t231 - inner_ring_wy * t230;
+            let t233 = k(2.0)
+                * (outer_ring_wy * t232
+                    + outer_ring_wz * (inner_ring_wx * t149 - inner_ring_wy * t127));
+            let t234 = t3 * t44 + (t224 * t36 + t13 * t29);
+            let t235 = t3 * t130 - (t224 * t128 + t13 * t129);
+            let t236 = t169 * t225 + (t167 * t235 + t164 * t234) - t233 + t229;
+            let t237 = k(1.0) / (t234 * t149 - t235 * t127);
+            let t238 = t127 * t237;
+            let t239 = k(2.0)
+                * (outer_ring_wx * t232
+                    + outer_ring_wz * (inner_ring_wx * t235 - inner_ring_wy * t234));
+            let t240 = t169 * t151 + (t167 * t149 + t164 * t127) + t239
+                + (t9 * t227 + (t5 * t151 - t0 * t225));
+            let t241 = t234 * t237;
+            let t242 = t241 * t240 - t238 * t236;
+            let t243 = t149 * t237;
+            let t244 = t235 * t237;
+            let t245 = t244 * t240 - t243 * t236;
+            let t246 = t148 * t245 + t125 * t242
+                + (t124 * t223 + (k(1e-6) * t167 + t221));
+            let t247 = t135 * t220 + (t134 * t218 + t133 * t216)
+                + (t132 * t213 - t131 * t211);
+            let t248 = t149 * (t155 * t245 + t148 * t242 + (t154 * t223 - t247));
+            let t249 = t151 * (t156 * t245 + t150 * t242) + (t248 + t127 * t246);
+            let t250 = t149 * (t225 * t156 + (t235 * t155 + t234 * t148))
+                + t127 * (t225 * t150 + (t235 * t148 + t234 * t125));
+            let t251 = t14 * t15;
+            let t252 = t11 * t15;
+            let t253 = t252 * t20 - t251 * t12;
+            let t254 = t253 * (t227 * t158 + (t231 * t157 + t230 * t152))
+                + t22 * (t151 * (t235 * t156 + t234 * t150) + t250);
+            let t255 = (t254 + (k(1e-6) * t228 - t249))
+                / (k(1e-6) - (t151 * t158 + (t149 * t157 + t127 * t152)));
+            let t256 = t242 - (t230 * t253 + (t127 * t255 + t234 * t22));
+            let t257 = t245 - (t231 * t253 + (t149 * t255 + t235 * t22));
+            let t258 = t227 * t253 + (t151 * t255 + t225 * t22);
+            let t259 = t123 * (t223 + (t122 * t258 + (t147 * t257 + t119 * t256)));
+            let t260 = t258 - t259;
+            let t261 = t182 - (t109 * t260 - (t133 * t257 - t63 * t256));
+            let t262 = t188 + (t110 * t260 + (t134 * t257 - t71 * t256));
+            let t263 = t194 + (t111 * t260 + (t135 * t257 - t77 * t256));
+            let t264 = t197 * t260 - (t196 * t257 + t195 * t256);
+            let t265 = t206 - (t107 * t260 - (t131 * t257 + t45 * t256));
+            let t266 = t209 - (t108 * t260 - (t132 * t257 + t54 * t256));
+            let t267 = k(1.2e-9) * t266 + (k(1.6e-9) * t265 + k(1.0005e-5) * t264)
+                - (t73 * t263 + (t65 * t262 + t58 * t261));
+            let t268 = t264 - k(99950.02498750624) * (t214 + t267);
+            let t269 = t261 - (t88 * t266 + (t86 * t265 + t57 * t268));
+            let t270 = t262 + (t94 * t266 - (t92 * t265 + t64 * t268));
+            let t271 = t263 + (t100 * t266 - (t98 * t265 + t72 * t268));
+            let t272 = k(0.08) * t269;
+            let t273 = k(0.8) - k(0.08) * t270;
+            let t274 = k(0.1) + t273;
+            let t275 = k(0.08) * t271;
+            let t276 = t72 * t275 - (t64 * t273 - t57 * t272) - k(1e-5) * t268;
+            let t277 = t98 * t275 - (t92 * t273 - t86 * t272) - k(5e-6) * (t159 + t265);
+            let t278 = t100 * t275 - (t94 * t273 + t88 * t272) + k(5e-6) * (t175 + t266);
+            let t279 = t77 * t275 - (t71 * t273 - t63 * t272)
+                - (t54 * t278 - (t45 * t277 - t195 * t276));
+            let t280 = t279 + k(1e-6) * (t167 - t256);
+            let t281 = t135 * t275 - (t134 * t273 - t133 * t272)
+                + (t132 * t278 - (t131 * t277 - t196 * t276));
+            let t282 = t281 + k(2e-6) * t257;
+            let t283 = t111 * t275 - (t110 * t273 + t109 * t272)
+                - (t108 * t278 - (t107 * t277 - t197 * t276));
+            let t284 = t283 + k(1e-6) * (t163 + t260);
+            let t285 = t225 * t284 - (t235 * t282 - t234 * t280) + k(2e-6) * t22;
+            let t286 = t227 * t284 - (t231 * t282 - t230 * t280) - k(1e-6) * (t0 - t253);
             (
-                t204,
-                t222,
-                t239,
-                t313,
-                t325,
-                t326,
-                t327,
-                t328,
-                t329,
-                t330,
-                t331,
-                t332,
-                t333,
-                t335,
-                t337,
-                t339,
-                t341,
-                t343,
-                t345,
-                t347,
-                t349,
-                t350,
-                t351,
-                t352,
+                t202,
+                t205,
+                t207,
+                t208,
+                t238,
+                t241,
+                t243,
+                t244,
+                t251,
+                t252,
+                t253,
+                t255,
+                t256,
+                t257,
+                t260,
+                t265,
+                t266,
+                t268,
+                t269,
+                t270,
+                t271,
+                t272,
+                t273,
+                t274,
+                t275,
+                t277,
+                t278,
+                t280,
+                t282,
+                t285,
+                t286,
             )
         };
         *out = [
             k(0.0),
-            -(k(10.0) - k(100.0) * t330 + t329),
             k(0.0),
-            -(t199 * t332 + t204 * t331 + t239 * t325),
-            t222 * t326 - t313,
-            t333,
-            k(100.0) * (t345 - t335),
-            k(100.0) * t343 - (k(10.0) - t329),
-            k(100.0) * (t327 - t341),
-            t339,
-            -t337,
-            -t350,
-            -(k(12.5) * t345),
-            -(k(10.0) + k(12.5) * t343),
-            k(12.5) * t341,
-            -(t75 * t345 + t89 * t343 + t106 * t341),
-            t60 * t347 - t351,
-            t352 + t58 * t347,
+            k(0.0),
+            -t22,
+            -t255,
+            t253,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t256,
+            t257,
+            t260,
+            -t269,
+            -t270,
+            t271,
+            -t268,
+            t265,
+            -t266,
         ];
         *lambda = [
-            t335,
-            -t330,
-            -t327,
-            -t332,
-            t331,
-            t335,
-            -t328,
-            -t327,
-            t326,
-            t325,
-            t345,
-            t343,
-            -t341,
-            -t349,
-            t347,
+            t272,
+            -(k(0.1) + t274),
+            -t275,
+            t251 * t286 + t16 * t285,
+            t252 * t286 + t21 * t285,
+            t272,
+            -t274,
+            -t275,
+            t238 * t280 - t243 * t282,
+            t244 * t282 - t241 * t280,
+            t272,
+            -t273,
+            -t275,
+            t207 * t278 - t202 * t277,
+            t208 * t278 - t205 * t277,
         ];
     }
 }

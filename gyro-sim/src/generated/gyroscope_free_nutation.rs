@@ -20,13 +20,13 @@
 //! | gamma | γ | 115 | 181 | 0 | 296 | 9 of 15 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 84 | 119 | 0 | 203 | 0 of 15 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 12 of 18 |
-//! | accelerations | (s̈, ẇ') and λ, eq. (17) | 191 | 310 | 10 | 511 | 19 of 33 |
+//! | accelerations | (s̈, ẇ') and λ, eq. (17) | 215 | 335 | 5 | 555 | 19 of 33 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | energy | T and V | 17 | 31 | 0 | 48 | 1 of 2 |
 //! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 |
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
 //! | newton_step | dependent positions, one Newton step | 189 | 314 | 3 | 506 | 9 of 21 |
-//! | solve_velocities | dependent velocities, eq. (19) | 132 | 224 | 3 | 359 | 9 of 18 |
+//! | solve_velocities | dependent velocities, eq. (19) | 93 | 149 | 3 | 245 | 9 of 18 |
 
 /// The mechanism `gyroscope_free_nutation`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -362,8 +362,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeFreeNutation<T> {
         let t42 = rotor_e1 * rotor_e3;
         let t43 = k(2.0) * (t42 - t41);
         let t44 = t29 * t43 + (t27 * t40 + t24 * t37);
-        let t45 = inner_ring_wx * (t18 * t43 - (t9 * t40 - t13 * t37))
-            + inner_ring_wz * t44;
+        let t45 = inner_ring_wz * t44
+            + inner_ring_wx * (t18 * t43 - (t9 * t40 - t13 * t37));
         let t46 = k(2.0) * (k(0.5) - (t36 + rotor_e2 * rotor_e2));
         let t47 = k(2.0) * (t39 - t38);
         let t48 = rotor_e0 * rotor_e1;
@@ -854,14 +854,13 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeFreeNutation<T> {
         y[20] = -t139;
         Ok(())
     }
-    /// Solves eq. (19) for the dependent velocities: 359 operations (132 ±, 224 ×, 3 ÷).
+    /// Solves eq. (19) for the dependent velocities: 245 operations (93 ±, 149 ×, 3 ÷).
     fn solve_velocities(
         &self,
         _t: T,
-        choice: &Self::Independent,
+        _choice: &Self::Independent,
         y: &mut Self::State,
     ) -> ::core::result::Result<(), gyro_sim::Error> {
-        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -881,147 +880,97 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeFreeNutation<T> {
         let inner_ring_wx = y[30];
         let inner_ring_wy = y[31];
         let inner_ring_wz = y[32];
-        let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let chart0_0 = charts[0][0];
-        let chart0_1 = charts[0][1];
-        let chart0_2 = charts[0][2];
-        let chart0_3 = charts[0][3];
-        let chart1_0 = charts[1][0];
-        let chart1_1 = charts[1][1];
-        let chart1_2 = charts[1][2];
-        let chart1_3 = charts[1][3];
-        let chart2_0 = charts[2][0];
-        let chart2_1 = charts[2][1];
-        let chart2_2 = charts[2][2];
-        let chart2_3 = charts[2][3];
-        let t0 = outer_ring_e2 * chart0_0 + outer_ring_e3 * chart0_1
-            - outer_ring_e0 * chart0_2 - outer_ring_e1 * chart0_3;
-        let t1 = k(0.5) * t0;
-        let t2 = outer_ring_e0 * outer_ring_e2;
-        let t3 = outer_ring_e1 * outer_ring_e3;
-        let t4 = k(2.0) * (t3 - t2);
-        let t5 = outer_ring_e0 * outer_ring_e0;
-        let t6 = k(2.0) * (k(0.5) - (t5 + outer_ring_e1 * outer_ring_e1));
-        let t7 = k(2.0) * (t3 + t2);
-        let t8 = t7 * outer_ring_wx + t6 * outer_ring_wz;
-        let t9 = k(2.0) * (k(0.5) - (t5 + outer_ring_e3 * outer_ring_e3));
-        let t10 = t9 * outer_ring_wx + t4 * outer_ring_wz;
-        let t11 = k(1.0) / (t1 * (t7 * t4 - t6 * t9));
-        let t12 = outer_ring_wx + t11 * (t10 * (t6 * t1) - t8 * (t4 * t1));
-        let t13 = outer_ring_e1 * chart0_0 - outer_ring_e0 * chart0_1
-            - outer_ring_e3 * chart0_2 + outer_ring_e2 * chart0_3;
-        let t14 = k(0.5) * t13;
-        let t15 = outer_ring_e3 * chart0_0 - outer_ring_e2 * chart0_1
-            + outer_ring_e1 * chart0_2 - outer_ring_e0 * chart0_3;
-        let t16 = k(0.5) * t15;
-        let t17 = t10 * (t6 * t14 - t7 * t16) + t8 * (t9 * t16 - t4 * t14);
-        let t18 = outer_ring_wy - t11 * t17;
-        let t19 = outer_ring_wz - t11 * (t10 * (t7 * t1) - t8 * (t9 * t1));
-        let t20 = inner_ring_e3 * chart1_0 - inner_ring_e2 * chart1_1
-            + inner_ring_e1 * chart1_2 - inner_ring_e0 * chart1_3;
-        let t21 = k(0.5) * t20;
-        let t22 = inner_ring_e0 * inner_ring_e0;
-        let t23 = k(2.0) * (k(0.5) - (t22 + inner_ring_e1 * inner_ring_e1));
-        let t24 = inner_ring_e0 * inner_ring_e3;
-        let t25 = inner_ring_e1 * inner_ring_e2;
+        let t0 = outer_ring_e0 * outer_ring_e0;
+        let t1 = k(2.0) * (k(0.5) - (t0 + outer_ring_e3 * outer_ring_e3));
+        let t2 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
+        let t3 = outer_ring_e0 * outer_ring_e2;
+        let t4 = outer_ring_e1 * outer_ring_e3;
+        let t5 = k(2.0) * (t4 - t3);
+        let t6 = k(2.0) * (t4 + t3);
+        let t7 = k(1.0) / (t6 * t5 - t2 * t1);
+        let t8 = t6 * outer_ring_wx + t2 * outer_ring_wz;
+        let t9 = t1 * outer_ring_wx + t5 * outer_ring_wz;
+        let t10 = outer_ring_wx + t9 * (t2 * t7) - t8 * (t5 * t7);
+        let t11 = outer_ring_wz - t9 * (t6 * t7) + t8 * (t1 * t7);
+        let t12 = inner_ring_e0 * inner_ring_e0;
+        let t13 = k(2.0) * (k(0.5) - (t12 + inner_ring_e1 * inner_ring_e1));
+        let t14 = outer_ring_e0 * outer_ring_e3;
+        let t15 = outer_ring_e1 * outer_ring_e2;
+        let t16 = k(2.0) * (t15 - t14);
+        let t17 = inner_ring_e0 * inner_ring_e3;
+        let t18 = inner_ring_e1 * inner_ring_e2;
+        let t19 = k(2.0) * (t18 + t17);
+        let t20 = k(2.0) * (k(0.5) - (t0 + outer_ring_e2 * outer_ring_e2));
+        let t21 = inner_ring_e0 * inner_ring_e2;
+        let t22 = inner_ring_e1 * inner_ring_e3;
+        let t23 = k(2.0) * (t22 - t21);
+        let t24 = outer_ring_e0 * outer_ring_e1;
+        let t25 = outer_ring_e2 * outer_ring_e3;
         let t26 = k(2.0) * (t25 + t24);
-        let t27 = outer_ring_e0 * outer_ring_e3;
-        let t28 = outer_ring_e1 * outer_ring_e2;
-        let t29 = k(2.0) * (t28 + t27);
-        let t30 = inner_ring_e0 * inner_ring_e2;
-        let t31 = inner_ring_e1 * inner_ring_e3;
-        let t32 = k(2.0) * (t31 - t30);
-        let t33 = t4 * t32 + (t29 * t26 + t6 * t23);
-        let t34 = k(2.0) * (t28 - t27);
-        let t35 = k(2.0) * (k(0.5) - (t5 + outer_ring_e2 * outer_ring_e2));
-        let t36 = outer_ring_e0 * outer_ring_e1;
-        let t37 = outer_ring_e2 * outer_ring_e3;
-        let t38 = k(2.0) * (t37 + t36);
-        let t39 = t38 * t32 - (t35 * t26 + t34 * t23);
-        let t40 = k(2.0) * (k(0.5) - (t22 + inner_ring_e2 * inner_ring_e2));
-        let t41 = k(2.0) * (t25 - t24);
-        let t42 = inner_ring_e0 * inner_ring_e1;
-        let t43 = inner_ring_e2 * inner_ring_e3;
-        let t44 = k(2.0) * (t43 + t42);
-        let t45 = t38 * t44 + (t34 * t41 + t35 * t40);
-        let t46 = k(2.0) * (t31 + t30);
-        let t47 = k(2.0) * (t43 - t42);
-        let t48 = k(2.0) * (k(0.5) - (t22 + inner_ring_e3 * inner_ring_e3));
-        let t49 = t7 * t46 + k(2.0) * (t37 - t36) * t47 + t9 * t48;
-        let t50 = t12 * t49 + t19 * (t4 * t48 - (t29 * t47 - t6 * t46));
-        let t51 = t50 - (inner_ring_wx * t45 - inner_ring_wy * t39);
-        let t52 = t4 * t44 - (t29 * t40 + t6 * t41);
-        let t53 = t18 * t49 + t19 * (t38 * t48 - (t34 * t46 - t35 * t47));
-        let t54 = t53 + (inner_ring_wx * t52 - inner_ring_wy * t33);
-        let t55 = k(1.0) / (t21 * (t52 * t39 - t33 * t45));
-        let t56 = inner_ring_wx - t55 * (t54 * (t39 * t21) + t51 * (t33 * t21));
-        let t57 = inner_ring_wy - t55 * (t54 * (t45 * t21) + t51 * (t52 * t21));
-        let t58 = inner_ring_e2 * chart1_0 + inner_ring_e3 * chart1_1
-            - inner_ring_e0 * chart1_2 - inner_ring_e1 * chart1_3;
-        let t59 = k(0.5) * t58;
-        let t60 = inner_ring_e1 * chart1_0 - inner_ring_e0 * chart1_1
-            - inner_ring_e3 * chart1_2 + inner_ring_e2 * chart1_3;
-        let t61 = k(0.5) * t60;
-        let t62 = t54 * (t45 * t59 + t39 * t61) + t51 * (t33 * t61 + t52 * t59);
-        let t63 = inner_ring_wz + t55 * t62;
-        let t64 = rotor_e3 * chart2_0 - rotor_e2 * chart2_1 + rotor_e1 * chart2_2
-            - rotor_e0 * chart2_3;
-        let t65 = k(0.5) * t64;
-        let t66 = rotor_e0 * rotor_e1;
-        let t67 = rotor_e2 * rotor_e3;
-        let t68 = k(2.0) * (t67 - t66);
-        let t69 = rotor_e0 * rotor_e2;
-        let t70 = rotor_e1 * rotor_e3;
-        let t71 = k(2.0) * (t70 + t69);
-        let t72 = rotor_e0 * rotor_e0;
-        let t73 = k(2.0) * (k(0.5) - (t72 + rotor_e3 * rotor_e3));
-        let t74 = t44 * t73 - (t41 * t71 - t40 * t68);
-        let t75 = rotor_e2 * chart2_0 + rotor_e3 * chart2_1 - rotor_e0 * chart2_2
-            - rotor_e1 * chart2_3;
-        let t76 = k(0.5) * t75;
-        let t77 = k(2.0) * (k(0.5) - (t72 + rotor_e2 * rotor_e2));
-        let t78 = rotor_e0 * rotor_e3;
-        let t79 = rotor_e1 * rotor_e2;
-        let t80 = k(2.0) * (t79 - t78);
-        let t81 = k(2.0) * (t67 + t66);
-        let t82 = t44 * t81 + (t41 * t80 + t40 * t77);
-        let t83 = t48 * t81 - (t46 * t80 - t47 * t77);
-        let t84 = t46 * t71 + t47 * t68 + t48 * t73;
-        let t85 = k(2.0) * (k(0.5) - (t72 + rotor_e1 * rotor_e1));
-        let t86 = k(2.0) * (t79 + t78);
-        let t87 = k(2.0) * (t70 - t69);
-        let t88 = t32 * t87 + (t26 * t86 + t23 * t85);
-        let t89 = t56 * (t44 * t87 - (t40 * t86 + t41 * t85)) - t57 * t88;
-        let t90 = t89 + (rotor_wy * t84 + rotor_wz * t83);
-        let t91 = t56 * (t48 * t87 - (t47 * t86 - t46 * t85)) + t63 * t88;
-        let t92 = t91 - (rotor_wy * t74 + rotor_wz * t82);
-        let t93 = t92 * (t84 * t65 - t83 * t76) - t90 * (t82 * t76 - t74 * t65);
-        let t94 = rotor_e1 * chart2_0 - rotor_e0 * chart2_1 - rotor_e3 * chart2_2
-            + rotor_e2 * chart2_3;
-        let t95 = k(0.5) * t94;
-        let t96 = k(1.0) / (t95 * (t74 * t83 - t82 * t84));
-        let t97 = rotor_wy + t96 * (t92 * (t83 * t95) + t90 * (t82 * t95));
-        let t98 = rotor_wz - t96 * (t92 * (t84 * t95) + t90 * (t74 * t95));
+        let t27 = t26 * t23 - (t20 * t19 + t16 * t13);
+        let t28 = k(2.0) * (t18 - t17);
+        let t29 = k(2.0) * (k(0.5) - (t12 + inner_ring_e2 * inner_ring_e2));
+        let t30 = k(2.0) * (t15 + t14);
+        let t31 = inner_ring_e0 * inner_ring_e1;
+        let t32 = inner_ring_e2 * inner_ring_e3;
+        let t33 = k(2.0) * (t32 + t31);
+        let t34 = t5 * t33 - (t30 * t29 + t2 * t28);
+        let t35 = t26 * t33 + (t16 * t28 + t20 * t29);
+        let t36 = t5 * t23 + (t30 * t19 + t2 * t13);
+        let t37 = k(1.0) / (t36 * t35 - t34 * t27);
+        let t38 = k(2.0) * (t22 + t21);
+        let t39 = k(2.0) * (t32 - t31);
+        let t40 = k(2.0) * (k(0.5) - (t12 + inner_ring_e3 * inner_ring_e3));
+        let t41 = t6 * t38 + k(2.0) * (t25 - t24) * t39 + t1 * t40;
+        let t42 = t10 * t41 + t11 * (t5 * t40 - (t30 * t39 - t2 * t38));
+        let t43 = t42 - (inner_ring_wx * t35 - inner_ring_wy * t27);
+        let t44 = outer_ring_wy * t41 + t11 * (t26 * t40 - (t16 * t38 - t20 * t39));
+        let t45 = t44 + (inner_ring_wx * t34 - inner_ring_wy * t36);
+        let t46 = inner_ring_wx + t45 * (t27 * t37) + t43 * (t36 * t37);
+        let t47 = inner_ring_wy + t45 * (t35 * t37) + t43 * (t34 * t37);
+        let t48 = rotor_e0 * rotor_e0;
+        let t49 = k(2.0) * (k(0.5) - (t48 + rotor_e2 * rotor_e2));
+        let t50 = rotor_e0 * rotor_e3;
+        let t51 = rotor_e1 * rotor_e2;
+        let t52 = k(2.0) * (t51 - t50);
+        let t53 = rotor_e0 * rotor_e1;
+        let t54 = rotor_e2 * rotor_e3;
+        let t55 = k(2.0) * (t54 + t53);
+        let t56 = t40 * t55 - (t38 * t52 - t39 * t49);
+        let t57 = k(2.0) * (t54 - t53);
+        let t58 = rotor_e0 * rotor_e2;
+        let t59 = rotor_e1 * rotor_e3;
+        let t60 = k(2.0) * (t59 + t58);
+        let t61 = k(2.0) * (k(0.5) - (t48 + rotor_e3 * rotor_e3));
+        let t62 = t33 * t61 - (t28 * t60 - t29 * t57);
+        let t63 = t38 * t60 + t39 * t57 + t40 * t61;
+        let t64 = t33 * t55 + (t28 * t52 + t29 * t49);
+        let t65 = k(1.0) / (t64 * t63 - t62 * t56);
+        let t66 = k(2.0) * (k(0.5) - (t48 + rotor_e1 * rotor_e1));
+        let t67 = k(2.0) * (t51 + t50);
+        let t68 = k(2.0) * (t59 - t58);
+        let t69 = t23 * t68 + (t19 * t67 + t13 * t66);
+        let t70 = t46 * (t33 * t68 - (t29 * t67 + t28 * t66)) - t47 * t69;
+        let t71 = t70 + (rotor_wy * t63 + rotor_wz * t56);
+        let t72 = t46 * (t40 * t68 - (t39 * t67 - t38 * t66)) + inner_ring_wz * t69;
+        let t73 = t72 - (rotor_wy * t62 + rotor_wz * t64);
         y[21] = k(0.0);
         y[22] = k(0.0);
         y[23] = k(0.0);
-        y[24] = t12;
-        y[25] = t18;
-        y[26] = t19;
+        y[24] = t10;
+        y[26] = t11;
         y[27] = k(0.0);
         y[28] = k(0.0);
         y[29] = k(0.0);
-        y[30] = t56;
-        y[31] = t57;
-        y[32] = t63;
+        y[30] = t46;
+        y[31] = t47;
         y[33] = k(0.0);
         y[34] = k(0.0);
         y[35] = k(0.0);
-        y[36] = rotor_wx + t96 * t93;
-        y[37] = t97;
-        y[38] = t98;
+        y[37] = rotor_wy - t73 * (t56 * t65) - t71 * (t64 * t65);
+        y[38] = rotor_wz + t73 * (t63 * t65) + t71 * (t62 * t65);
         Ok(())
     }
 }
@@ -1579,7 +1528,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 511 operations (191 ±, 310 ×, 10 ÷).
+    /// Solves eq. (17): 555 operations (215 ±, 335 ×, 5 ÷).
     fn accelerations(
         &self,
         _t: T,
@@ -1609,210 +1558,209 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = rotor_e0 * rotor_e0;
-        let t1 = k(2.0) * (k(0.5) - (t0 + rotor_e2 * rotor_e2));
-        let t2 = inner_ring_e0 * inner_ring_e0;
-        let t3 = k(2.0) * (k(0.5) - (t2 + inner_ring_e2 * inner_ring_e2));
-        let t4 = rotor_e0 * rotor_e3;
-        let t5 = rotor_e1 * rotor_e2;
-        let t6 = k(2.0) * (t5 - t4);
-        let t7 = inner_ring_e0 * inner_ring_e3;
-        let t8 = inner_ring_e1 * inner_ring_e2;
-        let t9 = k(2.0) * (t8 - t7);
-        let t10 = rotor_e0 * rotor_e1;
-        let t11 = rotor_e2 * rotor_e3;
-        let t12 = k(2.0) * (t11 + t10);
-        let t13 = inner_ring_e0 * inner_ring_e1;
-        let t14 = inner_ring_e2 * inner_ring_e3;
-        let t15 = k(2.0) * (t14 + t13);
-        let t16 = t15 * t12 + (t9 * t6 + t3 * t1);
-        let t17 = k(200000.0) * t16;
-        let t18 = k(2.0) * (t11 - t10);
-        let t19 = rotor_e0 * rotor_e2;
-        let t20 = rotor_e1 * rotor_e3;
-        let t21 = k(2.0) * (t20 + t19);
-        let t22 = k(2.0) * (k(0.5) - (t0 + rotor_e3 * rotor_e3));
-        let t23 = t15 * t22 - (t9 * t21 - t3 * t18);
-        let t24 = k(200000.0) * t23;
-        let t25 = k(2.0) * (k(0.5) - (t0 + rotor_e1 * rotor_e1));
-        let t26 = k(2.0) * (k(0.5) - (t2 + inner_ring_e1 * inner_ring_e1));
-        let t27 = k(2.0) * (t5 + t4);
-        let t28 = k(2.0) * (t8 + t7);
-        let t29 = k(2.0) * (t20 - t19);
-        let t30 = inner_ring_e0 * inner_ring_e2;
-        let t31 = inner_ring_e1 * inner_ring_e3;
-        let t32 = k(2.0) * (t31 - t30);
-        let t33 = t32 * t29 + (t28 * t27 + t26 * t25);
-        let t34 = k(1000000.0) * t33;
-        let t35 = k(1.0) / (t33 * t34 + t23 * t24 + t16 * t17);
-        let t36 = k(2.0) * (t14 - t13);
-        let t37 = k(2.0) * (t31 + t30);
-        let t38 = k(2.0) * (k(0.5) - (t2 + inner_ring_e3 * inner_ring_e3));
-        let t39 = t38 * t12 - (t37 * t6 - t36 * t1);
-        let t40 = k(200000.0) * t39;
-        let t41 = t37 * t21 + t36 * t18 + t38 * t22;
-        let t42 = k(200000.0) * t41;
-        let t43 = t23 * t42 + t16 * t40;
-        let t44 = t43 * t35;
-        let t45 = k(1.0) / (t41 * t42 + t39 * t40 - t43 * t44);
-        let t46 = t38 * t29 - (t36 * t27 - t37 * t25);
-        let t47 = t15 * t29 - (t3 * t27 + t9 * t25);
-        let t48 = t47 + t46 * t44;
-        let t49 = t48 * t45;
-        let t50 = t46 * t35;
-        let t51 = k(1.0) / (k(1e-6) + t46 * t50 + t48 * t49);
-        let t52 = t33 * t45;
-        let t53 = t48 * t52;
-        let t54 = t53 * t51;
-        let t55 = k(1.0) / (k(2e-6) + t33 * t52 - t53 * t54);
-        let t56 = outer_ring_e0 * outer_ring_e0;
-        let t57 = k(2.0) * (k(0.5) - (t56 + outer_ring_e1 * outer_ring_e1));
-        let t58 = outer_ring_e0 * outer_ring_e3;
-        let t59 = outer_ring_e1 * outer_ring_e2;
-        let t60 = k(2.0) * (t59 + t58);
-        let t61 = outer_ring_e0 * outer_ring_e2;
-        let t62 = outer_ring_e1 * outer_ring_e3;
-        let t63 = k(2.0) * (t62 - t61);
-        let t64 = t63 * t15 - (t60 * t3 + t57 * t9);
-        let t65 = t64 * t51;
-        let t66 = t63 * t32 + (t60 * t28 + t57 * t26);
-        let t67 = t66 - t53 * t65;
-        let t68 = t67 * t55;
-        let t69 = k(2.0) * (k(0.5) - (t56 + outer_ring_e3 * outer_ring_e3));
-        let t70 = outer_ring_e0 * outer_ring_e1;
-        let t71 = outer_ring_e2 * outer_ring_e3;
-        let t72 = k(2.0) * (t71 - t70);
-        let t73 = k(2.0) * (t62 + t61);
-        let t74 = t73 * t37 + t72 * t36 + t69 * t38;
-        let t75 = k(1000000.0) * t74;
-        let t76 = k(1.0) / (t74 * t75 + t64 * t65 + t67 * t68);
-        let t77 = k(2.0) * (k(0.5) - (t56 + outer_ring_e2 * outer_ring_e2));
-        let t78 = k(2.0) * (t59 - t58);
-        let t79 = k(2.0) * (t71 + t70);
-        let t80 = t79 * t15 + (t78 * t9 + t77 * t3);
-        let t81 = t80 * t51;
-        let t82 = t79 * t32 - (t77 * t28 + t78 * t26);
-        let t83 = t82 - t53 * t81;
-        let t84 = t83 * t55;
-        let t85 = t64 * t81 + t67 * t84;
-        let t86 = t85 * t76;
-        let t87 = k(1.0) / (t80 * t81 + t83 * t84 - t85 * t86);
-        let t88 = t74 * t87;
-        let t89 = k(1.0) / (k(2e-6) + t74 * t88);
-        let t90 = t79 * t38 - (t78 * t37 - t77 * t36);
-        let t91 = t63 * t38 - (t60 * t36 - t57 * t37);
-        let t92 = t91 + t90 * t86;
-        let t93 = t92 * t87;
-        let t94 = t74 * t93;
-        let t95 = t94 * t89;
-        let t96 = t90 * t76;
-        let t97 = k(1.0) / (k(1e-6) + t90 * t96 + t92 * t93 - t94 * t95);
-        let t98 = t69 * t89;
-        let t99 = t63 - t94 * t98;
-        let t100 = t99 * t97;
-        let t101 = k(1.0) / (t69 * t98 + t99 * t100);
-        let t102 = t73 * t89;
-        let t103 = t57 - t94 * t102;
-        let t104 = t103 * t97;
-        let t105 = t69 * t102 + t99 * t104;
-        let t106 = t105 * t101;
-        let t107 = rotor_wx * rotor_wy;
-        let t108 = k(5e-6) * t107;
-        let t109 = rotor_wx * rotor_wz;
-        let t110 = k(5e-6) * t109;
-        let t111 = inner_ring_wx * inner_ring_wy;
-        let t112 = inner_ring_wx * inner_ring_wx;
-        let t113 = inner_ring_wy * inner_ring_wz;
-        let t114 = t113 * t46
-            + ((inner_ring_wz * inner_ring_wz + t112) * t47 - t111 * t33);
-        let t115 = rotor_wy * (t32 * t22 - (t28 * t18 - t26 * t21))
-            + rotor_wz * (t32 * t12 - (t28 * t1 + t26 * t6));
-        let t116 = k(2.0)
-            * (inner_ring_wx * (rotor_wy * t41 + rotor_wz * t39) + inner_ring_wz * t115);
-        let t117 = rotor_wz * rotor_wz + rotor_wy * rotor_wy;
-        let t118 = t109 * t23 - (t107 * t16 - t117 * t47) + t116 + t114;
-        let t119 = t118 - k(1e-6) * t111 * t34 + t110 * t24 - t108 * t17;
-        let t120 = inner_ring_wx * inner_ring_wz;
-        let t121 = inner_ring_wy * inner_ring_wy + t112;
-        let t122 = k(2.0)
-            * (inner_ring_wx * (rotor_wy * t23 + rotor_wz * t16) - inner_ring_wy * t115);
-        let t123 = t109 * t41 - (t107 * t39 - t117 * t46) - t122
-            + (t121 * t46 + (t113 * t47 + t120 * t33));
-        let t124 = t123 + t110 * t42 - t108 * t40 - t119 * t44;
-        let t125 = k(1e-6) * t113 - t119 * t50 + t124 * t49;
-        let t126 = t124 * t52 - t125 * t54;
-        let t127 = outer_ring_wx * outer_ring_wz;
-        let t128 = outer_ring_wz * outer_ring_wz;
-        let t129 = outer_ring_wx * outer_ring_wy;
-        let t130 = t127 * t74
-            - (t129 * t90 - (t128 + outer_ring_wy * outer_ring_wy) * t91);
-        let t131 = inner_ring_wx * (t69 * t15 - (t73 * t9 - t72 * t3))
-            - inner_ring_wy * (t69 * t32 - (t72 * t28 - t73 * t26));
-        let t132 = k(2.0)
-            * (outer_ring_wy * t131
-                + outer_ring_wz * (inner_ring_wx * t80 - inner_ring_wy * t82));
-        let t133 = t121 * t91 + (t113 * t64 + t120 * t66) - t132 + t130;
-        let t134 = t133 + k(1e-6) * t127 * t75 - t125 * t65 - t126 * t68;
-        let t135 = t128 + outer_ring_wx * outer_ring_wx;
-        let t136 = outer_ring_wy * outer_ring_wz;
-        let t137 = k(2.0)
-            * (outer_ring_wx * t131
-                + outer_ring_wz * (inner_ring_wx * t64 - inner_ring_wy * t66));
-        let t138 = t121 * t90 + (t113 * t80 + t120 * t82) + t137
-            + (t136 * t74 + (t135 * t90 - t129 * t91));
-        let t139 = t138 - t125 * t81 - t126 * t84 - t134 * t86;
-        let t140 = t139 * t88;
-        let t141 = k(1e-6) * t129 + t134 * t96 - t139 * t93 + t140 * t95;
-        let t142 = t69 * t136 + (t79 * t135 - t63 * t129) - t140 * t98;
-        let t143 = t142 + t141 * t100;
-        let t144 = t73 * t136 - (t78 * t135 + t57 * t129) - t140 * t102;
-        let t145 = (t144 + t141 * t104 - t143 * t106)
-            / (t73 * t102 + t103 * t104 - t105 * t106);
-        let t146 = t143 * t101 - t106 * t145;
-        let t147 = t141 * t97 - t100 * t146 - t104 * t145;
-        let t148 = t140 * t89 + t95 * t147 + t98 * t146 + t102 * t145;
-        let t149 = t139 * t87 - t88 * t148 + t93 * t147;
-        let t150 = t134 * t76 - t96 * t147 - t86 * t149;
-        let t151 = t126 * t55 + t68 * t150 + t84 * t149;
-        let t152 = t125 * t51 - t54 * t151 + t65 * t150 + t81 * t149;
-        let t153 = t124 * t45 - t49 * t152 - t52 * t151;
-        let t154 = t119 * t35 + t50 * t152 - t44 * t153;
+        let t0 = outer_ring_wx * outer_ring_wy;
+        let t1 = outer_ring_e0 * outer_ring_e2;
+        let t2 = outer_ring_e1 * outer_ring_e3;
+        let t3 = k(2.0) * (t2 - t1);
+        let t4 = outer_ring_wz * outer_ring_wz;
+        let t5 = t4 + outer_ring_wx * outer_ring_wx;
+        let t6 = outer_ring_e0 * outer_ring_e1;
+        let t7 = outer_ring_e2 * outer_ring_e3;
+        let t8 = k(2.0) * (t7 + t6);
+        let t9 = outer_ring_wy * outer_ring_wz;
+        let t10 = outer_ring_e0 * outer_ring_e0;
+        let t11 = k(2.0) * (k(0.5) - (t10 + outer_ring_e3 * outer_ring_e3));
+        let t12 = t11 * t9 + (t8 * t5 - t3 * t0);
+        let t13 = k(2.0) * (k(0.5) - (t10 + outer_ring_e1 * outer_ring_e1));
+        let t14 = k(2.0) * (t2 + t1);
+        let t15 = k(1.0) / (t14 * t3 - t13 * t11);
+        let t16 = t13 * t15;
+        let t17 = outer_ring_e0 * outer_ring_e3;
+        let t18 = outer_ring_e1 * outer_ring_e2;
+        let t19 = k(2.0) * (t18 - t17);
+        let t20 = t14 * t9 - (t19 * t5 + t13 * t0);
+        let t21 = t3 * t15;
+        let t22 = t21 * t20 - t16 * t12;
+        let t23 = rotor_e0 * rotor_e3;
+        let t24 = rotor_e1 * rotor_e2;
+        let t25 = k(2.0) * (t24 - t23);
+        let t26 = inner_ring_e0 * inner_ring_e0;
+        let t27 = k(2.0) * (k(0.5) - (t26 + inner_ring_e1 * inner_ring_e1));
+        let t28 = rotor_e0 * rotor_e0;
+        let t29 = k(2.0) * (k(0.5) - (t28 + rotor_e2 * rotor_e2));
+        let t30 = inner_ring_e0 * inner_ring_e3;
+        let t31 = inner_ring_e1 * inner_ring_e2;
+        let t32 = k(2.0) * (t31 + t30);
+        let t33 = rotor_e0 * rotor_e1;
+        let t34 = rotor_e2 * rotor_e3;
+        let t35 = k(2.0) * (t34 + t33);
+        let t36 = inner_ring_e0 * inner_ring_e2;
+        let t37 = inner_ring_e1 * inner_ring_e3;
+        let t38 = k(2.0) * (t37 - t36);
+        let t39 = t38 * t35 - (t32 * t29 + t27 * t25);
+        let t40 = k(5e-6) * t39;
+        let t41 = rotor_e0 * rotor_e2;
+        let t42 = rotor_e1 * rotor_e3;
+        let t43 = k(2.0) * (t42 + t41);
+        let t44 = k(2.0) * (t34 - t33);
+        let t45 = k(2.0) * (k(0.5) - (t28 + rotor_e3 * rotor_e3));
+        let t46 = t38 * t45 - (t32 * t44 - t27 * t43);
+        let t47 = k(5e-6) * t46;
+        let t48 = inner_ring_e0 * inner_ring_e1;
+        let t49 = inner_ring_e2 * inner_ring_e3;
+        let t50 = k(2.0) * (t49 - t48);
+        let t51 = k(2.0) * (t37 + t36);
+        let t52 = k(2.0) * (k(0.5) - (t26 + inner_ring_e3 * inner_ring_e3));
+        let t53 = t52 * t35 - (t51 * t25 - t50 * t29);
+        let t54 = t51 * t43 + t50 * t44 + t52 * t45;
+        let t55 = t54 * t47 + t53 * t40;
+        let t56 = k(1e-6) + (t54 * (k(5e-6) * t54) + t53 * (k(5e-6) * t53));
+        let t57 = k(1.0) / t56;
+        let t58 = t57 * t55;
+        let t59 = t55 * t58 - (k(1e-6) + (t46 * t47 + t39 * t40));
+        let t60 = k(2.0) * (k(0.5) - (t10 + outer_ring_e2 * outer_ring_e2));
+        let t61 = t8 * t38 - (t60 * t32 + t19 * t27);
+        let t62 = k(2.0) * (k(0.5) - (t26 + inner_ring_e2 * inner_ring_e2));
+        let t63 = k(2.0) * (t31 - t30);
+        let t64 = k(2.0) * (t49 + t48);
+        let t65 = t64 * t35 + (t63 * t25 + t62 * t29);
+        let t66 = t64 * t45 - (t63 * t43 - t62 * t44);
+        let t67 = k(5e-6) * t65;
+        let t68 = k(5e-6) * t66;
+        let t69 = t54 * t68 + t53 * t67;
+        let t70 = t69 * t58 - (t66 * t47 + t65 * t40);
+        let t71 = t8 * t64 + (t19 * t63 + t60 * t62);
+        let t72 = t55 - t56 * t58;
+        let t73 = t8 * t52 - (t19 * t51 - t60 * t50);
+        let t74 = t73 * t72 - (t71 * t70 + t61 * t59);
+        let t75 = t57 * t69;
+        let t76 = t69 * t75 - (k(2e-6) + (t66 * t68 + t65 * t67));
+        let t77 = t69 - t56 * t75;
+        let t78 = t73 * t77 - (t71 * t76 + t61 * t70);
+        let t79 = t71 * t77 + t61 * t72;
+        let t80 = k(2.0) * (k(0.5) - (t28 + rotor_e1 * rotor_e1));
+        let t81 = k(2.0) * (t24 + t23);
+        let t82 = k(2.0) * (t42 - t41);
+        let t83 = t38 * t82 + (t32 * t81 + t27 * t80);
+        let t84 = inner_ring_wx * inner_ring_wy;
+        let t85 = t64 * t82 - (t62 * t81 + t63 * t80);
+        let t86 = inner_ring_wx * inner_ring_wx;
+        let t87 = t52 * t82 - (t50 * t81 - t51 * t80);
+        let t88 = inner_ring_wy * inner_ring_wz;
+        let t89 = t88 * t87 + ((inner_ring_wz * inner_ring_wz + t86) * t85 - t84 * t83);
+        let t90 = rotor_wy * t46 + rotor_wz * t39;
+        let t91 = k(2.0)
+            * (inner_ring_wx * (rotor_wy * t54 + rotor_wz * t53) + inner_ring_wz * t90);
+        let t92 = rotor_wz * rotor_wz + rotor_wy * rotor_wy;
+        let t93 = rotor_wx * rotor_wy;
+        let t94 = rotor_wx * rotor_wz;
+        let t95 = t94 * t66 - (t93 * t65 - t92 * t85) + t91 + t89;
+        let t96 = k(1.0) / (t65 * t54 - t66 * t53);
+        let t97 = t53 * t96;
+        let t98 = inner_ring_wx * inner_ring_wz;
+        let t99 = inner_ring_wy * inner_ring_wy + t86;
+        let t100 = k(2.0)
+            * (inner_ring_wx * (rotor_wy * t66 + rotor_wz * t65) - inner_ring_wy * t90);
+        let t101 = t94 * t54 - (t93 * t53 - t92 * t87) - t100
+            + (t99 * t87 + (t88 * t85 + t98 * t83));
+        let t102 = t65 * t96;
+        let t103 = t102 * t101 - t97 * t95;
+        let t104 = k(5e-6) * (t94 + t103);
+        let t105 = t54 * t96;
+        let t106 = t66 * t96;
+        let t107 = t106 * t101 - t105 * t95;
+        let t108 = k(5e-6) * (t93 + t107);
+        let t109 = k(1e-6) * t84 - (t54 * t108 + t53 * t104);
+        let t110 = t58 * t109 - (k(1e-6) * t88 - (t46 * t108 + t39 * t104));
+        let t111 = k(2.0) * (t18 + t17);
+        let t112 = t3 * t52 - (t111 * t50 - t13 * t51);
+        let t113 = k(2.0) * (t7 - t6);
+        let t114 = t14 * t51 + t113 * t50 + t11 * t52;
+        let t115 = outer_ring_wx * outer_ring_wz;
+        let t116 = t115 * t114
+            - (t0 * t73 - (t4 + outer_ring_wy * outer_ring_wy) * t112);
+        let t117 = t11 * t38 - (t113 * t32 - t14 * t27);
+        let t118 = t11 * t64 - (t14 * t63 - t113 * t62);
+        let t119 = inner_ring_wx * t118 - inner_ring_wy * t117;
+        let t120 = k(2.0)
+            * (outer_ring_wy * t119
+                + outer_ring_wz * (inner_ring_wx * t71 - inner_ring_wy * t61));
+        let t121 = t3 * t38 + (t111 * t32 + t13 * t27);
+        let t122 = t3 * t64 - (t111 * t62 + t13 * t63);
+        let t123 = t99 * t112 + (t88 * t122 + t98 * t121) - t120 + t116;
+        let t124 = k(1.0) / (t121 * t71 - t122 * t61);
+        let t125 = t61 * t124;
+        let t126 = k(2.0)
+            * (outer_ring_wx * t119
+                + outer_ring_wz * (inner_ring_wx * t122 - inner_ring_wy * t121));
+        let t127 = t99 * t73 + (t88 * t71 + t98 * t61) + t126
+            + (t9 * t114 + (t5 * t73 - t0 * t112));
+        let t128 = t121 * t124;
+        let t129 = t128 * t127 - t125 * t123;
+        let t130 = t71 * t124;
+        let t131 = t122 * t124;
+        let t132 = t131 * t127 - t130 * t123;
+        let t133 = t76 * t132 + t70 * t129 - (t75 * t109 + (t66 * t108 + t65 * t104));
+        let t134 = t71 * t133 + t61 * (t70 * t132 + t59 * t129 - t110);
+        let t135 = k(1e-6) * t115 + (t73 * (t77 * t132 + t72 * t129) - t134);
+        let t136 = t71 * (t112 * t77 - (t122 * t76 + t121 * t70))
+            + t61 * (t112 * t72 - (t122 * t70 + t121 * t59));
+        let t137 = t14 * t15;
+        let t138 = t11 * t15;
+        let t139 = t138 * t20 - t137 * t12;
+        let t140 = t139 * (t114 * t79 + (t118 * t78 + t117 * t74))
+            + t22 * (t73 * (t122 * t77 + t121 * t72) + t136);
+        let t141 = (t140 - t135) / (k(1e-6) + (t73 * t79 + (t71 * t78 + t61 * t74)));
+        let t142 = t129 - (t117 * t139 - (t61 * t141 - t121 * t22));
+        let t143 = t132 - (t118 * t139 - (t71 * t141 - t122 * t22));
+        let t144 = t114 * t139 - (t73 * t141 - t112 * t22);
+        let t145 = t57 * (t109 + (t56 * t144 - (t69 * t143 + t55 * t142)));
+        let t146 = t144 - t145;
+        let t147 = t103 - (t53 * t146 - (t65 * t143 + t39 * t142));
+        let t148 = t107 - (t54 * t146 - (t66 * t143 + t46 * t142));
+        let t149 = k(5e-6) * (t94 + t147);
+        let t150 = k(5e-6) * (t93 + t148);
+        let t151 = t46 * t150 + t39 * t149 - k(1e-6) * (t88 - t142);
+        let t152 = t66 * t150 + t65 * t149 + k(2e-6) * t143;
+        let t153 = t54 * t150 + t53 * t149 - k(1e-6) * (t84 + t146);
+        let t154 = t112 * t153 + (t122 * t152 + t121 * t151) - k(2e-6) * t22;
+        let t155 = t114 * t153 + (t118 * t152 + t117 * t151) + k(1e-6) * (t0 - t139);
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -t148,
-            t75 * t150 - t127,
+            -t22,
+            t141,
+            t139,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t142,
+            t143,
+            t146,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
             t147,
-            k(0.0),
-            k(0.0),
-            k(0.0),
-            t152,
-            -t151,
-            -(t111 + t34 * t154),
-            k(0.0),
-            k(0.0),
-            k(0.0),
-            k(0.0),
-            t42 * t153 - (t109 - t24 * t154),
-            t107 + t17 * t154 + t40 * t153,
+            -t148,
         ];
         *lambda = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -t146,
-            t145,
+            -(t137 * t155 + t16 * t154),
+            -(t138 * t155 + t21 * t154),
             k(0.0),
             k(0.0),
             k(0.0),
-            t150,
-            t149,
+            -(t130 * t152 + t125 * t151),
+            t131 * t152 + t128 * t151,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t154,
-            t153,
+            t105 * t150 + t97 * t149,
+            t106 * t150 + t102 * t149,
         ];
     }
 }

@@ -18,13 +18,13 @@
 //! | gamma | γ | 181 | 291 | 0 | 472 | 9 of 21 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 129 | 184 | 0 | 313 | 0 of 21 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 14 of 24 |
-//! | accelerations | (s̈, ẇ') and λ, eq. (17) | 461 | 719 | 15 | 1195 | 5 of 45 |
+//! | accelerations | (s̈, ẇ') and λ, eq. (17) | 352 | 545 | 6 | 903 | 10 of 45 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 32 | 64 | 0 | 96 | 0 of 28 |
 //! | energy | T and V | 26 | 45 | 0 | 71 | 0 of 2 |
 //! | read_joints | joint coordinates and rates | 73 | 83 | 0 | 156 | 0 of 9 |
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
 //! | newton_step | dependent positions, one Newton step | 193 | 318 | 3 | 514 | 12 of 28 |
-//! | solve_velocities | dependent velocities, eq. (19) | 151 | 260 | 3 | 414 | 12 of 24 |
+//! | solve_velocities | dependent velocities, eq. (19) | 112 | 185 | 3 | 300 | 12 of 24 |
 
 /// The mechanism `gyroscope_maximal`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -454,8 +454,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMaximal<T> {
         let t62 = rotor_e1 * rotor_e3;
         let t63 = k(2.0) * (t62 - t61);
         let t64 = t49 * t63 + (t48 * t60 + t45 * t57);
-        let t65 = inner_ring_wx * (t42 * t63 - (t37 * t60 - t40 * t57))
-            + inner_ring_wz * t64;
+        let t65 = inner_ring_wz * t64
+            + inner_ring_wx * (t42 * t63 - (t37 * t60 - t40 * t57));
         let t66 = k(2.0) * (k(0.5) - (t56 + rotor_e2 * rotor_e2));
         let t67 = k(2.0) * (t59 - t58);
         let t68 = rotor_e0 * rotor_e1;
@@ -489,13 +489,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMaximal<T> {
             t54 - t55,
             rotor_sx
                 - (inner_ring_sx
-                    - k(0.000125) * (t40 * inner_ring_wy - t50 * inner_ring_wz)),
+                    + k(0.000125) * (t50 * inner_ring_wz - t40 * inner_ring_wy)),
             rotor_sy
                 - (inner_ring_sy
-                    - k(0.000125) * (t37 * inner_ring_wy + t51 * inner_ring_wz)),
+                    - k(0.000125) * (t51 * inner_ring_wz + t37 * inner_ring_wy)),
             rotor_sz
                 - (inner_ring_sz
-                    + k(0.000125) * (t42 * inner_ring_wy + t52 * inner_ring_wz)),
+                    + k(0.000125) * (t52 * inner_ring_wz + t42 * inner_ring_wy)),
             t74 - t65,
             -(t76 + t75),
         ];
@@ -1028,14 +1028,13 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeMaximal<T> {
         y[27] = -t143;
         Ok(())
     }
-    /// Solves eq. (19) for the dependent velocities: 414 operations (151 ±, 260 ×, 3 ÷).
+    /// Solves eq. (19) for the dependent velocities: 300 operations (112 ±, 185 ×, 3 ÷).
     fn solve_velocities(
         &self,
         _t: T,
-        choice: &Self::Independent,
+        _choice: &Self::Independent,
         y: &mut Self::State,
     ) -> ::core::result::Result<(), gyro_sim::Error> {
-        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
         let k = T::constant;
         let base_e0 = y[3];
         let base_e1 = y[4];
@@ -1059,143 +1058,96 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeMaximal<T> {
         let inner_ring_wx = y[43];
         let inner_ring_wy = y[44];
         let inner_ring_wz = y[45];
-        let rotor_wx = y[49];
         let rotor_wy = y[50];
         let rotor_wz = y[51];
-        let chart0_0 = charts[0][0];
-        let chart0_1 = charts[0][1];
-        let chart0_2 = charts[0][2];
-        let chart0_3 = charts[0][3];
-        let chart1_0 = charts[1][0];
-        let chart1_1 = charts[1][1];
-        let chart1_2 = charts[1][2];
-        let chart1_3 = charts[1][3];
-        let chart2_0 = charts[2][0];
-        let chart2_1 = charts[2][1];
-        let chart2_2 = charts[2][2];
-        let chart2_3 = charts[2][3];
-        let t0 = outer_ring_e2 * chart0_0 + outer_ring_e3 * chart0_1
-            - outer_ring_e0 * chart0_2 - outer_ring_e1 * chart0_3;
-        let t1 = k(0.5) * t0;
-        let t2 = outer_ring_e0 * outer_ring_e0;
-        let t3 = k(2.0) * (k(0.5) - (t2 + outer_ring_e1 * outer_ring_e1));
-        let t4 = base_e0 * base_e2;
-        let t5 = base_e1 * base_e3;
+        let t0 = outer_ring_e0 * outer_ring_e0;
+        let t1 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
+        let t2 = base_e0 * base_e0;
+        let t3 = k(2.0) * (k(0.5) - (t2 + base_e1 * base_e1));
+        let t4 = outer_ring_e0 * outer_ring_e3;
+        let t5 = outer_ring_e1 * outer_ring_e2;
         let t6 = k(2.0) * (t5 + t4);
-        let t7 = outer_ring_e0 * outer_ring_e3;
-        let t8 = outer_ring_e1 * outer_ring_e2;
-        let t9 = k(2.0) * (t8 + t7);
-        let t10 = k(2.0) * (base_e2 * base_e3 - base_e0 * base_e1);
-        let t11 = outer_ring_e0 * outer_ring_e2;
-        let t12 = outer_ring_e1 * outer_ring_e3;
+        let t7 = k(2.0) * (base_e1 * base_e2 + base_e0 * base_e3);
+        let t8 = outer_ring_e0 * outer_ring_e2;
+        let t9 = outer_ring_e1 * outer_ring_e3;
+        let t10 = k(2.0) * (t9 - t8);
+        let t11 = base_e0 * base_e2;
+        let t12 = base_e1 * base_e3;
         let t13 = k(2.0) * (t12 - t11);
-        let t14 = base_e0 * base_e0;
-        let t15 = k(2.0) * (k(0.5) - (t14 + base_e3 * base_e3));
-        let t16 = t15 * t13 - (t10 * t9 - t6 * t3);
-        let t17 = k(2.0) * (k(0.5) - (t14 + base_e1 * base_e1));
-        let t18 = k(2.0) * (base_e1 * base_e2 + base_e0 * base_e3);
-        let t19 = k(2.0) * (t5 - t4);
-        let t20 = t19 * t13 + (t18 * t9 + t17 * t3);
-        let t21 = k(2.0) * (t12 + t11);
-        let t22 = outer_ring_e0 * outer_ring_e1;
-        let t23 = outer_ring_e2 * outer_ring_e3;
-        let t24 = k(2.0) * (t23 - t22);
-        let t25 = k(2.0) * (k(0.5) - (t2 + outer_ring_e3 * outer_ring_e3));
-        let t26 = t19 * t25 - (t18 * t24 - t17 * t21);
-        let t27 = outer_ring_wx * t26 + outer_ring_wz * t20;
-        let t28 = t6 * t21 + t10 * t24 + t15 * t25;
-        let t29 = outer_ring_wx * t28 + outer_ring_wz * t16;
-        let t30 = k(1.0) / (t1 * (t16 * t26 - t28 * t20));
-        let t31 = outer_ring_wx + t30 * (t29 * (t20 * t1) - t27 * (t16 * t1));
-        let t32 = outer_ring_e1 * chart0_0 - outer_ring_e0 * chart0_1
-            - outer_ring_e3 * chart0_2 + outer_ring_e2 * chart0_3;
-        let t33 = k(0.5) * t32;
-        let t34 = outer_ring_e3 * chart0_0 - outer_ring_e2 * chart0_1
-            + outer_ring_e1 * chart0_2 - outer_ring_e0 * chart0_3;
-        let t35 = k(0.5) * t34;
-        let t36 = t29 * (t20 * t33 - t26 * t35) + t27 * (t28 * t35 - t16 * t33);
-        let t37 = outer_ring_wy - t30 * t36;
-        let t38 = outer_ring_wz - t30 * (t29 * (t26 * t1) - t27 * (t28 * t1));
-        let t39 = inner_ring_e3 * chart1_0 - inner_ring_e2 * chart1_1
-            + inner_ring_e1 * chart1_2 - inner_ring_e0 * chart1_3;
-        let t40 = k(0.5) * t39;
-        let t41 = inner_ring_e0 * inner_ring_e0;
-        let t42 = k(2.0) * (k(0.5) - (t41 + inner_ring_e1 * inner_ring_e1));
-        let t43 = inner_ring_e0 * inner_ring_e3;
-        let t44 = inner_ring_e1 * inner_ring_e2;
-        let t45 = k(2.0) * (t44 + t43);
-        let t46 = inner_ring_e0 * inner_ring_e2;
-        let t47 = inner_ring_e1 * inner_ring_e3;
-        let t48 = k(2.0) * (t47 - t46);
-        let t49 = t13 * t48 + (t9 * t45 + t3 * t42);
-        let t50 = k(2.0) * (t8 - t7);
-        let t51 = k(2.0) * (k(0.5) - (t2 + outer_ring_e2 * outer_ring_e2));
-        let t52 = k(2.0) * (t23 + t22);
-        let t53 = t52 * t48 - (t51 * t45 + t50 * t42);
-        let t54 = k(2.0) * (k(0.5) - (t41 + inner_ring_e2 * inner_ring_e2));
-        let t55 = k(2.0) * (t44 - t43);
-        let t56 = inner_ring_e0 * inner_ring_e1;
-        let t57 = inner_ring_e2 * inner_ring_e3;
-        let t58 = k(2.0) * (t57 + t56);
-        let t59 = t52 * t58 + (t50 * t55 + t51 * t54);
-        let t60 = k(2.0) * (t47 + t46);
-        let t61 = k(2.0) * (t57 - t56);
-        let t62 = k(2.0) * (k(0.5) - (t41 + inner_ring_e3 * inner_ring_e3));
-        let t63 = t21 * t60 + t24 * t61 + t25 * t62;
-        let t64 = t31 * t63 + t38 * (t13 * t62 - (t9 * t61 - t3 * t60));
-        let t65 = t64 - (inner_ring_wx * t59 - inner_ring_wy * t53);
-        let t66 = t13 * t58 - (t9 * t54 + t3 * t55);
-        let t67 = t37 * t63 + t38 * (t52 * t62 - (t50 * t60 - t51 * t61));
-        let t68 = t67 + (inner_ring_wx * t66 - inner_ring_wy * t49);
-        let t69 = k(1.0) / (t40 * (t66 * t53 - t49 * t59));
-        let t70 = inner_ring_wx - t69 * (t68 * (t53 * t40) + t65 * (t49 * t40));
-        let t71 = inner_ring_wy - t69 * (t68 * (t59 * t40) + t65 * (t66 * t40));
-        let t72 = inner_ring_e2 * chart1_0 + inner_ring_e3 * chart1_1
-            - inner_ring_e0 * chart1_2 - inner_ring_e1 * chart1_3;
-        let t73 = k(0.5) * t72;
-        let t74 = inner_ring_e1 * chart1_0 - inner_ring_e0 * chart1_1
-            - inner_ring_e3 * chart1_2 + inner_ring_e2 * chart1_3;
-        let t75 = k(0.5) * t74;
-        let t76 = t68 * (t59 * t73 + t53 * t75) + t65 * (t49 * t75 + t66 * t73);
-        let t77 = inner_ring_wz + t69 * t76;
-        let t78 = rotor_e3 * chart2_0 - rotor_e2 * chart2_1 + rotor_e1 * chart2_2
-            - rotor_e0 * chart2_3;
-        let t79 = k(0.5) * t78;
-        let t80 = rotor_e0 * rotor_e1;
-        let t81 = rotor_e2 * rotor_e3;
-        let t82 = k(2.0) * (t81 - t80);
-        let t83 = rotor_e0 * rotor_e2;
-        let t84 = rotor_e1 * rotor_e3;
-        let t85 = k(2.0) * (t84 + t83);
-        let t86 = rotor_e0 * rotor_e0;
-        let t87 = k(2.0) * (k(0.5) - (t86 + rotor_e3 * rotor_e3));
-        let t88 = t58 * t87 - (t55 * t85 - t54 * t82);
-        let t89 = rotor_e2 * chart2_0 + rotor_e3 * chart2_1 - rotor_e0 * chart2_2
-            - rotor_e1 * chart2_3;
-        let t90 = k(0.5) * t89;
-        let t91 = k(2.0) * (k(0.5) - (t86 + rotor_e2 * rotor_e2));
-        let t92 = rotor_e0 * rotor_e3;
-        let t93 = rotor_e1 * rotor_e2;
-        let t94 = k(2.0) * (t93 - t92);
-        let t95 = k(2.0) * (t81 + t80);
-        let t96 = t58 * t95 + (t55 * t94 + t54 * t91);
-        let t97 = t62 * t95 - (t60 * t94 - t61 * t91);
-        let t98 = t60 * t85 + t61 * t82 + t62 * t87;
-        let t99 = k(2.0) * (k(0.5) - (t86 + rotor_e1 * rotor_e1));
-        let t100 = k(2.0) * (t93 + t92);
-        let t101 = k(2.0) * (t84 - t83);
-        let t102 = t48 * t101 + (t45 * t100 + t42 * t99);
-        let t103 = t70 * (t58 * t101 - (t54 * t100 + t55 * t99)) - t71 * t102;
-        let t104 = t103 + (rotor_wy * t98 + rotor_wz * t97);
-        let t105 = t70 * (t62 * t101 - (t61 * t100 - t60 * t99)) + t77 * t102;
-        let t106 = t105 - (rotor_wy * t88 + rotor_wz * t96);
-        let t107 = t106 * (t98 * t79 - t97 * t90) - t104 * (t96 * t90 - t88 * t79);
-        let t108 = rotor_e1 * chart2_0 - rotor_e0 * chart2_1 - rotor_e3 * chart2_2
-            + rotor_e2 * chart2_3;
-        let t109 = k(0.5) * t108;
-        let t110 = k(1.0) / (t109 * (t88 * t97 - t96 * t98));
-        let t111 = rotor_wy + t110 * (t106 * (t97 * t109) + t104 * (t96 * t109));
-        let t112 = rotor_wz - t110 * (t106 * (t98 * t109) + t104 * (t88 * t109));
+        let t14 = t13 * t10 + (t7 * t6 + t3 * t1);
+        let t15 = k(2.0) * (k(0.5) - (t0 + outer_ring_e3 * outer_ring_e3));
+        let t16 = k(2.0) * (k(0.5) - (t2 + base_e3 * base_e3));
+        let t17 = outer_ring_e0 * outer_ring_e1;
+        let t18 = outer_ring_e2 * outer_ring_e3;
+        let t19 = k(2.0) * (t18 - t17);
+        let t20 = k(2.0) * (base_e2 * base_e3 - base_e0 * base_e1);
+        let t21 = k(2.0) * (t9 + t8);
+        let t22 = k(2.0) * (t12 + t11);
+        let t23 = t22 * t21 + t20 * t19 + t16 * t15;
+        let t24 = t13 * t15 - (t7 * t19 - t3 * t21);
+        let t25 = t16 * t10 - (t20 * t6 - t22 * t1);
+        let t26 = k(1.0) / (t25 * t24 - t23 * t14);
+        let t27 = outer_ring_wx * t24 + outer_ring_wz * t14;
+        let t28 = outer_ring_wx * t23 + outer_ring_wz * t25;
+        let t29 = outer_ring_wx + t28 * (t14 * t26) - t27 * (t25 * t26);
+        let t30 = outer_ring_wz - t28 * (t24 * t26) + t27 * (t23 * t26);
+        let t31 = inner_ring_e0 * inner_ring_e0;
+        let t32 = k(2.0) * (k(0.5) - (t31 + inner_ring_e1 * inner_ring_e1));
+        let t33 = k(2.0) * (t5 - t4);
+        let t34 = inner_ring_e0 * inner_ring_e3;
+        let t35 = inner_ring_e1 * inner_ring_e2;
+        let t36 = k(2.0) * (t35 + t34);
+        let t37 = k(2.0) * (k(0.5) - (t0 + outer_ring_e2 * outer_ring_e2));
+        let t38 = inner_ring_e0 * inner_ring_e2;
+        let t39 = inner_ring_e1 * inner_ring_e3;
+        let t40 = k(2.0) * (t39 - t38);
+        let t41 = k(2.0) * (t18 + t17);
+        let t42 = t41 * t40 - (t37 * t36 + t33 * t32);
+        let t43 = k(2.0) * (t35 - t34);
+        let t44 = k(2.0) * (k(0.5) - (t31 + inner_ring_e2 * inner_ring_e2));
+        let t45 = inner_ring_e0 * inner_ring_e1;
+        let t46 = inner_ring_e2 * inner_ring_e3;
+        let t47 = k(2.0) * (t46 + t45);
+        let t48 = t10 * t47 - (t6 * t44 + t1 * t43);
+        let t49 = t41 * t47 + (t33 * t43 + t37 * t44);
+        let t50 = t10 * t40 + (t6 * t36 + t1 * t32);
+        let t51 = k(1.0) / (t50 * t49 - t48 * t42);
+        let t52 = k(2.0) * (t39 + t38);
+        let t53 = k(2.0) * (t46 - t45);
+        let t54 = k(2.0) * (k(0.5) - (t31 + inner_ring_e3 * inner_ring_e3));
+        let t55 = t21 * t52 + t19 * t53 + t15 * t54;
+        let t56 = t29 * t55 + t30 * (t10 * t54 - (t6 * t53 - t1 * t52));
+        let t57 = t56 - (inner_ring_wx * t49 - inner_ring_wy * t42);
+        let t58 = outer_ring_wy * t55 + t30 * (t41 * t54 - (t33 * t52 - t37 * t53));
+        let t59 = t58 + (inner_ring_wx * t48 - inner_ring_wy * t50);
+        let t60 = inner_ring_wx + t59 * (t42 * t51) + t57 * (t50 * t51);
+        let t61 = inner_ring_wy + t59 * (t49 * t51) + t57 * (t48 * t51);
+        let t62 = rotor_e0 * rotor_e0;
+        let t63 = k(2.0) * (k(0.5) - (t62 + rotor_e2 * rotor_e2));
+        let t64 = rotor_e0 * rotor_e3;
+        let t65 = rotor_e1 * rotor_e2;
+        let t66 = k(2.0) * (t65 - t64);
+        let t67 = rotor_e0 * rotor_e1;
+        let t68 = rotor_e2 * rotor_e3;
+        let t69 = k(2.0) * (t68 + t67);
+        let t70 = t54 * t69 - (t52 * t66 - t53 * t63);
+        let t71 = k(2.0) * (t68 - t67);
+        let t72 = rotor_e0 * rotor_e2;
+        let t73 = rotor_e1 * rotor_e3;
+        let t74 = k(2.0) * (t73 + t72);
+        let t75 = k(2.0) * (k(0.5) - (t62 + rotor_e3 * rotor_e3));
+        let t76 = t47 * t75 - (t43 * t74 - t44 * t71);
+        let t77 = t52 * t74 + t53 * t71 + t54 * t75;
+        let t78 = t47 * t69 + (t43 * t66 + t44 * t63);
+        let t79 = k(1.0) / (t78 * t77 - t76 * t70);
+        let t80 = k(2.0) * (k(0.5) - (t62 + rotor_e1 * rotor_e1));
+        let t81 = k(2.0) * (t65 + t64);
+        let t82 = k(2.0) * (t73 - t72);
+        let t83 = t40 * t82 + (t36 * t81 + t32 * t80);
+        let t84 = t60 * (t47 * t82 - (t44 * t81 + t43 * t80)) - t61 * t83;
+        let t85 = t84 + (rotor_wy * t77 + rotor_wz * t70);
+        let t86 = t60 * (t54 * t82 - (t53 * t81 - t52 * t80)) + inner_ring_wz * t83;
+        let t87 = t86 - (rotor_wy * t76 + rotor_wz * t78);
         y[28] = k(0.0);
         y[29] = k(0.0);
         y[30] = k(0.0);
@@ -1205,21 +1157,18 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeMaximal<T> {
         y[34] = k(0.0);
         y[35] = k(0.0);
         y[36] = k(0.0);
-        y[37] = t31;
-        y[38] = t37;
-        y[39] = t38;
+        y[37] = t29;
+        y[39] = t30;
         y[40] = k(0.0);
         y[41] = k(0.0);
         y[42] = k(0.0);
-        y[43] = t70;
-        y[44] = t71;
-        y[45] = t77;
-        y[46] = -(k(0.000125) * (t60 * t71 - t55 * t77));
-        y[47] = -(k(0.000125) * (t61 * t71 + t54 * t77));
-        y[48] = k(0.000125) * (t62 * t71 + t58 * t77);
-        y[49] = rotor_wx + t110 * t107;
-        y[50] = t111;
-        y[51] = t112;
+        y[43] = t60;
+        y[44] = t61;
+        y[46] = -(k(0.000125) * (t52 * t61 - t43 * inner_ring_wz));
+        y[47] = -(k(0.000125) * (t53 * t61 + t44 * inner_ring_wz));
+        y[48] = k(0.000125) * (t54 * t61 + t47 * inner_ring_wz);
+        y[50] = rotor_wy - t87 * (t70 * t79) - t85 * (t78 * t79);
+        y[51] = rotor_wz + t87 * (t77 * t79) + t85 * (t76 * t79);
         Ok(())
     }
 }
@@ -2017,7 +1966,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 1195 operations (461 ±, 719 ×, 15 ÷).
+    /// Solves eq. (17): 903 operations (352 ±, 545 ×, 6 ÷).
     fn accelerations(
         &self,
         _t: T,
@@ -2055,45 +2004,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
         let rotor_wy = y[50];
         let rotor_wz = y[51];
         let (
-            t1,
-            t4,
-            t7,
-            t11,
-            t14,
-            t18,
-            t19,
+            t13,
             t20,
-            t21,
-            t24,
+            t23,
             t25,
             t26,
             t27,
             t28,
+            t29,
             t30,
-            t34,
-            t36,
-            t37,
-            t38,
-            t39,
-            t40,
-            t42,
-            t43,
-            t47,
-            t48,
+            t31,
+            t32,
+            t33,
             t50,
-            t51,
-            t52,
-            t53,
-            t54,
-            t55,
-            t56,
             t57,
-            t58,
-            t59,
-            t60,
-            t62,
+            t61,
             t64,
-            t67,
+            t65,
+            t68,
             t69,
             t70,
             t71,
@@ -2101,80 +2029,66 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
             t73,
             t74,
             t75,
-            t77,
             t78,
+            t79,
+            t80,
             t81,
             t82,
             t83,
             t84,
             t85,
             t86,
-            t87,
-            t88,
             t89,
             t90,
             t91,
-            t92,
-            t93,
-            t94,
-            t95,
             t96,
-            t97,
-            t98,
-            t99,
-            t100,
             t101,
-            t103,
-            t105,
+            t107,
             t108,
-            t111,
-            t112,
-            t113,
-            t114,
             t115,
-            t116,
-            t117,
-            t118,
             t119,
-            t120,
             t121,
-            t122,
             t123,
-            t124,
             t125,
+            t126,
             t127,
+            t128,
+            t129,
             t131,
+            t132,
             t134,
-            t135,
-            t137,
+            t136,
+            t138,
+            t139,
             t140,
-            t142,
+            t143,
             t144,
             t145,
             t146,
+            t147,
+            t148,
             t149,
-            t155,
+            t150,
+            t151,
+            t152,
+            t153,
+            t154,
             t159,
-            t160,
-            t161,
-            t162,
-            t165,
-            t166,
-            t167,
+            t164,
+            t168,
             t169,
-            t170,
-            t171,
             t172,
-            t174,
+            t173,
             t175,
-            t176,
+            t178,
+            t179,
             t180,
             t181,
             t182,
             t183,
             t184,
-            t185,
             t186,
+            t187,
             t188,
             t189,
             t190,
@@ -2182,255 +2096,249 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
             t192,
             t193,
             t194,
-            t195,
             t196,
             t197,
             t198,
             t199,
         ) = {
-            let t0 = rotor_e0 * rotor_e0;
-            let t1 = k(2.0) * (k(0.5) - (t0 + rotor_e2 * rotor_e2));
-            let t2 = inner_ring_e0 * inner_ring_e0;
-            let t3 = k(0.5) - (t2 + inner_ring_e2 * inner_ring_e2);
-            let t4 = k(2.0) * t3;
-            let t5 = rotor_e0 * rotor_e3;
-            let t6 = rotor_e1 * rotor_e2;
-            let t7 = k(2.0) * (t6 - t5);
-            let t8 = inner_ring_e0 * inner_ring_e3;
-            let t9 = inner_ring_e1 * inner_ring_e2;
-            let t10 = t9 - t8;
-            let t11 = k(2.0) * t10;
-            let t12 = rotor_e0 * rotor_e1;
-            let t13 = rotor_e2 * rotor_e3;
-            let t14 = k(2.0) * (t13 + t12);
-            let t15 = inner_ring_e0 * inner_ring_e1;
-            let t16 = inner_ring_e2 * inner_ring_e3;
-            let t17 = t16 + t15;
-            let t18 = k(2.0) * t17;
-            let t19 = t18 * t14 + (t11 * t7 + t4 * t1);
-            let t20 = k(200000.0) * t19;
-            let t21 = k(2.0) * (t13 - t12);
-            let t22 = rotor_e0 * rotor_e2;
-            let t23 = rotor_e1 * rotor_e3;
-            let t24 = k(2.0) * (t23 + t22);
-            let t25 = k(2.0) * (k(0.5) - (t0 + rotor_e3 * rotor_e3));
-            let t26 = t18 * t25 - (t11 * t24 - t4 * t21);
-            let t27 = k(200000.0) * t26;
-            let t28 = k(1.0) / (t26 * t27 + t19 * t20);
-            let t29 = t16 - t15;
-            let t30 = k(2.0) * t29;
-            let t31 = inner_ring_e0 * inner_ring_e2;
-            let t32 = inner_ring_e1 * inner_ring_e3;
-            let t33 = t32 + t31;
-            let t34 = k(2.0) * t33;
-            let t35 = k(0.5) - (t2 + inner_ring_e3 * inner_ring_e3);
-            let t36 = k(2.0) * t35;
-            let t37 = t36 * t14 - (t34 * t7 - t30 * t1);
-            let t38 = k(200000.0) * t37;
-            let t39 = t34 * t24 + t30 * t21 + t36 * t25;
-            let t40 = k(200000.0) * t39;
-            let t41 = t26 * t40 + t19 * t38;
-            let t42 = t41 * t28;
-            let t43 = k(1.0) / (t39 * t40 + t37 * t38 - t41 * t42);
-            let t44 = k(2.0) * (k(0.5) - (t0 + rotor_e1 * rotor_e1));
-            let t45 = k(2.0) * (t6 + t5);
-            let t46 = k(2.0) * (t23 - t22);
-            let t47 = t36 * t46 - (t30 * t45 - t34 * t44);
-            let t48 = t18 * t46 - (t4 * t45 + t11 * t44);
-            let t49 = t48 + t47 * t42;
-            let t50 = t49 * t43;
-            let t51 = t47 * t28;
-            let t52 = k(1.0) / (k(1e-6) + t47 * t51 + t49 * t50);
-            let t53 = k(2.0) * (k(0.5) - (t2 + inner_ring_e1 * inner_ring_e1));
-            let t54 = k(2.0) * (t9 + t8);
-            let t55 = k(2.0) * (t32 - t31);
-            let t56 = t55 * t46 + (t54 * t45 + t53 * t44);
-            let t57 = t56 * t43;
-            let t58 = t49 * t57;
-            let t59 = t58 * t52;
-            let t60 = k(2.222222222222222e-6) * t35;
-            let t61 = k(0.00025) * t35;
-            let t62 = k(2.222222222222222e-6) * t29;
-            let t63 = k(0.00025) * t29;
-            let t64 = k(2.222222222222222e-6) * t33;
-            let t65 = k(0.00025) * t33;
-            let t66 = k(2e-6) + t65 * t64 + t63 * t62 + t61 * t60 + t56 * t57;
-            let t67 = k(1.0) / (t66 - t58 * t59);
-            let t68 = t56 * t42;
-            let t69 = t68 * t43;
-            let t70 = t56 * t28;
-            let t71 = t47 * t70 + t49 * t69;
-            let t72 = t71 * t52;
-            let t73 = k(2.222222222222222e-6) * t17;
-            let t74 = k(2.222222222222222e-6) * t3;
-            let t75 = k(2.222222222222222e-6) * t10;
-            let t76 = t65 * t75 - t63 * t74 - t61 * t73 + t56 * t69;
-            let t77 = t76 - t58 * t72;
-            let t78 = t77 * t67;
-            let t79 = k(1e-6) + k(0.00025) * t10 * t75 + k(0.00025) * t3 * t74
-                + k(0.00025) * t17 * t73;
-            let t80 = t79 + t56 * t70 + t68 * t69 - t71 * t72 - t77 * t78;
-            let t81 = k(1.0) / t80;
-            let t82 = k(0.00022222222222222223) * t33;
-            let t83 = t82 * t67;
-            let t84 = k(0.00022222222222222223) * t10 - t77 * t83;
-            let t85 = t84 * t81;
-            let t86 = k(1.0) / (t82 * t83 + k(11.11111111111111) + t84 * t85);
-            let t87 = k(0.00022222222222222223) * t29;
-            let t88 = t87 * t67;
-            let t89 = k(0.00022222222222222223) * t3 + t77 * t88;
-            let t90 = t89 * t81;
-            let t91 = t82 * t88 - t84 * t90;
-            let t92 = t91 * t86;
-            let t93 = k(1.0)
-                / (k(11.11111111111111) + t87 * t88 + t89 * t90 - t91 * t92);
-            let t94 = k(0.00022222222222222223) * t35;
-            let t95 = t94 * t67;
-            let t96 = k(0.00022222222222222223) * t17 + t77 * t95;
-            let t97 = t96 * t81;
-            let t98 = t82 * t95 - t84 * t97;
-            let t99 = t98 * t86;
-            let t100 = t87 * t95 + t89 * t97 - t91 * t99;
-            let t101 = t100 * t93;
-            let t102 = k(11.11111111111111) + t94 * t95 + t96 * t97 - t98 * t99
-                - t100 * t101;
-            let t103 = k(1.0) / t102;
-            let t104 = outer_ring_e0 * outer_ring_e0;
-            let t105 = k(2.0) * (k(0.5) - (t104 + outer_ring_e1 * outer_ring_e1));
-            let t106 = outer_ring_e0 * outer_ring_e3;
-            let t107 = outer_ring_e1 * outer_ring_e2;
-            let t108 = k(2.0) * (t107 + t106);
-            let t109 = outer_ring_e0 * outer_ring_e2;
-            let t110 = outer_ring_e1 * outer_ring_e3;
-            let t111 = k(2.0) * (t110 - t109);
-            let t112 = t111 * t18 - (t108 * t4 + t105 * t11);
-            let t113 = t112 * t52;
-            let t114 = t111 * t55 + (t108 * t54 + t105 * t53);
-            let t115 = t114 - t58 * t113;
-            let t116 = t115 * t67;
-            let t117 = t71 * t113 + t77 * t116;
-            let t118 = t117 * t81;
-            let t119 = t82 * t116 - t84 * t118;
-            let t120 = t119 * t86;
-            let t121 = t87 * t116 + t89 * t118 - t91 * t120;
-            let t122 = t121 * t93;
-            let t123 = t94 * t116 + t96 * t118 - t98 * t120 - t100 * t122;
-            let t124 = t123 * t103;
-            let t125 = k(5000000.0) * base_e2;
-            let t126 = k(0.5) * base_e2;
-            let t127 = k(5000000.0) * base_e0;
-            let t128 = k(0.5) * base_e0;
-            let t129 = t128 * t127;
-            let t130 = t129 + t126 * t125;
-            let t131 = k(5000000.0) * base_e3;
-            let t132 = k(0.5) * base_e3;
-            let t133 = t132 * t131;
-            let t134 = k(1.0) / (t133 + t130);
-            let t135 = k(5000000.0) * base_e1;
-            let t136 = t128 * t131 - t126 * t135 - t132 * t127;
-            let t137 = t136 * t134;
-            let t138 = k(0.5) * base_e1;
-            let t139 = t138 * t135;
-            let t140 = k(1.0) / (t129 + (t133 + t139) - t136 * t137);
-            let t141 = t128 * t125 - t126 * t127 + t132 * t135;
-            let t142 = t141 * t134;
-            let t143 = t132 * t125 + t138 * t127 - t128 * t135 - t136 * t142;
-            let t144 = t143 * t140;
-            let t145 = k(1.0) / (t130 + t139 - t141 * t142 - t143 * t144);
-            let t146 = k(2.0) * (t107 - t106);
-            let t147 = base_e0 * base_e0;
-            let t148 = k(2.0) * (k(0.5) - (t147 + base_e1 * base_e1));
-            let t149 = k(2.0) * (k(0.5) - (t104 + outer_ring_e2 * outer_ring_e2));
-            let t150 = base_e0 * base_e3;
-            let t151 = base_e1 * base_e2;
-            let t152 = k(2.0) * (t151 + t150);
-            let t153 = outer_ring_e0 * outer_ring_e1;
-            let t154 = outer_ring_e2 * outer_ring_e3;
-            let t155 = k(2.0) * (t154 + t153);
-            let t156 = base_e0 * base_e2;
-            let t157 = base_e1 * base_e3;
-            let t158 = k(2.0) * (t157 - t156);
-            let t159 = t158 * t155 - (t152 * t149 + t148 * t146);
-            let t160 = k(10000000.0) * t159;
-            let t161 = k(2.0) * (k(0.5) - (t147 + base_e2 * base_e2));
-            let t162 = k(2.0) * (t151 - t150);
-            let t163 = base_e0 * base_e1;
-            let t164 = base_e2 * base_e3;
-            let t165 = k(2.0) * (t164 + t163);
-            let t166 = t165 * t155 + (t162 * t146 + t161 * t149);
-            let t167 = k(10000000.0) * t166;
-            let t168 = t128 * t167;
-            let t169 = t168 + t132 * t160;
-            let t170 = t169 * t134;
-            let t171 = t132 * t167 - t128 * t160 - t136 * t170;
-            let t172 = t171 * t140;
-            let t173 = t126 * t167;
-            let t174 = t173 + t138 * t160 - t141 * t170 - t143 * t172;
-            let t175 = t174 * t145;
-            let t176 = t166 * t167;
-            let t177 = k(2.0) * (t157 + t156);
-            let t178 = k(2.0) * (t164 - t163);
-            let t179 = k(2.0) * (k(0.5) - (t147 + base_e3 * base_e3));
-            let t180 = t179 * t111 - (t178 * t108 - t177 * t105);
-            let t181 = k(1000000.0) * t180;
-            let t182 = k(2.0) * (k(0.5) - (t104 + outer_ring_e3 * outer_ring_e3));
-            let t183 = k(2.0) * (t154 - t153);
-            let t184 = k(2.0) * (t110 + t109);
-            let t185 = t177 * t184 + t178 * t183 + t179 * t182;
-            let t186 = k(500000.0) * t185;
-            let t187 = t185 * t186 + t180 * t181 + t176 + t159 * t160 - t169 * t170;
-            let t188 = k(1.0) / (t187 - t171 * t172 - t174 * t175);
-            let t189 = t179 * t155 - (t177 * t146 - t178 * t149);
-            let t190 = k(10000000.0) * t189;
-            let t191 = t173 - t132 * t190;
-            let t192 = t191 * t134;
-            let t193 = t138 * t167 - t128 * t190 + t136 * t192;
-            let t194 = t193 * t140;
-            let t195 = t168 + t138 * t190 + t141 * t192 - t143 * t194;
-            let t196 = t195 * t145;
-            let t197 = t158 * t111 + (t152 * t108 + t148 * t105);
-            let t198 = k(1000000.0) * t197;
-            let t199 = t158 * t182 - (t152 * t183 - t148 * t184);
+            let t0 = k(0.5) * base_e3;
+            let t1 = k(0.5) * base_e0;
+            let t2 = t1 * t1;
+            let t3 = t2 + t0 * t0;
+            let t4 = k(0.5) * base_e1;
+            let t5 = t4 * t1;
+            let t6 = k(0.5) * base_e2;
+            let t7 = t0 * t6;
+            let t8 = t7 + t5;
+            let t9 = t1 * t6;
+            let t10 = t4 * t0;
+            let t11 = t10 - t9;
+            let t12 = k(1.0) / (t6 * t11 - t4 * t8 - t1 * t3);
+            let t13 = t11 * t12;
+            let t14 = k(0.5)
+                * (base_e3 * base_wx + base_e0 * base_wy - base_e1 * base_wz);
+            let t15 = k(0.5)
+                * (base_e0 * base_wx - base_e3 * base_wy + base_e2 * base_wz);
+            let t16 = k(0.5)
+                * (base_e1 * base_wx + base_e2 * base_wy + base_e3 * base_wz);
+            let t17 = k(0.5) * (base_wz * t16 - (base_wy * t15 - base_wx * t14));
+            let t18 = t1 * t0;
+            let t19 = t4 * t6;
+            let t20 = (t19 + t18) * t12;
+            let t21 = k(0.5)
+                * (base_e2 * base_wx - base_e1 * base_wy - base_e0 * base_wz);
+            let t22 = k(0.5) * (base_wz * t15 + (base_wy * t16 + base_wx * t21));
+            let t23 = (t2 + t4 * t4) * t12;
+            let t24 = k(0.5) * (base_wz * t14 + (base_wy * t21 - base_wx * t16));
+            let t25 = t24 * t23 - t22 * t20 - t17 * t13;
+            let t26 = t8 * t12;
+            let t27 = (t2 + t6 * t6) * t12;
+            let t28 = (t19 - t18) * t12;
+            let t29 = t24 * t28 - t22 * t27 - t17 * t26;
+            let t30 = t3 * t12;
+            let t31 = (t7 - t5) * t12;
+            let t32 = (t10 + t9) * t12;
+            let t33 = t24 * t32 - t22 * t31 - t17 * t30;
+            let t34 = outer_ring_e0 * outer_ring_e3;
+            let t35 = outer_ring_e1 * outer_ring_e2;
+            let t36 = k(2.0) * (t35 - t34);
+            let t37 = base_e0 * base_e0;
+            let t38 = k(2.0) * (k(0.5) - (t37 + base_e1 * base_e1));
+            let t39 = outer_ring_e0 * outer_ring_e0;
+            let t40 = k(2.0) * (k(0.5) - (t39 + outer_ring_e2 * outer_ring_e2));
+            let t41 = base_e0 * base_e3;
+            let t42 = base_e1 * base_e2;
+            let t43 = k(2.0) * (t42 + t41);
+            let t44 = outer_ring_e0 * outer_ring_e1;
+            let t45 = outer_ring_e2 * outer_ring_e3;
+            let t46 = k(2.0) * (t45 + t44);
+            let t47 = base_e0 * base_e2;
+            let t48 = base_e1 * base_e3;
+            let t49 = k(2.0) * (t48 - t47);
+            let t50 = t49 * t46 - (t43 * t40 + t38 * t36);
+            let t51 = base_wx * base_wz;
+            let t52 = k(2.0) * (k(0.5) - (t37 + base_e2 * base_e2));
+            let t53 = k(2.0) * (t42 - t41);
+            let t54 = base_e0 * base_e1;
+            let t55 = base_e2 * base_e3;
+            let t56 = k(2.0) * (t55 + t54);
+            let t57 = t56 * t46 + (t53 * t36 + t52 * t40);
+            let t58 = k(2.0) * (t55 - t54);
+            let t59 = k(2.0) * (t48 + t47);
+            let t60 = k(2.0) * (k(0.5) - (t37 + base_e3 * base_e3));
+            let t61 = t60 * t46 - (t59 * t36 - t58 * t40);
+            let t62 = base_wy * base_wy;
+            let t63 = (t62 + base_wx * base_wx) * t61
+                + (base_wy * base_wz * t57 + t51 * t50);
+            let t64 = k(2.0) * (k(0.5) - (t39 + outer_ring_e1 * outer_ring_e1));
+            let t65 = k(2.0) * (t35 + t34);
+            let t66 = outer_ring_e0 * outer_ring_e2;
+            let t67 = outer_ring_e1 * outer_ring_e3;
+            let t68 = k(2.0) * (t67 - t66);
+            let t69 = t49 * t68 + (t43 * t65 + t38 * t64);
+            let t70 = k(2.0) * (t67 + t66);
+            let t71 = k(2.0) * (t45 - t44);
+            let t72 = k(2.0) * (k(0.5) - (t39 + outer_ring_e3 * outer_ring_e3));
+            let t73 = t49 * t72 - (t43 * t71 - t38 * t70);
+            let t74 = t56 * t68 - (t52 * t65 + t53 * t64);
+            let t75 = t56 * t72 - (t53 * t70 - t52 * t71);
+            let t76 = outer_ring_wx * t75 + outer_ring_wz * t74;
+            let t77 = k(2.0)
+                * (base_wx * t76
+                    - base_wy * (outer_ring_wx * t73 + outer_ring_wz * t69));
+            let t78 = t60 * t68 - (t58 * t65 - t59 * t64);
+            let t79 = outer_ring_wx * outer_ring_wy;
+            let t80 = outer_ring_wz * outer_ring_wz;
+            let t81 = t80 + outer_ring_wx * outer_ring_wx;
+            let t82 = t59 * t70 + t58 * t71 + t60 * t72;
+            let t83 = outer_ring_wy * outer_ring_wz;
+            let t84 = t83 * t82 + (t81 * t61 - t79 * t78) + t77 + t63;
+            let t85 = k(1.0) / (t78 * t73 - t82 * t69);
+            let t86 = t69 * t85;
+            let t87 = t51 * t61
+                - (base_wx * base_wy * t57 - (base_wz * base_wz + t62) * t50);
+            let t88 = k(2.0)
+                * (base_wy * (outer_ring_wx * t82 + outer_ring_wz * t78)
+                    + base_wz * t76);
+            let t89 = t83 * t73 + (t81 * t50 - t79 * t69) + t88 + t87;
+            let t90 = t78 * t85;
+            let t91 = t33 * t78 - (t29 * t74 + t25 * t69) + (t90 * t89 - t86 * t84);
+            let t92 = rotor_e0 * rotor_e3;
+            let t93 = rotor_e1 * rotor_e2;
+            let t94 = k(2.0) * (t93 - t92);
+            let t95 = inner_ring_e0 * inner_ring_e0;
+            let t96 = k(2.0) * (k(0.5) - (t95 + inner_ring_e1 * inner_ring_e1));
+            let t97 = rotor_e0 * rotor_e0;
+            let t98 = k(2.0) * (k(0.5) - (t97 + rotor_e2 * rotor_e2));
+            let t99 = inner_ring_e0 * inner_ring_e3;
+            let t100 = inner_ring_e1 * inner_ring_e2;
+            let t101 = k(2.0) * (t100 + t99);
+            let t102 = rotor_e0 * rotor_e1;
+            let t103 = rotor_e2 * rotor_e3;
+            let t104 = k(2.0) * (t103 + t102);
+            let t105 = inner_ring_e0 * inner_ring_e2;
+            let t106 = inner_ring_e1 * inner_ring_e3;
+            let t107 = k(2.0) * (t106 - t105);
+            let t108 = t107 * t104 - (t101 * t98 + t96 * t94);
+            let t109 = k(5e-6) * t108;
+            let t110 = rotor_e0 * rotor_e2;
+            let t111 = rotor_e1 * rotor_e3;
+            let t112 = k(2.0) * (t111 + t110);
+            let t113 = k(2.0) * (t103 - t102);
+            let t114 = k(2.0) * (k(0.5) - (t97 + rotor_e3 * rotor_e3));
+            let t115 = t107 * t114 - (t101 * t113 - t96 * t112);
+            let t116 = k(5e-6) * t115;
+            let t117 = inner_ring_e0 * inner_ring_e1;
+            let t118 = inner_ring_e2 * inner_ring_e3;
+            let t119 = t118 - t117;
+            let t120 = k(2.0) * t119;
+            let t121 = t106 + t105;
+            let t122 = k(2.0) * t121;
+            let t123 = k(0.5) - (t95 + inner_ring_e3 * inner_ring_e3);
+            let t124 = k(2.0) * t123;
+            let t125 = t124 * t104 - (t122 * t94 - t120 * t98);
+            let t126 = t122 * t112 + t120 * t113 + t124 * t114;
+            let t127 = t126 * t116 + t125 * t109;
+            let t128 = k(1e-6)
+                + (k(1.25e-9) + (t126 * (k(5e-6) * t126) + t125 * (k(5e-6) * t125)));
+            let t129 = k(1.0) / t128;
+            let t130 = t129 * t127;
+            let t131 = t127 * t130 - (k(1e-6) + (t115 * t116 + t108 * t109));
+            let t132 = t46 * t107 - (t40 * t101 + t36 * t96);
+            let t133 = k(0.5) - (t95 + inner_ring_e2 * inner_ring_e2);
+            let t134 = k(2.0) * t133;
+            let t135 = t100 - t99;
+            let t136 = k(2.0) * t135;
+            let t137 = t118 + t117;
+            let t138 = k(2.0) * t137;
+            let t139 = t138 * t104 + (t136 * t94 + t134 * t98);
+            let t140 = t138 * t114 - (t136 * t112 - t134 * t113);
+            let t141 = k(5e-6) * t139;
+            let t142 = k(5e-6) * t140;
+            let t143 = t126 * t142 + t125 * t141;
+            let t144 = t143 * t130 - (t140 * t116 + t139 * t109);
+            let t145 = t46 * t138 + (t36 * t136 + t40 * t134);
+            let t146 = t127 - t128 * t130;
+            let t147 = t46 * t124 - (t36 * t122 - t40 * t120);
+            let t148 = t147 * t146 - (t145 * t144 + t132 * t131);
+            let t149 = t129 * t143;
+            let t150 = t143 * t149
+                - (k(2e-6) + (k(1.25e-9) + (t140 * t142 + t139 * t141)));
+            let t151 = t143 - t128 * t149;
+            let t152 = t147 * t151 - (t145 * t150 + t132 * t144);
+            let t153 = t145 * t151 + t132 * t146;
+            let t154 = k(1e-6) + (t147 * t153 + (t145 * t152 + t132 * t148));
+            let t155 = k(2.0) * (k(0.5) - (t97 + rotor_e1 * rotor_e1));
+            let t156 = k(2.0) * (t93 + t92);
+            let t157 = k(2.0) * (t111 - t110);
+            let t158 = t107 * t157 + (t101 * t156 + t96 * t155);
+            let t159 = inner_ring_wx * inner_ring_wy;
+            let t160 = t138 * t157 - (t134 * t156 + t136 * t155);
+            let t161 = inner_ring_wx * inner_ring_wx;
+            let t162 = inner_ring_wz * inner_ring_wz;
+            let t163 = t124 * t157 - (t120 * t156 - t122 * t155);
+            let t164 = inner_ring_wy * inner_ring_wz;
+            let t165 = rotor_wy * t115 + rotor_wz * t108;
+            let t166 = k(2.0)
+                * (inner_ring_wx * (rotor_wy * t126 + rotor_wz * t125)
+                    + inner_ring_wz * t165);
+            let t167 = rotor_wz * rotor_wz + rotor_wy * rotor_wy;
+            let t168 = rotor_wx * rotor_wy;
+            let t169 = rotor_wx * rotor_wz;
+            let t170 = t169 * t140 - (t168 * t139 - t167 * t160) + t166
+                + (t164 * t163 + ((t162 + t161) * t160 - t159 * t158));
+            let t171 = k(1.0) / (t139 * t126 - t140 * t125);
+            let t172 = t125 * t171;
+            let t173 = inner_ring_wx * inner_ring_wz;
+            let t174 = inner_ring_wy * inner_ring_wy;
+            let t175 = t174 + t161;
+            let t176 = k(2.0)
+                * (inner_ring_wx * (rotor_wy * t140 + rotor_wz * t139)
+                    - inner_ring_wy * t165);
+            let t177 = t169 * t126 - (t168 * t125 - t167 * t163) - t176
+                + (t175 * t163 + (t164 * t160 + t173 * t158));
+            let t178 = t139 * t171;
+            let t179 = t178 * t177 - t172 * t170;
+            let t180 = k(5e-6) * (t169 + t179);
+            let t181 = t126 * t171;
+            let t182 = t140 * t171;
+            let t183 = t182 * t177 - t181 * t170;
+            let t184 = k(5e-6) * (t168 + t183);
+            let t185 = t162 + t174;
+            let t186 = t122 * t173 + (t136 * t159 + t96 * t185);
+            let t187 = k(1e-5) * t186;
+            let t188 = k(0.00025) * t135;
+            let t189 = t120 * t173 - (t134 * t159 + t101 * t185);
+            let t190 = k(0.8) + k(1e-5) * t189;
+            let t191 = k(0.00025) * t133;
+            let t192 = t124 * t173 - (t138 * t159 - t107 * t185);
+            let t193 = k(1e-5) * t192;
+            let t194 = k(0.00025) * t137;
+            let t195 = t194 * t193 + (t191 * t190 - t188 * t187)
+                + (t126 * t184 + t125 * t180);
+            let t196 = k(1e-6) * t159 - t195;
+            let t197 = t130 * t196 - (k(1e-6) * t164 - (t115 * t184 + t108 * t180));
+            let t198 = t68 * t124 - (t65 * t120 - t64 * t122);
+            let t199 = t70 * t122 + t71 * t120 + t72 * t124;
             (
-                t1,
-                t4,
-                t7,
-                t11,
-                t14,
-                t18,
-                t19,
+                t13,
                 t20,
-                t21,
-                t24,
+                t23,
                 t25,
                 t26,
                 t27,
                 t28,
+                t29,
                 t30,
-                t34,
-                t36,
-                t37,
-                t38,
-                t39,
-                t40,
-                t42,
-                t43,
-                t47,
-                t48,
+                t31,
+                t32,
+                t33,
                 t50,
-                t51,
-                t52,
-                t53,
-                t54,
-                t55,
-                t56,
                 t57,
-                t58,
-                t59,
-                t60,
-                t62,
+                t61,
                 t64,
-                t67,
+                t65,
+                t68,
                 t69,
                 t70,
                 t71,
@@ -2438,80 +2346,66 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
                 t73,
                 t74,
                 t75,
-                t77,
                 t78,
+                t79,
+                t80,
                 t81,
                 t82,
                 t83,
                 t84,
                 t85,
                 t86,
-                t87,
-                t88,
                 t89,
                 t90,
                 t91,
-                t92,
-                t93,
-                t94,
-                t95,
                 t96,
-                t97,
-                t98,
-                t99,
-                t100,
                 t101,
-                t103,
-                t105,
+                t107,
                 t108,
-                t111,
-                t112,
-                t113,
-                t114,
                 t115,
-                t116,
-                t117,
-                t118,
                 t119,
-                t120,
                 t121,
-                t122,
                 t123,
-                t124,
                 t125,
+                t126,
                 t127,
+                t128,
+                t129,
                 t131,
+                t132,
                 t134,
-                t135,
-                t137,
+                t136,
+                t138,
+                t139,
                 t140,
-                t142,
+                t143,
                 t144,
                 t145,
                 t146,
+                t147,
+                t148,
                 t149,
-                t155,
+                t150,
+                t151,
+                t152,
+                t153,
+                t154,
                 t159,
-                t160,
-                t161,
-                t162,
-                t165,
-                t166,
-                t167,
+                t164,
+                t168,
                 t169,
-                t170,
-                t171,
                 t172,
-                t174,
+                t173,
                 t175,
-                t176,
+                t178,
+                t179,
                 t180,
                 t181,
                 t182,
                 t183,
                 t184,
-                t185,
                 t186,
+                t187,
                 t188,
                 t189,
                 t190,
@@ -2519,7 +2413,6 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
                 t192,
                 t193,
                 t194,
-                t195,
                 t196,
                 t197,
                 t198,
@@ -2527,298 +2420,191 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
             )
         };
         let (
-            t200,
+            t210,
             t213,
+            t215,
+            t216,
+            t227,
+            t228,
+            t229,
+            t231,
             t232,
+            t233,
+            t236,
+            t237,
+            t238,
+            t239,
+            t240,
+            t241,
+            t242,
             t243,
+            t244,
             t245,
-            t303,
-            t315,
-            t316,
-            t317,
-            t318,
-            t319,
-            t320,
-            t321,
-            t322,
-            t323,
-            t324,
-            t326,
-            t327,
-            t328,
-            t329,
-            t330,
-            t331,
-            t333,
-            t335,
-            t337,
-            t338,
-            t339,
-            t340,
-            t342,
-            t343,
-            t344,
+            t246,
+            t247,
+            t248,
+            t249,
+            t251,
+            t254,
+            t256,
+            t257,
+            t258,
+            t259,
         ) = {
-            let t200 = k(500000.0) * t199;
-            let t201 = t185 * t200 + t180 * t198 - t159 * t190 - t169 * t192;
-            let t202 = t201 + t171 * t194 + t174 * t196;
-            let t203 = t202 * t188;
-            let t204 = t199 * t200 + t197 * t198 + t176 + t189 * t190 - t191 * t192;
-            let t205 = k(1.0) / (t204 - t193 * t194 - t195 * t196 - t202 * t203);
-            let t206 = t155 * t36 - (t146 * t34 - t149 * t30);
-            let t207 = k(1000000.0) * t206;
-            let t208 = t180 * t207;
-            let t209 = t208 * t188;
-            let t210 = t197 * t207 - t202 * t209;
-            let t211 = t210 * t205;
-            let t212 = t184 * t34 + t183 * t30 + t182 * t36;
-            let t213 = k(1000000.0) * t212;
-            let t214 = t212 * t213 + t112 * t113 + t206 * t207 - t208 * t209;
-            let t215 = t214 - t210 * t211 + t115 * t116 + t117 * t118 - t119 * t120;
-            let t216 = k(1.0) / (t215 - t121 * t122 - t123 * t124);
-            let t217 = t155 * t18 + (t146 * t11 + t149 * t4);
-            let t218 = t217 * t52;
-            let t219 = t155 * t55 - (t149 * t54 + t146 * t53);
-            let t220 = t219 - t58 * t218;
-            let t221 = t220 * t67;
-            let t222 = t71 * t218 + t77 * t221;
-            let t223 = t222 * t81;
-            let t224 = t82 * t221 - t84 * t223;
-            let t225 = t224 * t86;
-            let t226 = t87 * t221 + t89 * t223 - t91 * t225;
-            let t227 = t226 * t93;
-            let t228 = t94 * t221 + t96 * t223 - t98 * t225 - t100 * t227;
-            let t229 = t228 * t103;
-            let t230 = t111 * t36 - (t108 * t30 - t105 * t34);
-            let t231 = k(1000000.0) * t230;
-            let t232 = k(500000.0) * t212;
-            let t233 = t185 * t232 + t180 * t231;
-            let t234 = t233 * t188;
-            let t235 = t199 * t232 + t197 * t231 - t202 * t234;
-            let t236 = t235 * t205;
-            let t237 = t112 * t218 - t206 * t231 + t208 * t234 + t210 * t236;
-            let t238 = t237 + t115 * t221 + t117 * t223 - t119 * t225 - t121 * t227;
-            let t239 = t238 - t123 * t229;
-            let t240 = t239 * t216;
-            let t241 = t212 * t232 + t217 * t218 + t230 * t231 - t233 * t234;
-            let t242 = t241 - t235 * t236 + t220 * t221 + t222 * t223 - t224 * t225;
-            let t243 = rotor_wx * rotor_wy;
-            let t244 = k(5e-6) * t243;
-            let t245 = rotor_wx * rotor_wz;
-            let t246 = k(5e-6) * t245;
-            let t247 = inner_ring_wx * inner_ring_wy;
-            let t248 = inner_ring_wx * inner_ring_wx;
-            let t249 = inner_ring_wz * inner_ring_wz;
-            let t250 = inner_ring_wy * inner_ring_wz;
-            let t251 = rotor_wy * (t55 * t25 - (t54 * t21 - t53 * t24))
-                + rotor_wz * (t55 * t14 - (t54 * t1 + t53 * t7));
-            let t252 = k(2.0)
-                * (inner_ring_wx * (rotor_wy * t39 + rotor_wz * t37)
-                    + inner_ring_wz * t251);
-            let t253 = rotor_wz * rotor_wz + rotor_wy * rotor_wy;
-            let t254 = t245 * t26 - (t243 * t19 - t253 * t48) + t252
-                + (t250 * t47 + ((t249 + t248) * t48 - t247 * t56));
-            let t255 = t254 + t246 * t27 - t244 * t20;
-            let t256 = inner_ring_wx * inner_ring_wz;
-            let t257 = inner_ring_wy * inner_ring_wy;
-            let t258 = t257 + t248;
-            let t259 = k(2.0)
-                * (inner_ring_wx * (rotor_wy * t26 + rotor_wz * t19)
-                    - inner_ring_wy * t251);
-            let t260 = t245 * t39 - (t243 * t37 - t253 * t47) - t259
-                + (t258 * t47 + (t250 * t48 + t256 * t56));
-            let t261 = t260 + t246 * t40 - t244 * t38 - t255 * t42;
-            let t262 = k(1e-6) * t250 - t255 * t51 + t261 * t50;
-            let t263 = t249 + t257;
-            let t264 = t36 * t256 - (t18 * t247 - t55 * t263);
-            let t265 = k(0.000125) * t264;
-            let t266 = k(0.000125) * (t30 * t256 - (t4 * t247 + t54 * t263)) + k(10.0);
-            let t267 = k(10.0) - t266;
-            let t268 = t34 * t256 + (t11 * t247 + t53 * t263);
-            let t269 = k(0.000125) * t268;
-            let t270 = t269 * t64 - t267 * t62 + t265 * t60 - t261 * t57;
-            let t271 = t270 + t262 * t59;
-            let t272 = k(1e-6) * t247 + t269 * t75 + t267 * t74 - t265 * t73;
-            let t273 = t272 + t255 * t70 - t261 * t69 + t262 * t72 - t271 * t78;
-            let t274 = k(0.00011111111111111112) * t268 - t271 * t83 - t273 * t85;
-            let t275 = k(10.0) - k(0.8888888888888888) * t267 - t271 * t88 + t273 * t90
-                - t274 * t92;
-            let t276 = k(0.00011111111111111112) * t264 - t271 * t95 + t273 * t97
-                - t274 * t99;
-            let t277 = t276 - t275 * t101;
-            let t278 = k(0.5)
-                * (base_e1 * base_wx + base_e2 * base_wy + base_e3 * base_wz);
-            let t279 = k(0.5)
-                * (base_e2 * base_wx - base_e1 * base_wy - base_e0 * base_wz);
-            let t280 = k(0.5)
-                * (base_e3 * base_wx + base_e0 * base_wy - base_e1 * base_wz);
-            let t281 = k(0.5) * (base_wz * t280 + (base_wy * t279 - base_wx * t278));
-            let t282 = k(0.5)
-                * (base_e0 * base_wx - base_e3 * base_wy + base_e2 * base_wz);
-            let t283 = k(0.5) * (base_wz * t282 + (base_wy * t278 + base_wx * t279))
-                + t281 * t137;
-            let t284 = k(0.5) * (base_wz * t278 - (base_wy * t282 - base_wx * t280))
-                - t281 * t142;
-            let t285 = t284 + t283 * t144;
-            let t286 = outer_ring_wx * outer_ring_wy;
-            let t287 = k(1e-6) * t286;
-            let t288 = base_wx * base_wz;
-            let t289 = base_wy * base_wy;
-            let t290 = (t289 + base_wx * base_wx) * t189
-                + (base_wy * base_wz * t166 + t288 * t159);
-            let t291 = outer_ring_wx * (t165 * t182 - (t162 * t184 - t161 * t183))
-                + outer_ring_wz * (t165 * t111 - (t161 * t108 + t162 * t105));
-            let t292 = k(2.0)
-                * (base_wx * t291
-                    - base_wy * (outer_ring_wx * t199 + outer_ring_wz * t197));
-            let t293 = outer_ring_wz * outer_ring_wz;
-            let t294 = t293 + outer_ring_wx * outer_ring_wx;
-            let t295 = outer_ring_wy * outer_ring_wz;
-            let t296 = t295 * t185 + (t294 * t189 - t286 * t180) + t292 + t290;
-            let t297 = t296 + t287 * t181 + t281 * t170 - t283 * t172 + t285 * t175;
-            let t298 = t288 * t189
-                - (base_wx * base_wy * t166 - (base_wz * base_wz + t289) * t159);
-            let t299 = k(2.0)
-                * (base_wy * (outer_ring_wx * t185 + outer_ring_wz * t180)
-                    + base_wz * t291);
-            let t300 = t295 * t199 + (t294 * t159 - t286 * t197) + t299 + t298;
-            let t301 = t300 + t287 * t198 + t281 * t192 + t283 * t194 - t285 * t196;
-            let t302 = t301 - t297 * t203;
-            let t303 = outer_ring_wx * outer_ring_wz;
-            let t304 = t303 * t212
-                - (t286 * t206 - (t293 + outer_ring_wy * outer_ring_wy) * t230);
-            let t305 = inner_ring_wx * (t182 * t18 - (t184 * t11 - t183 * t4))
-                - inner_ring_wy * (t182 * t55 - (t183 * t54 - t184 * t53));
-            let t306 = k(2.0)
-                * (outer_ring_wy * t305
-                    + outer_ring_wz * (inner_ring_wx * t217 - inner_ring_wy * t219));
-            let t307 = t258 * t230 + (t250 * t112 + t256 * t114) - t306 + t304;
-            let t308 = t307 + k(1e-6) * t303 * t213 - t262 * t113 - t287 * t207;
-            let t309 = t308 + t297 * t209 + t302 * t211 + t271 * t116 - t273 * t118;
-            let t310 = t309 + t274 * t120 + t275 * t122 + t277 * t124;
-            let t311 = k(2.0)
-                * (outer_ring_wx * t305
-                    + outer_ring_wz * (inner_ring_wx * t112 - inner_ring_wy * t114));
-            let t312 = t258 * t206 + (t250 * t217 + t256 * t219) + t311
-                + (t295 * t212 + (t294 * t206 - t286 * t230));
-            let t313 = t312 - t262 * t218 + t287 * t231 - t297 * t234 - t302 * t236;
-            let t314 = t313 + t271 * t221 - t273 * t223 + t274 * t225 + t275 * t227;
-            let t315 = (t314 + t277 * t229 - t310 * t240)
-                / (t242 - t226 * t227 - t228 * t229 - t239 * t240);
-            let t316 = t310 * t216 - t240 * t315;
-            let t317 = t277 * t103 + t124 * t316 + t229 * t315;
-            let t318 = t275 * t93 - t101 * t317 + t122 * t316 + t227 * t315;
-            let t319 = t318 + k(0.11);
-            let t320 = k(0.9090909090909091) * t319 + k(0.09090909090909091) * t318;
-            let t321 = t302 * t205 + t211 * t316 - t236 * t315;
-            let t322 = t297 * t188 - t203 * t321 + t209 * t316 - t234 * t315;
-            let t323 = t285 * t145 + t175 * t322 - t196 * t321;
-            let t324 = t283 * t140 + t144 * t323 - t172 * t322 + t194 * t321;
-            let t325 = t281 * t134 + t137 * t324 - t142 * t323 + t170 * t322;
-            let t326 = t325 + t192 * t321;
-            let t327 = t127 * t326 - t131 * t324 + t125 * t323 - t167 * t322;
-            let t328 = t131 * t326 + t127 * t324 + t135 * t323 - t160 * t322;
-            let t329 = t125 * t326 + t135 * t324 - t127 * t323 - t167 * t321;
-            let t330 = k(100.0) * t318;
-            let t331 = t286 - t181 * t322 - t198 * t321 + t207 * t316 - t231 * t315;
-            let t332 = t274 * t86 - t92 * t318 - t99 * t317 + t120 * t316;
-            let t333 = t332 + t225 * t315;
-            let t334 = t273 * t81 + t85 * t333 - t90 * t318 - t97 * t317;
-            let t335 = t334 + t118 * t316 + t223 * t315;
-            let t336 = t271 * t67 - t78 * t335 + t83 * t333 + t88 * t318;
-            let t337 = t336 + t95 * t317 - t116 * t316 - t221 * t315;
-            let t338 = k(1.111111111111111e-6) * t268 - t64 * t337 - t75 * t335
-                + k(0.8888888888888888) * t333;
-            let t339 = k(0.008888888888888889) * t267 + t62 * t337 - t74 * t335
-                - k(0.8888888888888888) * t318;
-            let t340 = k(1.111111111111111e-6) * t264 - t60 * t337 + t73 * t335
-                + k(0.8888888888888888) * t317;
-            let t341 = t262 * t52 + t59 * t337 + t72 * t335 + t113 * t316;
-            let t342 = t341 + t218 * t315;
-            let t343 = t261 * t43 - t50 * t342 + t57 * t337 + t69 * t335;
-            let t344 = t255 * t28 + t51 * t342 - t70 * t335 - t42 * t343;
+            let t200 = outer_ring_wx * outer_ring_wz;
+            let t201 = t200 * t199
+                - (t79 * t147 - (t80 + outer_ring_wy * outer_ring_wy) * t198);
+            let t202 = t72 * t107 - (t71 * t101 - t70 * t96);
+            let t203 = t72 * t138 - (t70 * t136 - t71 * t134);
+            let t204 = inner_ring_wx * t203 - inner_ring_wy * t202;
+            let t205 = k(2.0)
+                * (outer_ring_wy * t204
+                    + outer_ring_wz * (inner_ring_wx * t145 - inner_ring_wy * t132));
+            let t206 = t68 * t107 + (t65 * t101 + t64 * t96);
+            let t207 = t68 * t138 - (t65 * t134 + t64 * t136);
+            let t208 = t175 * t198 + (t164 * t207 + t173 * t206) - t205 + t201;
+            let t209 = k(1.0) / (t206 * t145 - t207 * t132);
+            let t210 = t132 * t209;
+            let t211 = k(2.0)
+                * (outer_ring_wx * t204
+                    + outer_ring_wz * (inner_ring_wx * t207 - inner_ring_wy * t206));
+            let t212 = t175 * t147 + (t164 * t145 + t173 * t132) + t211
+                + (t83 * t199 + (t81 * t147 - t79 * t198));
+            let t213 = t206 * t209;
+            let t214 = t213 * t212 - t210 * t208;
+            let t215 = t145 * t209;
+            let t216 = t207 * t209;
+            let t217 = t216 * t212 - t215 * t208;
+            let t218 = k(0.00025) * t121;
+            let t219 = k(0.00025) * t119;
+            let t220 = k(0.00025) * t123;
+            let t221 = t220 * t193 + (t219 * t190 + t218 * t187)
+                - (t140 * t184 + t139 * t180);
+            let t222 = t145 * (t150 * t217 + t144 * t214 - (t149 * t196 - t221));
+            let t223 = t147 * (t151 * t217 + t146 * t214)
+                - (t222 + t132 * (t144 * t217 + t131 * t214 - t197));
+            let t224 = t145 * (t198 * t151 - (t207 * t150 + t206 * t144))
+                + t132 * (t198 * t146 - (t207 * t144 + t206 * t131));
+            let t225 = t33 * t61 - (t29 * t57 + t25 * t50);
+            let t226 = t225 * t154 + t91 * (t147 * (t207 * t151 + t206 * t146) + t224);
+            let t227 = t73 * t85;
+            let t228 = t82 * t85;
+            let t229 = t33 * t82 - (t29 * t75 + t25 * t73) + (t228 * t89 - t227 * t84);
+            let t230 = t229 * (t199 * t153 + (t203 * t152 + t202 * t148)) + t226;
+            let t231 = t225 - (t230 - (k(1e-6) * t200 + t223)) / t154;
+            let t232 = t214 - (t202 * t229 + (t132 * t231 + t206 * t91));
+            let t233 = t217 - (t203 * t229 + (t145 * t231 + t207 * t91));
+            let t234 = t199 * t229 + (t147 * t231 + t198 * t91);
+            let t235 = t129 * (t196 + (t128 * t234 - (t143 * t233 + t127 * t232)));
+            let t236 = t234 - t235;
+            let t237 = k(0.000125) * t186 + (t188 * t236 - t218 * t233);
+            let t238 = k(0.000125) * t189 - (t191 * t236 + t219 * t233);
+            let t239 = k(0.000125) * t192 - (t194 * t236 + t220 * t233);
+            let t240 = t179 - (t125 * t236 - (t139 * t233 + t108 * t232));
+            let t241 = t183 - (t126 * t236 - (t140 * t233 + t115 * t232));
+            let t242 = k(0.08) * t237;
+            let t243 = k(0.8) + k(0.08) * t238;
+            let t244 = k(0.1) + t243;
+            let t245 = k(0.1) + t244;
+            let t246 = k(0.08) * t239;
+            let t247 = k(5e-6) * (t169 + t240);
+            let t248 = k(5e-6) * (t168 + t241);
+            let t249 = t115 * t248 + t108 * t247 - k(1e-6) * (t164 - t232);
+            let t250 = t220 * t246 + (t219 * t243 + t218 * t242)
+                - (t140 * t248 + t139 * t247);
+            let t251 = t250 - k(2e-6) * t233;
+            let t252 = t194 * t246 + (t191 * t243 - t188 * t242)
+                + (t126 * t248 + t125 * t247);
+            let t253 = t252 - k(1e-6) * (t159 + t236);
+            let t254 = t198 * t253 - (t207 * t251 - t206 * t249) - k(2e-6) * t91;
+            let t255 = t147 * t253 - (t145 * t251 - t132 * t249)
+                + k(1e-6) * (t200 - t231);
+            let t256 = t199 * t253 - (t203 * t251 - t202 * t249)
+                + k(1e-6) * (t79 - t229);
+            let t257 = k(1e-7) * t25 + (t73 * t256 + (t50 * t255 + t69 * t254));
+            let t258 = k(1e-7) * t29 + (t75 * t256 + (t57 * t255 + t74 * t254));
+            let t259 = k(1e-7) * t33 - (t82 * t256 + (t61 * t255 + t78 * t254));
             (
-                t200,
+                t210,
                 t213,
+                t215,
+                t216,
+                t227,
+                t228,
+                t229,
+                t231,
                 t232,
+                t233,
+                t236,
+                t237,
+                t238,
+                t239,
+                t240,
+                t241,
+                t242,
                 t243,
+                t244,
                 t245,
-                t303,
-                t315,
-                t316,
-                t317,
-                t318,
-                t319,
-                t320,
-                t321,
-                t322,
-                t323,
-                t324,
-                t326,
-                t327,
-                t328,
-                t329,
-                t330,
-                t331,
-                t333,
-                t335,
-                t337,
-                t338,
-                t339,
-                t340,
-                t342,
-                t343,
-                t344,
+                t246,
+                t247,
+                t248,
+                t249,
+                t251,
+                t254,
+                t256,
+                t257,
+                t258,
+                t259,
             )
         };
         *out = [
             k(0.0),
-            -(k(10.0) - k(1000.0) * t319 + k(1000.0) * t320),
             k(0.0),
-            -t327,
-            t328 + t190 * t321,
-            -t329,
             k(0.0),
-            -(k(10.0) - k(100.0) * t320 + t330),
+            t25,
+            t29,
+            t33,
             k(0.0),
-            -(t186 * t322 + t200 * t321 + t232 * t315),
-            t213 * t316 - t303,
-            t331,
-            k(100.0) * (t333 - t338),
-            k(100.0) * t339 - (k(10.0) - t330),
-            k(100.0) * (t340 - t317),
-            t342,
-            t337,
-            -t335,
-            k(12.5) * t338,
-            -(k(10.0) + k(12.5) * t339),
-            -(k(12.5) * t340),
             k(0.0),
-            t40 * t343 - (t245 - t27 * t344),
-            t243 + t20 * t344 + t38 * t343,
+            k(0.0),
+            -t91,
+            -t231,
+            t229,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t232,
+            t233,
+            t236,
+            t237,
+            t238,
+            -t239,
+            k(0.0),
+            t240,
+            -t241,
         ];
         *lambda = [
-            -t333,
-            -t319,
-            t317,
-            t326,
-            -t324,
-            -t323,
-            -t333,
-            -t320,
-            t317,
-            t322,
-            -t321,
-            -t333,
-            -t318,
-            t317,
-            t316,
-            t315,
-            -t338,
-            t339,
-            t340,
-            -t344,
-            t343,
+            -t242,
+            -(k(0.01) + t245),
+            t246,
+            t32 * t259 + (t28 * t258 + t23 * t257),
+            t31 * t259 + (t27 * t258 + t20 * t257),
+            t30 * t259 + (t26 * t258 + t13 * t257),
+            -t242,
+            -t245,
+            t246,
+            t227 * t256 + t86 * t254,
+            t228 * t256 + t90 * t254,
+            -t242,
+            -t244,
+            t246,
+            t215 * t251 - t210 * t249,
+            t213 * t249 - t216 * t251,
+            -t242,
+            -t243,
+            t246,
+            t181 * t248 + t172 * t247,
+            t182 * t248 + t178 * t247,
         ];
     }
 }

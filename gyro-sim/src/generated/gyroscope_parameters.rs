@@ -19,13 +19,13 @@
 //! | gamma | γ | 122 | 193 | 0 | 315 | 6 of 15 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 90 | 128 | 0 | 218 | 0 of 15 |
 //! | applied_force | (f, n' − w̃'J'w') | 1 | 14 | 0 | 15 | 9 of 18 |
-//! | accelerations | (s̈, ẇ') and λ, eq. (17) | 334 | 524 | 16 | 874 | 3 of 33 |
+//! | accelerations | (s̈, ẇ') and λ, eq. (17) | 247 | 382 | 5 | 634 | 7 of 33 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | energy | T and V | 19 | 36 | 0 | 55 | 0 of 2 |
 //! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 |
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
 //! | newton_step | dependent positions, one Newton step | 193 | 321 | 3 | 517 | 6 of 21 |
-//! | solve_velocities | dependent velocities, eq. (19) | 135 | 233 | 3 | 371 | 6 of 18 |
+//! | solve_velocities | dependent velocities, eq. (19) | 96 | 158 | 3 | 257 | 6 of 18 |
 
 /// The mechanism `gyroscope_parameters`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -389,8 +389,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeParameters<T> {
         let t42 = rotor_e1 * rotor_e3;
         let t43 = k(2.0) * (t42 - t41);
         let t44 = t29 * t43 + (t27 * t40 + t24 * t37);
-        let t45 = inner_ring_wx * (t18 * t43 - (t9 * t40 - t13 * t37))
-            + inner_ring_wz * t44;
+        let t45 = inner_ring_wz * t44
+            + inner_ring_wx * (t18 * t43 - (t9 * t40 - t13 * t37));
         let t46 = k(2.0) * (k(0.5) - (t36 + rotor_e2 * rotor_e2));
         let t47 = k(2.0) * (t39 - t38);
         let t48 = rotor_e0 * rotor_e1;
@@ -418,13 +418,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeParameters<T> {
             t34 - t35,
             rotor_sx
                 - (inner_ring_sx
-                    - self.rotor_offset * (t13 * inner_ring_wy - t30 * inner_ring_wz)),
+                    + self.rotor_offset * (t30 * inner_ring_wz - t13 * inner_ring_wy)),
             rotor_sy
                 - (inner_ring_sy
-                    - self.rotor_offset * (t9 * inner_ring_wy + t31 * inner_ring_wz)),
+                    - self.rotor_offset * (t31 * inner_ring_wz + t9 * inner_ring_wy)),
             rotor_sz
                 - (inner_ring_sz
-                    + self.rotor_offset * (t18 * inner_ring_wy + t32 * inner_ring_wz)),
+                    + self.rotor_offset * (t32 * inner_ring_wz + t18 * inner_ring_wy)),
             t54 - t45,
             -(t56 + t55),
         ];
@@ -896,14 +896,13 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeParameters<T> {
         y[20] = -t143;
         Ok(())
     }
-    /// Solves eq. (19) for the dependent velocities: 371 operations (135 ±, 233 ×, 3 ÷).
+    /// Solves eq. (19) for the dependent velocities: 257 operations (96 ±, 158 ×, 3 ÷).
     fn solve_velocities(
         &self,
         _t: T,
-        choice: &Self::Independent,
+        _choice: &Self::Independent,
         y: &mut Self::State,
     ) -> ::core::result::Result<(), gyro_sim::Error> {
-        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -923,147 +922,97 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeParameters<T> {
         let inner_ring_wx = y[30];
         let inner_ring_wy = y[31];
         let inner_ring_wz = y[32];
-        let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let chart0_0 = charts[0][0];
-        let chart0_1 = charts[0][1];
-        let chart0_2 = charts[0][2];
-        let chart0_3 = charts[0][3];
-        let chart1_0 = charts[1][0];
-        let chart1_1 = charts[1][1];
-        let chart1_2 = charts[1][2];
-        let chart1_3 = charts[1][3];
-        let chart2_0 = charts[2][0];
-        let chart2_1 = charts[2][1];
-        let chart2_2 = charts[2][2];
-        let chart2_3 = charts[2][3];
-        let t0 = outer_ring_e2 * chart0_0 + outer_ring_e3 * chart0_1
-            - outer_ring_e0 * chart0_2 - outer_ring_e1 * chart0_3;
-        let t1 = k(0.5) * t0;
-        let t2 = outer_ring_e0 * outer_ring_e2;
-        let t3 = outer_ring_e1 * outer_ring_e3;
-        let t4 = k(2.0) * (t3 - t2);
-        let t5 = outer_ring_e0 * outer_ring_e0;
-        let t6 = k(2.0) * (k(0.5) - (t5 + outer_ring_e1 * outer_ring_e1));
-        let t7 = k(2.0) * (t3 + t2);
-        let t8 = t7 * outer_ring_wx + t6 * outer_ring_wz;
-        let t9 = k(2.0) * (k(0.5) - (t5 + outer_ring_e3 * outer_ring_e3));
-        let t10 = t9 * outer_ring_wx + t4 * outer_ring_wz;
-        let t11 = k(1.0) / (t1 * (t7 * t4 - t6 * t9));
-        let t12 = outer_ring_wx + t11 * (t10 * (t6 * t1) - t8 * (t4 * t1));
-        let t13 = outer_ring_e1 * chart0_0 - outer_ring_e0 * chart0_1
-            - outer_ring_e3 * chart0_2 + outer_ring_e2 * chart0_3;
-        let t14 = k(0.5) * t13;
-        let t15 = outer_ring_e3 * chart0_0 - outer_ring_e2 * chart0_1
-            + outer_ring_e1 * chart0_2 - outer_ring_e0 * chart0_3;
-        let t16 = k(0.5) * t15;
-        let t17 = t10 * (t6 * t14 - t7 * t16) + t8 * (t9 * t16 - t4 * t14);
-        let t18 = outer_ring_wy - t11 * t17;
-        let t19 = outer_ring_wz - t11 * (t10 * (t7 * t1) - t8 * (t9 * t1));
-        let t20 = inner_ring_e3 * chart1_0 - inner_ring_e2 * chart1_1
-            + inner_ring_e1 * chart1_2 - inner_ring_e0 * chart1_3;
-        let t21 = k(0.5) * t20;
-        let t22 = inner_ring_e0 * inner_ring_e0;
-        let t23 = k(2.0) * (k(0.5) - (t22 + inner_ring_e1 * inner_ring_e1));
-        let t24 = inner_ring_e0 * inner_ring_e3;
-        let t25 = inner_ring_e1 * inner_ring_e2;
+        let t0 = outer_ring_e0 * outer_ring_e0;
+        let t1 = k(2.0) * (k(0.5) - (t0 + outer_ring_e3 * outer_ring_e3));
+        let t2 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
+        let t3 = outer_ring_e0 * outer_ring_e2;
+        let t4 = outer_ring_e1 * outer_ring_e3;
+        let t5 = k(2.0) * (t4 - t3);
+        let t6 = k(2.0) * (t4 + t3);
+        let t7 = k(1.0) / (t6 * t5 - t2 * t1);
+        let t8 = t6 * outer_ring_wx + t2 * outer_ring_wz;
+        let t9 = t1 * outer_ring_wx + t5 * outer_ring_wz;
+        let t10 = outer_ring_wx + t9 * (t2 * t7) - t8 * (t5 * t7);
+        let t11 = outer_ring_wz - t9 * (t6 * t7) + t8 * (t1 * t7);
+        let t12 = inner_ring_e0 * inner_ring_e0;
+        let t13 = k(2.0) * (k(0.5) - (t12 + inner_ring_e1 * inner_ring_e1));
+        let t14 = outer_ring_e0 * outer_ring_e3;
+        let t15 = outer_ring_e1 * outer_ring_e2;
+        let t16 = k(2.0) * (t15 - t14);
+        let t17 = inner_ring_e0 * inner_ring_e3;
+        let t18 = inner_ring_e1 * inner_ring_e2;
+        let t19 = k(2.0) * (t18 + t17);
+        let t20 = k(2.0) * (k(0.5) - (t0 + outer_ring_e2 * outer_ring_e2));
+        let t21 = inner_ring_e0 * inner_ring_e2;
+        let t22 = inner_ring_e1 * inner_ring_e3;
+        let t23 = k(2.0) * (t22 - t21);
+        let t24 = outer_ring_e0 * outer_ring_e1;
+        let t25 = outer_ring_e2 * outer_ring_e3;
         let t26 = k(2.0) * (t25 + t24);
-        let t27 = outer_ring_e0 * outer_ring_e3;
-        let t28 = outer_ring_e1 * outer_ring_e2;
-        let t29 = k(2.0) * (t28 + t27);
-        let t30 = inner_ring_e0 * inner_ring_e2;
-        let t31 = inner_ring_e1 * inner_ring_e3;
-        let t32 = k(2.0) * (t31 - t30);
-        let t33 = t4 * t32 + (t29 * t26 + t6 * t23);
-        let t34 = k(2.0) * (t28 - t27);
-        let t35 = k(2.0) * (k(0.5) - (t5 + outer_ring_e2 * outer_ring_e2));
-        let t36 = outer_ring_e0 * outer_ring_e1;
-        let t37 = outer_ring_e2 * outer_ring_e3;
-        let t38 = k(2.0) * (t37 + t36);
-        let t39 = t38 * t32 - (t35 * t26 + t34 * t23);
-        let t40 = k(2.0) * (k(0.5) - (t22 + inner_ring_e2 * inner_ring_e2));
-        let t41 = k(2.0) * (t25 - t24);
-        let t42 = inner_ring_e0 * inner_ring_e1;
-        let t43 = inner_ring_e2 * inner_ring_e3;
-        let t44 = k(2.0) * (t43 + t42);
-        let t45 = t38 * t44 + (t34 * t41 + t35 * t40);
-        let t46 = k(2.0) * (t31 + t30);
-        let t47 = k(2.0) * (t43 - t42);
-        let t48 = k(2.0) * (k(0.5) - (t22 + inner_ring_e3 * inner_ring_e3));
-        let t49 = t7 * t46 + k(2.0) * (t37 - t36) * t47 + t9 * t48;
-        let t50 = t12 * t49 + t19 * (t4 * t48 - (t29 * t47 - t6 * t46));
-        let t51 = t50 - (inner_ring_wx * t45 - inner_ring_wy * t39);
-        let t52 = t4 * t44 - (t29 * t40 + t6 * t41);
-        let t53 = t18 * t49 + t19 * (t38 * t48 - (t34 * t46 - t35 * t47));
-        let t54 = t53 + (inner_ring_wx * t52 - inner_ring_wy * t33);
-        let t55 = k(1.0) / (t21 * (t52 * t39 - t33 * t45));
-        let t56 = inner_ring_wx - t55 * (t54 * (t39 * t21) + t51 * (t33 * t21));
-        let t57 = inner_ring_wy - t55 * (t54 * (t45 * t21) + t51 * (t52 * t21));
-        let t58 = inner_ring_e2 * chart1_0 + inner_ring_e3 * chart1_1
-            - inner_ring_e0 * chart1_2 - inner_ring_e1 * chart1_3;
-        let t59 = k(0.5) * t58;
-        let t60 = inner_ring_e1 * chart1_0 - inner_ring_e0 * chart1_1
-            - inner_ring_e3 * chart1_2 + inner_ring_e2 * chart1_3;
-        let t61 = k(0.5) * t60;
-        let t62 = t54 * (t45 * t59 + t39 * t61) + t51 * (t33 * t61 + t52 * t59);
-        let t63 = inner_ring_wz + t55 * t62;
-        let t64 = rotor_e3 * chart2_0 - rotor_e2 * chart2_1 + rotor_e1 * chart2_2
-            - rotor_e0 * chart2_3;
-        let t65 = k(0.5) * t64;
-        let t66 = rotor_e0 * rotor_e1;
-        let t67 = rotor_e2 * rotor_e3;
-        let t68 = k(2.0) * (t67 - t66);
-        let t69 = rotor_e0 * rotor_e2;
-        let t70 = rotor_e1 * rotor_e3;
-        let t71 = k(2.0) * (t70 + t69);
-        let t72 = rotor_e0 * rotor_e0;
-        let t73 = k(2.0) * (k(0.5) - (t72 + rotor_e3 * rotor_e3));
-        let t74 = t44 * t73 - (t41 * t71 - t40 * t68);
-        let t75 = rotor_e2 * chart2_0 + rotor_e3 * chart2_1 - rotor_e0 * chart2_2
-            - rotor_e1 * chart2_3;
-        let t76 = k(0.5) * t75;
-        let t77 = k(2.0) * (k(0.5) - (t72 + rotor_e2 * rotor_e2));
-        let t78 = rotor_e0 * rotor_e3;
-        let t79 = rotor_e1 * rotor_e2;
-        let t80 = k(2.0) * (t79 - t78);
-        let t81 = k(2.0) * (t67 + t66);
-        let t82 = t44 * t81 + (t41 * t80 + t40 * t77);
-        let t83 = t48 * t81 - (t46 * t80 - t47 * t77);
-        let t84 = t46 * t71 + t47 * t68 + t48 * t73;
-        let t85 = k(2.0) * (k(0.5) - (t72 + rotor_e1 * rotor_e1));
-        let t86 = k(2.0) * (t79 + t78);
-        let t87 = k(2.0) * (t70 - t69);
-        let t88 = t32 * t87 + (t26 * t86 + t23 * t85);
-        let t89 = t56 * (t44 * t87 - (t40 * t86 + t41 * t85)) - t57 * t88;
-        let t90 = t89 + (rotor_wy * t84 + rotor_wz * t83);
-        let t91 = t56 * (t48 * t87 - (t47 * t86 - t46 * t85)) + t63 * t88;
-        let t92 = t91 - (rotor_wy * t74 + rotor_wz * t82);
-        let t93 = t92 * (t84 * t65 - t83 * t76) - t90 * (t82 * t76 - t74 * t65);
-        let t94 = rotor_e1 * chart2_0 - rotor_e0 * chart2_1 - rotor_e3 * chart2_2
-            + rotor_e2 * chart2_3;
-        let t95 = k(0.5) * t94;
-        let t96 = k(1.0) / (t95 * (t74 * t83 - t82 * t84));
-        let t97 = rotor_wy + t96 * (t92 * (t83 * t95) + t90 * (t82 * t95));
-        let t98 = rotor_wz - t96 * (t92 * (t84 * t95) + t90 * (t74 * t95));
+        let t27 = t26 * t23 - (t20 * t19 + t16 * t13);
+        let t28 = k(2.0) * (t18 - t17);
+        let t29 = k(2.0) * (k(0.5) - (t12 + inner_ring_e2 * inner_ring_e2));
+        let t30 = k(2.0) * (t15 + t14);
+        let t31 = inner_ring_e0 * inner_ring_e1;
+        let t32 = inner_ring_e2 * inner_ring_e3;
+        let t33 = k(2.0) * (t32 + t31);
+        let t34 = t5 * t33 - (t30 * t29 + t2 * t28);
+        let t35 = t26 * t33 + (t16 * t28 + t20 * t29);
+        let t36 = t5 * t23 + (t30 * t19 + t2 * t13);
+        let t37 = k(1.0) / (t36 * t35 - t34 * t27);
+        let t38 = k(2.0) * (t22 + t21);
+        let t39 = k(2.0) * (t32 - t31);
+        let t40 = k(2.0) * (k(0.5) - (t12 + inner_ring_e3 * inner_ring_e3));
+        let t41 = t6 * t38 + k(2.0) * (t25 - t24) * t39 + t1 * t40;
+        let t42 = t10 * t41 + t11 * (t5 * t40 - (t30 * t39 - t2 * t38));
+        let t43 = t42 - (inner_ring_wx * t35 - inner_ring_wy * t27);
+        let t44 = outer_ring_wy * t41 + t11 * (t26 * t40 - (t16 * t38 - t20 * t39));
+        let t45 = t44 + (inner_ring_wx * t34 - inner_ring_wy * t36);
+        let t46 = inner_ring_wx + t45 * (t27 * t37) + t43 * (t36 * t37);
+        let t47 = inner_ring_wy + t45 * (t35 * t37) + t43 * (t34 * t37);
+        let t48 = rotor_e0 * rotor_e0;
+        let t49 = k(2.0) * (k(0.5) - (t48 + rotor_e2 * rotor_e2));
+        let t50 = rotor_e0 * rotor_e3;
+        let t51 = rotor_e1 * rotor_e2;
+        let t52 = k(2.0) * (t51 - t50);
+        let t53 = rotor_e0 * rotor_e1;
+        let t54 = rotor_e2 * rotor_e3;
+        let t55 = k(2.0) * (t54 + t53);
+        let t56 = t40 * t55 - (t38 * t52 - t39 * t49);
+        let t57 = k(2.0) * (t54 - t53);
+        let t58 = rotor_e0 * rotor_e2;
+        let t59 = rotor_e1 * rotor_e3;
+        let t60 = k(2.0) * (t59 + t58);
+        let t61 = k(2.0) * (k(0.5) - (t48 + rotor_e3 * rotor_e3));
+        let t62 = t33 * t61 - (t28 * t60 - t29 * t57);
+        let t63 = t38 * t60 + t39 * t57 + t40 * t61;
+        let t64 = t33 * t55 + (t28 * t52 + t29 * t49);
+        let t65 = k(1.0) / (t64 * t63 - t62 * t56);
+        let t66 = k(2.0) * (k(0.5) - (t48 + rotor_e1 * rotor_e1));
+        let t67 = k(2.0) * (t51 + t50);
+        let t68 = k(2.0) * (t59 - t58);
+        let t69 = t23 * t68 + (t19 * t67 + t13 * t66);
+        let t70 = t46 * (t33 * t68 - (t29 * t67 + t28 * t66)) - t47 * t69;
+        let t71 = t70 + (rotor_wy * t63 + rotor_wz * t56);
+        let t72 = t46 * (t40 * t68 - (t39 * t67 - t38 * t66)) + inner_ring_wz * t69;
+        let t73 = t72 - (rotor_wy * t62 + rotor_wz * t64);
         y[21] = k(0.0);
         y[22] = k(0.0);
         y[23] = k(0.0);
-        y[24] = t12;
-        y[25] = t18;
-        y[26] = t19;
+        y[24] = t10;
+        y[26] = t11;
         y[27] = k(0.0);
         y[28] = k(0.0);
         y[29] = k(0.0);
-        y[30] = t56;
-        y[31] = t57;
-        y[32] = t63;
-        y[33] = -(self.rotor_offset * (t46 * t57 - t41 * t63));
-        y[34] = -(self.rotor_offset * (t47 * t57 + t40 * t63));
-        y[35] = self.rotor_offset * (t48 * t57 + t44 * t63);
-        y[36] = rotor_wx + t96 * t93;
-        y[37] = t97;
-        y[38] = t98;
+        y[30] = t46;
+        y[31] = t47;
+        y[33] = -(self.rotor_offset * (t38 * t47 - t28 * inner_ring_wz));
+        y[34] = -(self.rotor_offset * (t39 * t47 + t29 * inner_ring_wz));
+        y[35] = self.rotor_offset * (t40 * t47 + t33 * inner_ring_wz);
+        y[37] = rotor_wy - t73 * (t56 * t65) - t71 * (t64 * t65);
+        y[38] = rotor_wz + t73 * (t63 * t65) + t71 * (t62 * t65);
         Ok(())
     }
 }
@@ -1661,7 +1610,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeParameters<T> {
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 874 operations (334 ±, 524 ×, 16 ÷).
+    /// Solves eq. (17): 634 operations (247 ±, 382 ×, 5 ÷).
     fn accelerations(
         &self,
         _t: T,
@@ -1691,582 +1640,246 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeParameters<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let (
-            t3,
-            t9,
-            t15,
-            t17,
-            t24,
-            t25,
-            t26,
-            t29,
-            t30,
-            t32,
-            t34,
-            t36,
-            t37,
-            t44,
-            t45,
-            t46,
-            t47,
-            t48,
-            t49,
-            t51,
-            t53,
-            t54,
-            t55,
-            t57,
-            t59,
-            t61,
-            t63,
-            t65,
-            t66,
-            t68,
-            t70,
-            t72,
-            t74,
-            t77,
-            t79,
-            t80,
-            t82,
-            t84,
-            t86,
-            t88,
-            t90,
-            t92,
-            t93,
-            t95,
-            t97,
-            t99,
-            t101,
-            t103,
-            t105,
-            t111,
-            t112,
-            t113,
-            t114,
-            t116,
-            t118,
-            t120,
-            t122,
-            t124,
-            t125,
-            t126,
-            t128,
-            t129,
-            t130,
-            t131,
-            t132,
-            t133,
-            t135,
-            t136,
-            t138,
-            t141,
-            t142,
-            t143,
-            t145,
-            t147,
-            t148,
-            t149,
-            t150,
-            t153,
-            t154,
-            t155,
-            t156,
-            t158,
-            t160,
+        let t0 = outer_ring_wx * outer_ring_wy;
+        let t1 = outer_ring_e0 * outer_ring_e2;
+        let t2 = outer_ring_e1 * outer_ring_e3;
+        let t3 = k(2.0) * (t2 - t1);
+        let t4 = outer_ring_wz * outer_ring_wz;
+        let t5 = t4 + outer_ring_wx * outer_ring_wx;
+        let t6 = outer_ring_e0 * outer_ring_e1;
+        let t7 = outer_ring_e2 * outer_ring_e3;
+        let t8 = k(2.0) * (t7 + t6);
+        let t9 = outer_ring_wy * outer_ring_wz;
+        let t10 = outer_ring_e0 * outer_ring_e0;
+        let t11 = k(2.0) * (k(0.5) - (t10 + outer_ring_e3 * outer_ring_e3));
+        let t12 = t11 * t9 + (t8 * t5 - t3 * t0);
+        let t13 = k(2.0) * (k(0.5) - (t10 + outer_ring_e1 * outer_ring_e1));
+        let t14 = k(2.0) * (t2 + t1);
+        let t15 = k(1.0) / (t14 * t3 - t13 * t11);
+        let t16 = t13 * t15;
+        let t17 = outer_ring_e0 * outer_ring_e3;
+        let t18 = outer_ring_e1 * outer_ring_e2;
+        let t19 = k(2.0) * (t18 - t17);
+        let t20 = t14 * t9 - (t19 * t5 + t13 * t0);
+        let t21 = t3 * t15;
+        let t22 = t21 * t20 - t16 * t12;
+        let t23 = rotor_e0 * rotor_e3;
+        let t24 = rotor_e1 * rotor_e2;
+        let t25 = k(2.0) * (t24 - t23);
+        let t26 = inner_ring_e0 * inner_ring_e0;
+        let t27 = k(2.0) * (k(0.5) - (t26 + inner_ring_e1 * inner_ring_e1));
+        let t28 = rotor_e0 * rotor_e0;
+        let t29 = k(2.0) * (k(0.5) - (t28 + rotor_e2 * rotor_e2));
+        let t30 = inner_ring_e0 * inner_ring_e3;
+        let t31 = inner_ring_e1 * inner_ring_e2;
+        let t32 = k(2.0) * (t31 + t30);
+        let t33 = rotor_e0 * rotor_e1;
+        let t34 = rotor_e2 * rotor_e3;
+        let t35 = k(2.0) * (t34 + t33);
+        let t36 = inner_ring_e0 * inner_ring_e2;
+        let t37 = inner_ring_e1 * inner_ring_e3;
+        let t38 = k(2.0) * (t37 - t36);
+        let t39 = t38 * t35 - (t32 * t29 + t27 * t25);
+        let t40 = k(5e-6) * t39;
+        let t41 = rotor_e0 * rotor_e2;
+        let t42 = rotor_e1 * rotor_e3;
+        let t43 = k(2.0) * (t42 + t41);
+        let t44 = k(2.0) * (t34 - t33);
+        let t45 = k(2.0) * (k(0.5) - (t28 + rotor_e3 * rotor_e3));
+        let t46 = t38 * t45 - (t32 * t44 - t27 * t43);
+        let t47 = k(5e-6) * t46;
+        let t48 = inner_ring_e0 * inner_ring_e1;
+        let t49 = inner_ring_e2 * inner_ring_e3;
+        let t50 = k(2.0) * (t49 - t48);
+        let t51 = k(2.0) * (t37 + t36);
+        let t52 = k(2.0) * (k(0.5) - (t26 + inner_ring_e3 * inner_ring_e3));
+        let t53 = t52 * t35 - (t51 * t25 - t50 * t29);
+        let t54 = t51 * t43 + t50 * t44 + t52 * t45;
+        let t55 = t54 * t47 + t53 * t40;
+        let t56 = self.rotor_mass * (self.rotor_offset * self.rotor_offset);
+        let t57 = self.ring_diametral_inertia
+            + (t56 + (t54 * (k(5e-6) * t54) + t53 * (k(5e-6) * t53)));
+        let t58 = k(1.0) / t57;
+        let t59 = t58 * t55;
+        let t60 = t55 * t59 - (self.ring_diametral_inertia + (t46 * t47 + t39 * t40));
+        let t61 = k(2.0) * (k(0.5) - (t10 + outer_ring_e2 * outer_ring_e2));
+        let t62 = t8 * t38 - (t61 * t32 + t19 * t27);
+        let t63 = k(2.0) * (k(0.5) - (t26 + inner_ring_e2 * inner_ring_e2));
+        let t64 = k(2.0) * (t31 - t30);
+        let t65 = k(2.0) * (t49 + t48);
+        let t66 = t65 * t35 + (t64 * t25 + t63 * t29);
+        let t67 = t65 * t45 - (t64 * t43 - t63 * t44);
+        let t68 = k(5e-6) * t66;
+        let t69 = k(5e-6) * t67;
+        let t70 = t54 * t69 + t53 * t68;
+        let t71 = t70 * t59 - (t67 * t47 + t66 * t40);
+        let t72 = t8 * t65 + (t19 * t64 + t61 * t63);
+        let t73 = t55 - t57 * t59;
+        let t74 = t8 * t52 - (t19 * t51 - t61 * t50);
+        let t75 = t74 * t73 - (t72 * t71 + t62 * t60);
+        let t76 = t58 * t70;
+        let t77 = t70 * t76
+            - (self.ring_axial_inertia + (t56 + (t67 * t69 + t66 * t68)));
+        let t78 = t70 - t57 * t76;
+        let t79 = t74 * t78 - (t72 * t77 + t62 * t71);
+        let t80 = t72 * t78 + t62 * t73;
+        let t81 = k(2.0) * (k(0.5) - (t28 + rotor_e1 * rotor_e1));
+        let t82 = k(2.0) * (t24 + t23);
+        let t83 = k(2.0) * (t42 - t41);
+        let t84 = t38 * t83 + (t32 * t82 + t27 * t81);
+        let t85 = inner_ring_wx * inner_ring_wy;
+        let t86 = t65 * t83 - (t63 * t82 + t64 * t81);
+        let t87 = inner_ring_wx * inner_ring_wx;
+        let t88 = inner_ring_wz * inner_ring_wz;
+        let t89 = t52 * t83 - (t50 * t82 - t51 * t81);
+        let t90 = inner_ring_wy * inner_ring_wz;
+        let t91 = rotor_wy * t46 + rotor_wz * t39;
+        let t92 = k(2.0)
+            * (inner_ring_wx * (rotor_wy * t54 + rotor_wz * t53) + inner_ring_wz * t91);
+        let t93 = rotor_wz * rotor_wz + rotor_wy * rotor_wy;
+        let t94 = rotor_wx * rotor_wy;
+        let t95 = rotor_wx * rotor_wz;
+        let t96 = t95 * t67 - (t94 * t66 - t93 * t86) + t92
+            + (t90 * t89 + ((t88 + t87) * t86 - t85 * t84));
+        let t97 = k(1.0) / (t66 * t54 - t67 * t53);
+        let t98 = t53 * t97;
+        let t99 = inner_ring_wx * inner_ring_wz;
+        let t100 = inner_ring_wy * inner_ring_wy;
+        let t101 = t100 + t87;
+        let t102 = k(2.0)
+            * (inner_ring_wx * (rotor_wy * t67 + rotor_wz * t66) - inner_ring_wy * t91);
+        let t103 = t95 * t54 - (t94 * t53 - t93 * t89) - t102
+            + (t101 * t89 + (t90 * t86 + t99 * t84));
+        let t104 = t66 * t97;
+        let t105 = t104 * t103 - t98 * t96;
+        let t106 = k(5e-6) * (t95 + t105);
+        let t107 = t54 * t97;
+        let t108 = t67 * t97;
+        let t109 = t108 * t103 - t107 * t96;
+        let t110 = k(5e-6) * (t94 + t109);
+        let t111 = self.ring_axial_inertia - self.ring_diametral_inertia;
+        let t112 = t90 * t111;
+        let t113 = t88 + t100;
+        let t114 = self.rotor_offset * (t51 * t99 + (t64 * t85 + t27 * t113));
+        let t115 = self.rotor_mass * t114;
+        let t116 = t64 * self.rotor_offset;
+        let t117 = self.rotor_offset * (t50 * t99 - (t63 * t85 + t32 * t113));
+        let t118 = self.gravity * self.rotor_mass;
+        let t119 = t118 + self.rotor_mass * t117;
+        let t120 = t63 * self.rotor_offset;
+        let t121 = self.rotor_offset * (t52 * t99 - (t65 * t85 - t38 * t113));
+        let t122 = self.rotor_mass * t121;
+        let t123 = t65 * self.rotor_offset;
+        let t124 = t123 * t122 + (t120 * t119 - t116 * t115) + (t54 * t110 + t53 * t106);
+        let t125 = t85 * t111;
+        let t126 = t125 - t124;
+        let t127 = k(2.0) * (t18 + t17);
+        let t128 = t3 * t52 - (t127 * t50 - t13 * t51);
+        let t129 = k(2.0) * (t7 - t6);
+        let t130 = t14 * t51 + t129 * t50 + t11 * t52;
+        let t131 = outer_ring_wx * outer_ring_wz;
+        let t132 = t131 * t130
+            - (t0 * t74 - (t4 + outer_ring_wy * outer_ring_wy) * t128);
+        let t133 = t11 * t38 - (t129 * t32 - t14 * t27);
+        let t134 = t11 * t65 - (t14 * t64 - t129 * t63);
+        let t135 = inner_ring_wx * t134 - inner_ring_wy * t133;
+        let t136 = k(2.0)
+            * (outer_ring_wy * t135
+                + outer_ring_wz * (inner_ring_wx * t72 - inner_ring_wy * t62));
+        let t137 = t3 * t38 + (t127 * t32 + t13 * t27);
+        let t138 = t3 * t65 - (t127 * t63 + t13 * t64);
+        let t139 = t101 * t128 + (t90 * t138 + t99 * t137) - t136 + t132;
+        let t140 = k(1.0) / (t137 * t72 - t138 * t62);
+        let t141 = t62 * t140;
+        let t142 = k(2.0)
+            * (outer_ring_wx * t135
+                + outer_ring_wz * (inner_ring_wx * t138 - inner_ring_wy * t137));
+        let t143 = t101 * t74 + (t90 * t72 + t99 * t62) + t142
+            + (t9 * t130 + (t5 * t74 - t0 * t128));
+        let t144 = t137 * t140;
+        let t145 = t144 * t143 - t141 * t139;
+        let t146 = t72 * t140;
+        let t147 = t138 * t140;
+        let t148 = t147 * t143 - t146 * t139;
+        let t149 = t71 * t148 + t60 * t145
+            - (t59 * t126 - (t112 - (t46 * t110 + t39 * t106)));
+        let t150 = t51 * self.rotor_offset;
+        let t151 = t50 * self.rotor_offset;
+        let t152 = t52 * self.rotor_offset;
+        let t153 = t152 * t122 + (t151 * t119 + t150 * t115) - (t67 * t110 + t66 * t106);
+        let t154 = t72 * (t77 * t148 + t71 * t145 - (t76 * t126 - t153));
+        let t155 = t74 * (t78 * t148 + t73 * t145) - (t154 + t62 * t149);
+        let t156 = t72 * (t128 * t78 - (t138 * t77 + t137 * t71))
+            + t62 * (t128 * t73 - (t138 * t71 + t137 * t60));
+        let t157 = t14 * t15;
+        let t158 = t11 * t15;
+        let t159 = t158 * t20 - t157 * t12;
+        let t160 = t159 * (t130 * t80 + (t134 * t79 + t133 * t75))
+            + t22 * (t74 * (t138 * t78 + t137 * t73) + t156);
+        let t161 = (t160 - (t131 * t111 + t155))
+            / (self.ring_diametral_inertia + (t74 * t80 + (t72 * t79 + t62 * t75)));
+        let t162 = t145 - (t133 * t159 - (t62 * t161 - t137 * t22));
+        let t163 = t148 - (t134 * t159 - (t72 * t161 - t138 * t22));
+        let t164 = t130 * t159 - (t74 * t161 - t128 * t22);
+        let t165 = t58 * (t126 + (t57 * t164 - (t70 * t163 + t55 * t162)));
+        let t166 = t164 - t165;
+        let t167 = t114 + (t116 * t166 - t150 * t163);
+        let t168 = t117 - (t120 * t166 + t151 * t163);
+        let t169 = t121 - (t123 * t166 + t152 * t163);
+        let t170 = t105 - (t53 * t166 - (t66 * t163 + t39 * t162));
+        let t171 = t109 - (t54 * t166 - (t67 * t163 + t46 * t162));
+        let t172 = self.rotor_mass * t167;
+        let t173 = t118 + self.rotor_mass * t168;
+        let t174 = k(0.01) * self.gravity;
+        let t175 = t174 + t173;
+        let t176 = self.rotor_mass * t169;
+        let t177 = k(5e-6) * (t95 + t170);
+        let t178 = k(5e-6) * (t94 + t171);
+        let t179 = t46 * t178 + t39 * t177 - (t112 - self.ring_diametral_inertia * t162);
+        let t180 = t152 * t176 + (t151 * t173 + t150 * t172) - (t67 * t178 + t66 * t177);
+        let t181 = t180 - self.ring_axial_inertia * t163;
+        let t182 = t123 * t176 + (t120 * t173 - t116 * t172) + (t54 * t178 + t53 * t177);
+        let t183 = t182 - (t125 + self.ring_diametral_inertia * t166);
+        let t184 = t128 * t183 - (t138 * t181 - t137 * t179)
+            - self.ring_axial_inertia * t22;
+        let t185 = t130 * t183 - (t134 * t181 - t133 * t179)
+            + (t0 * t111 - self.ring_diametral_inertia * t159);
+        *out = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t22,
+            t161,
+            t159,
+            k(0.0),
+            k(0.0),
+            k(0.0),
             t162,
             t163,
-            t164,
-            t165,
             t166,
             t167,
             t168,
-            t169,
-            t171,
-            t173,
-            t176,
-            t177,
-            t179,
-            t180,
-            t182,
-            t184,
-            t186,
-            t187,
-            t192,
-            t193,
-            t194,
-            t195,
-            t198,
-            t199,
-        ) = {
-            let t0 = rotor_e0 * rotor_e0;
-            let t1 = k(2.0) * (k(0.5) - (t0 + rotor_e2 * rotor_e2));
-            let t2 = inner_ring_e0 * inner_ring_e0;
-            let t3 = k(2.0) * (k(0.5) - (t2 + inner_ring_e2 * inner_ring_e2));
-            let t4 = rotor_e0 * rotor_e3;
-            let t5 = rotor_e1 * rotor_e2;
-            let t6 = k(2.0) * (t5 - t4);
-            let t7 = inner_ring_e0 * inner_ring_e3;
-            let t8 = inner_ring_e1 * inner_ring_e2;
-            let t9 = k(2.0) * (t8 - t7);
-            let t10 = rotor_e0 * rotor_e1;
-            let t11 = rotor_e2 * rotor_e3;
-            let t12 = k(2.0) * (t11 + t10);
-            let t13 = inner_ring_e0 * inner_ring_e1;
-            let t14 = inner_ring_e2 * inner_ring_e3;
-            let t15 = k(2.0) * (t14 + t13);
-            let t16 = t15 * t12 + (t9 * t6 + t3 * t1);
-            let t17 = k(200000.0) * t16;
-            let t18 = k(2.0) * (t11 - t10);
-            let t19 = rotor_e0 * rotor_e2;
-            let t20 = rotor_e1 * rotor_e3;
-            let t21 = k(2.0) * (t20 + t19);
-            let t22 = k(2.0) * (k(0.5) - (t0 + rotor_e3 * rotor_e3));
-            let t23 = t15 * t22 - (t9 * t21 - t3 * t18);
-            let t24 = k(200000.0) * t23;
-            let t25 = k(1.0) / (t23 * t24 + t16 * t17);
-            let t26 = k(2.0) * (t14 - t13);
-            let t27 = inner_ring_e0 * inner_ring_e2;
-            let t28 = inner_ring_e1 * inner_ring_e3;
-            let t29 = k(2.0) * (t28 + t27);
-            let t30 = k(2.0) * (k(0.5) - (t2 + inner_ring_e3 * inner_ring_e3));
-            let t31 = t30 * t12 - (t29 * t6 - t26 * t1);
-            let t32 = k(200000.0) * t31;
-            let t33 = t29 * t21 + t26 * t18 + t30 * t22;
-            let t34 = k(200000.0) * t33;
-            let t35 = t23 * t34 + t16 * t32;
-            let t36 = t35 * t25;
-            let t37 = k(1.0) / (t33 * t34 + t31 * t32 - t35 * t36);
-            let t38 = k(2.0) * (k(0.5) - (t0 + rotor_e1 * rotor_e1));
-            let t39 = k(2.0) * (t5 + t4);
-            let t40 = k(2.0) * (t20 - t19);
-            let t41 = t30 * t40 - (t26 * t39 - t29 * t38);
-            let t42 = t15 * t40 - (t3 * t39 + t9 * t38);
-            let t43 = t42 + t41 * t36;
-            let t44 = t43 * t37;
-            let t45 = t41 * t25;
-            let t46 = k(1.0) / (self.ring_diametral_inertia + t41 * t45 + t43 * t44);
-            let t47 = k(2.0) * (k(0.5) - (t2 + inner_ring_e1 * inner_ring_e1));
-            let t48 = k(2.0) * (t8 + t7);
-            let t49 = k(2.0) * (t28 - t27);
-            let t50 = t49 * t40 + (t48 * t39 + t47 * t38);
-            let t51 = t50 * t37;
-            let t52 = t43 * t51;
-            let t53 = t52 * t46;
-            let t54 = k(1.0) / self.rotor_mass;
-            let t55 = k(1.0) / (t54 + k(100.0));
-            let t56 = t30 * self.rotor_offset;
-            let t57 = t56 * t55;
-            let t58 = t26 * self.rotor_offset;
-            let t59 = t58 * t55;
-            let t60 = t29 * self.rotor_offset;
-            let t61 = t60 * t55;
-            let t62 = self.ring_axial_inertia + t60 * t61 + t58 * t59 + t56 * t57
-                + t50 * t51;
-            let t63 = k(1.0) / (t62 - t52 * t53);
-            let t64 = t50 * t36;
-            let t65 = t64 * t37;
-            let t66 = t50 * t25;
-            let t67 = t41 * t66 + t43 * t65;
-            let t68 = t67 * t46;
-            let t69 = t15 * self.rotor_offset;
-            let t70 = t69 * t55;
-            let t71 = t3 * self.rotor_offset;
-            let t72 = t71 * t55;
-            let t73 = t9 * self.rotor_offset;
-            let t74 = t73 * t55;
-            let t75 = t60 * t74 - t58 * t72 - t56 * t70 + t50 * t65;
-            let t76 = t75 - t52 * t68;
-            let t77 = t76 * t63;
-            let t78 = self.ring_diametral_inertia + t73 * t74 + t71 * t72 + t69 * t70
-                + t50 * t66;
-            let t79 = k(1.0) / (t78 + t64 * t65 - t67 * t68 - t76 * t77);
-            let t80 = k(100.0) * t55;
-            let t81 = t60 * t80;
-            let t82 = t81 * t63;
-            let t83 = t73 * t80 - t76 * t82;
-            let t84 = t83 * t79;
-            let t85 = k(100.0) + (k(10000.0) * t55 - k(200.0));
-            let t86 = k(1.0) / (t85 - t81 * t82 - t83 * t84);
-            let t87 = t58 * t80;
-            let t88 = t87 * t63;
-            let t89 = t71 * t80 + t76 * t88;
-            let t90 = t89 * t79;
-            let t91 = t81 * t88 - t83 * t90;
-            let t92 = t91 * t86;
-            let t93 = k(1.0) / (t85 - t87 * t88 - t89 * t90 - t91 * t92);
-            let t94 = t56 * t80;
-            let t95 = t94 * t63;
-            let t96 = t69 * t80 + t76 * t95;
-            let t97 = t96 * t79;
-            let t98 = t81 * t95 - t83 * t97;
-            let t99 = t98 * t86;
-            let t100 = t87 * t95 + t89 * t97 + t91 * t99;
-            let t101 = t100 * t93;
-            let t102 = t85 - t94 * t95 - t96 * t97 - t98 * t99 - t100 * t101;
-            let t103 = k(1.0) / t102;
-            let t104 = outer_ring_e0 * outer_ring_e0;
-            let t105 = k(2.0) * (k(0.5) - (t104 + outer_ring_e1 * outer_ring_e1));
-            let t106 = outer_ring_e0 * outer_ring_e3;
-            let t107 = outer_ring_e1 * outer_ring_e2;
-            let t108 = k(2.0) * (t107 + t106);
-            let t109 = outer_ring_e0 * outer_ring_e2;
-            let t110 = outer_ring_e1 * outer_ring_e3;
-            let t111 = k(2.0) * (t110 - t109);
-            let t112 = t111 * t15 - (t108 * t3 + t105 * t9);
-            let t113 = t112 * t46;
-            let t114 = t111 * t49 + (t108 * t48 + t105 * t47);
-            let t115 = t114 - t52 * t113;
-            let t116 = t115 * t63;
-            let t117 = t67 * t113 + t76 * t116;
-            let t118 = t117 * t79;
-            let t119 = t81 * t116 - t83 * t118;
-            let t120 = t119 * t86;
-            let t121 = t87 * t116 + t89 * t118 + t91 * t120;
-            let t122 = t121 * t93;
-            let t123 = t94 * t116 + t96 * t118 + t98 * t120 + t100 * t122;
-            let t124 = t123 * t103;
-            let t125 = k(1.0) / self.ring_diametral_inertia;
-            let t126 = t111 * t125;
-            let t127 = k(1.0) / self.ring_axial_inertia;
-            let t128 = k(2.0) * (k(0.5) - (t104 + outer_ring_e3 * outer_ring_e3));
-            let t129 = t128 * t127;
-            let t130 = k(1.0) / (t128 * t129 + t111 * t126);
-            let t131 = t105 * t125;
-            let t132 = k(2.0) * (t110 + t109);
-            let t133 = t132 * t127;
-            let t134 = t128 * t133 + t111 * t131;
-            let t135 = t134 * t130;
-            let t136 = k(1.0) / (t132 * t133 + t105 * t131 - t134 * t135);
-            let t137 = k(2.0) * (k(0.5) - (t104 + outer_ring_e2 * outer_ring_e2));
-            let t138 = k(2.0) * (t107 - t106);
-            let t139 = outer_ring_e0 * outer_ring_e1;
-            let t140 = outer_ring_e2 * outer_ring_e3;
-            let t141 = k(2.0) * (t140 + t139);
-            let t142 = t141 * t30 - (t138 * t29 - t137 * t26);
-            let t143 = t142 * t125;
-            let t144 = t111 * t143;
-            let t145 = t144 * t130;
-            let t146 = t105 * t143 - t134 * t145;
-            let t147 = t146 * t136;
-            let t148 = k(2.0) * (t140 - t139);
-            let t149 = t132 * t29 + t148 * t26 + t128 * t30;
-            let t150 = t149 * t125;
-            let t151 = t149 * t150 + t112 * t113 + t142 * t143 - t144 * t145;
-            let t152 = t151 - t146 * t147 + t115 * t116 + t117 * t118 + t119 * t120;
-            let t153 = k(1.0) / (t152 + t121 * t122 + t123 * t124);
-            let t154 = t141 * t15 + (t138 * t9 + t137 * t3);
-            let t155 = t154 * t46;
-            let t156 = t141 * t49 - (t137 * t48 + t138 * t47);
-            let t157 = t156 - t52 * t155;
-            let t158 = t157 * t63;
-            let t159 = t67 * t155 + t76 * t158;
-            let t160 = t159 * t79;
-            let t161 = t81 * t158 - t83 * t160;
-            let t162 = t161 * t86;
-            let t163 = t87 * t158 + t89 * t160 + t91 * t162;
-            let t164 = t163 * t93;
-            let t165 = t94 * t158 + t96 * t160 + t98 * t162 + t100 * t164;
-            let t166 = t165 * t103;
-            let t167 = t111 * t30 - (t108 * t26 - t105 * t29);
-            let t168 = t167 * t125;
-            let t169 = t149 * t127;
-            let t170 = t128 * t169 + t111 * t168;
-            let t171 = t170 * t130;
-            let t172 = t132 * t169 + t105 * t168 - t134 * t171;
-            let t173 = t172 * t136;
-            let t174 = t112 * t155 - t142 * t168 + t144 * t171 + t146 * t173;
-            let t175 = t174 + t115 * t158 + t117 * t160 + t119 * t162 + t121 * t164;
-            let t176 = t175 + t123 * t166;
-            let t177 = t176 * t153;
-            let t178 = t149 * t169 + t154 * t155 + t167 * t168 - t170 * t171;
-            let t179 = t178 - t172 * t173 + t157 * t158 + t159 * t160 + t161 * t162;
-            let t180 = rotor_wx * rotor_wy;
-            let t181 = k(5e-6) * t180;
-            let t182 = rotor_wx * rotor_wz;
-            let t183 = k(5e-6) * t182;
-            let t184 = inner_ring_wx * inner_ring_wy;
-            let t185 = inner_ring_wx * inner_ring_wx;
-            let t186 = inner_ring_wz * inner_ring_wz;
-            let t187 = inner_ring_wy * inner_ring_wz;
-            let t188 = rotor_wy * (t49 * t22 - (t48 * t18 - t47 * t21))
-                + rotor_wz * (t49 * t12 - (t48 * t1 + t47 * t6));
-            let t189 = k(2.0)
-                * (inner_ring_wx * (rotor_wy * t33 + rotor_wz * t31)
-                    + inner_ring_wz * t188);
-            let t190 = rotor_wz * rotor_wz + rotor_wy * rotor_wy;
-            let t191 = t182 * t23 - (t180 * t16 - t190 * t42) + t189
-                + (t187 * t41 + ((t186 + t185) * t42 - t184 * t50));
-            let t192 = t191 + t183 * t24 - t181 * t17;
-            let t193 = inner_ring_wx * inner_ring_wz;
-            let t194 = inner_ring_wy * inner_ring_wy;
-            let t195 = t194 + t185;
-            let t196 = k(2.0)
-                * (inner_ring_wx * (rotor_wy * t23 + rotor_wz * t16)
-                    - inner_ring_wy * t188);
-            let t197 = t182 * t33 - (t180 * t31 - t190 * t41) - t196
-                + (t195 * t41 + (t187 * t42 + t193 * t50));
-            let t198 = t197 + t183 * t34 - t181 * t32 - t192 * t36;
-            let t199 = self.ring_axial_inertia - self.ring_diametral_inertia;
-            (
-                t3,
-                t9,
-                t15,
-                t17,
-                t24,
-                t25,
-                t26,
-                t29,
-                t30,
-                t32,
-                t34,
-                t36,
-                t37,
-                t44,
-                t45,
-                t46,
-                t47,
-                t48,
-                t49,
-                t51,
-                t53,
-                t54,
-                t55,
-                t57,
-                t59,
-                t61,
-                t63,
-                t65,
-                t66,
-                t68,
-                t70,
-                t72,
-                t74,
-                t77,
-                t79,
-                t80,
-                t82,
-                t84,
-                t86,
-                t88,
-                t90,
-                t92,
-                t93,
-                t95,
-                t97,
-                t99,
-                t101,
-                t103,
-                t105,
-                t111,
-                t112,
-                t113,
-                t114,
-                t116,
-                t118,
-                t120,
-                t122,
-                t124,
-                t125,
-                t126,
-                t128,
-                t129,
-                t130,
-                t131,
-                t132,
-                t133,
-                t135,
-                t136,
-                t138,
-                t141,
-                t142,
-                t143,
-                t145,
-                t147,
-                t148,
-                t149,
-                t150,
-                t153,
-                t154,
-                t155,
-                t156,
-                t158,
-                t160,
-                t162,
-                t163,
-                t164,
-                t165,
-                t166,
-                t167,
-                t168,
-                t169,
-                t171,
-                t173,
-                t176,
-                t177,
-                t179,
-                t180,
-                t182,
-                t184,
-                t186,
-                t187,
-                t192,
-                t193,
-                t194,
-                t195,
-                t198,
-                t199,
-            )
-        };
-        let (
-            t203,
-            t224,
-            t236,
-            t237,
-            t238,
-            t239,
-            t240,
-            t241,
-            t242,
-            t243,
-            t244,
-            t246,
-            t248,
-            t250,
-            t251,
-            t252,
-            t253,
-            t255,
-            t256,
-            t257,
-        ) = {
-            let t200 = t187 * t199 - t192 * t45 + t198 * t44;
-            let t201 = t186 + t194;
-            let t202 = self.rotor_offset * (t30 * t193 - (t15 * t184 - t49 * t201));
-            let t203 = self.gravity * self.rotor_mass * t54;
-            let t204 = self.rotor_offset * (t26 * t193 - (t3 * t184 + t48 * t201))
-                + t203;
-            let t205 = self.gravity - t204;
-            let t206 = self.rotor_offset * (t29 * t193 + (t9 * t184 + t47 * t201));
-            let t207 = t206 * t61 - t205 * t59 + t202 * t57 - t198 * t51;
-            let t208 = t207 + t200 * t53;
-            let t209 = t184 * t199 + t206 * t74 + t205 * t72 - t202 * t70;
-            let t210 = t209 + t192 * t66 - t198 * t65 + t200 * t68 - t208 * t77;
-            let t211 = t206 * t80 - t208 * t82 - t210 * t84;
-            let t212 = self.gravity - t205 * t80 - t208 * t88 + t210 * t90 + t211 * t92;
-            let t213 = t202 * t80 - t208 * t95 + t210 * t97 + t211 * t99;
-            let t214 = t213 + t212 * t101;
-            let t215 = outer_ring_wx * outer_ring_wy;
-            let t216 = t215 * t199;
-            let t217 = outer_ring_wz * outer_ring_wz;
-            let t218 = t217 + outer_ring_wx * outer_ring_wx;
-            let t219 = outer_ring_wy * outer_ring_wz;
-            let t220 = t128 * t219 + (t141 * t218 - t111 * t215) + t216 * t126;
-            let t221 = t132 * t219 - (t138 * t218 + t105 * t215) + t216 * t131;
-            let t222 = t221 - t220 * t135;
-            let t223 = outer_ring_wx * outer_ring_wz;
-            let t224 = t223 * t199;
-            let t225 = t223 * t149
-                - (t215 * t142 - (t217 + outer_ring_wy * outer_ring_wy) * t167);
-            let t226 = inner_ring_wx * (t128 * t15 - (t132 * t9 - t148 * t3))
-                - inner_ring_wy * (t128 * t49 - (t148 * t48 - t132 * t47));
-            let t227 = k(2.0)
-                * (outer_ring_wy * t226
-                    + outer_ring_wz * (inner_ring_wx * t154 - inner_ring_wy * t156));
-            let t228 = t195 * t167 + (t187 * t112 + t193 * t114) - t227 + t225;
-            let t229 = t228 + t224 * t150 - t200 * t113 - t216 * t143 + t220 * t145;
-            let t230 = t229 + t222 * t147 + t208 * t116 - t210 * t118 - t211 * t120;
-            let t231 = t230 - t212 * t122 - t214 * t124;
-            let t232 = k(2.0)
-                * (outer_ring_wx * t226
-                    + outer_ring_wz * (inner_ring_wx * t112 - inner_ring_wy * t114));
-            let t233 = t195 * t142 + (t187 * t154 + t193 * t156) + t232
-                + (t219 * t149 + (t218 * t142 - t215 * t167));
-            let t234 = t233 - t200 * t155 + t216 * t168 - t220 * t171 - t222 * t173;
-            let t235 = t234 + t208 * t158 - t210 * t160 - t211 * t162 - t212 * t164;
-            let t236 = (t235 - t214 * t166 - t231 * t177)
-                / (t179 + t163 * t164 + t165 * t166 - t176 * t177);
-            let t237 = t231 * t153 - t177 * t236;
-            let t238 = t214 * t103 + t124 * t237 + t166 * t236;
-            let t239 = t212 * t93 + t101 * t238 + t122 * t237 + t164 * t236;
-            let t240 = k(100.0) * t239;
-            let t241 = k(0.01) * self.gravity - t239;
-            let t242 = t222 * t136 + t147 * t237 - t173 * t236;
-            let t243 = t220 * t130 - t135 * t242 + t145 * t237 - t171 * t236;
-            let t244 = t216 * t125 - t126 * t243 - t131 * t242 + t143 * t237;
-            let t245 = t211 * t86 + t92 * t239 + t99 * t238 + t120 * t237;
-            let t246 = t245 + t162 * t236;
-            let t247 = t210 * t79 - t84 * t246 + t90 * t239 + t97 * t238;
-            let t248 = t247 + t118 * t237 + t160 * t236;
-            let t249 = t208 * t63 - t77 * t248 - t82 * t246 - t88 * t239;
-            let t250 = t249 - t95 * t238 - t116 * t237 - t158 * t236;
-            let t251 = t206 * t55 - t61 * t250 - t74 * t248 - t80 * t246;
-            let t252 = t205 * t55 + t59 * t250 - t72 * t248 + t80 * t239;
-            let t253 = t202 * t55 - t57 * t250 + t70 * t248 - t80 * t238;
-            let t254 = t200 * t46 + t53 * t250 + t68 * t248 + t113 * t237;
-            let t255 = t254 + t155 * t236;
-            let t256 = t198 * t37 - t44 * t255 + t51 * t250 + t65 * t248;
-            let t257 = t192 * t25 + t45 * t255 - t66 * t248 - t36 * t256;
-            (
-                t203,
-                t224,
-                t236,
-                t237,
-                t238,
-                t239,
-                t240,
-                t241,
-                t242,
-                t243,
-                t244,
-                t246,
-                t248,
-                t250,
-                t251,
-                t252,
-                t253,
-                t255,
-                t256,
-                t257,
-            )
-        };
-        *out = [
+            -t169,
             k(0.0),
-            t240 - (self.gravity - k(100.0) * t241),
-            k(0.0),
-            -(t129 * t243 + t133 * t242 + t169 * t236),
-            t150 * t237 - t224 * t125,
-            t244 - t168 * t236,
-            k(100.0) * -(t246 + t251),
-            k(100.0) * t252 - (self.gravity + t240),
-            k(100.0) * (t238 + t253),
-            t255,
-            t250,
-            -t248,
-            t54 * t251,
-            -(t203 + t54 * t252),
-            -(t54 * t253),
-            k(0.0),
-            t34 * t256 - (t182 - t24 * t257),
-            t180 + t17 * t257 + t32 * t256,
+            t170,
+            -t171,
         ];
         *lambda = [
-            t246,
-            -t241,
-            -t238,
-            -t243,
-            t242,
-            t246,
-            t239,
-            -t238,
-            t237,
-            t236,
-            -t251,
-            t252,
-            t253,
-            -t257,
-            t256,
+            -t172,
+            -(t174 + t175),
+            t176,
+            -(t157 * t185 + t16 * t184),
+            -(t158 * t185 + t21 * t184),
+            -t172,
+            -t175,
+            t176,
+            t146 * t181 - t141 * t179,
+            t144 * t179 - t147 * t181,
+            -t172,
+            -t173,
+            t176,
+            t107 * t178 + t98 * t177,
+            t108 * t178 + t104 * t177,
         ];
     }
 }

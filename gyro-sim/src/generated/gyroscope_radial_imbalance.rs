@@ -19,13 +19,13 @@
 //! | gamma | γ | 122 | 195 | 0 | 317 | 6 of 15 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 90 | 128 | 0 | 218 | 0 of 15 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 |
-//! | accelerations | (s̈, ẇ') and λ, eq. (17) | 370 | 577 | 13 | 960 | 0 of 33 |
+//! | accelerations | (s̈, ẇ') and λ, eq. (17) | 251 | 394 | 5 | 650 | 6 of 33 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
 //! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 |
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
 //! | newton_step | dependent positions, one Newton step | 193 | 323 | 3 | 519 | 6 of 21 |
-//! | solve_velocities | dependent velocities, eq. (19) | 135 | 233 | 3 | 371 | 6 of 18 |
+//! | solve_velocities | dependent velocities, eq. (19) | 96 | 158 | 3 | 257 | 6 of 18 |
 
 /// The mechanism `gyroscope_radial_imbalance`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -372,8 +372,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeRadialImbalance<T> {
         let t47 = k(2.0) * (t39 - t38);
         let t48 = k(2.0) * (k(0.5) - (t36 + rotor_e3 * rotor_e3));
         let t49 = t29 * t47 + (t27 * t43 + t24 * t37);
-        let t50 = inner_ring_wx * (t18 * t47 - (t9 * t43 - t13 * t37))
-            + inner_ring_wz * t49;
+        let t50 = inner_ring_wz * t49
+            + inner_ring_wx * (t18 * t47 - (t9 * t43 - t13 * t37));
         let t51 = k(2.0) * (k(0.5) - (t36 + rotor_e2 * rotor_e2));
         let t52 = k(2.0) * (t42 - t41);
         let t53 = k(2.0) * (t45 + t44);
@@ -862,14 +862,13 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeRadialImbalance<T> {
         y[20] = -t138;
         Ok(())
     }
-    /// Solves eq. (19) for the dependent velocities: 371 operations (135 ±, 233 ×, 3 ÷).
+    /// Solves eq. (19) for the dependent velocities: 257 operations (96 ±, 158 ×, 3 ÷).
     fn solve_velocities(
         &self,
         _t: T,
-        choice: &Self::Independent,
+        _choice: &Self::Independent,
         y: &mut Self::State,
     ) -> ::core::result::Result<(), gyro_sim::Error> {
-        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -892,145 +891,96 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeRadialImbalance<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let chart0_0 = charts[0][0];
-        let chart0_1 = charts[0][1];
-        let chart0_2 = charts[0][2];
-        let chart0_3 = charts[0][3];
-        let chart1_0 = charts[1][0];
-        let chart1_1 = charts[1][1];
-        let chart1_2 = charts[1][2];
-        let chart1_3 = charts[1][3];
-        let chart2_0 = charts[2][0];
-        let chart2_1 = charts[2][1];
-        let chart2_2 = charts[2][2];
-        let chart2_3 = charts[2][3];
-        let t0 = outer_ring_e2 * chart0_0 + outer_ring_e3 * chart0_1
-            - outer_ring_e0 * chart0_2 - outer_ring_e1 * chart0_3;
-        let t1 = k(0.5) * t0;
-        let t2 = outer_ring_e0 * outer_ring_e2;
-        let t3 = outer_ring_e1 * outer_ring_e3;
-        let t4 = k(2.0) * (t3 - t2);
-        let t5 = outer_ring_e0 * outer_ring_e0;
-        let t6 = k(2.0) * (k(0.5) - (t5 + outer_ring_e1 * outer_ring_e1));
-        let t7 = k(2.0) * (t3 + t2);
-        let t8 = t7 * outer_ring_wx + t6 * outer_ring_wz;
-        let t9 = k(2.0) * (k(0.5) - (t5 + outer_ring_e3 * outer_ring_e3));
-        let t10 = t9 * outer_ring_wx + t4 * outer_ring_wz;
-        let t11 = k(1.0) / (t1 * (t7 * t4 - t6 * t9));
-        let t12 = outer_ring_wx + t11 * (t10 * (t6 * t1) - t8 * (t4 * t1));
-        let t13 = outer_ring_e1 * chart0_0 - outer_ring_e0 * chart0_1
-            - outer_ring_e3 * chart0_2 + outer_ring_e2 * chart0_3;
-        let t14 = k(0.5) * t13;
-        let t15 = outer_ring_e3 * chart0_0 - outer_ring_e2 * chart0_1
-            + outer_ring_e1 * chart0_2 - outer_ring_e0 * chart0_3;
-        let t16 = k(0.5) * t15;
-        let t17 = t10 * (t6 * t14 - t7 * t16) + t8 * (t9 * t16 - t4 * t14);
-        let t18 = outer_ring_wy - t11 * t17;
-        let t19 = outer_ring_wz - t11 * (t10 * (t7 * t1) - t8 * (t9 * t1));
-        let t20 = inner_ring_e3 * chart1_0 - inner_ring_e2 * chart1_1
-            + inner_ring_e1 * chart1_2 - inner_ring_e0 * chart1_3;
-        let t21 = k(0.5) * t20;
-        let t22 = inner_ring_e0 * inner_ring_e0;
-        let t23 = k(2.0) * (k(0.5) - (t22 + inner_ring_e1 * inner_ring_e1));
-        let t24 = inner_ring_e0 * inner_ring_e3;
-        let t25 = inner_ring_e1 * inner_ring_e2;
+        let t0 = outer_ring_e0 * outer_ring_e0;
+        let t1 = k(2.0) * (k(0.5) - (t0 + outer_ring_e3 * outer_ring_e3));
+        let t2 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
+        let t3 = outer_ring_e0 * outer_ring_e2;
+        let t4 = outer_ring_e1 * outer_ring_e3;
+        let t5 = k(2.0) * (t4 - t3);
+        let t6 = k(2.0) * (t4 + t3);
+        let t7 = k(1.0) / (t6 * t5 - t2 * t1);
+        let t8 = t6 * outer_ring_wx + t2 * outer_ring_wz;
+        let t9 = t1 * outer_ring_wx + t5 * outer_ring_wz;
+        let t10 = outer_ring_wx + t9 * (t2 * t7) - t8 * (t5 * t7);
+        let t11 = outer_ring_wz - t9 * (t6 * t7) + t8 * (t1 * t7);
+        let t12 = inner_ring_e0 * inner_ring_e0;
+        let t13 = k(2.0) * (k(0.5) - (t12 + inner_ring_e1 * inner_ring_e1));
+        let t14 = outer_ring_e0 * outer_ring_e3;
+        let t15 = outer_ring_e1 * outer_ring_e2;
+        let t16 = k(2.0) * (t15 - t14);
+        let t17 = inner_ring_e0 * inner_ring_e3;
+        let t18 = inner_ring_e1 * inner_ring_e2;
+        let t19 = k(2.0) * (t18 + t17);
+        let t20 = k(2.0) * (k(0.5) - (t0 + outer_ring_e2 * outer_ring_e2));
+        let t21 = inner_ring_e0 * inner_ring_e2;
+        let t22 = inner_ring_e1 * inner_ring_e3;
+        let t23 = k(2.0) * (t22 - t21);
+        let t24 = outer_ring_e0 * outer_ring_e1;
+        let t25 = outer_ring_e2 * outer_ring_e3;
         let t26 = k(2.0) * (t25 + t24);
-        let t27 = outer_ring_e0 * outer_ring_e3;
-        let t28 = outer_ring_e1 * outer_ring_e2;
-        let t29 = k(2.0) * (t28 + t27);
-        let t30 = inner_ring_e0 * inner_ring_e2;
-        let t31 = inner_ring_e1 * inner_ring_e3;
-        let t32 = k(2.0) * (t31 - t30);
-        let t33 = t4 * t32 + (t29 * t26 + t6 * t23);
-        let t34 = k(2.0) * (t28 - t27);
-        let t35 = k(2.0) * (k(0.5) - (t5 + outer_ring_e2 * outer_ring_e2));
-        let t36 = outer_ring_e0 * outer_ring_e1;
-        let t37 = outer_ring_e2 * outer_ring_e3;
-        let t38 = k(2.0) * (t37 + t36);
-        let t39 = t38 * t32 - (t35 * t26 + t34 * t23);
-        let t40 = k(2.0) * (k(0.5) - (t22 + inner_ring_e2 * inner_ring_e2));
-        let t41 = k(2.0) * (t25 - t24);
-        let t42 = inner_ring_e0 * inner_ring_e1;
-        let t43 = inner_ring_e2 * inner_ring_e3;
-        let t44 = k(2.0) * (t43 + t42);
-        let t45 = t38 * t44 + (t34 * t41 + t35 * t40);
-        let t46 = k(2.0) * (t31 + t30);
-        let t47 = k(2.0) * (t43 - t42);
-        let t48 = k(2.0) * (k(0.5) - (t22 + inner_ring_e3 * inner_ring_e3));
-        let t49 = t7 * t46 + k(2.0) * (t37 - t36) * t47 + t9 * t48;
-        let t50 = t12 * t49 + t19 * (t4 * t48 - (t29 * t47 - t6 * t46));
-        let t51 = t50 - (inner_ring_wx * t45 - inner_ring_wy * t39);
-        let t52 = t4 * t44 - (t29 * t40 + t6 * t41);
-        let t53 = t18 * t49 + t19 * (t38 * t48 - (t34 * t46 - t35 * t47));
-        let t54 = t53 + (inner_ring_wx * t52 - inner_ring_wy * t33);
-        let t55 = k(1.0) / (t21 * (t52 * t39 - t33 * t45));
-        let t56 = inner_ring_wx - t55 * (t54 * (t39 * t21) + t51 * (t33 * t21));
-        let t57 = inner_ring_wy - t55 * (t54 * (t45 * t21) + t51 * (t52 * t21));
-        let t58 = inner_ring_e2 * chart1_0 + inner_ring_e3 * chart1_1
-            - inner_ring_e0 * chart1_2 - inner_ring_e1 * chart1_3;
-        let t59 = k(0.5) * t58;
-        let t60 = inner_ring_e1 * chart1_0 - inner_ring_e0 * chart1_1
-            - inner_ring_e3 * chart1_2 + inner_ring_e2 * chart1_3;
-        let t61 = k(0.5) * t60;
-        let t62 = t54 * (t45 * t59 + t39 * t61) + t51 * (t33 * t61 + t52 * t59);
-        let t63 = inner_ring_wz + t55 * t62;
-        let t64 = rotor_e1 * chart2_0 - rotor_e0 * chart2_1 - rotor_e3 * chart2_2
-            + rotor_e2 * chart2_3;
-        let t65 = k(0.5) * t64;
-        let t66 = rotor_e0 * rotor_e1;
-        let t67 = rotor_e2 * rotor_e3;
-        let t68 = k(2.0) * (t67 - t66);
-        let t69 = rotor_e0 * rotor_e2;
-        let t70 = rotor_e1 * rotor_e3;
-        let t71 = k(2.0) * (t70 + t69);
-        let t72 = rotor_e0 * rotor_e0;
-        let t73 = k(2.0) * (k(0.5) - (t72 + rotor_e3 * rotor_e3));
-        let t74 = t44 * t73 - (t41 * t71 - t40 * t68);
-        let t75 = k(2.0) * (k(0.5) - (t72 + rotor_e2 * rotor_e2));
-        let t76 = rotor_e0 * rotor_e3;
-        let t77 = rotor_e1 * rotor_e2;
-        let t78 = k(2.0) * (t77 - t76);
-        let t79 = k(2.0) * (t67 + t66);
-        let t80 = t48 * t79 - (t46 * t78 - t47 * t75);
-        let t81 = t46 * t71 + t47 * t68 + t48 * t73;
-        let t82 = k(2.0) * (k(0.5) - (t72 + rotor_e1 * rotor_e1));
-        let t83 = k(2.0) * (t77 + t76);
-        let t84 = k(2.0) * (t70 - t69);
-        let t85 = t32 * t84 + (t26 * t83 + t23 * t82);
-        let t86 = t56 * (t44 * t84 - (t40 * t83 + t41 * t82)) - t57 * t85;
-        let t87 = t86 + (rotor_wy * t81 + rotor_wz * t80);
-        let t88 = t44 * t79 + (t41 * t78 + t40 * t75);
-        let t89 = t56 * (t48 * t84 - (t47 * t83 - t46 * t82)) + t63 * t85;
-        let t90 = t89 - (rotor_wy * t74 + rotor_wz * t88);
-        let t91 = k(1.0) / (t65 * (t74 * t80 - t88 * t81));
-        let t92 = rotor_wz - t91 * (t90 * (t81 * t65) + t87 * (t74 * t65));
-        let t93 = rotor_e3 * chart2_0 - rotor_e2 * chart2_1 + rotor_e1 * chart2_2
-            - rotor_e0 * chart2_3;
-        let t94 = k(0.5) * t93;
-        let t95 = rotor_e2 * chart2_0 + rotor_e3 * chart2_1 - rotor_e0 * chart2_2
-            - rotor_e1 * chart2_3;
-        let t96 = k(0.5) * t95;
-        let t97 = t90 * (t81 * t94 - t80 * t96) - t87 * (t88 * t96 - t74 * t94);
-        let t98 = rotor_wx + t91 * t97;
-        let t99 = rotor_wy + t91 * (t90 * (t80 * t65) + t87 * (t88 * t65));
+        let t27 = t26 * t23 - (t20 * t19 + t16 * t13);
+        let t28 = k(2.0) * (t18 - t17);
+        let t29 = k(2.0) * (k(0.5) - (t12 + inner_ring_e2 * inner_ring_e2));
+        let t30 = k(2.0) * (t15 + t14);
+        let t31 = inner_ring_e0 * inner_ring_e1;
+        let t32 = inner_ring_e2 * inner_ring_e3;
+        let t33 = k(2.0) * (t32 + t31);
+        let t34 = t5 * t33 - (t30 * t29 + t2 * t28);
+        let t35 = t26 * t33 + (t16 * t28 + t20 * t29);
+        let t36 = t5 * t23 + (t30 * t19 + t2 * t13);
+        let t37 = k(1.0) / (t36 * t35 - t34 * t27);
+        let t38 = k(2.0) * (t22 + t21);
+        let t39 = k(2.0) * (t32 - t31);
+        let t40 = k(2.0) * (k(0.5) - (t12 + inner_ring_e3 * inner_ring_e3));
+        let t41 = t6 * t38 + k(2.0) * (t25 - t24) * t39 + t1 * t40;
+        let t42 = t10 * t41 + t11 * (t5 * t40 - (t30 * t39 - t2 * t38));
+        let t43 = t42 - (inner_ring_wx * t35 - inner_ring_wy * t27);
+        let t44 = outer_ring_wy * t41 + t11 * (t26 * t40 - (t16 * t38 - t20 * t39));
+        let t45 = t44 + (inner_ring_wx * t34 - inner_ring_wy * t36);
+        let t46 = inner_ring_wx + t45 * (t27 * t37) + t43 * (t36 * t37);
+        let t47 = inner_ring_wy + t45 * (t35 * t37) + t43 * (t34 * t37);
+        let t48 = rotor_e0 * rotor_e0;
+        let t49 = k(2.0) * (k(0.5) - (t48 + rotor_e2 * rotor_e2));
+        let t50 = rotor_e0 * rotor_e3;
+        let t51 = rotor_e1 * rotor_e2;
+        let t52 = k(2.0) * (t51 - t50);
+        let t53 = rotor_e0 * rotor_e1;
+        let t54 = rotor_e2 * rotor_e3;
+        let t55 = k(2.0) * (t54 + t53);
+        let t56 = t40 * t55 - (t38 * t52 - t39 * t49);
+        let t57 = k(2.0) * (t54 - t53);
+        let t58 = rotor_e0 * rotor_e2;
+        let t59 = rotor_e1 * rotor_e3;
+        let t60 = k(2.0) * (t59 + t58);
+        let t61 = k(2.0) * (k(0.5) - (t48 + rotor_e3 * rotor_e3));
+        let t62 = t33 * t61 - (t28 * t60 - t29 * t57);
+        let t63 = t38 * t60 + t39 * t57 + t40 * t61;
+        let t64 = t33 * t55 + (t28 * t52 + t29 * t49);
+        let t65 = k(1.0) / (t64 * t63 - t62 * t56);
+        let t66 = k(2.0) * (k(0.5) - (t48 + rotor_e1 * rotor_e1));
+        let t67 = k(2.0) * (t51 + t50);
+        let t68 = k(2.0) * (t59 - t58);
+        let t69 = t23 * t68 + (t19 * t67 + t13 * t66);
+        let t70 = t46 * (t33 * t68 - (t29 * t67 + t28 * t66)) - t47 * t69;
+        let t71 = t70 + (rotor_wy * t63 + rotor_wz * t56);
+        let t72 = t46 * (t40 * t68 - (t39 * t67 - t38 * t66)) + inner_ring_wz * t69;
+        let t73 = t72 - (rotor_wy * t62 + rotor_wz * t64);
+        let t74 = rotor_wz + t73 * (t63 * t65) + t71 * (t62 * t65);
         y[21] = k(0.0);
         y[22] = k(0.0);
         y[23] = k(0.0);
-        y[24] = t12;
-        y[25] = t18;
-        y[26] = t19;
+        y[24] = t10;
+        y[26] = t11;
         y[27] = k(0.0);
         y[28] = k(0.0);
         y[29] = k(0.0);
-        y[30] = t56;
-        y[31] = t57;
-        y[32] = t63;
-        y[33] = -(k(0.0002) * (t71 * t98 + t82 * t92));
-        y[34] = -(k(0.0002) * (t68 * t98 - t83 * t92));
-        y[35] = k(0.0002) * (t73 * t98 + t84 * t92);
-        y[36] = t98;
-        y[37] = t99;
-        y[38] = t92;
+        y[30] = t46;
+        y[31] = t47;
+        y[33] = -(k(0.0002) * (t60 * rotor_wx + t66 * t74));
+        y[34] = -(k(0.0002) * (t57 * rotor_wx - t67 * t74));
+        y[35] = k(0.0002) * (t61 * rotor_wx + t68 * t74);
+        y[37] = rotor_wy - t73 * (t56 * t65) - t71 * (t64 * t65);
+        y[38] = t74;
         Ok(())
     }
 }
@@ -1633,7 +1583,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 960 operations (370 ±, 577 ×, 13 ÷).
+    /// Solves eq. (17): 650 operations (251 ±, 394 ×, 5 ÷).
     fn accelerations(
         &self,
         _t: T,
@@ -1663,647 +1613,242 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let (
-            t2,
-            t4,
-            t6,
-            t12,
-            t15,
-            t16,
-            t17,
-            t18,
-            t19,
-            t22,
-            t23,
-            t24,
-            t27,
-            t31,
-            t34,
-            t35,
-            t36,
-            t37,
-            t39,
-            t40,
-            t41,
-            t42,
-            t43,
-            t44,
-            t46,
-            t47,
-            t49,
-            t50,
-            t51,
-            t53,
-            t54,
-            t55,
-            t57,
-            t59,
-            t60,
-            t61,
-            t63,
-            t65,
-            t66,
-            t68,
-            t70,
-            t73,
-            t77,
-            t81,
-            t82,
-            t83,
-            t85,
-            t87,
-            t89,
-            t91,
-            t93,
-            t94,
-            t97,
-            t99,
-            t100,
-            t104,
-            t106,
-            t110,
-            t111,
-            t113,
-            t115,
-            t117,
-            t120,
-            t121,
-            t122,
-            t123,
-            t124,
-            t125,
-            t127,
-            t129,
-            t131,
-            t132,
-            t133,
-            t134,
-            t135,
-            t136,
-            t137,
-            t138,
-            t142,
-            t143,
-            t144,
-            t145,
-            t147,
-            t149,
-            t151,
-            t153,
+        let t0 = outer_ring_wx * outer_ring_wy;
+        let t1 = outer_ring_e0 * outer_ring_e2;
+        let t2 = outer_ring_e1 * outer_ring_e3;
+        let t3 = k(2.0) * (t2 - t1);
+        let t4 = outer_ring_wz * outer_ring_wz;
+        let t5 = t4 + outer_ring_wx * outer_ring_wx;
+        let t6 = outer_ring_e0 * outer_ring_e1;
+        let t7 = outer_ring_e2 * outer_ring_e3;
+        let t8 = k(2.0) * (t7 + t6);
+        let t9 = outer_ring_wy * outer_ring_wz;
+        let t10 = outer_ring_e0 * outer_ring_e0;
+        let t11 = k(2.0) * (k(0.5) - (t10 + outer_ring_e3 * outer_ring_e3));
+        let t12 = t11 * t9 + (t8 * t5 - t3 * t0);
+        let t13 = k(2.0) * (k(0.5) - (t10 + outer_ring_e1 * outer_ring_e1));
+        let t14 = k(2.0) * (t2 + t1);
+        let t15 = k(1.0) / (t14 * t3 - t13 * t11);
+        let t16 = t13 * t15;
+        let t17 = outer_ring_e0 * outer_ring_e3;
+        let t18 = outer_ring_e1 * outer_ring_e2;
+        let t19 = k(2.0) * (t18 - t17);
+        let t20 = t14 * t9 - (t19 * t5 + t13 * t0);
+        let t21 = t3 * t15;
+        let t22 = t21 * t20 - t16 * t12;
+        let t23 = rotor_e0 * rotor_e3;
+        let t24 = rotor_e1 * rotor_e2;
+        let t25 = k(2.0) * (t24 - t23);
+        let t26 = inner_ring_e0 * inner_ring_e0;
+        let t27 = k(2.0) * (k(0.5) - (t26 + inner_ring_e1 * inner_ring_e1));
+        let t28 = rotor_e0 * rotor_e0;
+        let t29 = k(2.0) * (k(0.5) - (t28 + rotor_e2 * rotor_e2));
+        let t30 = inner_ring_e0 * inner_ring_e3;
+        let t31 = inner_ring_e1 * inner_ring_e2;
+        let t32 = k(2.0) * (t31 + t30);
+        let t33 = rotor_e0 * rotor_e1;
+        let t34 = rotor_e2 * rotor_e3;
+        let t35 = k(2.0) * (t34 + t33);
+        let t36 = inner_ring_e0 * inner_ring_e2;
+        let t37 = inner_ring_e1 * inner_ring_e3;
+        let t38 = k(2.0) * (t37 - t36);
+        let t39 = t38 * t35 - (t32 * t29 + t27 * t25);
+        let t40 = k(5e-6) * t39;
+        let t41 = rotor_e0 * rotor_e2;
+        let t42 = rotor_e1 * rotor_e3;
+        let t43 = t42 + t41;
+        let t44 = k(2.0) * t43;
+        let t45 = t34 - t33;
+        let t46 = k(2.0) * t45;
+        let t47 = k(0.5) - (t28 + rotor_e3 * rotor_e3);
+        let t48 = k(2.0) * t47;
+        let t49 = t38 * t48 - (t32 * t46 - t27 * t44);
+        let t50 = k(5.0032e-6) * t49;
+        let t51 = inner_ring_e0 * inner_ring_e1;
+        let t52 = inner_ring_e2 * inner_ring_e3;
+        let t53 = k(2.0) * (t52 - t51);
+        let t54 = k(2.0) * (t37 + t36);
+        let t55 = k(2.0) * (k(0.5) - (t26 + inner_ring_e3 * inner_ring_e3));
+        let t56 = t55 * t35 - (t54 * t25 - t53 * t29);
+        let t57 = t54 * t44 + t53 * t46 + t55 * t48;
+        let t58 = t57 * t50 + t56 * t40;
+        let t59 = k(1e-6) + (t57 * (k(5.0032e-6) * t57) + t56 * (k(5e-6) * t56));
+        let t60 = k(1.0) / t59;
+        let t61 = t60 * t58;
+        let t62 = t58 * t61 - (k(1e-6) + (t49 * t50 + t39 * t40));
+        let t63 = k(2.0) * (k(0.5) - (t10 + outer_ring_e2 * outer_ring_e2));
+        let t64 = t8 * t38 - (t63 * t32 + t19 * t27);
+        let t65 = k(2.0) * (k(0.5) - (t26 + inner_ring_e2 * inner_ring_e2));
+        let t66 = k(2.0) * (t31 - t30);
+        let t67 = k(2.0) * (t52 + t51);
+        let t68 = t67 * t35 + (t66 * t25 + t65 * t29);
+        let t69 = t67 * t48 - (t66 * t44 - t65 * t46);
+        let t70 = k(5e-6) * t68;
+        let t71 = k(5.0032e-6) * t69;
+        let t72 = t57 * t71 + t56 * t70;
+        let t73 = t72 * t61 - (t69 * t50 + t68 * t40);
+        let t74 = t8 * t67 + (t19 * t66 + t63 * t65);
+        let t75 = t58 - t59 * t61;
+        let t76 = t8 * t55 - (t19 * t54 - t63 * t53);
+        let t77 = t76 * t75 - (t74 * t73 + t64 * t62);
+        let t78 = t60 * t72;
+        let t79 = t72 * t78 - (k(2e-6) + (t69 * t71 + t68 * t70));
+        let t80 = t72 - t59 * t78;
+        let t81 = t76 * t80 - (t74 * t79 + t64 * t73);
+        let t82 = t74 * t80 + t64 * t75;
+        let t83 = k(0.5) - (t28 + rotor_e1 * rotor_e1);
+        let t84 = k(2.0) * t83;
+        let t85 = t24 + t23;
+        let t86 = k(2.0) * t85;
+        let t87 = t42 - t41;
+        let t88 = k(2.0) * t87;
+        let t89 = t38 * t88 + (t32 * t86 + t27 * t84);
+        let t90 = inner_ring_wx * inner_ring_wy;
+        let t91 = t67 * t88 - (t65 * t86 + t66 * t84);
+        let t92 = inner_ring_wx * inner_ring_wx;
+        let t93 = t55 * t88 - (t53 * t86 - t54 * t84);
+        let t94 = inner_ring_wy * inner_ring_wz;
+        let t95 = t94 * t93 + ((inner_ring_wz * inner_ring_wz + t92) * t91 - t90 * t89);
+        let t96 = rotor_wy * t49 + rotor_wz * t39;
+        let t97 = k(2.0)
+            * (inner_ring_wx * (rotor_wy * t57 + rotor_wz * t56) + inner_ring_wz * t96);
+        let t98 = rotor_wz * rotor_wz;
+        let t99 = t98 + rotor_wy * rotor_wy;
+        let t100 = rotor_wx * rotor_wy;
+        let t101 = rotor_wx * rotor_wz;
+        let t102 = t101 * t69 - (t100 * t68 - t99 * t91) + t97 + t95;
+        let t103 = k(1.0) / (t68 * t57 - t69 * t56);
+        let t104 = t56 * t103;
+        let t105 = inner_ring_wx * inner_ring_wz;
+        let t106 = inner_ring_wy * inner_ring_wy + t92;
+        let t107 = k(2.0)
+            * (inner_ring_wx * (rotor_wy * t69 + rotor_wz * t68) - inner_ring_wy * t96);
+        let t108 = t101 * t57 - (t100 * t56 - t99 * t93) - t107
+            + (t106 * t93 + (t94 * t91 + t105 * t89));
+        let t109 = t68 * t103;
+        let t110 = t109 * t108 - t104 * t102;
+        let t111 = k(5e-6) * (t101 + t110);
+        let t112 = t98 + rotor_wx * rotor_wx;
+        let t113 = rotor_wy * rotor_wz;
+        let t114 = k(0.0002) * (t44 * t113 - (t25 * t112 + t84 * t100));
+        let t115 = k(0.0002) * (t46 * t113 + (t29 * t112 + t86 * t100));
+        let t116 = k(0.0002) * (t48 * t113 + (t35 * t112 - t88 * t100));
+        let t117 = t116 * (k(3.2e-5) * t87)
+            - (t115 * (k(3.2e-5) * t85) - t114 * (k(3.2e-5) * t83));
+        let t118 = t57 * t103;
+        let t119 = t69 * t103;
+        let t120 = t119 * t108 - t118 * t102;
+        let t121 = k(5.0032e-6) * t120 - t117 + (k(5e-6) * t100 - k(0.00032) * t85);
+        let t122 = k(1e-6) * t90 - (t57 * t121 + t56 * t111);
+        let t123 = t61 * t122 - (k(1e-6) * t94 - (t49 * t121 + t39 * t111));
+        let t124 = k(2.0) * (t18 + t17);
+        let t125 = t3 * t55 - (t124 * t53 - t13 * t54);
+        let t126 = k(2.0) * (t7 - t6);
+        let t127 = t14 * t54 + t126 * t53 + t11 * t55;
+        let t128 = outer_ring_wx * outer_ring_wz;
+        let t129 = t128 * t127
+            - (t0 * t76 - (t4 + outer_ring_wy * outer_ring_wy) * t125);
+        let t130 = t11 * t38 - (t126 * t32 - t14 * t27);
+        let t131 = t11 * t67 - (t14 * t66 - t126 * t65);
+        let t132 = inner_ring_wx * t131 - inner_ring_wy * t130;
+        let t133 = k(2.0)
+            * (outer_ring_wy * t132
+                + outer_ring_wz * (inner_ring_wx * t74 - inner_ring_wy * t64));
+        let t134 = t3 * t38 + (t124 * t32 + t13 * t27);
+        let t135 = t3 * t67 - (t124 * t65 + t13 * t66);
+        let t136 = t106 * t125 + (t94 * t135 + t105 * t134) - t133 + t129;
+        let t137 = k(1.0) / (t134 * t74 - t135 * t64);
+        let t138 = t64 * t137;
+        let t139 = k(2.0)
+            * (outer_ring_wx * t132
+                + outer_ring_wz * (inner_ring_wx * t135 - inner_ring_wy * t134));
+        let t140 = t106 * t76 + (t94 * t74 + t105 * t64) + t139
+            + (t9 * t127 + (t5 * t76 - t0 * t125));
+        let t141 = t134 * t137;
+        let t142 = t141 * t140 - t138 * t136;
+        let t143 = t74 * t137;
+        let t144 = t135 * t137;
+        let t145 = t144 * t140 - t143 * t136;
+        let t146 = t79 * t145 + t73 * t142 - (t78 * t122 + (t69 * t121 + t68 * t111));
+        let t147 = t74 * t146 + t64 * (t73 * t145 + t62 * t142 - t123);
+        let t148 = k(1e-6) * t128 + (t76 * (t80 * t145 + t75 * t142) - t147);
+        let t149 = t74 * (t125 * t80 - (t135 * t79 + t134 * t73))
+            + t64 * (t125 * t75 - (t135 * t73 + t134 * t62));
+        let t150 = t14 * t15;
+        let t151 = t11 * t15;
+        let t152 = t151 * t20 - t150 * t12;
+        let t153 = t152 * (t127 * t82 + (t131 * t81 + t130 * t77))
+            + t22 * (t76 * (t135 * t80 + t134 * t75) + t149);
+        let t154 = (t153 - t148) / (k(1e-6) + (t76 * t82 + (t74 * t81 + t64 * t77)));
+        let t155 = t142 - (t130 * t152 - (t64 * t154 - t134 * t22));
+        let t156 = t145 - (t131 * t152 - (t74 * t154 - t135 * t22));
+        let t157 = t127 * t152 - (t76 * t154 - t125 * t22);
+        let t158 = t60 * (t122 + (t59 * t157 - (t72 * t156 + t58 * t155)));
+        let t159 = t157 - t158;
+        let t160 = t116 * (k(3.2e-5) * t47)
+            + (t115 * (k(3.2e-5) * t45) + t114 * (k(3.2e-5) * t43));
+        let t161 = t93 * t159 - (t91 * t156 + t89 * t155);
+        let t162 = t161
+            - k(99968.01023672425) * (k(1.00032e-5) * t161 - t160 + k(0.00032) * t45);
+        let t163 = k(0.0004) * t43;
+        let t164 = t120 - (t57 * t159 - (t69 * t156 + t49 * t155));
+        let t165 = k(0.0004) * t83;
+        let t166 = t114 - (t165 * t164 + t163 * t162);
+        let t167 = k(0.0004) * t45;
+        let t168 = k(0.0004) * t85;
+        let t169 = t115 + (t168 * t164 - t167 * t162);
+        let t170 = k(0.0004) * t47;
+        let t171 = k(0.0004) * t87;
+        let t172 = t116 - (t171 * t164 + t170 * t162);
+        let t173 = t110 - (t56 * t159 - (t68 * t156 + t39 * t155));
+        let t174 = k(0.08) * t166;
+        let t175 = k(0.8) - k(0.08) * t169;
+        let t176 = k(0.1) + t175;
+        let t177 = k(0.08) * t172;
+        let t178 = t170 * t177 - (t167 * t175 - t163 * t174) - k(1e-5) * t162;
+        let t179 = k(5e-6) * (t101 + t173);
+        let t180 = t171 * t177 + (t168 * t175 + t165 * t174) - k(5e-6) * (t100 + t164);
+        let t181 = t49 * t180 - (t39 * t179 + t89 * t178) + k(1e-6) * (t94 - t155);
+        let t182 = t69 * t180 - (t68 * t179 + t91 * t178) - k(2e-6) * t156;
+        let t183 = t57 * t180 - (t56 * t179 + t93 * t178) + k(1e-6) * (t90 + t159);
+        let t184 = t125 * t183 + (t135 * t182 + t134 * t181) + k(2e-6) * t22;
+        let t185 = t127 * t183 + (t131 * t182 + t130 * t181) - k(1e-6) * (t0 - t152);
+        *out = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t22,
+            t154,
+            t152,
+            k(0.0),
+            k(0.0),
+            k(0.0),
             t155,
             t156,
-            t157,
             t159,
-            t161,
-            t163,
-            t164,
-            t165,
-            t169,
+            -t166,
+            -t169,
+            t172,
+            -t162,
             t173,
-            t175,
-            t176,
-            t177,
-            t178,
-            t179,
-            t180,
-            t181,
-            t183,
-            t184,
-            t185,
-            t186,
-            t187,
-            t188,
-            t189,
-            t190,
-            t191,
-            t192,
-            t194,
-            t195,
-            t196,
-            t197,
-            t198,
-            t199,
-        ) = {
-            let t0 = inner_ring_e0 * inner_ring_e3;
-            let t1 = inner_ring_e1 * inner_ring_e2;
-            let t2 = k(2.0) * (t1 - t0);
-            let t3 = outer_ring_e0 * outer_ring_e0;
-            let t4 = k(2.0) * (k(0.5) - (t3 + outer_ring_e1 * outer_ring_e1));
-            let t5 = inner_ring_e0 * inner_ring_e0;
-            let t6 = k(2.0) * (k(0.5) - (t5 + inner_ring_e2 * inner_ring_e2));
-            let t7 = outer_ring_e0 * outer_ring_e3;
-            let t8 = outer_ring_e1 * outer_ring_e2;
-            let t9 = k(2.0) * (t8 + t7);
-            let t10 = inner_ring_e0 * inner_ring_e1;
-            let t11 = inner_ring_e2 * inner_ring_e3;
-            let t12 = k(2.0) * (t11 + t10);
-            let t13 = outer_ring_e0 * outer_ring_e2;
-            let t14 = outer_ring_e1 * outer_ring_e3;
-            let t15 = k(2.0) * (t14 - t13);
-            let t16 = t15 * t12 - (t9 * t6 + t4 * t2);
-            let t17 = k(1000000.0) * t16;
-            let t18 = k(2.0) * (k(0.5) - (t5 + inner_ring_e1 * inner_ring_e1));
-            let t19 = k(2.0) * (t1 + t0);
-            let t20 = inner_ring_e0 * inner_ring_e2;
-            let t21 = inner_ring_e1 * inner_ring_e3;
-            let t22 = k(2.0) * (t21 - t20);
-            let t23 = t15 * t22 + (t9 * t19 + t4 * t18);
-            let t24 = k(500000.0) * t23;
-            let t25 = k(2.0) * (k(0.5) - (t5 + inner_ring_e3 * inner_ring_e3));
-            let t26 = k(0.5) - (t3 + outer_ring_e3 * outer_ring_e3);
-            let t27 = k(2.0) * t26;
-            let t28 = k(2.0) * (t11 - t10);
-            let t29 = outer_ring_e0 * outer_ring_e1;
-            let t30 = outer_ring_e2 * outer_ring_e3;
-            let t31 = k(2.0) * (t30 - t29);
-            let t32 = k(2.0) * (t21 + t20);
-            let t33 = t14 + t13;
-            let t34 = k(2.0) * t33;
-            let t35 = t34 * t32 + t31 * t28 + t27 * t25;
-            let t36 = k(1000000.0) * t35;
-            let t37 = k(1.0) / (t35 * t36 + t23 * t24 + t16 * t17);
-            let t38 = k(2.0) * (k(0.5) - (t3 + outer_ring_e2 * outer_ring_e2));
-            let t39 = k(2.0) * (t8 - t7);
-            let t40 = k(2.0) * (t30 + t29);
-            let t41 = t40 * t12 + (t39 * t2 + t38 * t6);
-            let t42 = k(1000000.0) * t41;
-            let t43 = t40 * t22 - (t38 * t19 + t39 * t18);
-            let t44 = k(500000.0) * t43;
-            let t45 = t23 * t44 + t16 * t42;
-            let t46 = t45 * t37;
-            let t47 = k(500000.0) * t35;
-            let t48 = t43 * t44 + t35 * t47 + t41 * t42 - t45 * t46;
-            let t49 = k(1.0) / t48;
-            let t50 = t40 * t25 - (t39 * t32 - t38 * t28);
-            let t51 = t15 * t25 - (t9 * t28 - t4 * t32);
-            let t52 = t51 + t50 * t46;
-            let t53 = t52 * t49;
-            let t54 = t50 * t37;
-            let t55 = k(1.0) / (k(1e-6) + t50 * t54 + t52 * t53);
-            let t56 = t27 * t47;
-            let t57 = t56 * t49;
-            let t58 = t15 - t52 * t57;
-            let t59 = t58 * t55;
-            let t60 = k(1000000.0) * t26;
-            let t61 = k(1.0) / (t27 * t60 - t56 * t57 + t58 * t59);
-            let t62 = t34 * t47;
-            let t63 = t62 * t49;
-            let t64 = t4 - t52 * t63;
-            let t65 = t64 * t55;
-            let t66 = k(1000000.0) * t33;
-            let t67 = t27 * t66 - t56 * t63 + t58 * t65;
-            let t68 = t67 * t61;
-            let t69 = t34 * t66 - t62 * t63 + t64 * t65 - t67 * t68;
-            let t70 = k(1.0) / t69;
-            let t71 = rotor_e0 * rotor_e0;
-            let t72 = k(0.5) - (t71 + rotor_e1 * rotor_e1);
-            let t73 = k(2.0) * t72;
-            let t74 = rotor_e0 * rotor_e3;
-            let t75 = rotor_e1 * rotor_e2;
-            let t76 = t75 + t74;
-            let t77 = k(2.0) * t76;
-            let t78 = rotor_e0 * rotor_e2;
-            let t79 = rotor_e1 * rotor_e3;
-            let t80 = t79 - t78;
-            let t81 = k(2.0) * t80;
-            let t82 = t25 * t81 - (t28 * t77 - t32 * t73);
-            let t83 = k(1000000.0) * t82;
-            let t84 = t16 * t83;
-            let t85 = t84 * t37;
-            let t86 = t41 * t83 - t45 * t85;
-            let t87 = t86 * t49;
-            let t88 = t50 * t85 - t52 * t87;
-            let t89 = t88 * t55;
-            let t90 = t56 * t87 - t58 * t89;
-            let t91 = t90 * t61;
-            let t92 = t62 * t87 - t64 * t89 - t67 * t91;
-            let t93 = t92 * t70;
-            let t94 = k(80.0) * t72;
-            let t95 = k(0.0004) * t72;
-            let t96 = t79 + t78;
-            let t97 = k(40.0) * t96;
-            let t98 = k(0.0004) * t96;
-            let t99 = k(1.0) / (t98 * t97 + k(112.5) - k(50.0) + t95 * t94);
-            let t100 = k(80.0) * t76;
-            let t101 = rotor_e0 * rotor_e1;
-            let t102 = rotor_e2 * rotor_e3;
-            let t103 = t102 - t101;
-            let t104 = k(40.0) * t103;
-            let t105 = t98 * t104 - t95 * t100;
-            let t106 = t105 * t99;
-            let t107 = k(0.0004) * t76;
-            let t108 = k(0.0004) * t103;
-            let t109 = k(112.5) + t108 * t104 - k(50.0) + t107 * t100 - t105 * t106;
-            let t110 = k(1.0) / t109;
-            let t111 = k(80.0) * t80;
-            let t112 = k(0.5) - (t71 + rotor_e3 * rotor_e3);
-            let t113 = k(40.0) * t112;
-            let t114 = t98 * t113 + t95 * t111;
-            let t115 = t114 * t99;
-            let t116 = t108 * t113 - t107 * t111 - t105 * t115;
-            let t117 = t116 * t110;
-            let t118 = k(0.0004) * t80;
-            let t119 = k(112.5) + k(0.0004) * t112 * t113 - k(50.0) + t118 * t111
-                - t114 * t115;
-            let t120 = k(1.0) / (t119 - t116 * t117);
-            let t121 = k(2.0) * (k(0.5) - (t71 + rotor_e2 * rotor_e2));
-            let t122 = k(2.0) * (t75 - t74);
-            let t123 = k(2.0) * (t102 + t101);
-            let t124 = t12 * t123 + (t2 * t122 + t6 * t121);
-            let t125 = k(200000.0) * t124;
-            let t126 = t95 * t125;
-            let t127 = t126 * t99;
-            let t128 = t107 * t125 + t105 * t127;
-            let t129 = t128 * t110;
-            let t130 = t118 * t125 - t114 * t127 + t116 * t129;
-            let t131 = t130 * t120;
-            let t132 = k(2.0) * t103;
-            let t133 = k(2.0) * t96;
-            let t134 = k(2.0) * t112;
-            let t135 = t12 * t134 - (t2 * t133 - t6 * t132);
-            let t136 = k(200000.0) * t135;
-            let t137 = t22 * t81 + (t19 * t77 + t18 * t73);
-            let t138 = k(1000000.0) * t137;
-            let t139 = t137 * t138 + t135 * t136 + t82 * t83 - t84 * t85;
-            let t140 = t139 + t124 * t125 - t126 * t127 - t128 * t129 - t130 * t131;
-            let t141 = t140 - t86 * t87 + t88 * t89 - t90 * t91 - t92 * t93;
-            let t142 = k(1.0) / t141;
-            let t143 = t12 * t81 - (t6 * t77 + t2 * t73);
-            let t144 = k(1000000.0) * t143;
-            let t145 = k(500000.0) * t137;
-            let t146 = t23 * t145 + t16 * t144;
-            let t147 = t146 * t37;
-            let t148 = t43 * t145 + t41 * t144 - t45 * t147;
-            let t149 = t148 * t49;
-            let t150 = t50 * t147 - t52 * t149;
-            let t151 = t150 * t55;
-            let t152 = t56 * t149 - t58 * t151;
-            let t153 = t152 * t61;
-            let t154 = t62 * t149 - t64 * t151 - t67 * t153;
-            let t155 = t154 * t70;
-            let t156 = t25 * t123 - (t32 * t122 - t28 * t121);
-            let t157 = k(200000.0) * t156;
-            let t158 = t95 * t157;
-            let t159 = t158 * t99;
-            let t160 = t107 * t157 + t105 * t159;
-            let t161 = t160 * t110;
-            let t162 = t118 * t157 - t114 * t159 + t116 * t161;
-            let t163 = t162 * t120;
-            let t164 = t32 * t133 + t28 * t132 + t25 * t134;
-            let t165 = k(200000.0) * t164;
-            let t166 = t135 * t165 - t82 * t144 + t84 * t147 + t124 * t157;
-            let t167 = t166 - t126 * t159 - t128 * t161 - t130 * t163 + t86 * t149;
-            let t168 = t167 - t88 * t151 + t90 * t153 + t92 * t155;
-            let t169 = t168 * t142;
-            let t170 = t164 * t165 + t137 * t145 + t143 * t144 - t146 * t147;
-            let t171 = t170 + t156 * t157 - t158 * t159 - t160 * t161 - t162 * t163;
-            let t172 = t171 - t148 * t149 + t150 * t151 - t152 * t153 - t154 * t155;
-            let t173 = k(1.0) / (t172 - t168 * t169);
-            let t174 = k(50.0) * t106;
-            let t175 = k(50.0) * t115 - t174 * t117;
-            let t176 = k(50.0) * t127 + t174 * t129 - t175 * t131;
-            let t177 = k(50.0) * t159 + t174 * t161 - t175 * t163 - t176 * t169;
-            let t178 = t177 * t173;
-            let t179 = t176 * t142;
-            let t180 = t175 * t120;
-            let t181 = t174 * t110;
-            let t182 = k(50.0) - k(2500.0) * t99 - t174 * t181 - t175 * t180
-                - t176 * t179;
-            let t183 = k(1.0) / (t182 - t177 * t178);
-            let t184 = k(50.0) * t117;
-            let t185 = k(50.0) * t129 + t184 * t131;
-            let t186 = k(50.0) * t161 + t184 * t163 - t185 * t169;
-            let t187 = t186 * t173;
-            let t188 = t185 * t142;
-            let t189 = t184 * t120;
-            let t190 = k(50.0) * t110;
-            let t191 = t174 * t190 - t175 * t189 + t176 * t188 + t177 * t187;
-            let t192 = t191 * t183;
-            let t193 = k(50.0) - k(2500.0) * t110 - t184 * t189 - t185 * t188
-                - t186 * t187;
-            let t194 = k(1.0) / (t193 - t191 * t192);
-            let t195 = k(50.0) * t131;
-            let t196 = k(50.0) * t163 - t195 * t169;
-            let t197 = t196 * t173;
-            let t198 = t195 * t142;
-            let t199 = k(50.0) * t120;
-            (
-                t2,
-                t4,
-                t6,
-                t12,
-                t15,
-                t16,
-                t17,
-                t18,
-                t19,
-                t22,
-                t23,
-                t24,
-                t27,
-                t31,
-                t34,
-                t35,
-                t36,
-                t37,
-                t39,
-                t40,
-                t41,
-                t42,
-                t43,
-                t44,
-                t46,
-                t47,
-                t49,
-                t50,
-                t51,
-                t53,
-                t54,
-                t55,
-                t57,
-                t59,
-                t60,
-                t61,
-                t63,
-                t65,
-                t66,
-                t68,
-                t70,
-                t73,
-                t77,
-                t81,
-                t82,
-                t83,
-                t85,
-                t87,
-                t89,
-                t91,
-                t93,
-                t94,
-                t97,
-                t99,
-                t100,
-                t104,
-                t106,
-                t110,
-                t111,
-                t113,
-                t115,
-                t117,
-                t120,
-                t121,
-                t122,
-                t123,
-                t124,
-                t125,
-                t127,
-                t129,
-                t131,
-                t132,
-                t133,
-                t134,
-                t135,
-                t136,
-                t137,
-                t138,
-                t142,
-                t143,
-                t144,
-                t145,
-                t147,
-                t149,
-                t151,
-                t153,
-                t155,
-                t156,
-                t157,
-                t159,
-                t161,
-                t163,
-                t164,
-                t165,
-                t169,
-                t173,
-                t175,
-                t176,
-                t177,
-                t178,
-                t179,
-                t180,
-                t181,
-                t183,
-                t184,
-                t185,
-                t186,
-                t187,
-                t188,
-                t189,
-                t190,
-                t191,
-                t192,
-                t194,
-                t195,
-                t196,
-                t197,
-                t198,
-                t199,
-            )
-        };
-        let (
-            t207,
-            t238,
-            t240,
-            t261,
-            t262,
-            t263,
-            t264,
-            t266,
-            t268,
-            t270,
-            t272,
-            t273,
-            t274,
-            t275,
-            t276,
-            t277,
-            t278,
-            t279,
-            t280,
-            t282,
-            t284,
-            t286,
-            t287,
-            t288,
-        ) = {
-            let t200 = t175 * t199 - t176 * t198 - t177 * t197;
-            let t201 = t200 * t183;
-            let t202 = t184 * t199 + t185 * t198 + t186 * t197 - t191 * t201;
-            let t203 = t202 * t194;
-            let t204 = k(50.0) - k(2500.0) * t120 - t195 * t198 - t196 * t197
-                - t200 * t201;
-            let t205 = inner_ring_wy * inner_ring_wz;
-            let t206 = k(1e-6) * t205;
-            let t207 = outer_ring_wx * outer_ring_wz;
-            let t208 = outer_ring_wz * outer_ring_wz;
-            let t209 = outer_ring_wx * outer_ring_wy;
-            let t210 = t207 * t35
-                - (t209 * t50 - (t208 + outer_ring_wy * outer_ring_wy) * t51);
-            let t211 = inner_ring_wx * (t27 * t12 - (t34 * t2 - t31 * t6))
-                - inner_ring_wy * (t27 * t22 - (t31 * t19 - t34 * t18));
-            let t212 = k(2.0)
-                * (outer_ring_wy * t211
-                    + outer_ring_wz * (inner_ring_wx * t41 - inner_ring_wy * t43));
-            let t213 = inner_ring_wx * inner_ring_wz;
-            let t214 = inner_ring_wx * inner_ring_wx;
-            let t215 = inner_ring_wy * inner_ring_wy + t214;
-            let t216 = t215 * t51 + (t205 * t16 + t213 * t23) - t212 + t210;
-            let t217 = t216 + k(1e-6) * t207 * t36 - t206 * t17;
-            let t218 = t208 + outer_ring_wx * outer_ring_wx;
-            let t219 = outer_ring_wy * outer_ring_wz;
-            let t220 = k(2.0)
-                * (outer_ring_wx * t211
-                    + outer_ring_wz * (inner_ring_wx * t16 - inner_ring_wy * t23));
-            let t221 = t215 * t50 + (t205 * t41 + t213 * t43) + t220
-                + (t219 * t35 + (t218 * t50 - t209 * t51));
-            let t222 = t221 - t206 * t42 - t217 * t46;
-            let t223 = k(1e-6) * t209 + t217 * t54 - t222 * t53;
-            let t224 = t27 * t219 + (t40 * t218 - t15 * t209) - t222 * t57;
-            let t225 = t224 + t223 * t59;
-            let t226 = t34 * t219 - (t39 * t218 + t4 * t209) - t222 * t63;
-            let t227 = t226 + t223 * t65 - t225 * t68;
-            let t228 = rotor_wx * rotor_wy;
-            let t229 = k(5e-6) * t228;
-            let t230 = rotor_wz * rotor_wz;
-            let t231 = t230 + rotor_wx * rotor_wx;
-            let t232 = rotor_wy * rotor_wz;
-            let t233 = k(0.0002) * (t133 * t232 - (t122 * t231 + t73 * t228))
-                + t229 * t94;
-            let t234 = k(0.0002) * (t132 * t232 + (t121 * t231 + t77 * t228)) - k(10.0);
-            let t235 = k(10.0) + t234 - t229 * t100 - t233 * t106;
-            let t236 = k(0.0002) * (t134 * t232 + (t123 * t231 - t81 * t228))
-                + t229 * t111;
-            let t237 = t236 - t233 * t115 - t235 * t117;
-            let t238 = rotor_wx * rotor_wz;
-            let t239 = k(5e-6) * t238;
-            let t240 = inner_ring_wx * inner_ring_wy;
-            let t241 = t205 * t82
-                + ((inner_ring_wz * inner_ring_wz + t214) * t143 - t240 * t137);
-            let t242 = rotor_wy * (t22 * t134 - (t19 * t132 - t18 * t133))
-                + rotor_wz * (t22 * t123 - (t19 * t121 + t18 * t122));
-            let t243 = k(2.0)
-                * (inner_ring_wx * (rotor_wy * t164 + rotor_wz * t156)
-                    + inner_ring_wz * t242);
-            let t244 = t230 + rotor_wy * rotor_wy;
-            let t245 = t238 * t135 - (t228 * t124 - t244 * t143) + t243 + t241;
-            let t246 = t245 - k(1e-6) * t240 * t138 + t239 * t136 + t206 * t83;
-            let t247 = t246 + t217 * t85 - t229 * t125 + t233 * t127 - t235 * t129;
-            let t248 = t247 + t237 * t131 + t222 * t87 - t223 * t89 - t225 * t91;
-            let t249 = t248 - t227 * t93;
-            let t250 = k(2.0)
-                * (inner_ring_wx * (rotor_wy * t135 + rotor_wz * t124)
-                    - inner_ring_wy * t242);
-            let t251 = t238 * t164 - (t228 * t156 - t244 * t82) - t250
-                + (t215 * t82 + (t205 * t143 + t213 * t137));
-            let t252 = t251 + t239 * t165 - t206 * t144 - t217 * t147 - t229 * t157;
-            let t253 = t252 + t233 * t159 - t235 * t161 + t237 * t163 - t222 * t149;
-            let t254 = t253 + t223 * t151 + t225 * t153 + t227 * t155 - t249 * t169;
-            let t255 = k(50.0) * t99;
-            let t256 = t233 * t255 - t235 * t181 - t237 * t180 + t249 * t179;
-            let t257 = t256 + t254 * t178;
-            let t258 = k(10.0) - t235 * t190 + t237 * t189 + t249 * t188 + t254 * t187;
-            let t259 = t258 + t257 * t192;
-            let t260 = t237 * t199 + t249 * t198 + t254 * t197 - t257 * t201;
-            let t261 = (t260 + t259 * t203) / (t204 - t202 * t203);
-            let t262 = t259 * t194 + t203 * t261;
-            let t263 = t257 * t183 + t192 * t262 - t201 * t261;
-            let t264 = t254 * t173 + t178 * t263 + t187 * t262 + t197 * t261;
-            let t265 = t249 * t142 + t179 * t263 + t188 * t262 + t198 * t261;
-            let t266 = t265 - t169 * t264;
-            let t267 = t237 * t120 - t180 * t263 + t189 * t262 + t199 * t261;
-            let t268 = t267 + t131 * t266 + t163 * t264;
-            let t269 = t235 * t110 - t181 * t263 - t190 * t262 - t117 * t268;
-            let t270 = t269 - t129 * t266 - t161 * t264;
-            let t271 = t233 * t99 + t255 * t263 - t106 * t270 - t115 * t268;
-            let t272 = t271 + t127 * t266 + t159 * t264;
-            let t273 = t263 + t272;
-            let t274 = k(50.0) * t273;
-            let t275 = t262 - t270;
-            let t276 = k(50.0) * -t275;
-            let t277 = t261 + t268;
-            let t278 = k(50.0) * -t277;
-            let t279 = t227 * t70 - t93 * t266 + t155 * t264;
-            let t280 = t225 * t61 - t68 * t279 - t91 * t266 + t153 * t264;
-            let t281 = t223 * t55 - t59 * t280 - t65 * t279 + t89 * t266;
-            let t282 = t281 - t151 * t264;
-            let t283 = t222 * t49 + t53 * t282 - t57 * t280 - t63 * t279;
-            let t284 = t283 + t87 * t266 - t149 * t264;
-            let t285 = t217 * t37 - t54 * t282 - t46 * t284 + t85 * t266;
-            let t286 = t285 - t147 * t264;
-            let t287 = t205 + t17 * t286 + t42 * t284 - t83 * t266 + t144 * t264;
-            let t288 = t228 - t94 * t272 + t100 * t270 - t111 * t268 + t125 * t266;
-            (
-                t207,
-                t238,
-                t240,
-                t261,
-                t262,
-                t263,
-                t264,
-                t266,
-                t268,
-                t270,
-                t272,
-                t273,
-                t274,
-                t275,
-                t276,
-                t277,
-                t278,
-                t279,
-                t280,
-                t282,
-                t284,
-                t286,
-                t287,
-                t288,
-            )
-        };
-        *out = [
-            t274 - k(100.0) * t263,
-            t276 - (k(10.0) - k(100.0) * t262),
-            k(100.0) * t261 + t278,
-            -(t60 * t280 + t66 * t279 + t47 * t284),
-            t36 * t286 - t207,
-            t282,
-            k(100.0) * t272 - t274,
-            k(100.0) * t270 - (k(10.0) + t276),
-            -(t278 + k(100.0) * t268),
-            t287,
-            -(t24 * t286 + t44 * t284 + t145 * t264),
-            -(t240 + t138 * t266),
-            -(k(12.5) * t272),
-            -(k(10.0) + k(12.5) * t270),
-            k(12.5) * t268,
-            -(t97 * t272 + t104 * t270 + t113 * t268),
-            t165 * t264 - (t238 - t136 * t266),
-            t288 + t157 * t264,
+            -t164,
         ];
         *lambda = [
-            t263,
-            -t262,
-            -t261,
-            -t280,
-            t279,
-            k(0.5) * t273,
-            k(0.5) * -t275,
-            k(0.5) * -t277,
-            t286,
-            t284,
-            t272,
-            t270,
-            -t268,
-            -t266,
-            t264,
+            t174,
+            -(k(0.1) + t176),
+            -t177,
+            t150 * t185 + t16 * t184,
+            t151 * t185 + t21 * t184,
+            t174,
+            -t176,
+            -t177,
+            t143 * t182 + t138 * t181,
+            -(t144 * t182 + t141 * t181),
+            t174,
+            -t175,
+            -t177,
+            t104 * t179 - t118 * t180,
+            t109 * t179 - t119 * t180,
         ];
     }
 }

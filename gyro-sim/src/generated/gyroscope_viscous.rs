@@ -18,13 +18,13 @@
 //! | gamma | γ | 122 | 193 | 0 | 315 | 6 of 15 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 90 | 128 | 0 | 218 | 0 of 15 |
 //! | applied_force | (f, n' − w̃'J'w') | 6 | 13 | 0 | 19 | 8 of 18 |
-//! | accelerations | (s̈, ẇ') and λ, eq. (17) | 336 | 518 | 12 | 866 | 2 of 33 |
+//! | accelerations | (s̈, ẇ') and λ, eq. (17) | 260 | 387 | 5 | 652 | 6 of 33 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 28 | 52 | 0 | 80 | 0 of 22 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
 //! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 |
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
 //! | newton_step | dependent positions, one Newton step | 193 | 318 | 3 | 514 | 6 of 21 |
-//! | solve_velocities | dependent velocities, eq. (19) | 135 | 233 | 3 | 371 | 6 of 18 |
+//! | solve_velocities | dependent velocities, eq. (19) | 96 | 158 | 3 | 257 | 6 of 18 |
 
 /// The mechanism `gyroscope_viscous`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -366,8 +366,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeViscous<T> {
         let t42 = rotor_e1 * rotor_e3;
         let t43 = k(2.0) * (t42 - t41);
         let t44 = t29 * t43 + (t27 * t40 + t24 * t37);
-        let t45 = inner_ring_wx * (t18 * t43 - (t9 * t40 - t13 * t37))
-            + inner_ring_wz * t44;
+        let t45 = inner_ring_wz * t44
+            + inner_ring_wx * (t18 * t43 - (t9 * t40 - t13 * t37));
         let t46 = k(2.0) * (k(0.5) - (t36 + rotor_e2 * rotor_e2));
         let t47 = k(2.0) * (t39 - t38);
         let t48 = rotor_e0 * rotor_e1;
@@ -395,13 +395,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeViscous<T> {
             t34 - t35,
             rotor_sx
                 - (inner_ring_sx
-                    - k(0.000125) * (t13 * inner_ring_wy - t30 * inner_ring_wz)),
+                    + k(0.000125) * (t30 * inner_ring_wz - t13 * inner_ring_wy)),
             rotor_sy
                 - (inner_ring_sy
-                    - k(0.000125) * (t9 * inner_ring_wy + t31 * inner_ring_wz)),
+                    - k(0.000125) * (t31 * inner_ring_wz + t9 * inner_ring_wy)),
             rotor_sz
                 - (inner_ring_sz
-                    + k(0.000125) * (t18 * inner_ring_wy + t32 * inner_ring_wz)),
+                    + k(0.000125) * (t32 * inner_ring_wz + t18 * inner_ring_wy)),
             t54 - t45,
             -(t56 + t55),
         ];
@@ -871,14 +871,13 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeViscous<T> {
         y[20] = -t143;
         Ok(())
     }
-    /// Solves eq. (19) for the dependent velocities: 371 operations (135 ±, 233 ×, 3 ÷).
+    /// Solves eq. (19) for the dependent velocities: 257 operations (96 ±, 158 ×, 3 ÷).
     fn solve_velocities(
         &self,
         _t: T,
-        choice: &Self::Independent,
+        _choice: &Self::Independent,
         y: &mut Self::State,
     ) -> ::core::result::Result<(), gyro_sim::Error> {
-        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -898,147 +897,97 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeViscous<T> {
         let inner_ring_wx = y[30];
         let inner_ring_wy = y[31];
         let inner_ring_wz = y[32];
-        let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let chart0_0 = charts[0][0];
-        let chart0_1 = charts[0][1];
-        let chart0_2 = charts[0][2];
-        let chart0_3 = charts[0][3];
-        let chart1_0 = charts[1][0];
-        let chart1_1 = charts[1][1];
-        let chart1_2 = charts[1][2];
-        let chart1_3 = charts[1][3];
-        let chart2_0 = charts[2][0];
-        let chart2_1 = charts[2][1];
-        let chart2_2 = charts[2][2];
-        let chart2_3 = charts[2][3];
-        let t0 = outer_ring_e2 * chart0_0 + outer_ring_e3 * chart0_1
-            - outer_ring_e0 * chart0_2 - outer_ring_e1 * chart0_3;
-        let t1 = k(0.5) * t0;
-        let t2 = outer_ring_e0 * outer_ring_e2;
-        let t3 = outer_ring_e1 * outer_ring_e3;
-        let t4 = k(2.0) * (t3 - t2);
-        let t5 = outer_ring_e0 * outer_ring_e0;
-        let t6 = k(2.0) * (k(0.5) - (t5 + outer_ring_e1 * outer_ring_e1));
-        let t7 = k(2.0) * (t3 + t2);
-        let t8 = t7 * outer_ring_wx + t6 * outer_ring_wz;
-        let t9 = k(2.0) * (k(0.5) - (t5 + outer_ring_e3 * outer_ring_e3));
-        let t10 = t9 * outer_ring_wx + t4 * outer_ring_wz;
-        let t11 = k(1.0) / (t1 * (t7 * t4 - t6 * t9));
-        let t12 = outer_ring_wx + t11 * (t10 * (t6 * t1) - t8 * (t4 * t1));
-        let t13 = outer_ring_e1 * chart0_0 - outer_ring_e0 * chart0_1
-            - outer_ring_e3 * chart0_2 + outer_ring_e2 * chart0_3;
-        let t14 = k(0.5) * t13;
-        let t15 = outer_ring_e3 * chart0_0 - outer_ring_e2 * chart0_1
-            + outer_ring_e1 * chart0_2 - outer_ring_e0 * chart0_3;
-        let t16 = k(0.5) * t15;
-        let t17 = t10 * (t6 * t14 - t7 * t16) + t8 * (t9 * t16 - t4 * t14);
-        let t18 = outer_ring_wy - t11 * t17;
-        let t19 = outer_ring_wz - t11 * (t10 * (t7 * t1) - t8 * (t9 * t1));
-        let t20 = inner_ring_e3 * chart1_0 - inner_ring_e2 * chart1_1
-            + inner_ring_e1 * chart1_2 - inner_ring_e0 * chart1_3;
-        let t21 = k(0.5) * t20;
-        let t22 = inner_ring_e0 * inner_ring_e0;
-        let t23 = k(2.0) * (k(0.5) - (t22 + inner_ring_e1 * inner_ring_e1));
-        let t24 = inner_ring_e0 * inner_ring_e3;
-        let t25 = inner_ring_e1 * inner_ring_e2;
+        let t0 = outer_ring_e0 * outer_ring_e0;
+        let t1 = k(2.0) * (k(0.5) - (t0 + outer_ring_e3 * outer_ring_e3));
+        let t2 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
+        let t3 = outer_ring_e0 * outer_ring_e2;
+        let t4 = outer_ring_e1 * outer_ring_e3;
+        let t5 = k(2.0) * (t4 - t3);
+        let t6 = k(2.0) * (t4 + t3);
+        let t7 = k(1.0) / (t6 * t5 - t2 * t1);
+        let t8 = t6 * outer_ring_wx + t2 * outer_ring_wz;
+        let t9 = t1 * outer_ring_wx + t5 * outer_ring_wz;
+        let t10 = outer_ring_wx + t9 * (t2 * t7) - t8 * (t5 * t7);
+        let t11 = outer_ring_wz - t9 * (t6 * t7) + t8 * (t1 * t7);
+        let t12 = inner_ring_e0 * inner_ring_e0;
+        let t13 = k(2.0) * (k(0.5) - (t12 + inner_ring_e1 * inner_ring_e1));
+        let t14 = outer_ring_e0 * outer_ring_e3;
+        let t15 = outer_ring_e1 * outer_ring_e2;
+        let t16 = k(2.0) * (t15 - t14);
+        let t17 = inner_ring_e0 * inner_ring_e3;
+        let t18 = inner_ring_e1 * inner_ring_e2;
+        let t19 = k(2.0) * (t18 + t17);
+        let t20 = k(2.0) * (k(0.5) - (t0 + outer_ring_e2 * outer_ring_e2));
+        let t21 = inner_ring_e0 * inner_ring_e2;
+        let t22 = inner_ring_e1 * inner_ring_e3;
+        let t23 = k(2.0) * (t22 - t21);
+        let t24 = outer_ring_e0 * outer_ring_e1;
+        let t25 = outer_ring_e2 * outer_ring_e3;
         let t26 = k(2.0) * (t25 + t24);
-        let t27 = outer_ring_e0 * outer_ring_e3;
-        let t28 = outer_ring_e1 * outer_ring_e2;
-        let t29 = k(2.0) * (t28 + t27);
-        let t30 = inner_ring_e0 * inner_ring_e2;
-        let t31 = inner_ring_e1 * inner_ring_e3;
-        let t32 = k(2.0) * (t31 - t30);
-        let t33 = t4 * t32 + (t29 * t26 + t6 * t23);
-        let t34 = k(2.0) * (t28 - t27);
-        let t35 = k(2.0) * (k(0.5) - (t5 + outer_ring_e2 * outer_ring_e2));
-        let t36 = outer_ring_e0 * outer_ring_e1;
-        let t37 = outer_ring_e2 * outer_ring_e3;
-        let t38 = k(2.0) * (t37 + t36);
-        let t39 = t38 * t32 - (t35 * t26 + t34 * t23);
-        let t40 = k(2.0) * (k(0.5) - (t22 + inner_ring_e2 * inner_ring_e2));
-        let t41 = k(2.0) * (t25 - t24);
-        let t42 = inner_ring_e0 * inner_ring_e1;
-        let t43 = inner_ring_e2 * inner_ring_e3;
-        let t44 = k(2.0) * (t43 + t42);
-        let t45 = t38 * t44 + (t34 * t41 + t35 * t40);
-        let t46 = k(2.0) * (t31 + t30);
-        let t47 = k(2.0) * (t43 - t42);
-        let t48 = k(2.0) * (k(0.5) - (t22 + inner_ring_e3 * inner_ring_e3));
-        let t49 = t7 * t46 + k(2.0) * (t37 - t36) * t47 + t9 * t48;
-        let t50 = t12 * t49 + t19 * (t4 * t48 - (t29 * t47 - t6 * t46));
-        let t51 = t50 - (inner_ring_wx * t45 - inner_ring_wy * t39);
-        let t52 = t4 * t44 - (t29 * t40 + t6 * t41);
-        let t53 = t18 * t49 + t19 * (t38 * t48 - (t34 * t46 - t35 * t47));
-        let t54 = t53 + (inner_ring_wx * t52 - inner_ring_wy * t33);
-        let t55 = k(1.0) / (t21 * (t52 * t39 - t33 * t45));
-        let t56 = inner_ring_wx - t55 * (t54 * (t39 * t21) + t51 * (t33 * t21));
-        let t57 = inner_ring_wy - t55 * (t54 * (t45 * t21) + t51 * (t52 * t21));
-        let t58 = inner_ring_e2 * chart1_0 + inner_ring_e3 * chart1_1
-            - inner_ring_e0 * chart1_2 - inner_ring_e1 * chart1_3;
-        let t59 = k(0.5) * t58;
-        let t60 = inner_ring_e1 * chart1_0 - inner_ring_e0 * chart1_1
-            - inner_ring_e3 * chart1_2 + inner_ring_e2 * chart1_3;
-        let t61 = k(0.5) * t60;
-        let t62 = t54 * (t45 * t59 + t39 * t61) + t51 * (t33 * t61 + t52 * t59);
-        let t63 = inner_ring_wz + t55 * t62;
-        let t64 = rotor_e3 * chart2_0 - rotor_e2 * chart2_1 + rotor_e1 * chart2_2
-            - rotor_e0 * chart2_3;
-        let t65 = k(0.5) * t64;
-        let t66 = rotor_e0 * rotor_e1;
-        let t67 = rotor_e2 * rotor_e3;
-        let t68 = k(2.0) * (t67 - t66);
-        let t69 = rotor_e0 * rotor_e2;
-        let t70 = rotor_e1 * rotor_e3;
-        let t71 = k(2.0) * (t70 + t69);
-        let t72 = rotor_e0 * rotor_e0;
-        let t73 = k(2.0) * (k(0.5) - (t72 + rotor_e3 * rotor_e3));
-        let t74 = t44 * t73 - (t41 * t71 - t40 * t68);
-        let t75 = rotor_e2 * chart2_0 + rotor_e3 * chart2_1 - rotor_e0 * chart2_2
-            - rotor_e1 * chart2_3;
-        let t76 = k(0.5) * t75;
-        let t77 = k(2.0) * (k(0.5) - (t72 + rotor_e2 * rotor_e2));
-        let t78 = rotor_e0 * rotor_e3;
-        let t79 = rotor_e1 * rotor_e2;
-        let t80 = k(2.0) * (t79 - t78);
-        let t81 = k(2.0) * (t67 + t66);
-        let t82 = t44 * t81 + (t41 * t80 + t40 * t77);
-        let t83 = t48 * t81 - (t46 * t80 - t47 * t77);
-        let t84 = t46 * t71 + t47 * t68 + t48 * t73;
-        let t85 = k(2.0) * (k(0.5) - (t72 + rotor_e1 * rotor_e1));
-        let t86 = k(2.0) * (t79 + t78);
-        let t87 = k(2.0) * (t70 - t69);
-        let t88 = t32 * t87 + (t26 * t86 + t23 * t85);
-        let t89 = t56 * (t44 * t87 - (t40 * t86 + t41 * t85)) - t57 * t88;
-        let t90 = t89 + (rotor_wy * t84 + rotor_wz * t83);
-        let t91 = t56 * (t48 * t87 - (t47 * t86 - t46 * t85)) + t63 * t88;
-        let t92 = t91 - (rotor_wy * t74 + rotor_wz * t82);
-        let t93 = t92 * (t84 * t65 - t83 * t76) - t90 * (t82 * t76 - t74 * t65);
-        let t94 = rotor_e1 * chart2_0 - rotor_e0 * chart2_1 - rotor_e3 * chart2_2
-            + rotor_e2 * chart2_3;
-        let t95 = k(0.5) * t94;
-        let t96 = k(1.0) / (t95 * (t74 * t83 - t82 * t84));
-        let t97 = rotor_wy + t96 * (t92 * (t83 * t95) + t90 * (t82 * t95));
-        let t98 = rotor_wz - t96 * (t92 * (t84 * t95) + t90 * (t74 * t95));
+        let t27 = t26 * t23 - (t20 * t19 + t16 * t13);
+        let t28 = k(2.0) * (t18 - t17);
+        let t29 = k(2.0) * (k(0.5) - (t12 + inner_ring_e2 * inner_ring_e2));
+        let t30 = k(2.0) * (t15 + t14);
+        let t31 = inner_ring_e0 * inner_ring_e1;
+        let t32 = inner_ring_e2 * inner_ring_e3;
+        let t33 = k(2.0) * (t32 + t31);
+        let t34 = t5 * t33 - (t30 * t29 + t2 * t28);
+        let t35 = t26 * t33 + (t16 * t28 + t20 * t29);
+        let t36 = t5 * t23 + (t30 * t19 + t2 * t13);
+        let t37 = k(1.0) / (t36 * t35 - t34 * t27);
+        let t38 = k(2.0) * (t22 + t21);
+        let t39 = k(2.0) * (t32 - t31);
+        let t40 = k(2.0) * (k(0.5) - (t12 + inner_ring_e3 * inner_ring_e3));
+        let t41 = t6 * t38 + k(2.0) * (t25 - t24) * t39 + t1 * t40;
+        let t42 = t10 * t41 + t11 * (t5 * t40 - (t30 * t39 - t2 * t38));
+        let t43 = t42 - (inner_ring_wx * t35 - inner_ring_wy * t27);
+        let t44 = outer_ring_wy * t41 + t11 * (t26 * t40 - (t16 * t38 - t20 * t39));
+        let t45 = t44 + (inner_ring_wx * t34 - inner_ring_wy * t36);
+        let t46 = inner_ring_wx + t45 * (t27 * t37) + t43 * (t36 * t37);
+        let t47 = inner_ring_wy + t45 * (t35 * t37) + t43 * (t34 * t37);
+        let t48 = rotor_e0 * rotor_e0;
+        let t49 = k(2.0) * (k(0.5) - (t48 + rotor_e2 * rotor_e2));
+        let t50 = rotor_e0 * rotor_e3;
+        let t51 = rotor_e1 * rotor_e2;
+        let t52 = k(2.0) * (t51 - t50);
+        let t53 = rotor_e0 * rotor_e1;
+        let t54 = rotor_e2 * rotor_e3;
+        let t55 = k(2.0) * (t54 + t53);
+        let t56 = t40 * t55 - (t38 * t52 - t39 * t49);
+        let t57 = k(2.0) * (t54 - t53);
+        let t58 = rotor_e0 * rotor_e2;
+        let t59 = rotor_e1 * rotor_e3;
+        let t60 = k(2.0) * (t59 + t58);
+        let t61 = k(2.0) * (k(0.5) - (t48 + rotor_e3 * rotor_e3));
+        let t62 = t33 * t61 - (t28 * t60 - t29 * t57);
+        let t63 = t38 * t60 + t39 * t57 + t40 * t61;
+        let t64 = t33 * t55 + (t28 * t52 + t29 * t49);
+        let t65 = k(1.0) / (t64 * t63 - t62 * t56);
+        let t66 = k(2.0) * (k(0.5) - (t48 + rotor_e1 * rotor_e1));
+        let t67 = k(2.0) * (t51 + t50);
+        let t68 = k(2.0) * (t59 - t58);
+        let t69 = t23 * t68 + (t19 * t67 + t13 * t66);
+        let t70 = t46 * (t33 * t68 - (t29 * t67 + t28 * t66)) - t47 * t69;
+        let t71 = t70 + (rotor_wy * t63 + rotor_wz * t56);
+        let t72 = t46 * (t40 * t68 - (t39 * t67 - t38 * t66)) + inner_ring_wz * t69;
+        let t73 = t72 - (rotor_wy * t62 + rotor_wz * t64);
         y[21] = k(0.0);
         y[22] = k(0.0);
         y[23] = k(0.0);
-        y[24] = t12;
-        y[25] = t18;
-        y[26] = t19;
+        y[24] = t10;
+        y[26] = t11;
         y[27] = k(0.0);
         y[28] = k(0.0);
         y[29] = k(0.0);
-        y[30] = t56;
-        y[31] = t57;
-        y[32] = t63;
-        y[33] = -(k(0.000125) * (t46 * t57 - t41 * t63));
-        y[34] = -(k(0.000125) * (t47 * t57 + t40 * t63));
-        y[35] = k(0.000125) * (t48 * t57 + t44 * t63);
-        y[36] = rotor_wx + t96 * t93;
-        y[37] = t97;
-        y[38] = t98;
+        y[30] = t46;
+        y[31] = t47;
+        y[33] = -(k(0.000125) * (t38 * t47 - t28 * inner_ring_wz));
+        y[34] = -(k(0.000125) * (t39 * t47 + t29 * inner_ring_wz));
+        y[35] = k(0.000125) * (t40 * t47 + t33 * inner_ring_wz);
+        y[37] = rotor_wy - t73 * (t56 * t65) - t71 * (t64 * t65);
+        y[38] = rotor_wz + t73 * (t63 * t65) + t71 * (t62 * t65);
         Ok(())
     }
 }
@@ -1642,7 +1591,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeViscous<T> {
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 866 operations (336 ±, 518 ×, 12 ÷).
+    /// Solves eq. (17): 652 operations (260 ±, 387 ×, 5 ÷).
     fn accelerations(
         &self,
         _t: T,
@@ -1672,586 +1621,254 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeViscous<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let (
-            t4,
-            t11,
-            t18,
-            t20,
-            t27,
-            t28,
-            t30,
-            t34,
-            t36,
-            t38,
-            t40,
-            t42,
-            t43,
-            t50,
-            t51,
-            t52,
-            t53,
-            t54,
-            t55,
-            t57,
-            t59,
-            t60,
-            t62,
-            t64,
-            t67,
-            t69,
-            t70,
-            t72,
-            t73,
-            t74,
-            t75,
-            t78,
-            t81,
-            t83,
-            t85,
-            t86,
-            t88,
-            t90,
-            t92,
-            t93,
-            t95,
-            t97,
-            t99,
-            t101,
-            t103,
-            t106,
-            t113,
-            t114,
-            t115,
-            t116,
-            t118,
-            t120,
-            t122,
-            t124,
-            t126,
-            t127,
-            t129,
-            t130,
-            t131,
-            t132,
-            t134,
-            t136,
-            t137,
-            t138,
-            t140,
-            t143,
-            t144,
-            t145,
-            t147,
-            t149,
-            t150,
-            t151,
-            t152,
-            t155,
-            t156,
-            t157,
-            t158,
-            t160,
-            t162,
-            t164,
-            t165,
-            t166,
-            t167,
-            t168,
-            t169,
-            t170,
-            t171,
-            t173,
-            t175,
-            t178,
-            t179,
-            t181,
-            t182,
-            t183,
-            t184,
-            t185,
-            t186,
-            t188,
-            t189,
-            t194,
-            t195,
-            t196,
-            t197,
-            t199,
-        ) = {
-            let t0 = rotor_e0 * rotor_e0;
-            let t1 = k(2.0) * (k(0.5) - (t0 + rotor_e2 * rotor_e2));
-            let t2 = inner_ring_e0 * inner_ring_e0;
-            let t3 = k(0.5) - (t2 + inner_ring_e2 * inner_ring_e2);
-            let t4 = k(2.0) * t3;
-            let t5 = rotor_e0 * rotor_e3;
-            let t6 = rotor_e1 * rotor_e2;
-            let t7 = k(2.0) * (t6 - t5);
-            let t8 = inner_ring_e0 * inner_ring_e3;
-            let t9 = inner_ring_e1 * inner_ring_e2;
-            let t10 = t9 - t8;
-            let t11 = k(2.0) * t10;
-            let t12 = rotor_e0 * rotor_e1;
-            let t13 = rotor_e2 * rotor_e3;
-            let t14 = k(2.0) * (t13 + t12);
-            let t15 = inner_ring_e0 * inner_ring_e1;
-            let t16 = inner_ring_e2 * inner_ring_e3;
-            let t17 = t16 + t15;
-            let t18 = k(2.0) * t17;
-            let t19 = t18 * t14 + (t11 * t7 + t4 * t1);
-            let t20 = k(200000.0) * t19;
-            let t21 = k(2.0) * (t13 - t12);
-            let t22 = rotor_e0 * rotor_e2;
-            let t23 = rotor_e1 * rotor_e3;
-            let t24 = k(2.0) * (t23 + t22);
-            let t25 = k(2.0) * (k(0.5) - (t0 + rotor_e3 * rotor_e3));
-            let t26 = t18 * t25 - (t11 * t24 - t4 * t21);
-            let t27 = k(200000.0) * t26;
-            let t28 = k(1.0) / (t26 * t27 + t19 * t20);
-            let t29 = t16 - t15;
-            let t30 = k(2.0) * t29;
-            let t31 = inner_ring_e0 * inner_ring_e2;
-            let t32 = inner_ring_e1 * inner_ring_e3;
-            let t33 = t32 + t31;
-            let t34 = k(2.0) * t33;
-            let t35 = k(0.5) - (t2 + inner_ring_e3 * inner_ring_e3);
-            let t36 = k(2.0) * t35;
-            let t37 = t36 * t14 - (t34 * t7 - t30 * t1);
-            let t38 = k(200000.0) * t37;
-            let t39 = t34 * t24 + t30 * t21 + t36 * t25;
-            let t40 = k(200000.0) * t39;
-            let t41 = t26 * t40 + t19 * t38;
-            let t42 = t41 * t28;
-            let t43 = k(1.0) / (t39 * t40 + t37 * t38 - t41 * t42);
-            let t44 = k(2.0) * (k(0.5) - (t0 + rotor_e1 * rotor_e1));
-            let t45 = k(2.0) * (t6 + t5);
-            let t46 = k(2.0) * (t23 - t22);
-            let t47 = t36 * t46 - (t30 * t45 - t34 * t44);
-            let t48 = t18 * t46 - (t4 * t45 + t11 * t44);
-            let t49 = t48 + t47 * t42;
-            let t50 = t49 * t43;
-            let t51 = t47 * t28;
-            let t52 = k(1.0) / (k(1e-6) + t47 * t51 + t49 * t50);
-            let t53 = k(2.0) * (k(0.5) - (t2 + inner_ring_e1 * inner_ring_e1));
-            let t54 = k(2.0) * (t9 + t8);
-            let t55 = k(2.0) * (t32 - t31);
-            let t56 = t55 * t46 + (t54 * t45 + t53 * t44);
-            let t57 = t56 * t43;
-            let t58 = t49 * t57;
-            let t59 = t58 * t52;
-            let t60 = k(2.222222222222222e-6) * t35;
-            let t61 = k(0.00025) * t35;
-            let t62 = k(2.222222222222222e-6) * t29;
-            let t63 = k(0.00025) * t29;
-            let t64 = k(2.222222222222222e-6) * t33;
-            let t65 = k(0.00025) * t33;
-            let t66 = k(2e-6) + t65 * t64 + t63 * t62 + t61 * t60 + t56 * t57;
-            let t67 = k(1.0) / (t66 - t58 * t59);
-            let t68 = t56 * t42;
-            let t69 = t68 * t43;
-            let t70 = t56 * t28;
-            let t71 = t47 * t70 + t49 * t69;
-            let t72 = t71 * t52;
-            let t73 = k(2.222222222222222e-6) * t17;
-            let t74 = k(2.222222222222222e-6) * t3;
-            let t75 = k(2.222222222222222e-6) * t10;
-            let t76 = t65 * t75 - t63 * t74 - t61 * t73 + t56 * t69;
-            let t77 = t76 - t58 * t72;
-            let t78 = t77 * t67;
-            let t79 = k(1e-6) + k(0.00025) * t10 * t75 + k(0.00025) * t3 * t74
-                + k(0.00025) * t17 * t73;
-            let t80 = t79 + t56 * t70 + t68 * t69 - t71 * t72 - t77 * t78;
-            let t81 = k(1.0) / t80;
-            let t82 = k(0.00022222222222222223) * t33;
-            let t83 = t82 * t67;
-            let t84 = k(0.00022222222222222223) * t10 - t77 * t83;
-            let t85 = t84 * t81;
-            let t86 = k(1.0) / (t82 * t83 + k(11.11111111111111) + t84 * t85);
-            let t87 = k(0.00022222222222222223) * t29;
-            let t88 = t87 * t67;
-            let t89 = k(0.00022222222222222223) * t3 + t77 * t88;
-            let t90 = t89 * t81;
-            let t91 = t82 * t88 - t84 * t90;
-            let t92 = t91 * t86;
-            let t93 = k(1.0)
-                / (k(11.11111111111111) + t87 * t88 + t89 * t90 - t91 * t92);
-            let t94 = k(0.00022222222222222223) * t35;
-            let t95 = t94 * t67;
-            let t96 = k(0.00022222222222222223) * t17 + t77 * t95;
-            let t97 = t96 * t81;
-            let t98 = t82 * t95 - t84 * t97;
-            let t99 = t98 * t86;
-            let t100 = t87 * t95 + t89 * t97 - t91 * t99;
-            let t101 = t100 * t93;
-            let t102 = k(11.11111111111111) + t94 * t95 + t96 * t97 - t98 * t99
-                - t100 * t101;
-            let t103 = k(1.0) / t102;
-            let t104 = outer_ring_e0 * outer_ring_e0;
-            let t105 = k(0.5) - (t104 + outer_ring_e1 * outer_ring_e1);
-            let t106 = k(2.0) * t105;
-            let t107 = outer_ring_e0 * outer_ring_e3;
-            let t108 = outer_ring_e1 * outer_ring_e2;
-            let t109 = k(2.0) * (t108 + t107);
-            let t110 = outer_ring_e0 * outer_ring_e2;
-            let t111 = outer_ring_e1 * outer_ring_e3;
-            let t112 = t111 - t110;
-            let t113 = k(2.0) * t112;
-            let t114 = t113 * t18 - (t109 * t4 + t106 * t11);
-            let t115 = t114 * t52;
-            let t116 = t113 * t55 + (t109 * t54 + t106 * t53);
-            let t117 = t116 - t58 * t115;
-            let t118 = t117 * t67;
-            let t119 = t71 * t115 + t77 * t118;
-            let t120 = t119 * t81;
-            let t121 = t82 * t118 - t84 * t120;
-            let t122 = t121 * t86;
-            let t123 = t87 * t118 + t89 * t120 - t91 * t122;
-            let t124 = t123 * t93;
-            let t125 = t94 * t118 + t96 * t120 - t98 * t122 - t100 * t124;
-            let t126 = t125 * t103;
-            let t127 = k(2000000.0) * t112;
-            let t128 = k(0.5) - (t104 + outer_ring_e3 * outer_ring_e3);
-            let t129 = k(1000000.0) * t128;
-            let t130 = k(2.0) * t128;
-            let t131 = k(1.0) / (t130 * t129 + t113 * t127);
-            let t132 = k(2000000.0) * t105;
-            let t133 = t111 + t110;
-            let t134 = k(1000000.0) * t133;
-            let t135 = t130 * t134 + t113 * t132;
-            let t136 = t135 * t131;
-            let t137 = k(2.0) * t133;
-            let t138 = k(1.0) / (t137 * t134 + t106 * t132 - t135 * t136);
-            let t139 = k(2.0) * (k(0.5) - (t104 + outer_ring_e2 * outer_ring_e2));
-            let t140 = k(2.0) * (t108 - t107);
-            let t141 = outer_ring_e0 * outer_ring_e1;
-            let t142 = outer_ring_e2 * outer_ring_e3;
-            let t143 = k(2.0) * (t142 + t141);
-            let t144 = t143 * t36 - (t140 * t34 - t139 * t30);
-            let t145 = k(1000000.0) * t144;
-            let t146 = t113 * t145;
-            let t147 = t146 * t131;
-            let t148 = t106 * t145 - t135 * t147;
-            let t149 = t148 * t138;
-            let t150 = k(2.0) * (t142 - t141);
-            let t151 = t137 * t34 + t150 * t30 + t130 * t36;
-            let t152 = k(1000000.0) * t151;
-            let t153 = t151 * t152 + t114 * t115 + t144 * t145 - t146 * t147;
-            let t154 = t153 - t148 * t149 + t117 * t118 + t119 * t120 - t121 * t122;
-            let t155 = k(1.0) / (t154 - t123 * t124 - t125 * t126);
-            let t156 = t143 * t18 + (t140 * t11 + t139 * t4);
-            let t157 = t156 * t52;
-            let t158 = t143 * t55 - (t139 * t54 + t140 * t53);
-            let t159 = t158 - t58 * t157;
-            let t160 = t159 * t67;
-            let t161 = t71 * t157 + t77 * t160;
-            let t162 = t161 * t81;
-            let t163 = t82 * t160 - t84 * t162;
-            let t164 = t163 * t86;
-            let t165 = t87 * t160 + t89 * t162 - t91 * t164;
-            let t166 = t165 * t93;
-            let t167 = t94 * t160 + t96 * t162 - t98 * t164 - t100 * t166;
-            let t168 = t167 * t103;
-            let t169 = t113 * t36 - (t109 * t30 - t106 * t34);
-            let t170 = k(1000000.0) * t169;
-            let t171 = k(500000.0) * t151;
-            let t172 = t130 * t171 + t113 * t170;
-            let t173 = t172 * t131;
-            let t174 = t137 * t171 + t106 * t170 - t135 * t173;
-            let t175 = t174 * t138;
-            let t176 = t114 * t157 - t144 * t170 + t146 * t173 + t148 * t175;
-            let t177 = t176 + t117 * t160 + t119 * t162 - t121 * t164 - t123 * t166;
-            let t178 = t177 - t125 * t168;
-            let t179 = t178 * t155;
-            let t180 = t151 * t171 + t156 * t157 + t169 * t170 - t172 * t173;
-            let t181 = t180 - t174 * t175 + t159 * t160 + t161 * t162 - t163 * t164;
-            let t182 = rotor_wx * rotor_wy;
-            let t183 = k(5e-6) * t182;
-            let t184 = rotor_wx * rotor_wz;
-            let t185 = k(5e-6) * t184;
-            let t186 = inner_ring_wx * inner_ring_wy;
-            let t187 = inner_ring_wx * inner_ring_wx;
-            let t188 = inner_ring_wz * inner_ring_wz;
-            let t189 = inner_ring_wy * inner_ring_wz;
-            let t190 = rotor_wy * (t55 * t25 - (t54 * t21 - t53 * t24))
-                + rotor_wz * (t55 * t14 - (t54 * t1 + t53 * t7));
-            let t191 = k(2.0)
-                * (inner_ring_wx * (rotor_wy * t39 + rotor_wz * t37)
-                    + inner_ring_wz * t190);
-            let t192 = rotor_wz * rotor_wz + rotor_wy * rotor_wy;
-            let t193 = t184 * t26 - (t182 * t19 - t192 * t48) + t191
-                + (t189 * t47 + ((t188 + t187) * t48 - t186 * t56));
-            let t194 = t193 + t185 * t27 - t183 * t20;
-            let t195 = inner_ring_wx * inner_ring_wz;
-            let t196 = inner_ring_wy * inner_ring_wy;
-            let t197 = t196 + t187;
-            let t198 = k(2.0)
-                * (inner_ring_wx * (rotor_wy * t26 + rotor_wz * t19)
-                    - inner_ring_wy * t190);
-            let t199 = t184 * t39 - (t182 * t37 - t192 * t47) - t198
-                + (t197 * t47 + (t189 * t48 + t195 * t56));
-            (
-                t4,
-                t11,
-                t18,
-                t20,
-                t27,
-                t28,
-                t30,
-                t34,
-                t36,
-                t38,
-                t40,
-                t42,
-                t43,
-                t50,
-                t51,
-                t52,
-                t53,
-                t54,
-                t55,
-                t57,
-                t59,
-                t60,
-                t62,
-                t64,
-                t67,
-                t69,
-                t70,
-                t72,
-                t73,
-                t74,
-                t75,
-                t78,
-                t81,
-                t83,
-                t85,
-                t86,
-                t88,
-                t90,
-                t92,
-                t93,
-                t95,
-                t97,
-                t99,
-                t101,
-                t103,
-                t106,
-                t113,
-                t114,
-                t115,
-                t116,
-                t118,
-                t120,
-                t122,
-                t124,
-                t126,
-                t127,
-                t129,
-                t130,
-                t131,
-                t132,
-                t134,
-                t136,
-                t137,
-                t138,
-                t140,
-                t143,
-                t144,
-                t145,
-                t147,
-                t149,
-                t150,
-                t151,
-                t152,
-                t155,
-                t156,
-                t157,
-                t158,
-                t160,
-                t162,
-                t164,
-                t165,
-                t166,
-                t167,
-                t168,
-                t169,
-                t170,
-                t171,
-                t173,
-                t175,
-                t178,
-                t179,
-                t181,
-                t182,
-                t183,
-                t184,
-                t185,
-                t186,
-                t188,
-                t189,
-                t194,
-                t195,
-                t196,
-                t197,
-                t199,
-            )
-        };
-        let (
-            t201,
-            t229,
-            t241,
-            t242,
-            t243,
-            t244,
-            t245,
-            t246,
-            t247,
-            t248,
-            t249,
-            t251,
-            t253,
-            t255,
-            t256,
-            t257,
-            t258,
-            t260,
-            t261,
-            t262,
-        ) = {
-            let t200 = t199 + t185 * t40 - t183 * t38 - t194 * t42;
-            let t201 = inner_ring_wx - rotor_wx;
-            let t202 = k(1e-6) * (t189 - t201) - t194 * t51 + t200 * t50;
-            let t203 = t188 + t196;
-            let t204 = t36 * t195 - (t18 * t186 - t55 * t203);
-            let t205 = k(0.000125) * t204;
-            let t206 = k(0.000125) * (t30 * t195 - (t4 * t186 + t54 * t203)) + k(10.0);
-            let t207 = k(10.0) - t206;
-            let t208 = t34 * t195 + (t11 * t186 + t53 * t203);
-            let t209 = k(0.000125) * t208;
-            let t210 = t209 * t64 - t207 * t62 + t205 * t60 - t200 * t57;
-            let t211 = t210 + t202 * t59;
-            let t212 = outer_ring_wz - inner_ring_wz;
-            let t213 = k(1e-6) * (t186 - t212) + t209 * t75 + t207 * t74 - t205 * t73;
-            let t214 = t213 + t194 * t70 - t200 * t69 + t202 * t72 - t211 * t78;
-            let t215 = k(0.00011111111111111112) * t208 - t211 * t83 - t214 * t85;
-            let t216 = k(10.0) - k(0.8888888888888888) * t207 - t211 * t88 + t214 * t90
-                - t215 * t92;
-            let t217 = k(0.00011111111111111112) * t204 - t211 * t95 + t214 * t97
-                - t215 * t99;
-            let t218 = t217 - t216 * t101;
-            let t219 = outer_ring_wx * outer_ring_wy;
-            let t220 = t219 - t212;
-            let t221 = k(1e-6) * t220;
-            let t222 = outer_ring_wz * outer_ring_wz;
-            let t223 = t222 + outer_ring_wx * outer_ring_wx;
-            let t224 = outer_ring_wy * outer_ring_wz;
-            let t225 = t130 * t224 + (t143 * t223 - t113 * t219) + t221 * t127;
-            let t226 = t137 * t224 - (t140 * t223 + t106 * t219) + t221 * t132;
-            let t227 = t226 - t225 * t136;
-            let t228 = outer_ring_wx * outer_ring_wz;
-            let t229 = outer_ring_wy + t228;
-            let t230 = t228 * t151
-                - (t219 * t144 - (t222 + outer_ring_wy * outer_ring_wy) * t169);
-            let t231 = inner_ring_wx * (t130 * t18 - (t137 * t11 - t150 * t4))
-                - inner_ring_wy * (t130 * t55 - (t150 * t54 - t137 * t53));
-            let t232 = k(2.0)
-                * (outer_ring_wy * t231
-                    + outer_ring_wz * (inner_ring_wx * t156 - inner_ring_wy * t158));
-            let t233 = t197 * t169 + (t189 * t114 + t195 * t116) - t232 + t230;
-            let t234 = t233 + k(1e-6) * t229 * t152 - t202 * t115 - t221 * t145;
-            let t235 = t234 + t225 * t147 + t227 * t149 + t211 * t118 - t214 * t120;
-            let t236 = t235 + t215 * t122 + t216 * t124 + t218 * t126;
-            let t237 = k(2.0)
-                * (outer_ring_wx * t231
-                    + outer_ring_wz * (inner_ring_wx * t114 - inner_ring_wy * t116));
-            let t238 = t197 * t144 + (t189 * t156 + t195 * t158) + t237
-                + (t224 * t151 + (t223 * t144 - t219 * t169));
-            let t239 = t238 - t202 * t157 + t221 * t170 - t225 * t173 - t227 * t175;
-            let t240 = t239 + t211 * t160 - t214 * t162 + t215 * t164 + t216 * t166;
-            let t241 = (t240 + t218 * t168 - t236 * t179)
-                / (t181 - t165 * t166 - t167 * t168 - t178 * t179);
-            let t242 = t236 * t155 - t179 * t241;
-            let t243 = t218 * t103 + t126 * t242 + t168 * t241;
-            let t244 = t216 * t93 - t101 * t243 + t124 * t242 + t166 * t241;
-            let t245 = k(100.0) * t244;
-            let t246 = k(0.1) + t244;
-            let t247 = t227 * t138 + t149 * t242 - t175 * t241;
-            let t248 = t225 * t131 - t136 * t247 + t147 * t242 - t173 * t241;
-            let t249 = t220 - t127 * t248 - t132 * t247 + t145 * t242 - t170 * t241;
-            let t250 = t215 * t86 - t92 * t244 - t99 * t243 + t122 * t242;
-            let t251 = t250 + t164 * t241;
-            let t252 = t214 * t81 + t85 * t251 - t90 * t244 - t97 * t243;
-            let t253 = t252 + t120 * t242 + t162 * t241;
-            let t254 = t211 * t67 - t78 * t253 + t83 * t251 + t88 * t244;
-            let t255 = t254 + t95 * t243 - t118 * t242 - t160 * t241;
-            let t256 = k(1.111111111111111e-6) * t208 - t64 * t255 - t75 * t253
-                + k(0.8888888888888888) * t251;
-            let t257 = k(0.008888888888888889) * t207 + t62 * t255 - t74 * t253
-                - k(0.8888888888888888) * t244;
-            let t258 = k(1.111111111111111e-6) * t204 - t60 * t255 + t73 * t253
-                + k(0.8888888888888888) * t243;
-            let t259 = t202 * t52 + t59 * t255 + t72 * t253 + t115 * t242;
-            let t260 = t259 + t157 * t241;
-            let t261 = t200 * t43 - t50 * t260 + t57 * t255 + t69 * t253;
-            let t262 = t194 * t28 + t51 * t260 - t70 * t253 - t42 * t261;
-            (
-                t201,
-                t229,
-                t241,
-                t242,
-                t243,
-                t244,
-                t245,
-                t246,
-                t247,
-                t248,
-                t249,
-                t251,
-                t253,
-                t255,
-                t256,
-                t257,
-                t258,
-                t260,
-                t261,
-                t262,
-            )
-        };
+        let t0 = outer_ring_wx * outer_ring_wy;
+        let t1 = outer_ring_e0 * outer_ring_e2;
+        let t2 = outer_ring_e1 * outer_ring_e3;
+        let t3 = k(2.0) * (t2 - t1);
+        let t4 = outer_ring_wz * outer_ring_wz;
+        let t5 = t4 + outer_ring_wx * outer_ring_wx;
+        let t6 = outer_ring_e0 * outer_ring_e1;
+        let t7 = outer_ring_e2 * outer_ring_e3;
+        let t8 = k(2.0) * (t7 + t6);
+        let t9 = outer_ring_wy * outer_ring_wz;
+        let t10 = outer_ring_e0 * outer_ring_e0;
+        let t11 = k(2.0) * (k(0.5) - (t10 + outer_ring_e3 * outer_ring_e3));
+        let t12 = t11 * t9 + (t8 * t5 - t3 * t0);
+        let t13 = k(2.0) * (k(0.5) - (t10 + outer_ring_e1 * outer_ring_e1));
+        let t14 = k(2.0) * (t2 + t1);
+        let t15 = k(1.0) / (t14 * t3 - t13 * t11);
+        let t16 = t13 * t15;
+        let t17 = outer_ring_e0 * outer_ring_e3;
+        let t18 = outer_ring_e1 * outer_ring_e2;
+        let t19 = k(2.0) * (t18 - t17);
+        let t20 = t14 * t9 - (t19 * t5 + t13 * t0);
+        let t21 = t3 * t15;
+        let t22 = t21 * t20 - t16 * t12;
+        let t23 = rotor_e0 * rotor_e3;
+        let t24 = rotor_e1 * rotor_e2;
+        let t25 = k(2.0) * (t24 - t23);
+        let t26 = inner_ring_e0 * inner_ring_e0;
+        let t27 = k(2.0) * (k(0.5) - (t26 + inner_ring_e1 * inner_ring_e1));
+        let t28 = rotor_e0 * rotor_e0;
+        let t29 = k(2.0) * (k(0.5) - (t28 + rotor_e2 * rotor_e2));
+        let t30 = inner_ring_e0 * inner_ring_e3;
+        let t31 = inner_ring_e1 * inner_ring_e2;
+        let t32 = k(2.0) * (t31 + t30);
+        let t33 = rotor_e0 * rotor_e1;
+        let t34 = rotor_e2 * rotor_e3;
+        let t35 = k(2.0) * (t34 + t33);
+        let t36 = inner_ring_e0 * inner_ring_e2;
+        let t37 = inner_ring_e1 * inner_ring_e3;
+        let t38 = k(2.0) * (t37 - t36);
+        let t39 = t38 * t35 - (t32 * t29 + t27 * t25);
+        let t40 = k(5e-6) * t39;
+        let t41 = rotor_e0 * rotor_e2;
+        let t42 = rotor_e1 * rotor_e3;
+        let t43 = k(2.0) * (t42 + t41);
+        let t44 = k(2.0) * (t34 - t33);
+        let t45 = k(2.0) * (k(0.5) - (t28 + rotor_e3 * rotor_e3));
+        let t46 = t38 * t45 - (t32 * t44 - t27 * t43);
+        let t47 = k(5e-6) * t46;
+        let t48 = inner_ring_e0 * inner_ring_e1;
+        let t49 = inner_ring_e2 * inner_ring_e3;
+        let t50 = t49 - t48;
+        let t51 = k(2.0) * t50;
+        let t52 = t37 + t36;
+        let t53 = k(2.0) * t52;
+        let t54 = k(0.5) - (t26 + inner_ring_e3 * inner_ring_e3);
+        let t55 = k(2.0) * t54;
+        let t56 = t55 * t35 - (t53 * t25 - t51 * t29);
+        let t57 = t53 * t43 + t51 * t44 + t55 * t45;
+        let t58 = t57 * t47 + t56 * t40;
+        let t59 = k(1e-6)
+            + (k(1.25e-9) + (t57 * (k(5e-6) * t57) + t56 * (k(5e-6) * t56)));
+        let t60 = k(1.0) / t59;
+        let t61 = t60 * t58;
+        let t62 = t58 * t61 - (k(1e-6) + (t46 * t47 + t39 * t40));
+        let t63 = k(2.0) * (k(0.5) - (t10 + outer_ring_e2 * outer_ring_e2));
+        let t64 = t8 * t38 - (t63 * t32 + t19 * t27);
+        let t65 = k(0.5) - (t26 + inner_ring_e2 * inner_ring_e2);
+        let t66 = k(2.0) * t65;
+        let t67 = t31 - t30;
+        let t68 = k(2.0) * t67;
+        let t69 = t49 + t48;
+        let t70 = k(2.0) * t69;
+        let t71 = t70 * t35 + (t68 * t25 + t66 * t29);
+        let t72 = t70 * t45 - (t68 * t43 - t66 * t44);
+        let t73 = k(5e-6) * t71;
+        let t74 = k(5e-6) * t72;
+        let t75 = t57 * t74 + t56 * t73;
+        let t76 = t75 * t61 - (t72 * t47 + t71 * t40);
+        let t77 = t8 * t70 + (t19 * t68 + t63 * t66);
+        let t78 = t58 - t59 * t61;
+        let t79 = t8 * t55 - (t19 * t53 - t63 * t51);
+        let t80 = t79 * t78 - (t77 * t76 + t64 * t62);
+        let t81 = t60 * t75;
+        let t82 = t75 * t81 - (k(2e-6) + (k(1.25e-9) + (t72 * t74 + t71 * t73)));
+        let t83 = t75 - t59 * t81;
+        let t84 = t79 * t83 - (t77 * t82 + t64 * t76);
+        let t85 = t77 * t83 + t64 * t78;
+        let t86 = k(2.0) * (k(0.5) - (t28 + rotor_e1 * rotor_e1));
+        let t87 = k(2.0) * (t24 + t23);
+        let t88 = k(2.0) * (t42 - t41);
+        let t89 = t38 * t88 + (t32 * t87 + t27 * t86);
+        let t90 = inner_ring_wx * inner_ring_wy;
+        let t91 = t70 * t88 - (t66 * t87 + t68 * t86);
+        let t92 = inner_ring_wx * inner_ring_wx;
+        let t93 = inner_ring_wz * inner_ring_wz;
+        let t94 = t55 * t88 - (t51 * t87 - t53 * t86);
+        let t95 = inner_ring_wy * inner_ring_wz;
+        let t96 = rotor_wy * t46 + rotor_wz * t39;
+        let t97 = k(2.0)
+            * (inner_ring_wx * (rotor_wy * t57 + rotor_wz * t56) + inner_ring_wz * t96);
+        let t98 = rotor_wz * rotor_wz + rotor_wy * rotor_wy;
+        let t99 = rotor_wx * rotor_wy;
+        let t100 = rotor_wx * rotor_wz;
+        let t101 = t100 * t72 - (t99 * t71 - t98 * t91) + t97
+            + (t95 * t94 + ((t93 + t92) * t91 - t90 * t89));
+        let t102 = k(1.0) / (t71 * t57 - t72 * t56);
+        let t103 = t56 * t102;
+        let t104 = inner_ring_wx * inner_ring_wz;
+        let t105 = inner_ring_wy * inner_ring_wy;
+        let t106 = t105 + t92;
+        let t107 = k(2.0)
+            * (inner_ring_wx * (rotor_wy * t72 + rotor_wz * t71) - inner_ring_wy * t96);
+        let t108 = t100 * t57 - (t99 * t56 - t98 * t94) - t107
+            + (t106 * t94 + (t95 * t91 + t104 * t89));
+        let t109 = t71 * t102;
+        let t110 = t109 * t108 - t103 * t101;
+        let t111 = k(5e-6) * (t100 + t110);
+        let t112 = t57 * t102;
+        let t113 = t72 * t102;
+        let t114 = t113 * t108 - t112 * t101;
+        let t115 = k(5e-6) * (t99 + t114);
+        let t116 = inner_ring_wx - rotor_wx;
+        let t117 = t95 - t116;
+        let t118 = t93 + t105;
+        let t119 = t53 * t104 + (t68 * t90 + t27 * t118);
+        let t120 = k(1e-5) * t119;
+        let t121 = k(0.00025) * t67;
+        let t122 = t51 * t104 - (t66 * t90 + t32 * t118);
+        let t123 = k(0.8) + k(1e-5) * t122;
+        let t124 = k(0.00025) * t65;
+        let t125 = t55 * t104 - (t70 * t90 - t38 * t118);
+        let t126 = k(1e-5) * t125;
+        let t127 = k(0.00025) * t69;
+        let t128 = t127 * t126 + (t124 * t123 - t121 * t120) + (t57 * t115 + t56 * t111);
+        let t129 = outer_ring_wz - inner_ring_wz;
+        let t130 = t90 - t129;
+        let t131 = k(1e-6) * t130 - t128;
+        let t132 = t61 * t131 - (k(1e-6) * t117 - (t46 * t115 + t39 * t111));
+        let t133 = k(2.0) * (t18 + t17);
+        let t134 = t3 * t55 - (t133 * t51 - t13 * t53);
+        let t135 = k(2.0) * (t7 - t6);
+        let t136 = t14 * t53 + t135 * t51 + t11 * t55;
+        let t137 = outer_ring_wx * outer_ring_wz;
+        let t138 = t137 * t136
+            - (t0 * t79 - (t4 + outer_ring_wy * outer_ring_wy) * t134);
+        let t139 = t11 * t38 - (t135 * t32 - t14 * t27);
+        let t140 = t11 * t70 - (t14 * t68 - t135 * t66);
+        let t141 = inner_ring_wx * t140 - inner_ring_wy * t139;
+        let t142 = k(2.0)
+            * (outer_ring_wy * t141
+                + outer_ring_wz * (inner_ring_wx * t77 - inner_ring_wy * t64));
+        let t143 = t3 * t38 + (t133 * t32 + t13 * t27);
+        let t144 = t3 * t70 - (t133 * t66 + t13 * t68);
+        let t145 = t106 * t134 + (t95 * t144 + t104 * t143) - t142 + t138;
+        let t146 = k(1.0) / (t143 * t77 - t144 * t64);
+        let t147 = t64 * t146;
+        let t148 = k(2.0)
+            * (outer_ring_wx * t141
+                + outer_ring_wz * (inner_ring_wx * t144 - inner_ring_wy * t143));
+        let t149 = t106 * t79 + (t95 * t77 + t104 * t64) + t148
+            + (t9 * t136 + (t5 * t79 - t0 * t134));
+        let t150 = t143 * t146;
+        let t151 = t150 * t149 - t147 * t145;
+        let t152 = t77 * t146;
+        let t153 = t144 * t146;
+        let t154 = t153 * t149 - t152 * t145;
+        let t155 = k(0.00025) * t52;
+        let t156 = k(0.00025) * t50;
+        let t157 = k(0.00025) * t54;
+        let t158 = t157 * t126 + (t156 * t123 + t155 * t120) - (t72 * t115 + t71 * t111);
+        let t159 = t77 * (t82 * t154 + t76 * t151 - (t81 * t131 - t158));
+        let t160 = t79 * (t83 * t154 + t78 * t151)
+            - (t159 + t64 * (t76 * t154 + t62 * t151 - t132));
+        let t161 = t77 * (t134 * t83 - (t144 * t82 + t143 * t76))
+            + t64 * (t134 * t78 - (t144 * t76 + t143 * t62));
+        let t162 = t14 * t15;
+        let t163 = t11 * t15;
+        let t164 = t163 * t20 - t162 * t12;
+        let t165 = t164 * (t136 * t85 + (t140 * t84 + t139 * t80))
+            + t22 * (t79 * (t144 * t83 + t143 * t78) + t161);
+        let t166 = (t165 - (k(1e-6) * (outer_ring_wy + t137) + t160))
+            / (k(1e-6) + (t79 * t85 + (t77 * t84 + t64 * t80)));
+        let t167 = t151 - (t139 * t164 - (t64 * t166 - t143 * t22));
+        let t168 = t154 - (t140 * t164 - (t77 * t166 - t144 * t22));
+        let t169 = t136 * t164 - (t79 * t166 - t134 * t22);
+        let t170 = t60 * (t131 + (t59 * t169 - (t75 * t168 + t58 * t167)));
+        let t171 = t169 - t170;
+        let t172 = k(0.000125) * t119 + (t121 * t171 - t155 * t168);
+        let t173 = k(0.000125) * t122 - (t124 * t171 + t156 * t168);
+        let t174 = k(0.000125) * t125 - (t127 * t171 + t157 * t168);
+        let t175 = t94 * t171 - (t91 * t168 + t89 * t167);
+        let t176 = k(1e-6) * t116;
+        let t177 = t175 - k(100000.0) * (t176 + k(1e-5) * t175);
+        let t178 = t110 - (t56 * t171 - (t71 * t168 + t39 * t167));
+        let t179 = t114 - (t57 * t171 - (t72 * t168 + t46 * t167));
+        let t180 = k(0.08) * t172;
+        let t181 = k(0.8) + k(0.08) * t173;
+        let t182 = k(0.1) + t181;
+        let t183 = k(0.08) * t174;
+        let t184 = t176 + k(1e-5) * t177;
+        let t185 = k(5e-6) * (t100 + t178);
+        let t186 = k(5e-6) * (t99 + t179);
+        let t187 = t46 * t186 + (t39 * t185 - t89 * t184) - k(1e-6) * (t117 - t167);
+        let t188 = t157 * t183 + (t156 * t181 + t155 * t180)
+            - (t72 * t186 + (t71 * t185 - t91 * t184));
+        let t189 = t188 - k(2e-6) * t168;
+        let t190 = t127 * t183 + (t124 * t181 - t121 * t180)
+            + (t57 * t186 + (t56 * t185 - t94 * t184));
+        let t191 = t190 - k(1e-6) * (t130 + t171);
+        let t192 = t134 * t191 - (t144 * t189 - t143 * t187) - k(2e-6) * t22;
+        let t193 = t136 * t191 - (t140 * t189 - t139 * t187)
+            + k(1e-6) * (t0 - t129 - t164);
         *out = [
             k(0.0),
-            -(k(10.0) - k(100.0) * t246 + t245),
             k(0.0),
-            -(t129 * t248 + t134 * t247 + t171 * t241),
-            t152 * t242 - t229,
-            t249,
-            k(100.0) * (t251 - t256),
-            k(100.0) * t257 - (k(10.0) - t245),
-            k(100.0) * (t258 - t243),
-            t260,
-            t255,
-            -t253,
-            k(12.5) * t256,
-            -(k(10.0) + k(12.5) * t257),
-            -(k(12.5) * t258),
-            k(0.1) * t201,
-            t40 * t261 - (t184 - t27 * t262),
-            t182 + t20 * t262 + t38 * t261,
+            k(0.0),
+            -t22,
+            t166,
+            t164,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t167,
+            t168,
+            t171,
+            t172,
+            t173,
+            -t174,
+            -t177,
+            t178,
+            -t179,
         ];
         *lambda = [
-            -t251,
-            -t246,
-            t243,
-            -t248,
-            t247,
-            -t251,
-            -t244,
-            t243,
-            t242,
-            t241,
-            -t256,
-            t257,
-            t258,
-            -t262,
-            t261,
+            -t180,
+            -(k(0.1) + t182),
+            t183,
+            -(t162 * t193 + t16 * t192),
+            -(t163 * t193 + t21 * t192),
+            -t180,
+            -t182,
+            t183,
+            t152 * t189 - t147 * t187,
+            t150 * t187 - t153 * t189,
+            -t180,
+            -t181,
+            t183,
+            t112 * t186 + t103 * t185,
+            t113 * t186 + t109 * t185,
         ];
     }
 }
