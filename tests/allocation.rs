@@ -43,18 +43,18 @@ const A_SECOND: u32 = 2000;
 fn simulation<M: Partition<Scalar = f64>>(mechanism: &M, corrections: u32) -> (f64, f64) {
     let mut y = mechanism.start();
     let mut solver = Partitioned::new(mechanism, &y);
-    let mut turns = Turns::new(mechanism, &y, &[]);
+    let mut turns = Turns::new(mechanism, 0.0, &y, &[]);
     let (mut phi, mut worst) = (mechanism.constraints(), 0.0_f64);
     for interval in 0..corrections {
         let t = f64::from(interval) * 5e-4;
         solver.advance(mechanism, t, 1e-4, 5, &mut y).unwrap();
-        turns.update(mechanism, 5e-4, &y);
+        turns.update(mechanism, t + 5e-4, 5e-4, &y);
         mechanism.phi(t, &y, &mut phi);
         let n_rows = phi.as_ref().len() - mechanism.n_bodies();
         worst = worst.max(violation(mechanism, &phi.as_ref()[..n_rows]).value);
     }
-    match turns.joint(mechanism, 0) {
-        JointCoordinate::Angle { position, .. } => (worst, position),
+    match turns.coordinate(mechanism, 0, 0) {
+        Some(JointCoordinate::Angle { position, .. }) => (worst, position),
         other => panic!("{other:?}"),
     }
 }

@@ -20,13 +20,14 @@ fn alpha_here() -> f64 {
     let gyroscope = Gyroscope::<f64>::default();
     let mut state = gyroscope.start();
     let mut solver = Partitioned::new(&gyroscope, &state);
-    let mut turns = Turns::new(&gyroscope, &state, &[]);
+    let mut turns = Turns::new(&gyroscope, 0.0, &state, &[]);
     for interval in 0..2000 {
-        solver.advance(&gyroscope, f64::from(interval) * 5e-4, 1e-4, 5, &mut state).unwrap();
-        turns.update(&gyroscope, 5e-4, &state);
+        let t = f64::from(interval) * 5e-4;
+        solver.advance(&gyroscope, t, 1e-4, 5, &mut state).unwrap();
+        turns.update(&gyroscope, t + 5e-4, 5e-4, &state);
     }
-    match turns.joint(&gyroscope, 0) {
-        JointCoordinate::Angle { position, .. } => position,
+    match turns.coordinate(&gyroscope, 0, 0) {
+        Some(JointCoordinate::Angle { position, .. }) => position,
         other => panic!("{other:?}"),
     }
 }

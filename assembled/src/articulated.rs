@@ -1,12 +1,13 @@
 //! Accelerations from the leaves to the root and back, without λ.
 
-use crate::careful::{Hinge, Hold, Link, Side};
+use crate::careful::{Bearing, Hinge, Hold, Link, Side, Space};
 use crate::freedom::{self, Attitude, Freedom};
-use crate::lowered::{Joint, Lowered, Place};
+use crate::joint::Joint;
+use crate::lowered::{Lowered, Moment, Place};
+use crate::motion::Motion;
 use crate::number::{Number, number};
 use crate::spatial::{Inertia, Spatial};
 use crate::textbook::direction_rotation;
-use gyro_model::JointKind;
 use nalgebra::{Matrix3, Vector3};
 
 /// One body's quantities, all in global axes and about its mass centre.
@@ -55,29 +56,38 @@ impl<T: Number> Node<T> {
     }
 }
 
-/// Writes `(s̈, ẇ')` of every body to `out`, and leaves what [`crate::reactions`] needs in the nodes.
+/// Writes `(s̈, ẇ')` of every body to `out`.
 pub(crate) fn accelerations<T: Number>(
     lowered: &Lowered<T>,
     links: &[Link],
-    y: &[T],
-    nodes: &mut [Node<T>],
+    at: Moment<'_, T>,
+    space: &mut Space<T>,
     out: &mut [T],
 ) {
-    lowered.applied_force(y, out);
-    for (slot, (node, force)) in nodes.iter_mut().zip(out.as_chunks::<6>().0).enumerate() {
-        place(lowered, y, slot, force, node);
-    }
+    place_all(lowered, at, space);
+    let Space { nodes, driven, .. } = space;
     for link in links.iter().rev() {
         if let Hold::Joint(hinge) = &link.hold {
-            fold(&lowered.joints[hinge.joint], hinge, link.slot, nodes);
+            fold(&lowered.joints[hinge.joint], hinge, link.slot, nodes, driven);
         }
     }
     for link in links {
-        nodes[link.slot].acceleration = acceleration(lowered, y, link, nodes);
+        nodes[link.slot].acceleration = acceleration(lowered, at.y, link, nodes, driven);
     }
     for (node, out) in nodes.iter().zip(out.as_chunks_mut::<6>().0) {
         out[..3].copy_from_slice(node.acceleration.linear.as_slice());
         out[3..].copy_from_slice(node.attitude.a.tr_mul(&node.acceleration.angular).as_slice());
+    }
+}
+
+/// Puts every body by itself into the work space.
+pub(crate) fn place_all<T: Number>(lowered: &Lowered<T>, at: Moment<'_, T>, space: &mut Space<T>) {
+    for (index, motion) in space.driven.iter_mut().enumerate() {
+        *motion = lowered.driven_motion(at.t, index);
+    }
+    lowered.applied_force(at, &mut space.forces);
+    for (slot, (node, force)) in space.nodes.iter_mut().zip(space.forces.as_chunks::<6>().0).enumerate() {
+        place(lowered, at.y, slot, force, node);
     }
 }
 
@@ -97,25 +107,32 @@ fn place<T: Number>(lowered: &Lowered<T>, y: &[T], slot: usize, force: &[T; 6], 
 }
 
 /// Folds a child into its parent: `θ̈` is eliminated, and the rest loads the parent.
-fn fold<T: Number>(joint: &Joint<T>, hinge: &Hinge, child: usize, nodes: &mut [Node<T>]) {
+fn fold<T: Number>(
+    joint: &Joint<T>,
+    hinge: &Hinge,
+    child: usize,
+    nodes: &mut [Node<T>],
+    driven: &[Motion<T>],
+) {
     let (parent_end, child_end) = hinge.ends(joint);
-    let parent = attitude(&parent_end.place, nodes);
+    let parent = attitude(&parent_end.place, nodes, driven);
     let node = &nodes[child];
     let (parent_arm, child_arm) = (parent.a * parent_end.point, node.attitude.a * child_end.point);
-    let (i, j) = (attitude(&joint.first.place, nodes), attitude(&joint.second.place, nodes));
+    let [i, j] = [&joint.first, &joint.second].map(|end| attitude(&end.place, nodes, driven));
+    let bias = freedom::rotation_bias((hinge.bearing, joint), &i, &j);
     let angular = match hinge.child {
-        Side::First => -freedom::rotation_bias(joint, &i, &j),
-        Side::Second => freedom::rotation_bias(joint, &i, &j),
+        Side::First => -bias,
+        Side::Second => bias,
     };
     let linear = parent.centripetal(&parent_arm) - node.attitude.centripetal(&child_arm);
     let bias = Spatial { linear, angular };
     let (mut inertia, mut force) = (node.inertia.about(&child_arm), node.force.about(&child_arm));
     force -= inertia.apply(&bias);
-    let freedom = match joint.kind {
-        JointKind::Fixed => Freedom::None,
-        JointKind::Spherical => Freedom::all(&inertia, &force),
+    let freedom = match hinge.bearing {
+        Bearing::Fixed => Freedom::None,
+        Bearing::Spherical => Freedom::all(&inertia, &force),
         // Both dot-1 rows have the second body's axis in their null space.
-        JointKind::Revolute => Freedom::about(j.a * joint.second.h, &inertia, &force),
+        Bearing::Revolute => Freedom::about(j.a * joint.second.h, &inertia, &force),
     };
     nodes[child].follower = Follower { parent_arm, child_arm, bias, freedom };
     if let Some(parent) = hinge.loads {
@@ -125,11 +142,17 @@ fn fold<T: Number>(joint: &Joint<T>, hinge: &Hinge, child: usize, nodes: &mut [N
     }
 }
 
-fn acceleration<T: Number>(lowered: &Lowered<T>, y: &[T], link: &Link, nodes: &[Node<T>]) -> Spatial<T> {
+fn acceleration<T: Number>(
+    lowered: &Lowered<T>,
+    y: &[T],
+    link: &Link,
+    nodes: &[Node<T>],
+    driven: &[Motion<T>],
+) -> Spatial<T> {
     let node = &nodes[link.slot];
     match &link.hold {
         Hold::Free => node.inertia.solve(&node.force),
-        Hold::Constrained(index) => {
+        Hold::Constrained(index, _) => {
             let body = &lowered.constrained[*index];
             let (q0, q) = lowered.relative_orientation(y, body);
             // ½ (q₀ I + q̃) ẇ' = ¼ |w'|² q is solved by a multiple of q.
@@ -138,8 +161,14 @@ fn acceleration<T: Number>(lowered: &Lowered<T>, y: &[T], link: &Link, nodes: &[
         }
         Hold::Joint(hinge) => {
             let (parent_end, _) = hinge.ends(&lowered.joints[hinge.joint]);
-            let parent = parent_end.place.slot().map_or_else(Spatial::zero, |slot| nodes[slot].acceleration);
-            node.follower.acceleration(&parent)
+            node.follower.acceleration(&match parent_end.place {
+                Place::Slot(slot) => nodes[slot].acceleration,
+                Place::Ground(_) => Spatial::zero(),
+                Place::Driven(index) => {
+                    let Motion { a, s_dot, w_dot, .. } = driven[index];
+                    Spatial { linear: s_dot, angular: a * w_dot }
+                }
+            })
         }
     }
 }
@@ -156,9 +185,10 @@ impl<T: Number> Follower<T> {
 }
 
 /// How a joint's body is turned.
-pub(crate) fn attitude<T: Number>(place: &Place<T>, nodes: &[Node<T>]) -> Attitude<T> {
+pub(crate) fn attitude<T: Number>(place: &Place<T>, nodes: &[Node<T>], driven: &[Motion<T>]) -> Attitude<T> {
     match place {
         Place::Slot(slot) => nodes[*slot].attitude,
         Place::Ground(motion) => Attitude { a: motion.a, omega: Vector3::zeros() },
+        Place::Driven(index) => Attitude { a: driven[*index].a, omega: driven[*index].omega() },
     }
 }

@@ -1,49 +1,76 @@
-//! The contract of `gyro-sim`, kept by the lowered model for the formulas and by a [`Solver`] for the linear algebra.
+//! A lowered model with the linear algebra of a [`Solver`]; the contract of `gyro-sim` that tells its motion.
 
-use crate::lowered::Lowered;
+use crate::error::{BuildError, Unsupported};
+use crate::lowered::{Lowered, Moment};
 use crate::number::{Number, number};
+use crate::outputs::Solution;
 use crate::textbook::p_dot;
-use gyro_model::{AssemblyError, Model};
-use gyro_sim::{Energy, Equations, Error, JointInfo, Mechanism, Ode, Partition, RowInfo};
+use gyro_model::Model;
+use gyro_sim::{Energy, Error, JointInfo, Mechanism, Ode, Partition, RowInfo};
 use nalgebra::Vector4;
+use std::cell::RefCell;
 use std::fmt::Debug;
 
 /// A mechanism assembled at run time, with the linear algebra of `S`.
 #[derive(Clone, Debug)]
 pub struct Assembled<T: Number, S> {
-    lowered: Lowered<T>,
-    solver: S,
-    phi_q_pattern: Vec<(u16, u16)>,
-    phi_pi_pattern: Vec<(u16, u16)>,
+    pub(crate) lowered: Lowered<T>,
+    pub(crate) solver: S,
+    pub(crate) phi_q_pattern: Vec<(u16, u16)>,
+    pub(crate) phi_pi_pattern: Vec<(u16, u16)>,
+    /// Work space. A mechanism is constant to its callers, so it is borrowed inside each call and never across.
+    space: RefCell<Space<T>>,
+}
+
+/// What a solution of eq. (17) needs.
+#[derive(Clone, Debug)]
+struct Space<T> {
+    accelerations: Vec<T>,
+    lambda: Vec<T>,
+    nu: Vec<T>,
 }
 
 /// How eq. (17) is solved and how the coordinates are partitioned.
+///
+/// States are given as [`Mechanism`] lays them out, times in seconds.
 pub trait Solver<T: Number>: Clone + Debug {
     /// Which coordinates are independent.
     type Independent: Clone + Debug + PartialEq;
 
     /// A solver for this model.
-    fn new(model: &Model, lowered: &Lowered<T>) -> Self;
-    /// Writes the accelerations `(s̈, ẇ')` that solve eq. (17).
-    fn accelerations(&self, lowered: &Lowered<T>, y: &[T], out: &mut [T]);
-    /// Writes the accelerations and the multipliers λ.
-    fn accelerations_and_multipliers(&self, lowered: &Lowered<T>, y: &[T], out: &mut [T], lambda: &mut [T]);
+    ///
+    /// # Errors
+    /// [`Unsupported`] names what in the model this solver cannot do.
+    fn new(model: &Model, lowered: &Lowered<T>) -> Result<Self, Unsupported>;
+    /// Length of the buffer of [`Solver::accelerations`].
+    fn accelerations_len(&self, lowered: &Lowered<T>) -> usize;
+    /// Writes the accelerations `(s̈, ẇ')` that solve eq. (17), and what [`Solver::multipliers`] needs besides.
+    fn accelerations(&self, lowered: &Lowered<T>, t: T, y: &[T], out: &mut [T]);
+    /// Writes the multipliers λ that go with the accelerations.
+    fn multipliers(&self, lowered: &Lowered<T>, t: T, y: &[T], accelerations: &[T], lambda: &mut [T]);
     /// The best choice of independent coordinates.
-    fn independent(&self, lowered: &Lowered<T>, y: &[T]) -> Self::Independent;
+    fn independent(&self, lowered: &Lowered<T>, t: T, y: &[T]) -> Self::Independent;
     /// Replaces a choice that has become poor; returns how many independent coordinates were exchanged.
-    fn follow(&self, lowered: &Lowered<T>, y: &[T], choice: &mut Self::Independent) -> u32;
+    fn follow(&self, lowered: &Lowered<T>, t: T, y: &[T], choice: &mut Self::Independent) -> u32;
     /// One Newton step of the dependent positions.
     ///
     /// # Errors
     /// The pivot that vanished.
-    fn newton_step(&self, lowered: &Lowered<T>, choice: &Self::Independent, y: &mut [T]) -> Result<(), T>;
-    /// Solves eq. (19).
+    fn newton_step(
+        &self,
+        lowered: &Lowered<T>,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut [T],
+    ) -> Result<(), T>;
+    /// Solves eq. (19) for the dependent velocities. Which velocities are held is the solver's: see its own documentation.
     ///
     /// # Errors
     /// The pivot that vanished.
     fn solve_velocities(
         &self,
         lowered: &Lowered<T>,
+        t: T,
         choice: &Self::Independent,
         y: &mut [T],
     ) -> Result<(), T>;
@@ -53,14 +80,30 @@ impl<T: Number, S: Solver<T>> Assembled<T, S> {
     /// The mechanism of a model, at the model's parameters and start.
     ///
     /// # Errors
-    /// [`AssemblyError`] if the model has no consistent start.
-    pub fn new(model: &Model) -> Result<Self, AssemblyError> {
-        let lowered = Lowered::new(model)?;
-        let solver = S::new(model, &lowered);
+    /// [`BuildError`] if the model has no consistent start or is beyond this solver.
+    pub fn new(model: &Model) -> Result<Self, BuildError> {
+        let lowered = Lowered::new(model).map_err(BuildError::Start)?;
+        let solver = S::new(model, &lowered).map_err(BuildError::Unsupported)?;
         let (mut phi_q_pattern, mut phi_pi_pattern) = (Vec::new(), Vec::new());
-        lowered.phi_q(&lowered.start, |row, column, _| phi_q_pattern.push(entry(row, column)));
-        lowered.phi_pi(&lowered.start, |row, column, _| phi_pi_pattern.push(entry(row, column)));
-        Ok(Self { lowered, solver, phi_q_pattern, phi_pi_pattern })
+        let start = Moment { t: T::zero(), y: &lowered.start };
+        lowered.phi_q(start, |row, column, _| phi_q_pattern.push(entry(row, column)));
+        lowered.phi_pi(start, |row, column, _| phi_pi_pattern.push(entry(row, column)));
+        let space = Space {
+            accelerations: zeros(solver.accelerations_len(&lowered)),
+            lambda: zeros(lowered.n_rows()),
+            nu: zeros(lowered.n_rows()),
+        };
+        Ok(Self { lowered, solver, phi_q_pattern, phi_pi_pattern, space: RefCell::new(space) })
+    }
+
+    /// Solves eq. (17), with multipliers, and hands the solution to `f`.
+    pub(crate) fn with_solution<R>(&self, at: Moment<'_, T>, f: impl FnOnce(Solution<'_, T>) -> R) -> R {
+        let Space { accelerations, lambda, nu } = &mut *self.space.borrow_mut();
+        self.solver.accelerations(&self.lowered, at.t, at.y, accelerations);
+        self.solver.multipliers(&self.lowered, at.t, at.y, accelerations, lambda);
+        self.lowered.nu(at, nu);
+        let lambda_nu = lambda.iter().zip(nu.iter()).fold(T::zero(), |sum, (l, nu)| sum + *l * *nu);
+        f(Solution { accelerations, lambda, lambda_nu })
     }
 }
 
@@ -72,18 +115,31 @@ impl<T: Number, S: Solver<T>> Ode for Assembled<T, S> {
         self.lowered.start.clone()
     }
 
-    fn derivative(&self, _: T, y: &Vec<T>, dy: &mut Vec<T>) {
-        let lowered = &self.lowered;
+    fn derivative(&self, t: T, y: &Vec<T>, dy: &mut Vec<T>) {
+        let (lowered, at) = (&self.lowered, Moment { t, y });
         for (slot, dq) in dy.as_chunks_mut::<7>().0[..lowered.n_bodies()].iter_mut().enumerate() {
             dq[..3].copy_from_slice(lowered.s(y, slot).as_slice()); // eq. (16)
             let p_dot: Vector4<T> = p_dot(&lowered.p(y, slot), &lowered.w(y, slot));
             dq[3..].copy_from_slice(p_dot.as_slice());
         }
         let velocities = lowered.n_q()..lowered.n_q() + lowered.n_v();
-        self.solver.accelerations(lowered, y, &mut dy[velocities]);
+        let n_v = lowered.n_v();
+        let lambda_nu = if lowered.is_driven {
+            self.with_solution(at, |solution| {
+                dy[velocities].copy_from_slice(&solution.accelerations[..n_v]);
+                solution.lambda_nu
+            })
+        } else {
+            let accelerations = &mut self.space.borrow_mut().accelerations;
+            self.solver.accelerations(lowered, t, y, accelerations);
+            dy[velocities].copy_from_slice(&accelerations[..n_v]);
+            T::zero()
+        };
         if let Some(work) = lowered.work {
-            dy[work] = lowered.power(y);
+            let power = lowered.power(at, lambda_nu);
+            dy[work] = power.non_conservative + power.drivers;
         }
+        lowered.turn_rates(at, &mut dy[lowered.first_turn()..]);
     }
 }
 
@@ -104,20 +160,20 @@ impl<T: Number, S: Solver<T>> Mechanism for Assembled<T, S> {
         zeros(self.lowered.n_readings())
     }
 
-    fn phi(&self, _: T, y: &Vec<T>, out: &mut Vec<T>) {
-        self.lowered.phi(y, out);
+    fn phi(&self, t: T, y: &Vec<T>, out: &mut Vec<T>) {
+        self.lowered.phi(Moment { t, y }, out);
     }
 
-    fn velocity_residual(&self, _: T, y: &Vec<T>, out: &mut Vec<T>) {
-        self.lowered.velocity_residual(y, out);
+    fn velocity_residual(&self, t: T, y: &Vec<T>, out: &mut Vec<T>) {
+        self.lowered.velocity_residual(Moment { t, y }, out);
     }
 
-    fn energy(&self, y: &Vec<T>) -> Energy<T> {
-        self.lowered.energy(y)
+    fn energy(&self, t: T, y: &Vec<T>) -> Energy<T> {
+        self.lowered.energy(Moment { t, y })
     }
 
-    fn read_joints(&self, y: &Vec<T>, out: &mut Vec<T>) {
-        self.lowered.read_joints(y, out);
+    fn read_joints(&self, t: T, y: &Vec<T>, out: &mut Vec<T>) {
+        self.lowered.read_joints(Moment { t, y }, out);
     }
 
     fn n_bodies(&self) -> usize {
@@ -134,11 +190,19 @@ impl<T: Number, S: Solver<T>> Mechanism for Assembled<T, S> {
 
     fn joint(&self, joint: usize) -> JointInfo<'_> {
         let joint = &self.lowered.joints[joint];
-        JointInfo { name: &joint.name, coordinate: joint.coordinate() }
+        JointInfo { name: &joint.name, coordinates: &joint.readings }
+    }
+
+    fn coupler_name(&self, coupler: usize) -> &str {
+        &self.lowered.coupler_names[coupler]
+    }
+
+    fn driver_name(&self, driver: usize) -> &str {
+        &self.lowered.driver_names[driver]
     }
 
     fn row(&self, row: usize) -> RowInfo {
-        self.lowered.rows[row]
+        self.lowered.row_infos[row]
     }
 
     fn size(&self) -> T {
@@ -153,82 +217,24 @@ impl<T: Number, S: Solver<T>> Mechanism for Assembled<T, S> {
 impl<T: Number, S: Solver<T>> Partition for Assembled<T, S> {
     type Independent = S::Independent;
 
-    fn independent(&self, _: T, y: &Vec<T>) -> S::Independent {
-        self.solver.independent(&self.lowered, y)
+    fn independent(&self, t: T, y: &Vec<T>) -> S::Independent {
+        self.solver.independent(&self.lowered, t, y)
     }
 
-    fn follow(&self, _: T, y: &Vec<T>, choice: &mut S::Independent) -> u32 {
-        self.solver.follow(&self.lowered, y, choice)
+    fn follow(&self, t: T, y: &Vec<T>, choice: &mut S::Independent) -> u32 {
+        self.solver.follow(&self.lowered, t, y, choice)
     }
 
     fn newton_step(&self, t: T, choice: &S::Independent, y: &mut Vec<T>) -> Result<(), Error> {
-        self.solver.newton_step(&self.lowered, choice, y).map_err(|pivot| singular(t, pivot))
+        self.solver.newton_step(&self.lowered, t, choice, y).map_err(|pivot| singular(t, pivot))
     }
 
     fn solve_velocities(&self, t: T, choice: &S::Independent, y: &mut Vec<T>) -> Result<(), Error> {
-        self.solver.solve_velocities(&self.lowered, choice, y).map_err(|pivot| singular(t, pivot))
+        self.solver.solve_velocities(&self.lowered, t, choice, y).map_err(|pivot| singular(t, pivot))
     }
 }
 
-impl<T: Number, S: Solver<T>> Equations for Assembled<T, S> {
-    type Velocities = Vec<T>;
-    type PhiQ = Vec<T>;
-    type PhiPi = Vec<T>;
-
-    fn velocities(&self) -> Vec<T> {
-        zeros(self.lowered.n_v())
-    }
-
-    fn phi_q_values(&self) -> Vec<T> {
-        zeros(self.phi_q_pattern.len())
-    }
-
-    fn phi_pi_values(&self) -> Vec<T> {
-        zeros(self.phi_pi_pattern.len())
-    }
-
-    fn phi_q_pattern(&self) -> &[(u16, u16)] {
-        &self.phi_q_pattern
-    }
-
-    fn phi_pi_pattern(&self) -> &[(u16, u16)] {
-        &self.phi_pi_pattern
-    }
-
-    fn phi_q(&self, _: T, y: &Vec<T>, out: &mut Vec<T>) {
-        let mut at = 0;
-        self.lowered.phi_q(y, |_, _, value| {
-            out[at] = value;
-            at += 1;
-        });
-    }
-
-    fn phi_pi(&self, _: T, y: &Vec<T>, out: &mut Vec<T>) {
-        let mut at = 0;
-        self.lowered.phi_pi(y, |_, _, value| {
-            out[at] = value;
-            at += 1;
-        });
-    }
-
-    fn nu(&self, _: T, _: &Vec<T>, out: &mut Vec<T>) {
-        out.fill(T::zero());
-    }
-
-    fn gamma(&self, _: T, y: &Vec<T>, out: &mut Vec<T>) {
-        self.lowered.gamma(y, out);
-    }
-
-    fn applied_force(&self, _: T, y: &Vec<T>, out: &mut Vec<T>) {
-        self.lowered.applied_force(y, out);
-    }
-
-    fn accelerations(&self, _: T, y: &Vec<T>, out: &mut Vec<T>, lambda: &mut Vec<T>) {
-        self.solver.accelerations_and_multipliers(&self.lowered, y, out, lambda);
-    }
-}
-
-fn zeros<T: Number>(len: usize) -> Vec<T> {
+pub(crate) fn zeros<T: Number>(len: usize) -> Vec<T> {
     vec![number(0.0); len]
 }
 
@@ -238,5 +244,5 @@ fn entry(row: usize, column: usize) -> (u16, u16) {
 }
 
 fn singular<T: Number>(t: T, pivot: T) -> Error {
-    Error::Singular { t: gyro_sim::Real::to_f64(t), pivot: gyro_sim::Real::to_f64(pivot) }
+    Error::Singular { t: gyro_sim::Real::to_f64(t), pivot: gyro_sim::Real::to_f64(pivot), owner: None }
 }

@@ -3,11 +3,12 @@
 //! Which Euler parameter of a body is special follows the rule of [`gyro_sim::charts`]. A parent is corrected before its
 //! children look at it, so the block-triangular system needs no coupling blocks, and point rows are met in closed form.
 
-use crate::careful::{Hinge, Hold, Link, Side};
-use crate::lowered::{Constrained, Dot, Lowered, Motion};
+use crate::careful::{Bearing, Hinge, Hold, Link, Side};
+use crate::joint::Dot;
+use crate::lowered::{Constrained, Lowered, Moment};
+use crate::motion::Motion;
 use crate::number::{Number, number, resolvable};
 use crate::textbook::{p_dot, rotated_gradient, rotation};
-use gyro_model::JointKind;
 use gyro_sim::charts;
 use nalgebra::{Matrix3, Matrix4, Vector3, Vector4};
 
@@ -35,18 +36,19 @@ pub(crate) fn follow<T: Number>(lowered: &Lowered<T>, links: &[Link], y: &[T], c
 pub(crate) fn newton_step<T: Number>(
     lowered: &Lowered<T>,
     links: &[Link],
+    t: T,
     choice: &[u8],
     y: &mut [T],
 ) -> Result<(), T> {
     for (link, &chart) in links.iter().zip(choice) {
         match &link.hold {
-            Hold::Constrained(index) => restore(&lowered.constrained[*index], y),
+            Hold::Constrained(index, _) => restore(&lowered.constrained[*index], y),
             Hold::Free => {
                 let step = parameter_step(lowered, link.slot, &[], chart, y)?;
                 set_p(y, link.slot, &(lowered.p(y, link.slot) + step));
             }
             Hold::Joint(hinge) => {
-                let (facing, parent) = facing_dots(lowered, hinge, y);
+                let (facing, parent) = facing_dots(lowered, hinge, Moment { t, y });
                 let n_dots = lowered.joints[hinge.joint].dots.len();
                 let step = parameter_step(lowered, link.slot, &facing[..n_dots], chart, y)?;
                 let p = lowered.p(y, link.slot) + step;
@@ -60,25 +62,26 @@ pub(crate) fn newton_step<T: Number>(
     Ok(())
 }
 
-/// Eq. (19) of each body in turn.
+/// Eq. (19) of each body in turn: what its joint leaves free of w' keeps its value, the rest follows from the parent.
 pub(crate) fn solve_velocities<T: Number>(
     lowered: &Lowered<T>,
     links: &[Link],
+    t: T,
     y: &mut [T],
 ) -> Result<(), T> {
     for link in links {
         let slot = link.slot;
         let (s, w) = match &link.hold {
-            Hold::Constrained(_) => (Vector3::zeros(), Vector3::zeros()),
-            Hold::Free => (lowered.s(y, slot), lowered.w(y, slot)),
+            Hold::Constrained(..) => (Vector3::zeros(), Vector3::zeros()),
+            Hold::Free => continue,
             Hold::Joint(hinge) => {
                 let joint = &lowered.joints[hinge.joint];
-                let (facing, parent) = facing_dots(lowered, hinge, y);
-                let w = lowered.w(y, slot)
-                    - excess_spin(lowered, slot, &facing[..joint.dots.len()], &hinge.ends(joint).1.h, y)?;
+                let (facing, parent) = facing_dots(lowered, hinge, Moment { t, y });
                 let (parent_end, child_end) = hinge.ends(joint);
-                let tip_velocity = parent.s + parent.a * parent.w.cross(&parent_end.point);
-                (tip_velocity - rotation(&lowered.p(y, slot)) * w.cross(&child_end.point), w)
+                let (a, w) = (rotation(&lowered.p(y, slot)), lowered.w(y, slot));
+                let rows = facing.map(|facing| facing.velocity_row(&a, &w));
+                let w = w + angular_change(hinge.bearing, &rows, &child_end.h)?;
+                (parent.tip_velocity(&parent_end.point) - a * w.cross(&child_end.point), w)
             }
         };
         let at = lowered.n_q() + 6 * slot;
@@ -86,6 +89,26 @@ pub(crate) fn solve_velocities<T: Number>(
         y[at + 3..at + 6].copy_from_slice(w.as_slice());
     }
     Ok(())
+}
+
+/// The change of the child's w' that takes the residuals of the rotation rows away: of a revolute joint at right angles to the
+/// child's own axis h', of a fixed one whatever it takes, of a spherical one none.
+fn angular_change<T: Number>(
+    bearing: Bearing,
+    rows: &[(Vector3<T>, T); 3],
+    h: &Vector3<T>,
+) -> Result<Vector3<T>, T> {
+    let [(a1, res1), (a2, res2), (a3, res3)] = rows;
+    let (third, third_residual) = match bearing {
+        Bearing::Spherical => return Ok(Vector3::zeros()),
+        Bearing::Revolute => (h, &T::zero()),
+        Bearing::Fixed => (a3, res3),
+    };
+    // Cramer's rule.
+    let determinant = a1.dot(&a2.cross(third));
+    resolvable(std::iter::once(determinant))?;
+    let sum = a2.cross(third) * *res1 + third.cross(a1) * *res2 + a1.cross(a2) * *third_residual;
+    Ok(-sum / determinant)
 }
 
 /// A dot-1 row as the child sees it.
@@ -98,6 +121,14 @@ struct Facing<T> {
     child: Vector3<T>,
 }
 
+impl<T: Number> Facing<T> {
+    /// The row's derivative with respect to the child's π', and its rate.
+    fn velocity_row(&self, a: &Matrix3<T>, w: &Vector3<T>) -> (Vector3<T>, T) {
+        let row = self.child.cross(&a.tr_mul(&self.parent));
+        (row, self.parent_dot.dot(&(a * self.child)) + row.dot(w))
+    }
+}
+
 /// The vector whose largest component decides the chart; none where no rotation is free.
 fn deciding_vector<T: Number>(lowered: &Lowered<T>, link: &Link, y: &[T]) -> Option<[T; 4]> {
     let p = lowered.p(y, link.slot);
@@ -105,18 +136,22 @@ fn deciding_vector<T: Number>(lowered: &Lowered<T>, link: &Link, y: &[T]) -> Opt
         return matches!(link.hold, Hold::Free).then(|| p.into());
     };
     let joint = &lowered.joints[hinge.joint];
-    match joint.kind {
+    match hinge.bearing {
         // The tangent ½ Gᵀ h'.
-        JointKind::Revolute => Some(p_dot(&p, &hinge.ends(joint).1.h).into()),
-        JointKind::Spherical => Some(p.into()),
-        JointKind::Fixed => None,
+        Bearing::Revolute => Some(p_dot(&p, &hinge.ends(joint).1.h).into()),
+        Bearing::Spherical => Some(p.into()),
+        Bearing::Fixed => None,
     }
 }
 
 /// The dot-1 rows of a joint (the first so many of the three), with the motion of the parent.
-fn facing_dots<T: Number>(lowered: &Lowered<T>, hinge: &Hinge, y: &[T]) -> ([Facing<T>; 3], Motion<T>) {
+fn facing_dots<T: Number>(
+    lowered: &Lowered<T>,
+    hinge: &Hinge,
+    at: Moment<'_, T>,
+) -> ([Facing<T>; 3], Motion<T>) {
     let joint = &lowered.joints[hinge.joint];
-    let parent = lowered.motion(y, &hinge.ends(joint).0.place);
+    let parent = lowered.motion(at, &hinge.ends(joint).0.place);
     let facing = |dot: &Dot<T>| {
         let (own, child) = match hinge.child {
             Side::First => (dot.b, dot.a),
@@ -145,30 +180,6 @@ fn parameter_step<T: Number>(
     }
     right[facing.len()] = T::one() - p.norm_squared();
     solve(&matrix(&p, facing, chart), &right)
-}
-
-/// The part of the body's w' that its dot-1 rows forbid. It has no component along the free axis, whose rate is the independent
-/// velocity: were a component of ṗ held instead, the parent's drift would leak into a spin.
-fn excess_spin<T: Number>(
-    lowered: &Lowered<T>,
-    slot: usize,
-    facing: &[Facing<T>],
-    axis: &Vector3<T>,
-    y: &[T],
-) -> Result<Vector3<T>, T> {
-    let (a, w) = (rotation(&lowered.p(y, slot)), lowered.w(y, slot));
-    let (mut rows, mut residuals) = (Matrix3::identity(), Vector3::zeros());
-    for (k, facing) in facing.iter().enumerate() {
-        let gradient = facing.child.cross(&a.tr_mul(&facing.parent));
-        residuals[k] = facing.parent_dot.dot(&(a * facing.child)) + gradient.dot(&w);
-        rows.set_row(k, &gradient.transpose());
-    }
-    if facing.len() == 2 {
-        rows.set_row(2, &axis.transpose());
-    }
-    let lu = rows.lu();
-    let pivot = resolvable((0..3).map(|k| lu.lu_internal()[(k, k)]))?;
-    lu.solve(&residuals).ok_or(pivot)
 }
 
 /// Dot-1 rows, the normalisation, and a unit row for each independent parameter.

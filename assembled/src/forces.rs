@@ -1,85 +1,157 @@
-//! Applied forces, paper, eqs. (21) and (22), viscous friction in the joints, and energy.
+//! Applied forces, paper, eqs. (21) and (22): gravity, friction in the joints, and the forces of the page.
 
-use crate::lowered::{Joint, Lowered, Motion, Place};
-use crate::number::{Number, number};
-use gyro_model::JointKind;
-use gyro_sim::Energy;
+use crate::joint::Joint;
+use crate::law::{Amount, Law};
+use crate::lowered::{Lowered, Moment, Place, Places, vector};
+use crate::motion::Motion;
+use crate::number::Number;
+use crate::path::{Path, Wrench};
+use gyro_model::{ForceKind, JointCoordinate, JointKind, LoadFrame, Model};
 use nalgebra::Vector3;
 
-impl<T: Number> Lowered<T> {
-    /// Writes `(f, n' − w̃'J'w')`, body after body.
-    pub(crate) fn applied_force(&self, y: &[T], out: &mut [T]) {
-        for (slot, (body, out)) in self.bodies.iter().zip(out.as_chunks_mut::<6>().0).enumerate() {
-            let w = self.w(y, slot);
-            out[..3].copy_from_slice((self.gravity * body.mass).as_slice());
-            out[3..].copy_from_slice((-w.cross(&(body.inertia * w))).as_slice());
-        }
-        for joint in self.joints.iter().filter(|joint| joint.friction != T::zero()) {
-            let (on_first, on_second) = self.friction(y, joint);
-            add_torque(out, &joint.first.place, &on_first);
-            add_torque(out, &joint.second.place, &on_second);
-        }
+/// One thing that exerts forces.
+#[derive(Clone, Debug)]
+pub(crate) enum Element<T> {
+    /// A force along a coordinate, between two bodies.
+    Along { path: Path<T>, law: Law<T> },
+    /// Viscous friction of a spherical joint: minus this times the relative angular velocity.
+    Ball { joint: usize, friction: T },
+    /// Force and torque on one body.
+    Load {
+        place: Place<T>,
+        point: Vector3<T>,
+        force: [Amount<T>; 3],
+        torque: [Amount<T>; 3],
+        frame: LoadFrame,
+    },
+}
+
+impl<T: Number> Element<T> {
+    /// Friction of the joints, then the forces of the page.
+    pub(crate) fn all(model: &Model, places: &Places<T>, joints: &[Joint<T>]) -> Vec<Self> {
+        let frictions = (0..joints.len()).filter_map(|joint| Self::friction(model, joints, joint));
+        let forces = model.forces.iter().flat_map(|force| Self::new(model, places, joints, &force.kind));
+        frictions.chain(forces).collect()
     }
 
-    /// The power of all friction, negative.
-    pub(crate) fn power(&self, y: &[T]) -> T {
-        let power = |joint: &Joint<T>| match joint.kind {
-            JointKind::Revolute => {
-                let (i, j) = self.motions(y, joint);
-                let rate = relative_rate(joint, &i, &j);
-                -joint.friction * rate * rate
-            }
-            JointKind::Spherical => {
-                let (i, j) = self.motions(y, joint);
-                -joint.friction * relative_angular_velocity(&i, &j).norm_squared()
-            }
-            JointKind::Fixed => T::zero(),
+    /// A joint's own viscous friction.
+    fn friction(model: &Model, joints: &[Joint<T>], joint: usize) -> Option<Self> {
+        let friction = &model.joints[joint].friction;
+        if friction.is_zero() {
+            return None;
+        }
+        if joints[joint].kind == JointKind::Spherical {
+            return Some(Self::Ball { joint, friction: crate::number::number(model.value(friction)) });
+        }
+        let coordinate = joints[joint].coordinates.first()?;
+        let law = Law::Damper { damping: Amount::new(model, friction) };
+        Some(Self::Along { path: Path::Coordinate(*coordinate), law })
+    }
+
+    fn new(model: &Model, places: &Places<T>, joints: &[Joint<T>], kind: &ForceKind) -> Vec<Self> {
+        let amount = |number| Amount::new(model, number);
+        let along = |on: &JointCoordinate, law| {
+            let path = Path::Coordinate(joints[on.joint].coordinates[on.coordinate]);
+            vec![Self::Along { path, law }]
         };
-        self.joints.iter().map(power).fold(T::zero(), |sum, power| sum + power)
-    }
-
-    /// Kinetic and potential energy.
-    pub(crate) fn energy(&self, y: &[T]) -> Energy<T> {
-        let mut energy = Energy { kinetic: T::zero(), potential: T::zero() };
-        for (slot, body) in self.bodies.iter().enumerate() {
-            let (r, s, w) = (self.r(y, slot), self.s(y, slot), self.w(y, slot));
-            let twice = body.mass * s.norm_squared() + w.dot(&(body.inertia * w));
-            energy.kinetic += twice * number(0.5);
-            energy.potential -= body.mass * self.gravity.dot(&r);
+        match kind {
+            ForceKind::Spring { on, stiffness, free } => {
+                along(on, Law::Spring { stiffness: amount(stiffness), free: amount(free) })
+            }
+            ForceKind::Damper { on, damping } => along(on, Law::Damper { damping: amount(damping) }),
+            ForceKind::Coulomb { on, level, rate } => {
+                along(on, Law::Coulomb { level: amount(level), rate: amount(rate) })
+            }
+            ForceKind::Stop { on, limit, side, stiffness, damping, softness } => {
+                let [limit, stiffness, damping, softness] = [limit, stiffness, damping, softness].map(amount);
+                along(on, Law::Stop { limit, side: *side, stiffness, damping, softness })
+            }
+            ForceKind::Motor { on, value } => along(on, Law::Motor { value: amount(value) }),
+            ForceKind::Link { first, second, stiffness, damping, free_length } => {
+                let end = |(body, point): &(usize, _)| (places.of(*body), vector(model.values(point)));
+                let path = Path::Line([end(first), end(second)]);
+                let spring = Law::Spring { stiffness: amount(stiffness), free: amount(free_length) };
+                let damper = Law::Damper { damping: amount(damping) };
+                let wanted = [(stiffness, spring), (damping, damper)];
+                let wanted = wanted.into_iter().filter(|(strength, _)| !strength.is_zero());
+                wanted.map(|(_, law)| Self::Along { path, law }).collect()
+            }
+            ForceKind::Load { body, point, force, torque, frame } => vec![Self::Load {
+                place: places.of(*body),
+                point: vector(model.values(point)),
+                force: force.each_ref().map(amount),
+                torque: torque.each_ref().map(amount),
+                frame: *frame,
+            }],
         }
-        energy
     }
 
-    /// Torques of a joint's friction, each in its own body's frame.
-    fn friction(&self, y: &[T], joint: &Joint<T>) -> (Vector3<T>, Vector3<T>) {
-        let (i, j) = self.motions(y, joint);
-        match joint.kind {
-            JointKind::Revolute => {
-                let torque = -joint.friction * relative_rate(joint, &i, &j);
-                (joint.first.h * -torque, joint.second.h * torque)
+    /// Whether the energy counts what the element does.
+    pub(crate) fn is_conservative(&self) -> bool {
+        matches!(self, Self::Along { law, .. } if law.is_conservative())
+    }
+
+    /// Calls the sink with what the element exerts on each of its bodies, and that body's motion.
+    pub(crate) fn exert(
+        &self,
+        lowered: &Lowered<T>,
+        at: Moment<'_, T>,
+        mut sink: impl FnMut(&Place<T>, &Motion<T>, Wrench<T>),
+    ) {
+        match self {
+            Self::Along { path, law } => {
+                let places = path.places(lowered);
+                let motions = places.map(|place| lowered.motion(at, place));
+                let grip = path.grip(lowered, &motions);
+                let force = law.force(&lowered.inputs, || path.value(lowered, at), grip.rate);
+                for ((place, motion), wrench) in places.into_iter().zip(&motions).zip(&grip.wrenches) {
+                    sink(place, motion, wrench.times(force));
+                }
             }
-            JointKind::Spherical => {
-                let torque = relative_angular_velocity(&i, &j) * -joint.friction;
-                (-i.a.tr_mul(&(j.a * torque)), torque)
+            Self::Ball { joint, friction } => {
+                let joint = &lowered.joints[*joint];
+                let [i, j] = lowered.motions(at, joint);
+                let torque = relative_angular_velocity(&i, &j) * -*friction;
+                sink(&joint.first.place, &i, Wrench::torque(-i.a.tr_mul(&(j.a * torque))));
+                sink(&joint.second.place, &j, Wrench::torque(torque));
             }
-            JointKind::Fixed => (Vector3::zeros(), Vector3::zeros()),
+            Self::Load { place, point, force, torque, frame } => {
+                let motion = lowered.motion(at, place);
+                let [force, torque] =
+                    [force, torque].map(|v| Vector3::from(v.each_ref().map(|x| x.value(&lowered.inputs))));
+                // Both in the body's frame.
+                let (force, torque) = match frame {
+                    LoadFrame::Body => (force, torque),
+                    LoadFrame::Global => (motion.a.tr_mul(&force), motion.a.tr_mul(&torque)),
+                };
+                let wrench = Wrench { force: motion.a * force, torque: torque + point.cross(&force) };
+                sink(place, &motion, wrench);
+            }
         }
     }
 }
 
-/// `h_jᵀ w'_j − h_iᵀ w'_i`: the rate of a revolute joint.
-pub(crate) fn relative_rate<T: Number>(joint: &Joint<T>, i: &Motion<T>, j: &Motion<T>) -> T {
-    joint.second.h.dot(&j.w) - joint.first.h.dot(&i.w)
+impl<T: Number> Lowered<T> {
+    /// Writes `(f, n' − w̃'J'w')`, body after body.
+    pub(crate) fn applied_force(&self, at: Moment<'_, T>, out: &mut [T]) {
+        for (slot, (body, out)) in self.bodies.iter().zip(out.as_chunks_mut::<6>().0).enumerate() {
+            let w = self.w(at.y, slot);
+            out[..3].copy_from_slice((self.gravity * body.mass).as_slice());
+            out[3..].copy_from_slice((-w.cross(&(body.inertia * w))).as_slice());
+        }
+        for element in &self.elements {
+            element.exert(self, at, |place, _, wrench| {
+                if let Place::Slot(slot) = place {
+                    let out = &mut out[6 * slot..6 * slot + 6];
+                    let wrench = wrench.force.iter().chain(wrench.torque.iter());
+                    out.iter_mut().zip(wrench).for_each(|(out, value)| *out += *value);
+                }
+            });
+        }
+    }
 }
 
 /// `w'_j − A_jᵀ A_i w'_i`, in the second body's frame.
 pub(crate) fn relative_angular_velocity<T: Number>(i: &Motion<T>, j: &Motion<T>) -> Vector3<T> {
     j.w - j.a.tr_mul(&(i.a * i.w))
-}
-
-fn add_torque<T: Number>(out: &mut [T], place: &Place<T>, torque: &Vector3<T>) {
-    if let Place::Slot(slot) = place {
-        let out = &mut out[6 * slot + 3..6 * slot + 6];
-        out.iter_mut().zip(torque.iter()).for_each(|(out, torque)| *out += *torque);
-    }
 }

@@ -1,9 +1,9 @@
 //! What a joint leaves free and what it determines of a child's rotation; all in the global frame.
 
-use crate::lowered::Joint;
+use crate::careful::Bearing;
+use crate::joint::Joint;
 use crate::number::Number;
 use crate::spatial::{Inertia, Spatial, inverse};
-use gyro_model::JointKind;
 use nalgebra::{Matrix3, Vector3};
 
 /// How a body is turned and turns.
@@ -88,17 +88,21 @@ impl<T: Number> Freedom<T> {
 /// Seen from the first body, a row `a·b = 0` with a fixed there asks `a·(α × b + Ω × (Ω × b)) = 0` of the relative
 /// acceleration α, where Ω = ω_j − ω_i, and `ω̇_j − ω̇_i = ω_i × Ω + α`. A revolute has a = f_i, g_i and b = h_j; as f_i, g_i
 /// and h_i are orthonormal, with `k = Ω × (Ω × h_j)` both rows hold for `α = k × h_i / (h_i·h_j)`.
-pub(crate) fn rotation_bias<T: Number>(joint: &Joint<T>, i: &Attitude<T>, j: &Attitude<T>) -> Vector3<T> {
+pub(crate) fn rotation_bias<T: Number>(
+    (bearing, joint): (Bearing, &Joint<T>),
+    i: &Attitude<T>,
+    j: &Attitude<T>,
+) -> Vector3<T> {
     let relative = Attitude { a: j.a, omega: j.omega - i.omega };
     let transport = i.omega.cross(&relative.omega);
-    match joint.kind {
-        JointKind::Spherical => Vector3::zeros(),
-        JointKind::Revolute => {
+    match bearing {
+        Bearing::Spherical => Vector3::zeros(),
+        Bearing::Revolute => {
             let (h_i, h_j) = (i.a * joint.first.h, j.a * joint.second.h);
             transport + relative.centripetal(&h_j).cross(&h_i) / h_i.dot(&h_j)
         }
-        JointKind::Fixed => {
-            let dual = dual_directions(joint, &i.a, &j.a);
+        Bearing::Fixed => {
+            let dual = dual_directions((bearing, joint), &i.a, &j.a);
             joint.dots.iter().zip(&dual).fold(transport, |bias, (dot, dual)| {
                 bias - dual * (i.a * dot.a).dot(&relative.centripetal(&(j.a * dot.b)))
             })
@@ -109,15 +113,15 @@ pub(crate) fn rotation_bias<T: Number>(joint: &Joint<T>, i: &Attitude<T>, j: &At
 /// A dot-1 row is `(b × a)ᵀ (ω_j − ω_i)` in global axes. These are the vectors dual to those of a joint's rows, where a
 /// revolute's axis stands for the third row: the k-th is orthogonal to all rows but the k-th, and one along that.
 pub(crate) fn dual_directions<T: Number>(
-    joint: &Joint<T>,
+    (bearing, joint): (Bearing, &Joint<T>),
     i_a: &Matrix3<T>,
     j_a: &Matrix3<T>,
 ) -> [Vector3<T>; 3] {
     let direction = |k: usize| (j_a * joint.dots[k].b).cross(&(i_a * joint.dots[k].a));
-    let (u, v, w) = match joint.kind {
-        JointKind::Spherical => return [Vector3::zeros(); 3],
-        JointKind::Revolute => (direction(0), direction(1), j_a * joint.second.h),
-        JointKind::Fixed => (direction(0), direction(1), direction(2)),
+    let (u, v, w) = match bearing {
+        Bearing::Spherical => return [Vector3::zeros(); 3],
+        Bearing::Revolute => (direction(0), direction(1), j_a * joint.second.h),
+        Bearing::Fixed => (direction(0), direction(1), direction(2)),
     };
     let (vw, wu, uv) = (v.cross(&w), w.cross(&u), u.cross(&v));
     let reciprocal = T::one() / u.dot(&vw);

@@ -5,12 +5,26 @@
 //! the paper and from Haug (1989). So it is the oracle of the tests, the honest opponent of the benchmarks and the quick
 //! look of `simulate --engine assembled`, all at once. It comes in two forms:
 //! * [`Dense`], the paper's: eq. (17) whole, one dense matrix solved by LU, and a partition by full pivoting of the dense
-//!   Jacobian.
+//!   Jacobian. It does every model.
 //! * [`Careful`], what a careful engineer would make of it: no allocation, the ground folded, eq. (17) eliminated body by
 //!   body from the leaves to the root in the null space of each joint, and a partition by charts from the root to the
-//!   leaves.
+//!   leaves. It does the models that [`Careful::supports`]; [`Form::for_model`] picks the form that suits a model.
 //!
-//! Conventions are those of `gyro-sim`. There are no drivers yet: ν = 0, and time enters nothing.
+//! Both share the formulas. A row is a linear combination of the textbook's primitives and of angles between joint frames, less a
+//! function of time; a kind of joint is a short list of primitives:
+//!
+//! ```text
+//! JointKind ─primitives─▶ coincident points, dot-1, dot-2, distance ┐
+//! CoordinateKind ─measure─▶ dot-2, or atan2 of two dot-1 ───────────┴rows─▶ Φ, Φ_q, Φ_π', ν, γ
+//! ForceKind ─law, path─▶ forces and torques ─energy─▶ energy, power
+//! ```
+//!
+//! Each primitive has its value with two time derivatives (so Φ, the velocity residual and −γ, driven bodies moving as they do)
+//! and its derivatives with respect to the positions of its two bodies.
+//!
+//! Conventions are those of `gyro-sim`, and of [`Partition::solve_velocities`](gyro_sim::Partition::solve_velocities) this is meant by
+//! "independent": of the dense form components of ṙ and of `ṗ = ½ Gᵀ w'`, of the careful one what a joint leaves free of w' (see
+//! [`Elimination`]).
 //!
 //! # Example
 //! ```
@@ -34,22 +48,36 @@ mod articulated;
 mod assembled;
 mod careful;
 mod charts;
+mod course;
 mod dense;
+mod energy;
+mod equations;
+mod error;
 mod forces;
 mod freedom;
+mod gradient;
+mod joint;
+mod law;
 mod lowered;
+mod measure;
+mod motion;
 mod number;
+mod outputs;
 mod partition;
+mod path;
+mod primitives;
 mod quick_look;
 mod reactions;
 mod readings;
 mod rows;
 mod spatial;
 mod textbook;
+mod turns;
 
 pub use assembled::{Assembled, Solver};
 pub use careful::Elimination;
 pub use dense::Saddle;
+pub use error::{BuildError, Unsupported};
 pub use lowered::Lowered;
 pub use number::Number;
 pub use quick_look::{Form, Precision, QuickLookError, quick_look};

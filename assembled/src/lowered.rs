@@ -1,24 +1,50 @@
 //! A model lowered to floating-point numbers: joint frames normalised, fixed bodies folded to constant poses.
 
+use crate::course::Carriage;
+use crate::forces::Element;
+use crate::joint::Joint;
+use crate::motion::Motion;
 use crate::number::{Number, number};
+use crate::outputs::Output;
+use crate::rows::Row;
 use crate::textbook::rotation;
-use gyro_model::{AssemblyError, JointEnd, JointKind, Model, RowOwner, RowUnit, Support};
-use gyro_sim::{Coordinate, Owner, RowInfo};
+use gyro_model::{AssemblyError, JointCoordinate, Model, RowOwner, RowUnit, Support};
+use gyro_sim::{Owner, RowInfo};
 use nalgebra::{Matrix3, Vector3, Vector4};
 
-/// A model in numbers. Constant: it holds no state.
+/// A model in numbers. It holds no state but the values of the inputs.
 #[derive(Clone, Debug)]
 pub struct Lowered<T: Number> {
     pub(crate) gravity: Vector3<T>,
     /// Bodies with coordinates, by slot.
     pub(crate) bodies: Vec<Body<T>>,
     pub(crate) constrained: Vec<Constrained<T>>,
+    /// Bodies whose whole motion is prescribed.
+    pub(crate) driven: Vec<Carriage>,
     pub(crate) joints: Vec<Joint<T>>,
-    pub(crate) rows: Vec<RowInfo>,
+    pub(crate) rows: Vec<Row<T>>,
+    pub(crate) row_infos: Vec<RowInfo>,
+    pub(crate) coupler_names: Vec<String>,
+    pub(crate) driver_names: Vec<String>,
+    pub(crate) elements: Vec<Element<T>>,
+    /// Names and values.
+    pub(crate) inputs: Vec<(String, T)>,
+    pub(crate) outputs: Vec<Output<T>>,
     pub(crate) size: T,
-    /// Where the work of friction is in the state.
+    /// Whether time enters the constraints.
+    pub(crate) is_driven: bool,
+    /// Where the work is in the state.
     pub(crate) work: Option<usize>,
+    /// The angles whose turn references follow in the state: joint and coordinate.
+    pub(crate) turns: Vec<JointCoordinate>,
     pub(crate) start: Vec<T>,
+}
+
+/// A time and a state.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Moment<'a, T> {
+    pub(crate) t: T,
+    pub(crate) y: &'a [T],
 }
 
 /// A body with coordinates.
@@ -34,42 +60,8 @@ pub(crate) struct Body<T> {
 #[derive(Clone, Debug)]
 pub(crate) struct Constrained<T> {
     pub(crate) slot: usize,
-    pub(crate) first_row: usize,
     pub(crate) r0: Vector3<T>,
     pub(crate) p0: Vector4<T>,
-}
-
-/// A joint between two bodies.
-#[derive(Clone, Debug)]
-pub(crate) struct Joint<T> {
-    pub(crate) name: String,
-    pub(crate) kind: JointKind,
-    pub(crate) first: End<T>,
-    pub(crate) second: End<T>,
-    pub(crate) friction: T,
-    pub(crate) first_row: usize,
-    /// The dot-1 rows that follow the three point rows.
-    pub(crate) dots: Vec<Dot<T>>,
-}
-
-/// A dot-1 constraint `aᵀ A_iᵀ A_j b = 0`, paper, eqs. (9) and (10).
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Dot<T> {
-    /// Unit vector on the first body, body frame.
-    pub(crate) a: Vector3<T>,
-    /// Unit vector on the second body, body frame.
-    pub(crate) b: Vector3<T>,
-}
-
-/// A joint as one of its bodies sees it; vectors in that body's frame.
-#[derive(Clone, Debug)]
-pub(crate) struct End<T> {
-    pub(crate) place: Place<T>,
-    /// s', the joint's point.
-    pub(crate) point: Vector3<T>,
-    pub(crate) f: Vector3<T>,
-    pub(crate) g: Vector3<T>,
-    pub(crate) h: Vector3<T>,
 }
 
 /// Where a body is found.
@@ -79,49 +71,79 @@ pub(crate) enum Place<T> {
     Slot(usize),
     /// Folded: fixed in the global frame.
     Ground(Motion<T>),
+    /// Folded: one of [`Lowered::driven`].
+    Driven(usize),
 }
 
-/// Position and velocity of a body.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Motion<T> {
-    pub(crate) r: Vector3<T>,
-    pub(crate) p: Vector4<T>,
-    /// A(p).
-    pub(crate) a: Matrix3<T>,
-    pub(crate) s: Vector3<T>,
-    /// w', body frame.
-    pub(crate) w: Vector3<T>,
-}
+/// Where each body of the model is found.
+#[derive(Debug)]
+pub(crate) struct Places<T>(Vec<Place<T>>);
 
 impl<T> Place<T> {
     pub(crate) fn slot(&self) -> Option<usize> {
         match self {
             Self::Slot(slot) => Some(*slot),
-            Self::Ground(_) => None,
+            Self::Ground(_) | Self::Driven(_) => None,
         }
+    }
+}
+
+impl<T: Number> Places<T> {
+    fn new(model: &Model) -> Self {
+        let (mut slots, mut driven) = (0.., 0..);
+        let next = |range: &mut std::ops::RangeFrom<usize>| range.next().expect("it has no end");
+        let place = |body: usize| match model.bodies[body].support {
+            Support::Fixed => Place::Ground(resting(model, body)),
+            Support::Driven => Place::Driven(next(&mut driven)),
+            Support::Moving | Support::Free | Support::Constrained => Place::Slot(next(&mut slots)),
+        };
+        Self((0..model.bodies.len()).map(place).collect())
+    }
+
+    /// Where a body of the model is found.
+    pub(crate) fn of(&self, body: usize) -> Place<T> {
+        self.0[body]
     }
 }
 
 impl<T: Number> Lowered<T> {
     pub(crate) fn new(model: &Model) -> Result<Self, AssemblyError> {
-        let slots = model.coordinate_bodies();
-        let rows = model.rows();
-        let first_row = |owner| rows.iter().position(|row| row.owner == owner).unwrap_or(rows.len());
+        let (slots, places) = (model.coordinate_bodies(), Places::new(model));
+        let work = model.has_work().then_some(13 * slots.len());
+        let turns = model.turn_references();
+        let first_turn = 13 * slots.len() + usize::from(work.is_some());
+        let reference = |of| turns.iter().position(|&turn| turn == of).map(|index| first_turn + index);
+        let joints: Vec<_> =
+            (0..model.joints.len()).map(|joint| Joint::new(model, &places, joint, reference)).collect();
         let constrained = |(slot, &body): (usize, &usize)| {
-            let first_row = first_row(RowOwner::Body(body));
-            (model.bodies[body].support == Support::Constrained)
-                .then(|| constrained(model, body, slot, first_row))
+            let held = model.bodies[body].support == Support::Constrained;
+            held.then(|| constrained(model, body, slot))
         };
-        let joint = |joint| lower_joint(model, &slots, joint, first_row(RowOwner::Joint(joint)));
+        let is_driven = |&body: &usize| model.bodies[body].support == Support::Driven;
+        let driven = (0..model.bodies.len()).filter(is_driven);
+        let rows = model.rows();
         Ok(Self {
             gravity: vector(model.values(&model.gravity)),
             bodies: slots.iter().map(|&body| lower_body(model, body)).collect(),
             constrained: slots.iter().enumerate().filter_map(constrained).collect(),
-            joints: (0..model.joints.len()).map(joint).collect(),
-            rows: rows.iter().map(|row| row_info(&slots, row)).collect(),
+            driven: driven.map(|body| Carriage::new(model, body)).collect(),
+            rows: rows.iter().map(|row| Row::new(model, &slots, &joints, row)).collect(),
+            row_infos: rows.iter().map(|row| row_info(&slots, row)).collect(),
+            coupler_names: model.couplers.iter().map(|coupler| coupler.name.clone()).collect(),
+            driver_names: model.drivers.iter().map(|driver| driver.name.clone()).collect(),
+            elements: Element::all(model, &places, &joints),
+            inputs: model
+                .inputs
+                .iter()
+                .map(|p| (p.name.clone(), number(gyro_model::to_f64(&p.value))))
+                .collect(),
+            outputs: model.outputs.iter().map(|output| Output::new(model, &places, output)).collect(),
             size: number(model.size()),
-            work: model.has_work().then_some(13 * slots.len()),
-            start: start(model)?,
+            is_driven: model.is_driven(),
+            work,
+            start: start(model, &turns)?,
+            joints,
+            turns,
         })
     }
 
@@ -168,25 +190,26 @@ impl<T: Number> Lowered<T> {
 
     /// Position and velocity of a body.
     #[inline]
-    pub(crate) fn motion(&self, y: &[T], place: &Place<T>) -> Motion<T> {
+    pub(crate) fn motion(&self, at: Moment<'_, T>, place: &Place<T>) -> Motion<T> {
         match place {
             Place::Slot(slot) => {
-                let p = self.p(y, *slot);
-                Motion { r: self.r(y, *slot), p, a: rotation(&p), s: self.s(y, *slot), w: self.w(y, *slot) }
+                let y = at.y;
+                Motion::new(self.r(y, *slot), self.p(y, *slot), self.s(y, *slot), self.w(y, *slot))
             }
             Place::Ground(motion) => *motion,
+            Place::Driven(index) => self.driven_motion(at.t, *index),
         }
     }
-}
 
-impl<T> Joint<T> {
-    /// What the joint's readings are.
-    pub(crate) fn coordinate(&self) -> Coordinate {
-        match self.kind {
-            JointKind::Revolute => Coordinate::Angle,
-            JointKind::Spherical => Coordinate::Orientation,
-            JointKind::Fixed => Coordinate::None,
-        }
+    /// Position, velocity and acceleration of a body that moves by prescription.
+    pub(crate) fn driven_motion(&self, t: T, index: usize) -> Motion<T> {
+        self.driven[index].motion(gyro_sim::Real::to_f64(t)).rounded()
+    }
+
+    /// Position and velocity of a joint's bodies.
+    #[inline]
+    pub(crate) fn motions(&self, at: Moment<'_, T>, joint: &Joint<T>) -> [Motion<T>; 2] {
+        [self.motion(at, &joint.first.place), self.motion(at, &joint.second.place)]
     }
 }
 
@@ -197,71 +220,47 @@ fn lower_body<T: Number>(model: &Model, body: usize) -> Body<T> {
     Body { name: body.name.clone(), mass: number(model.value(&body.mass)), inertia }
 }
 
-fn constrained<T: Number>(model: &Model, body: usize, slot: usize, first_row: usize) -> Constrained<T> {
+fn constrained<T: Number>(model: &Model, body: usize, slot: usize) -> Constrained<T> {
     let Motion { r, p, .. } = resting(model, body);
-    Constrained { slot, first_row, r0: r, p0: p }
-}
-
-fn lower_joint<T: Number>(model: &Model, slots: &[usize], joint: usize, first_row: usize) -> Joint<T> {
-    let joint = &model.joints[joint];
-    let (first, second) = (lower_end(model, slots, &joint.first), lower_end(model, slots, &joint.second));
-    let dots = [(first.f, second.h), (first.g, second.h), (first.f, second.g)];
-    let dots = dots[..joint.kind.n_rotation_rows()].iter().map(|&(a, b)| Dot { a, b }).collect();
-    Joint {
-        name: joint.name.clone(),
-        kind: joint.kind,
-        first,
-        second,
-        friction: number(model.value(&joint.friction)),
-        first_row,
-        dots,
-    }
-}
-
-/// The joint frame is normalised in `f64`, whatever the scalar.
-fn lower_end<T: Number>(model: &Model, slots: &[usize], end: &JointEnd) -> End<T> {
-    let place = match slots.iter().position(|&body| body == end.body) {
-        Some(slot) => Place::Slot(slot),
-        None => Place::Ground(resting(model, end.body)),
-    };
-    let h = Vector3::from(model.values(&end.axis)).normalize();
-    let zero = Vector3::from(model.values(&end.zero));
-    let f = (zero - h * h.dot(&zero)).normalize();
-    let [f, g, h] = [f, h.cross(&f), h].map(|v| v.map(number::<T>));
-    End { place, point: vector(model.values(&end.point)), f, g, h }
+    Constrained { slot, r0: r, p0: p }
 }
 
 /// A body that stays where the page puts it.
 fn resting<T: Number>(model: &Model, body: usize) -> Motion<T> {
     let body = &model.bodies[body];
-    let p = Vector4::from(model.values(&body.orientation)).normalize();
+    let (p, zero) = (Vector4::from(model.values(&body.orientation)).normalize(), Vector3::zeros());
     Motion {
         r: vector(model.values(&body.position)),
         p: p.map(number),
         a: rotation(&p).map(number),
-        s: Vector3::zeros(),
-        w: Vector3::zeros(),
+        s: zero,
+        w: zero,
+        s_dot: zero,
+        w_dot: zero,
     }
 }
 
 fn row_info(slots: &[usize], row: &gyro_model::Row) -> RowInfo {
-    let index =
-        |index: usize| u16::try_from(index).expect("a model page has fewer than 65536 bodies and joints");
+    let index = |index: usize| u16::try_from(index).expect("a model page has fewer than 65536 elements");
     let owner = match row.owner {
         RowOwner::Body(body) => Owner::Body(index(
             slots.iter().position(|&b| b == body).expect("bodies with rows have coordinates"),
         )),
         RowOwner::Joint(joint) => Owner::Joint(index(joint)),
+        RowOwner::Coupler(coupler) => Owner::Coupler(index(coupler)),
+        RowOwner::Driver(driver) => Owner::Driver(index(driver)),
     };
     RowInfo { owner, is_length: row.unit == RowUnit::Length }
 }
 
-fn start<T: Number>(model: &Model) -> Result<Vec<T>, AssemblyError> {
+/// Positions, velocities, the work where there is any, and the turn references.
+fn start<T: Number>(model: &Model, turns: &[JointCoordinate]) -> Result<Vec<T>, AssemblyError> {
     let start = model.assemble()?;
     let work = model.has_work().then_some(0.0);
-    Ok(start.q.into_iter().chain(start.v).chain(work).map(number).collect())
+    let turns = turns.iter().map(|turn| start.joints[turn.joint].position[turn.coordinate]);
+    Ok(start.q.into_iter().chain(start.v).chain(work).chain(turns).map(number).collect())
 }
 
-fn vector<T: Number>(values: [f64; 3]) -> Vector3<T> {
+pub(crate) fn vector<T: Number>(values: [f64; 3]) -> Vector3<T> {
     Vector3::from(values.map(number))
 }

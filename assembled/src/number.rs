@@ -1,6 +1,6 @@
 //! The number type of the twin.
 
-use gyro_sim::Real;
+use gyro_sim::{Real, Scalar};
 use nalgebra::RealField;
 
 /// A number on which both the solvers of `gyro-sim` and the matrices of `nalgebra` can work: `f32` and `f64`.
@@ -9,12 +9,32 @@ impl<T: Real + RealField> Number for T {}
 
 /// The constant nearest to `value`.
 pub(crate) fn number<T: Number>(value: f64) -> T {
-    <T as gyro_sim::Scalar>::constant(value)
+    <T as Scalar>::constant(value)
 }
 
-/// Absolute value; both traits have one.
+/// Absolute value; both traits have one, as they have the functions below.
 pub(crate) fn abs<T: Number>(value: T) -> T {
     <T as Real>::abs(value)
+}
+
+/// Square root.
+pub(crate) fn sqrt<T: Number>(value: T) -> T {
+    <T as Scalar>::sqrt(value)
+}
+
+/// Hyperbolic tangent.
+pub(crate) fn tanh<T: Number>(value: T) -> T {
+    <T as Scalar>::tanh(value)
+}
+
+/// Sine and cosine.
+pub(crate) fn sin_cos<T: Number>(angle: T) -> (T, T) {
+    (<T as Scalar>::sin(angle), <T as Scalar>::cos(angle))
+}
+
+/// The angle of the point `(x, y)`.
+pub(crate) fn atan2<T: Number>(y: T, x: T) -> T {
+    <T as Scalar>::atan2(y, x)
 }
 
 /// A pivot below this many roundings counts as zero, in matrices whose entries are of order one.

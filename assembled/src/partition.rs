@@ -2,9 +2,9 @@
 //!
 //! Lengths are measured in units of the mechanism's size, in rows and columns alike, so that pivots compare.
 
-use crate::lowered::Lowered;
+use crate::lowered::{Lowered, Moment};
 use crate::number::{Number, abs, number, resolvable};
-use crate::textbook::{angular_velocity, p_dot};
+use crate::textbook::angular_velocity;
 use nalgebra::{DMatrix, DVector, Dyn, LU, RowDVector, Vector4};
 
 /// The coordinates are chosen anew once the volume |det Φ_u| has fallen below this fraction of the best choice's.
@@ -21,21 +21,22 @@ pub(crate) struct Choice<T> {
     log_volume: T,
 }
 
-/// Full pivoting takes as many pivots as there are constraints; the columns left over are independent.
-pub(crate) fn best<T: Number>(lowered: &Lowered<T>, y: &[T]) -> Choice<T> {
-    let lu = jacobian(lowered, y).full_piv_lu();
+/// Full pivoting takes as many pivots as there are constraints; the columns left over are independent. Where there are too many
+/// constraints none is.
+pub(crate) fn best<T: Number>(lowered: &Lowered<T>, at: Moment<'_, T>) -> Choice<T> {
+    let lu = jacobian(lowered, at).full_piv_lu();
     let mut columns = RowDVector::from_iterator(lowered.n_q(), 0..lowered.n_q());
     lu.q().permute_columns(&mut columns);
-    let n_dependent = n_constraints(lowered);
+    let n_dependent = n_constraints(lowered).min(lowered.n_q());
     let mut independent = columns.as_slice()[n_dependent..].to_vec();
     independent.sort_unstable();
     Choice { independent, log_volume: log_volume(lu.lu_internal()) }
 }
 
 /// Replaces a choice whose volume is poor; returns how many coordinates were exchanged.
-pub(crate) fn follow<T: Number>(lowered: &Lowered<T>, y: &[T], choice: &mut Vec<usize>) -> u32 {
-    let best = best(lowered, y);
-    let present = factorise(&jacobian(lowered, y), choice);
+pub(crate) fn follow<T: Number>(lowered: &Lowered<T>, at: Moment<'_, T>, choice: &mut Vec<usize>) -> u32 {
+    let best = best(lowered, at);
+    let present = factorise(&jacobian(lowered, at), choice);
     let threshold = best.log_volume + number::<T>(POOR_VOLUME.ln());
     // Of a state that is not finite nothing can be told: the choice is kept.
     let poor = log_volume(present.lu_internal()) < threshold;
@@ -49,34 +50,43 @@ pub(crate) fn follow<T: Number>(lowered: &Lowered<T>, y: &[T], choice: &mut Vec<
 }
 
 /// `Φ_u Δu = −Φ`.
-pub(crate) fn newton_step<T: Number>(lowered: &Lowered<T>, choice: &[usize], y: &mut [T]) -> Result<(), T> {
+pub(crate) fn newton_step<T: Number>(
+    lowered: &Lowered<T>,
+    t: T,
+    choice: &[usize],
+    y: &mut [T],
+) -> Result<(), T> {
     let mut right = DVector::zeros(n_constraints(lowered));
-    lowered.phi(y, right.as_mut_slice());
+    lowered.phi(Moment { t, y }, right.as_mut_slice());
     right.iter_mut().enumerate().for_each(|(row, phi)| *phi = -*phi * row_scale(lowered, row));
-    let step = solve(&jacobian(lowered, y), choice, right)?;
+    let step = solve(&jacobian(lowered, Moment { t, y }), choice, right)?;
     for (column, step) in dependent(lowered, choice).zip(step.iter()) {
         y[column] += *step * column_scale(lowered, column);
     }
     Ok(())
 }
 
-/// `Φ_u u̇ = ν − Φ_v v̇`, eq. (19), with v̇ from q̇ = (s, ½ Gᵀ w') as integrated, at the corrected p; then w' = 2 G ṗ.
+/// Eq. (19), `Φ_u u̇ = ν − Φ_v v̇`, for the change of u̇ from its integrated value: `Φ_u Δu̇ = ν − Φ_q q̇` with q̇ = (s, ½ Gᵀ w') at the
+/// corrected p; then Δw' = 2 G Δṗ.
 pub(crate) fn solve_velocities<T: Number>(
     lowered: &Lowered<T>,
+    t: T,
     choice: &[usize],
     y: &mut [T],
 ) -> Result<(), T> {
-    let jacobian = jacobian(lowered, y);
-    let mut q_dot = scaled_q_dot(lowered, y);
-    dependent(lowered, choice).for_each(|column| q_dot[column] = T::zero());
-    let solution = solve(&jacobian, choice, -(&jacobian * &q_dot))?;
-    dependent(lowered, choice).zip(solution.iter()).for_each(|(column, value)| q_dot[column] = *value);
+    // The normalisations hold as they are: pᵀ ½ Gᵀ w' = 0.
+    let mut right = DVector::zeros(n_constraints(lowered));
+    lowered.velocity_residual(Moment { t, y }, &mut right.as_mut_slice()[..lowered.n_rows()]);
+    right.iter_mut().enumerate().for_each(|(row, rate)| *rate = -*rate * row_scale(lowered, row));
+    let solution = solve(&jacobian(lowered, Moment { t, y }), choice, right)?;
+    let mut change = DVector::zeros(lowered.n_q());
+    dependent(lowered, choice).zip(solution.iter()).for_each(|(column, value)| change[column] = *value);
     for slot in 0..lowered.n_bodies() {
         let (from, to) = (7 * slot, lowered.n_q() + 6 * slot);
-        (0..3).for_each(|k| y[to + k] = q_dot[from + k] * lowered.size);
-        let p_dot: Vector4<T> = q_dot.fixed_rows::<4>(from + 3).into_owned();
+        (0..3).for_each(|k| y[to + k] += change[from + k] * lowered.size);
+        let p_dot: Vector4<T> = change.fixed_rows::<4>(from + 3).into_owned();
         let w = angular_velocity(&lowered.p(y, slot), &p_dot);
-        y[to + 3..to + 6].copy_from_slice(w.as_slice());
+        (0..3).for_each(|k| y[to + 3 + k] += w[k]);
     }
     Ok(())
 }
@@ -91,7 +101,7 @@ fn dependent<T: Number>(lowered: &Lowered<T>, choice: &[usize]) -> impl Iterator
 
 /// What the row is multiplied by.
 fn row_scale<T: Number>(lowered: &Lowered<T>, row: usize) -> T {
-    let is_length = lowered.rows.get(row).is_some_and(|row| row.is_length);
+    let is_length = lowered.row_infos.get(row).is_some_and(|row| row.is_length);
     if is_length { T::one() / lowered.size } else { T::one() }
 }
 
@@ -101,21 +111,12 @@ fn column_scale<T: Number>(lowered: &Lowered<T>, column: usize) -> T {
 }
 
 /// The scaled Φ_q, normalisations included: 25×28 for the paper's gyroscope.
-fn jacobian<T: Number>(lowered: &Lowered<T>, y: &[T]) -> DMatrix<T> {
+fn jacobian<T: Number>(lowered: &Lowered<T>, at: Moment<'_, T>) -> DMatrix<T> {
     let mut jacobian = DMatrix::zeros(n_constraints(lowered), lowered.n_q());
-    lowered.phi_q(y, |row, column, value| {
+    lowered.phi_q(at, |row, column, value| {
         jacobian[(row, column)] = value * row_scale(lowered, row) * column_scale(lowered, column);
     });
     jacobian
-}
-
-fn scaled_q_dot<T: Number>(lowered: &Lowered<T>, y: &[T]) -> DVector<T> {
-    let mut q_dot = DVector::zeros(lowered.n_q());
-    for slot in 0..lowered.n_bodies() {
-        q_dot.fixed_rows_mut::<3>(7 * slot).copy_from(&(lowered.s(y, slot) / lowered.size));
-        q_dot.fixed_rows_mut::<4>(7 * slot + 3).copy_from(&p_dot(&lowered.p(y, slot), &lowered.w(y, slot)));
-    }
-    q_dot
 }
 
 fn factorise<T: Number>(jacobian: &DMatrix<T>, choice: &[usize]) -> LU<T, Dyn, Dyn> {
@@ -123,9 +124,12 @@ fn factorise<T: Number>(jacobian: &DMatrix<T>, choice: &[usize]) -> LU<T, Dyn, D
     jacobian.select_columns(&columns).lu()
 }
 
-/// Solves with Φ_u; fails with its smallest pivot.
+/// Solves with Φ_u; fails with its smallest pivot, or zero if there are more constraints than coordinates.
 fn solve<T: Number>(jacobian: &DMatrix<T>, choice: &[usize], right: DVector<T>) -> Result<DVector<T>, T> {
     let lu = factorise(jacobian, choice);
+    if !lu.lu_internal().is_square() {
+        return Err(T::zero());
+    }
     let pivot = resolvable(pivots(lu.lu_internal()))?;
     lu.solve(&right).ok_or(pivot)
 }
@@ -137,5 +141,5 @@ fn log_volume<T: Number>(lu: &DMatrix<T>) -> T {
 
 /// The diagonal of a matrix that need not be square.
 fn pivots<T: Number>(lu: &DMatrix<T>) -> impl Iterator<Item = T> {
-    (0..lu.nrows()).map(|k| lu[(k, k)])
+    (0..lu.nrows().min(lu.ncols())).map(|k| lu[(k, k)])
 }

@@ -1,9 +1,9 @@
 //! A whole run of the twin, for a command line: compiled here once, so that its caller need not be optimised.
 
-use crate::{Careful, Dense};
-use gyro_model::{AssemblyError, Model};
+use crate::{BuildError, Careful, Dense};
+use gyro_model::Model;
 use gyro_runner::{Event, Failure, Settings, Start, Summary, run};
-use gyro_sim::Partition;
+use gyro_sim::{Partition, Ports};
 use std::fmt;
 
 /// Which of the twin's forms.
@@ -13,6 +13,13 @@ pub enum Form {
     Careful,
     /// [`Dense`].
     Dense,
+}
+
+impl Form {
+    /// The better form for a model: the careful one where it [applies](Careful::supports), the dense one otherwise.
+    pub fn for_model(model: &Model) -> Self {
+        if Careful::<f64>::supports(model).is_ok() { Self::Careful } else { Self::Dense }
+    }
 }
 
 /// The number type.
@@ -27,8 +34,8 @@ pub enum Precision {
 /// Why there is no summary.
 #[derive(Debug)]
 pub enum QuickLookError {
-    /// The model has no consistent start.
-    Start(AssemblyError),
+    /// The model has no consistent start, or is beyond the form of the twin.
+    Start(BuildError),
     /// The run failed midway.
     Run(Failure),
 }
@@ -44,7 +51,8 @@ impl fmt::Display for QuickLookError {
 
 impl std::error::Error for QuickLookError {}
 
-/// Runs the twin of a model to a schedule; `tell` hears of samples and progress.
+/// Runs the twin of a model to a schedule; `tell` hears of samples and progress. [`Form::for_model`] picks the form that
+/// suits a model.
 ///
 /// # Errors
 /// [`QuickLookError`]; the samples up to a failure have been told.
@@ -63,16 +71,16 @@ pub fn quick_look(
     }
 }
 
-fn simulate<M: Partition>(
-    mechanism: Result<M, AssemblyError>,
+fn simulate<M: Partition + Ports>(
+    mechanism: Result<M, BuildError>,
     settings: &Settings,
     start: &Start,
     tell: &mut dyn FnMut(Event<'_>),
 ) -> Result<Summary, QuickLookError> {
-    let mechanism = mechanism.map_err(QuickLookError::Start)?;
+    let mut mechanism = mechanism.map_err(QuickLookError::Start)?;
     let told = |event: Event<'_>| {
         tell(event);
         Ok(())
     };
-    run(&mechanism, settings, start, told).map_err(QuickLookError::Run)
+    run(&mut mechanism, settings, start, told).map_err(QuickLookError::Run)
 }

@@ -1,42 +1,45 @@
 //! λ by a balance of forces from the leaves to the root: `Φ_qᵀ λ = f − M a` of each body and its descendants.
 
-use crate::articulated::{Node, attitude};
-use crate::careful::{Hinge, Hold, Link, Side};
+use crate::articulated::{attitude, place_all};
+use crate::careful::{Hinge, Hold, Link, Side, Space};
 use crate::freedom::dual_directions;
-use crate::lowered::{Joint, Lowered, Place};
+use crate::joint::Joint;
+use crate::lowered::{Lowered, Moment, Place};
 use crate::number::{Number, number};
 use crate::spatial::Spatial;
 use nalgebra::Vector3;
 
-/// Writes λ; the nodes hold the solved accelerations, and their applied forces are used up.
+/// Writes λ at given accelerations `(s̈, ẇ')`.
 pub(crate) fn multipliers<T: Number>(
     lowered: &Lowered<T>,
     links: &[Link],
-    y: &[T],
-    nodes: &mut [Node<T>],
+    at: Moment<'_, T>,
+    accelerations: &[T],
+    space: &mut Space<T>,
     lambda: &mut [T],
 ) {
-    for (node, body) in nodes.iter_mut().zip(&lowered.bodies) {
-        let (a, acceleration) = (node.attitude.a, node.acceleration);
-        node.applied.linear -= acceleration.linear * body.mass;
-        node.applied.angular -= a * (body.inertia * a.tr_mul(&acceleration.angular));
+    place_all(lowered, at, space);
+    let unbalanced = space.nodes.iter_mut().zip(&lowered.bodies).zip(accelerations.as_chunks::<6>().0);
+    for ((node, body), [x, y, z, u, v, w]) in unbalanced {
+        node.applied.linear -= Vector3::new(*x, *y, *z) * body.mass;
+        node.applied.angular -= node.attitude.a * (body.inertia * Vector3::new(*u, *v, *w));
     }
     for link in links.iter().rev() {
-        let unbalanced = nodes[link.slot].applied;
+        let unbalanced = space.nodes[link.slot].applied;
         match &link.hold {
             Hold::Free => {}
-            Hold::Constrained(index) => {
+            Hold::Constrained(index, first_row) => {
                 let body = &lowered.constrained[*index];
-                let torque = nodes[link.slot].attitude.a.tr_mul(&unbalanced.angular);
-                let orientation = orientation_multipliers(&lowered.relative_orientation(y, body), &torque);
-                lambda[body.first_row..body.first_row + 3].copy_from_slice(unbalanced.linear.as_slice());
-                lambda[body.first_row + 3..body.first_row + 6].copy_from_slice(orientation.as_slice());
+                let torque = space.nodes[link.slot].attitude.a.tr_mul(&unbalanced.angular);
+                let orientation = orientation_multipliers(&lowered.relative_orientation(at.y, body), &torque);
+                lambda[*first_row..first_row + 3].copy_from_slice(unbalanced.linear.as_slice());
+                lambda[first_row + 3..first_row + 6].copy_from_slice(orientation.as_slice());
             }
             Hold::Joint(hinge) => {
                 let joint = &lowered.joints[hinge.joint];
-                let on_parent = joint_multipliers(joint, hinge, &unbalanced, link.slot, nodes, lambda);
+                let on_parent = joint_multipliers(joint, hinge, &unbalanced, link.slot, space, lambda);
                 if let Place::Slot(parent) = hinge.ends(joint).0.place {
-                    nodes[parent].applied += on_parent;
+                    space.nodes[parent].applied += on_parent;
                 }
             }
         }
@@ -49,7 +52,7 @@ fn joint_multipliers<T: Number>(
     hinge: &Hinge,
     unbalanced: &Spatial<T>,
     child: usize,
-    nodes: &[Node<T>],
+    Space { nodes, driven, .. }: &Space<T>,
     lambda: &mut [T],
 ) -> Spatial<T> {
     let sign = match hinge.child {
@@ -58,17 +61,14 @@ fn joint_multipliers<T: Number>(
     };
     let (parent_end, child_end) = hinge.ends(joint);
     let at_joint = unbalanced.about(&(nodes[child].attitude.a * child_end.point));
-    let dual = dual_directions(
-        joint,
-        &attitude(&joint.first.place, nodes).a,
-        &attitude(&joint.second.place, nodes).a,
-    );
-    let lambda = &mut lambda[joint.first_row..];
+    let [i_a, j_a] = [&joint.first, &joint.second].map(|end| attitude(&end.place, nodes, driven).a);
+    let dual = dual_directions((hinge.bearing, joint), &i_a, &j_a);
+    let lambda = &mut lambda[hinge.first_row..];
     lambda[..3].copy_from_slice((at_joint.linear * sign).as_slice());
     for (k, dual) in dual[..joint.dots.len()].iter().enumerate() {
         lambda[3 + k] = at_joint.angular.dot(dual) * sign;
     }
-    at_joint.about(&-(attitude(&parent_end.place, nodes).a * parent_end.point))
+    at_joint.about(&-(attitude(&parent_end.place, nodes, driven).a * parent_end.point))
 }
 
 /// Solves `½ (q₀ I + q̃)ᵀ λ = n'` for a unit `(q₀, q)`.

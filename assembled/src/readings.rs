@@ -1,7 +1,10 @@
-//! What joints show: angle, orientation and their rates.
+//! What joints show: angles, displacements, orientation and their rates.
 
-use crate::forces::{relative_angular_velocity, relative_rate};
-use crate::lowered::{Joint, Lowered};
+use crate::forces::relative_angular_velocity;
+use crate::joint::Joint;
+use crate::lowered::{Lowered, Moment, Place};
+use crate::measure::Measure;
+use crate::motion::Motion;
 use crate::number::Number;
 use crate::textbook::{direction_rotation, relative_matrix};
 use gyro_model::JointKind;
@@ -9,34 +12,49 @@ use gyro_model::JointKind;
 impl<T: Number> Lowered<T> {
     /// Number of raw readings of all joints.
     pub(crate) fn n_readings(&self) -> usize {
-        self.joints.iter().map(|joint| joint.coordinate().n_readings()).sum()
+        self.joints.iter().flat_map(|joint| &joint.readings).map(|reading| reading.n_readings()).sum()
     }
 
     /// Writes the raw readings, joint after joint.
-    pub(crate) fn read_joints(&self, y: &[T], out: &mut [T]) {
+    pub(crate) fn read_joints(&self, at: Moment<'_, T>, out: &mut [T]) {
         let mut rest = out;
         for joint in &self.joints {
-            let (out, after) = rest.split_at_mut(joint.coordinate().n_readings());
-            self.read_joint(y, joint, out);
+            let len = joint.readings.iter().map(|reading| reading.n_readings()).sum();
+            let (out, after) = rest.split_at_mut(len);
+            self.read_joint(at, joint, out);
             rest = after;
         }
     }
 
-    fn read_joint(&self, y: &[T], joint: &Joint<T>, out: &mut [T]) {
-        let (i, j) = self.motions(y, joint);
-        match joint.kind {
-            JointKind::Revolute => {
-                // Paper, section 3: the second body's zero direction as the first body sees it.
-                let zero = direction_rotation(&i.p).tr_mul(&(direction_rotation(&j.p) * joint.second.f));
-                out[0] = joint.first.g.dot(&zero);
-                out[1] = joint.first.f.dot(&zero);
-                out[2] = relative_rate(joint, &i, &j);
-            }
-            JointKind::Spherical => {
-                out[..4].copy_from_slice((relative_matrix(&i.p) * j.p).as_slice());
-                out[4..].copy_from_slice(relative_angular_velocity(&i, &j).as_slice());
-            }
-            JointKind::Fixed => {}
+    fn read_joint(&self, at: Moment<'_, T>, joint: &Joint<T>, out: &mut [T]) {
+        let motions = [self.true_motion(at, &joint.first.place), self.true_motion(at, &joint.second.place)];
+        if joint.kind == JointKind::Spherical {
+            let [i, j] = &motions;
+            out[..4].copy_from_slice((relative_matrix(&i.p) * j.p).as_slice());
+            out[4..].copy_from_slice(relative_angular_velocity(i, j).as_slice());
+            return;
         }
+        let mut rest = out;
+        for coordinate in &joint.coordinates {
+            let rate = coordinate.grip(joint, &motions).rate;
+            let written = match &coordinate.measure {
+                Measure::Angle(angle) => {
+                    (rest[0], rest[1]) = angle.raw(joint, &motions);
+                    rest[2] = rate;
+                    3
+                }
+                Measure::Primitive(primitive) => {
+                    (rest[0], rest[1]) = (primitive.jet(joint, &motions)[0], rate);
+                    2
+                }
+            };
+            rest = &mut rest[written..];
+        }
+    }
+
+    /// The motion with a true rotation, also where a stage of the integrator has left p a little off unit length.
+    fn true_motion(&self, at: Moment<'_, T>, place: &Place<T>) -> Motion<T> {
+        let motion = self.motion(at, place);
+        if place.slot().is_some() { Motion { a: direction_rotation(&motion.p), ..motion } } else { motion }
     }
 }

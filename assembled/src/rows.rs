@@ -1,133 +1,157 @@
-//! The constraint rows: values, Jacobian blocks and γ, typed from the paper's section 4 and Haug (1989), chapter 11.
+//! The constraint rows: values, Jacobians, ν and γ, typed from the paper's section 4 and Haug (1989), chapter 11.
 //!
-//! One walk over the rows serves Φ_q and (Φ_r, Φ_π'): it calls a sink with row, column and value of each entry that is
-//! not zero by structure, row by row.
+//! A row is a linear combination of what joints measure, minus a function of time. One walk over the rows serves Φ_q and
+//! (Φ_r, Φ_π'): it calls a sink with row, column and value of each entry that is not zero by structure, row by row.
 
-use crate::lowered::{Constrained, End, Joint, Lowered, Motion};
+use crate::course::Course;
+use crate::gradient::Gradient;
+use crate::joint::Joint;
+use crate::lowered::{Constrained, Lowered, Moment};
+use crate::measure::Measure;
+use crate::motion::Motion;
 use crate::number::{Number, number};
-use crate::textbook::{g_matrix, relative_matrix, rotated_gradient, tilde};
-use nalgebra::{Matrix3, SMatrix, Vector3};
+use crate::primitives::{Axis, Primitive, Pull, Turning, primitives};
+use crate::textbook::{along_p, along_pi, g_matrix, relative_matrix, tilde};
+use gyro_model::{JointCoordinate, JointKind, Model, RowOwner};
+use nalgebra::{Matrix3, RowVector3, SMatrix, Vector3};
 
-/// One body's columns in the rows of a joint: `3 + N` for (r, p) with N = 4 or (r, π') with N = 3.
-struct EndBlock<T, const N: usize> {
-    slot: Option<usize>,
-    /// The diagonal of the point rows' r block: −1 on the first body, 1 on the second.
-    sign: T,
-    point: SMatrix<T, 3, N>,
-    dots: SMatrix<T, 3, N>,
+/// A constraint row.
+#[derive(Clone, Debug)]
+pub(crate) enum Row<T> {
+    /// One of the six of a constrained body, paper, eqs. (5) and (6).
+    Constrained { body: usize, component: usize },
+    /// `Σ factor · measure − course(t)`.
+    Measured { terms: Vec<Term<T>>, course: Option<Course> },
 }
 
-impl<T: Number, const N: usize> EndBlock<T, N> {
-    /// Blocks of a joint's first and second body, still empty but for the r part.
-    fn pair(joint: &Joint<T>) -> [Self; 2] {
-        let (point, dots) = (SMatrix::zeros(), SMatrix::zeros());
-        let block = |end: &End<T>, sign| Self { slot: end.place.slot(), sign, point, dots };
-        [block(&joint.first, -T::one()), block(&joint.second, T::one())]
+/// What a joint measures, times a factor.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Term<T> {
+    pub(crate) factor: T,
+    pub(crate) joint: usize,
+    pub(crate) measure: Measure,
+}
+
+impl<T: Number> Row<T> {
+    pub(crate) fn new(model: &Model, slots: &[usize], joints: &[Joint<T>], row: &gyro_model::Row) -> Self {
+        let coordinate = |factor: f64, of: JointCoordinate| Term {
+            factor: number(factor),
+            joint: of.joint,
+            measure: joints[of.joint].coordinates[of.coordinate].measure,
+        };
+        match row.owner {
+            RowOwner::Body(body) => {
+                let before = slots.iter().take_while(|&&b| b != body);
+                let held = |&&b: &&usize| model.bodies[b].support == gyro_model::Support::Constrained;
+                Self::Constrained { body: before.filter(held).count(), component: row.index }
+            }
+            RowOwner::Joint(joint) => {
+                let primitive = primitives(joints[joint].kind)[row.index];
+                let mut terms =
+                    vec![Term { factor: T::one(), joint, measure: Measure::Primitive(primitive) }];
+                if joints[joint].kind == JointKind::Screw && primitive == Primitive::Dot2(Axis::H) {
+                    let lead = model.value(&model.joints[joint].lead);
+                    terms.push(coordinate(-lead, JointCoordinate { joint, coordinate: 0 }));
+                }
+                Self::Measured { terms, course: None }
+            }
+            RowOwner::Coupler(coupler) => {
+                let coupler = &model.couplers[coupler];
+                let ratio = model.value(&coupler.ratio);
+                Self::Measured {
+                    terms: vec![coordinate(1.0, coupler.second), coordinate(-ratio, coupler.first)],
+                    course: Some(Course::constant(model.value(&coupler.offset))),
+                }
+            }
+            RowOwner::Driver(driver) => {
+                let driver = &model.drivers[driver];
+                let course = Some(Course::new(model, &driver.motion));
+                Self::Measured { terms: vec![coordinate(1.0, driver.coordinate)], course }
+            }
+        }
+    }
+}
+
+/// The motions of the bodies of one joint after another.
+struct Pairs<'a, T: Number> {
+    lowered: &'a Lowered<T>,
+    at: Moment<'a, T>,
+    last: Option<(usize, [Motion<T>; 2])>,
+    /// What is made of the motion of a body with coordinates.
+    moved: fn(Motion<T>) -> Motion<T>,
+}
+
+impl<'a, T: Number> Pairs<'a, T> {
+    fn new(lowered: &'a Lowered<T>, at: Moment<'a, T>) -> Self {
+        Self { lowered, at, last: None, moved: |motion| motion }
+    }
+
+    /// The motions of a joint's bodies; most rows ask for the same as the one before.
+    fn of(&mut self, joint: usize) -> &[Motion<T>; 2] {
+        let Self { lowered, at, last, moved } = self;
+        if last.as_ref().is_some_and(|(last, _)| *last != joint) {
+            *last = None;
+        }
+        let evaluate = || {
+            let joint = &lowered.joints[joint];
+            [&joint.first.place, &joint.second.place].map(|place| {
+                let motion = lowered.motion(*at, place);
+                if place.slot().is_some() { moved(motion) } else { motion }
+            })
+        };
+        &last.get_or_insert_with(|| (joint, evaluate())).1
     }
 }
 
 impl<T: Number> Lowered<T> {
     /// Writes Φ: joint rows, then normalisations.
-    pub(crate) fn phi(&self, y: &[T], out: &mut [T]) {
-        for body in &self.constrained {
-            let relative = relative_matrix(&body.p0) * self.p(y, body.slot);
-            write(out, body.first_row, &(self.r(y, body.slot) - body.r0)); // eq. (5)
-            write(out, body.first_row + 3, &relative.fixed_rows::<3>(1).into_owned()); // eq. (6)
-        }
-        for joint in &self.joints {
-            let (i, j) = self.motions(y, joint);
-            write(out, joint.first_row, &(tip(&j, &joint.second) - tip(&i, &joint.first))); // eq. (7)
-            for (row, dot) in (joint.first_row + 3..).zip(&joint.dots) {
-                out[row] = (i.a * dot.a).dot(&(j.a * dot.b)); // eqs. (9), (10)
-            }
-        }
+    pub(crate) fn phi(&self, at: Moment<'_, T>, out: &mut [T]) {
+        self.for_each_jet(at, |row, [value, ..]| out[row] = value);
         for (slot, out) in out[self.n_rows()..].iter_mut().enumerate() {
-            *out = self.p(y, slot).norm_squared() - T::one(); // eq. (12)
+            *out = self.p(at.y, slot).norm_squared() - T::one(); // eq. (12)
         }
     }
 
     /// Φ_q, joint rows and normalisations, columns (r, p) body after body.
-    pub(crate) fn phi_q(&self, y: &[T], mut sink: impl FnMut(usize, usize, T)) {
-        for body in &self.constrained {
-            // The orientation rows are linear in p: rows e1 to e3 of p̄₀ ∘ p, which are G(p₀) p.
-            walk_constrained(body, &g_matrix(&body.p0), &mut sink);
-        }
-        for joint in &self.joints {
-            let (i, j) = self.motions(y, joint);
-            let mut blocks = EndBlock::pair(joint);
-            blocks[0].point = -rotated_gradient(&i.p, &joint.first.point);
-            blocks[1].point = rotated_gradient(&j.p, &joint.second.point);
-            for (k, dot) in joint.dots.iter().enumerate() {
-                blocks[0].dots.set_row(k, &((j.a * dot.b).transpose() * rotated_gradient(&i.p, &dot.a)));
-                blocks[1].dots.set_row(k, &((i.a * dot.a).transpose() * rotated_gradient(&j.p, &dot.b)));
-            }
-            walk_joint(joint, &blocks, &mut sink);
-        }
+    pub(crate) fn phi_q(&self, at: Moment<'_, T>, mut sink: impl FnMut(usize, usize, T)) {
+        // The orientation rows are linear in p: rows e1 to e3 of p̄₀ ∘ p, which are G(p₀) p.
+        let orientation = |body: &Constrained<T>| g_matrix(&body.p0);
+        self.for_each_gradient(at, along_p, orientation, &mut sink);
         for slot in 0..self.n_bodies() {
-            let p = self.p(y, slot);
+            let p = self.p(at.y, slot);
             (0..4).for_each(|k| sink(self.n_rows() + slot, 7 * slot + 3 + k, number::<T>(2.0) * p[k]));
         }
     }
 
     /// (Φ_r, Φ_π'), joint rows, columns (r, π') body after body.
-    pub(crate) fn phi_pi(&self, y: &[T], mut sink: impl FnMut(usize, usize, T)) {
-        for body in &self.constrained {
-            walk_constrained(body, &orientation_block(&self.relative_orientation(y, body)), &mut sink);
-        }
-        for joint in &self.joints {
-            let (i, j) = self.motions(y, joint);
-            let mut blocks = EndBlock::pair(joint);
-            // A ã' is the derivative of −A a' with respect to π'.
-            blocks[0].point = i.a * tilde(&joint.first.point);
-            blocks[1].point = -(j.a * tilde(&joint.second.point));
-            for (k, dot) in joint.dots.iter().enumerate() {
-                blocks[0].dots.set_row(k, &-((j.a * dot.b).transpose() * i.a * tilde(&dot.a)));
-                blocks[1].dots.set_row(k, &-((i.a * dot.a).transpose() * j.a * tilde(&dot.b)));
-            }
-            walk_joint(joint, &blocks, &mut sink);
-        }
+    pub(crate) fn phi_pi(&self, at: Moment<'_, T>, mut sink: impl FnMut(usize, usize, T)) {
+        let orientation = |body: &Constrained<T>| orientation_block(&self.relative_orientation(at.y, body));
+        self.for_each_gradient(at, along_pi, orientation, &mut sink);
     }
 
-    /// Writes γ, the right-hand side of `Φ_r r̈ + Φ_π' ẇ' = γ`.
-    pub(crate) fn gamma(&self, y: &[T], out: &mut [T]) {
-        for body in &self.constrained {
-            let w = self.w(y, body.slot);
-            // γ_q = 0, and Ġᵀw' = −½|w'|² p leaves ¼|w'|² times the row itself.
-            let quarter = w.norm_squared() * number(0.25);
-            write(out, body.first_row, &Vector3::zeros());
-            write(out, body.first_row + 3, &(self.relative_orientation(y, body).1 * quarter));
+    /// Writes ν = −Φ_t: minus the rates of the rows while all bodies with coordinates rest.
+    pub(crate) fn nu(&self, at: Moment<'_, T>, out: &mut [T]) {
+        out.fill(T::zero());
+        if !self.is_driven {
+            return;
         }
-        for joint in &self.joints {
-            let (i, j) = self.motions(y, joint);
-            let point = centripetal(&i, &joint.first.point) - centripetal(&j, &joint.second.point);
-            write(out, joint.first_row, &point);
-            for (row, dot) in (joint.first_row + 3..).zip(&joint.dots) {
-                out[row] = dot_gamma(&i, &dot.a, &j, &dot.b);
+        let mut resting = Pairs { moved: Motion::at_rest, ..Pairs::new(self, at) };
+        for (out, row) in out.iter_mut().zip(&self.rows) {
+            if let Row::Measured { terms, course } = row {
+                *out = -self.measured_jet(terms, course.as_ref(), &mut resting)[1];
             }
         }
     }
 
-    /// Writes `Φ_r s + Φ_π' w' − ν`; ν = 0, as nothing drives a joint.
-    pub(crate) fn velocity_residual(&self, y: &[T], out: &mut [T]) {
-        for body in &self.constrained {
-            let block = orientation_block(&self.relative_orientation(y, body));
-            write(out, body.first_row, &self.s(y, body.slot));
-            write(out, body.first_row + 3, &(block * self.w(y, body.slot)));
-        }
-        for joint in &self.joints {
-            let (i, j) = self.motions(y, joint);
-            write(out, joint.first_row, &(tip_velocity(&j, &joint.second) - tip_velocity(&i, &joint.first)));
-            for (row, dot) in (joint.first_row + 3..).zip(&joint.dots) {
-                out[row] = (i.a * i.w.cross(&dot.a)).dot(&(j.a * dot.b))
-                    + (i.a * dot.a).dot(&(j.a * j.w.cross(&dot.b)));
-            }
-        }
+    /// Writes γ, the right-hand side of `Φ_r r̈ + Φ_π' ẇ' = γ`: minus the second time derivative of the rows where bodies with
+    /// coordinates have no acceleration and all others the prescribed one. Haug (1989), section 11.2.
+    pub(crate) fn gamma(&self, at: Moment<'_, T>, out: &mut [T]) {
+        self.for_each_jet(at, |row, [_, _, second]| out[row] = -second);
     }
 
-    /// Position and velocity of a joint's bodies.
-    #[inline]
-    pub(crate) fn motions(&self, y: &[T], joint: &Joint<T>) -> (Motion<T>, Motion<T>) {
-        (self.motion(y, &joint.first.place), self.motion(y, &joint.second.place))
+    /// Writes `Φ_r s + Φ_π' w' − ν`, which is the time derivative of the rows.
+    pub(crate) fn velocity_residual(&self, at: Moment<'_, T>, out: &mut [T]) {
+        self.for_each_jet(at, |row, [_, rate, _]| out[row] = rate);
     }
 
     /// Scalar and vector part of `p̄₀ ∘ p`.
@@ -135,71 +159,106 @@ impl<T: Number> Lowered<T> {
         let relative = relative_matrix(&body.p0) * self.p(y, body.slot);
         (relative[0], relative.fixed_rows::<3>(1).into_owned())
     }
+
+    /// Calls `f` with each row, its value and two time derivatives.
+    fn for_each_jet(&self, at: Moment<'_, T>, mut f: impl FnMut(usize, [T; 3])) {
+        let mut pairs = Pairs::new(self, at);
+        for (index, row) in self.rows.iter().enumerate() {
+            let jet = match row {
+                Row::Constrained { body, component } => {
+                    self.constrained_jet(at.y, &self.constrained[*body], *component)
+                }
+                Row::Measured { terms, course } => self.measured_jet(terms, course.as_ref(), &mut pairs),
+            };
+            f(index, jet);
+        }
+    }
+
+    fn measured_jet(&self, terms: &[Term<T>], course: Option<&Course>, pairs: &mut Pairs<'_, T>) -> [T; 3] {
+        let Moment { t, y } = pairs.at;
+        let prescribed = course.map_or([0.0; 3], |course| course.jet(gyro_sim::Real::to_f64(t)));
+        let start = prescribed.map(|x| -number::<T>(x));
+        terms.iter().fold(start, |sum, term| {
+            let jet = term.measure.jet(&self.joints[term.joint], pairs.of(term.joint), y);
+            [0, 1, 2].map(|k| sum[k] + term.factor * jet[k])
+        })
+    }
+
+    /// Eqs. (5) and (6). The second derivative of the latter follows from `Ġᵀw' = −½|w'|² p`: −¼|w'|² times the row itself.
+    fn constrained_jet(&self, y: &[T], body: &Constrained<T>, component: usize) -> [T; 3] {
+        let w = self.w(y, body.slot);
+        if component < 3 {
+            let displacement = self.r(y, body.slot) - body.r0;
+            return [displacement[component], self.s(y, body.slot)[component], T::zero()];
+        }
+        let relative = self.relative_orientation(y, body);
+        let (row, rate) = (relative.1[component - 3], (orientation_block(&relative) * w)[component - 3]);
+        [row, rate, -w.norm_squared() * number(0.25) * row]
+    }
+
+    /// Calls the sink with the entries of all rows; `orientation` is the derivative of a constrained body's eq. (6).
+    fn for_each_gradient<const N: usize>(
+        &self,
+        at: Moment<'_, T>,
+        turning: Turning<T, N>,
+        orientation: impl Fn(&Constrained<T>) -> SMatrix<T, 3, N>,
+        sink: &mut impl FnMut(usize, usize, T),
+    ) {
+        let mut pairs = Pairs::new(self, at);
+        for (index, row) in self.rows.iter().enumerate() {
+            let sink = |column, value| sink(index, column, value);
+            match row {
+                Row::Constrained { body, component } => {
+                    let body = &self.constrained[*body];
+                    constrained_pull(*component, &orientation(body)).walk(body.slot, sink);
+                }
+                Row::Measured { terms, .. } => self.measured_gradient(terms, &mut pairs, turning, sink),
+            }
+        }
+    }
+
+    fn measured_gradient<const N: usize>(
+        &self,
+        terms: &[Term<T>],
+        pairs: &mut Pairs<'_, T>,
+        turning: Turning<T, N>,
+        mut sink: impl FnMut(usize, T),
+    ) {
+        let mut pulls = |term: &Term<T>| {
+            let joint = &self.joints[term.joint];
+            let [first, second] = term.measure.pulls(joint, pairs.of(term.joint), turning);
+            [(joint.first.place.slot(), first), (joint.second.place.slot(), second)]
+        };
+        if let [term] = terms {
+            // One joint's row has nothing to add up; its factor is one, and columns ascend whichever body comes first.
+            let mut pulls = pulls(term);
+            pulls.sort_by_key(|(slot, _)| *slot);
+            pulls.iter().for_each(|(slot, pull)| slot.iter().for_each(|slot| pull.walk(*slot, &mut sink)));
+            return;
+        }
+        let mut gradient = Gradient::<T, N>::new();
+        for term in terms {
+            for (slot, pull) in pulls(term) {
+                slot.into_iter().for_each(|slot| gradient.add(slot, pull.times(term.factor)));
+            }
+        }
+        gradient.walk(sink);
+    }
 }
 
-/// Global position of a joint's point.
-fn tip<T: Number>(motion: &Motion<T>, end: &End<T>) -> Vector3<T> {
-    motion.r + motion.a * end.point
-}
-
-/// Global velocity of a joint's point.
-fn tip_velocity<T: Number>(motion: &Motion<T>, end: &End<T>) -> Vector3<T> {
-    motion.s + motion.a * motion.w.cross(&end.point)
-}
-
-/// `A w̃' w̃' a'`: the acceleration of a body's vector at constant w'.
-fn centripetal<T: Number>(motion: &Motion<T>, a: &Vector3<T>) -> Vector3<T> {
-    motion.a * motion.w.cross(&motion.w.cross(a))
-}
-
-/// γ of a dot-1 row: `−(äᵀb + 2 ȧᵀḃ + aᵀb̈)` at constant w'. Haug (1989), section 11.2.
-fn dot_gamma<T: Number>(i: &Motion<T>, a: &Vector3<T>, j: &Motion<T>, b: &Vector3<T>) -> T {
-    let (a_dot, b_dot) = (i.a * i.w.cross(a), j.a * j.w.cross(b));
-    let outer = centripetal(i, a).dot(&(j.a * b)) + (i.a * a).dot(&centripetal(j, b));
-    -(outer + number::<T>(2.0) * a_dot.dot(&b_dot))
+fn constrained_pull<T: Number, const N: usize>(
+    component: usize,
+    orientation: &SMatrix<T, 3, N>,
+) -> Pull<T, N> {
+    if component < 3 {
+        let r = Vector3::ith(component, T::one()).transpose();
+        return Pull { r_columns: component..component + 1, r, turn: SMatrix::zeros() };
+    }
+    let turn = orientation.row(component - 3).into_owned();
+    Pull { r_columns: 0..0, r: RowVector3::zeros(), turn }
 }
 
 /// The derivative of the vector part of q = p̄₀ ∘ p with respect to π': `½ (q₀ I + q̃)`.
 fn orientation_block<T: Number>((q0, q): &(T, Vector3<T>)) -> Matrix3<T> {
     (Matrix3::from_diagonal_element(*q0) + tilde(q)) * number::<T>(0.5)
-}
-
-fn walk_constrained<T: Number, const N: usize>(
-    body: &Constrained<T>,
-    orientation: &SMatrix<T, 3, N>,
-    sink: &mut impl FnMut(usize, usize, T),
-) {
-    let first_column = (3 + N) * body.slot;
-    (0..3).for_each(|k| sink(body.first_row + k, first_column + k, T::one()));
-    for row in 0..3 {
-        for column in 0..N {
-            sink(body.first_row + 3 + row, first_column + 3 + column, orientation[(row, column)]);
-        }
-    }
-}
-
-fn walk_joint<T: Number, const N: usize>(
-    joint: &Joint<T>,
-    blocks: &[EndBlock<T, N>; 2],
-    sink: &mut impl FnMut(usize, usize, T),
-) {
-    // Columns ascend, whichever of the bodies comes first in the state.
-    let order = if blocks[0].slot > blocks[1].slot { [1, 0] } else { [0, 1] };
-    let blocks = order.map(|k| &blocks[k]);
-    let with_slot = || blocks.iter().filter_map(|block| block.slot.map(|slot| ((3 + N) * slot, block)));
-    for row in 0..3 {
-        for (first_column, block) in with_slot() {
-            sink(joint.first_row + row, first_column + row, block.sign);
-            (0..N).for_each(|k| sink(joint.first_row + row, first_column + 3 + k, block.point[(row, k)]));
-        }
-    }
-    for row in 0..joint.dots.len() {
-        for (first_column, block) in with_slot() {
-            (0..N).for_each(|k| sink(joint.first_row + 3 + row, first_column + 3 + k, block.dots[(row, k)]));
-        }
-    }
-}
-
-fn write<T: Number>(out: &mut [T], at: usize, value: &Vector3<T>) {
-    out[at..at + 3].copy_from_slice(value.as_slice());
 }

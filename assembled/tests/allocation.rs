@@ -4,10 +4,10 @@
 mod support;
 
 use gyro_assembled::{Careful, Dense};
-use gyro_sim::{Equations, Partition, Partitioned};
+use gyro_sim::{Equations, Partition, Partitioned, Ports};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
-use support::models;
+use support::careful_models;
 
 struct Counting;
 
@@ -32,14 +32,15 @@ static ALLOCATOR: Counting = Counting;
 /// How often this thread allocates in two corrected steps and one evaluation of every term.
 fn allocations<M>(mechanism: &M) -> usize
 where
-    M: Partition<Scalar = f64, State = Vec<f64>> + Equations,
+    M: Partition<Scalar = f64, State = Vec<f64>> + Equations + Ports,
 {
     let mut y = mechanism.start();
     let mut solver = Partitioned::new(mechanism, &y);
     let (mut constraints, mut rows, mut lambda) =
         (mechanism.constraints(), mechanism.rows(), mechanism.rows());
-    let (mut readings, mut accelerations) = (mechanism.readings(), mechanism.velocities());
+    let (mut readings, mut accelerations) = (mechanism.readings(), mechanism.accelerations_buffer());
     let (mut phi_q, mut phi_pi) = (mechanism.phi_q_values(), mechanism.phi_pi_values());
+    let mut outputs = mechanism.outputs_buffer();
     let before = ALLOCATIONS.with(Cell::get);
     for interval in 0..2 {
         let advanced = solver.advance(mechanism, f64::from(interval) * 5e-4, 1e-4, 5, &mut y);
@@ -50,14 +51,16 @@ where
     mechanism.gamma(0.0, &y, &mut rows);
     mechanism.phi_q(0.0, &y, &mut phi_q);
     mechanism.phi_pi(0.0, &y, &mut phi_pi);
-    mechanism.read_joints(&y, &mut readings);
-    mechanism.accelerations(0.0, &y, &mut accelerations, &mut lambda);
+    mechanism.read_joints(0.0, &y, &mut readings);
+    mechanism.accelerations(0.0, &y, &mut accelerations);
+    mechanism.multipliers(0.0, &y, &accelerations, &mut lambda);
+    mechanism.outputs(0.0, &y, &mut outputs);
     ALLOCATIONS.with(Cell::get) - before
 }
 
 #[test]
 fn the_careful_form_does_not_allocate() {
-    for model in models() {
+    for model in careful_models() {
         let careful = Careful::<f64>::new(&model).expect("it has a start");
         assert_eq!(allocations(&careful), 0, "{}", model.name);
         let dense = Dense::<f64>::new(&model).expect("it has a start");

@@ -14,14 +14,14 @@ const TOLERANCE: f64 = 1e-10;
 
 fn check<M: Partition<Scalar = f64, State = Vec<f64>>>(what: &str, mechanism: &M) {
     let mut y = mechanism.start();
-    let mut turns = Turns::new(mechanism, &y, &[]);
+    let mut turns = Turns::new(mechanism, 0.0, &y, &[]);
     let mut solver = Partitioned::new(mechanism, &y);
     for interval in 0..20 {
         solver.advance(mechanism, f64::from(interval) * 5e-4, 1e-4, 5, &mut y).expect("it runs");
-        turns.update(mechanism, 5e-4, &y);
+        turns.update(mechanism, f64::from(interval + 1) * 5e-4, 5e-4, &y);
     }
     for (joint, expected) in [ALPHA, BETA].into_iter().enumerate() {
-        let JointCoordinate::Angle { position, .. } = turns.joint(mechanism, joint) else {
+        let Some(JointCoordinate::Angle { position, .. }) = turns.coordinate(mechanism, joint, 0) else {
             panic!("{what}: joint {joint} has an angle");
         };
         let error = (position - expected).abs();

@@ -2,7 +2,7 @@
 
 mod support;
 
-use gyro_assembled::Careful;
+use gyro_assembled::Dense;
 use gyro_sim::{JointCoordinate, Mechanism, Ode, Turns};
 use support::{assert_close, models};
 
@@ -12,17 +12,32 @@ const ROUNDING: f64 = 1e-13;
 #[test]
 fn joints_start_where_the_page_puts_them() {
     for model in models() {
-        let mechanism = Careful::<f64>::new(&model).expect("it has a start");
+        let mechanism = Dense::<f64>::new(&model).expect("it has a start");
         let start = model.assemble().expect("it has a start");
-        let nearest: Vec<f64> =
-            start.joints.iter().map(|joint| joint.position.first().map_or(0.0, |x| *x)).collect();
-        let turns = Turns::new(&mechanism, &mechanism.start(), &nearest);
+        let positions = start.joints.iter().zip(&model.joints);
+        // Of a spherical joint the position is one coordinate of four numbers.
+        let nearest: Vec<f64> = positions
+            .flat_map(|(start, joint)| {
+                let orientation = joint.kind == gyro_model::JointKind::Spherical;
+                if orientation { vec![0.0] } else { start.position.clone() }
+            })
+            .collect();
+        let turns = Turns::new(&mechanism, 0.0, &mechanism.start(), &nearest);
         for (joint, expected) in start.joints.iter().enumerate() {
-            let (position, rate) = match turns.joint(&mechanism, joint) {
-                JointCoordinate::Angle { position, rate } => (vec![position], vec![rate]),
-                JointCoordinate::Orientation { position, rate } => (position.to_vec(), rate.to_vec()),
-                JointCoordinate::None => (vec![], vec![]),
-            };
+            let (mut position, mut rate) = (vec![], vec![]);
+            for index in 0..mechanism.joint(joint).coordinates.len() {
+                match turns.coordinate(&mechanism, joint, index).expect("it is there") {
+                    JointCoordinate::Angle { position: x, rate: r }
+                    | JointCoordinate::Length { position: x, rate: r } => {
+                        position.push(x);
+                        rate.push(r);
+                    }
+                    JointCoordinate::Orientation { position: p, rate: r } => {
+                        position.extend(p);
+                        rate.extend(r);
+                    }
+                }
+            }
             let what = format!("{} {}", model.name, mechanism.joint(joint).name);
             assert_close(&what, &position, &expected.position, 1.0, ROUNDING);
             assert_close(&what, &rate, &expected.rate, 1.0, ROUNDING);

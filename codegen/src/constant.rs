@@ -6,6 +6,7 @@
 use gyro_model::{Rational, to_f64};
 use num_bigint::{BigInt, BigUint, Sign};
 use num_traits::{One, Signed, ToPrimitive, Zero};
+use std::fmt;
 
 /// `coefficient · √radicand`.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -122,6 +123,14 @@ impl Constant {
         }
         let outside = Rational::from_integer(BigInt::from_biguint(Sign::Plus, outside));
         Self::new(&self.coefficient * outside, n)
+    }
+}
+
+/// `1/2*sqrt(2)`, `-3/10`.
+impl fmt::Display for Constant {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.coefficient)?;
+        if self.radicand.is_one() { Ok(()) } else { write!(f, "*sqrt({})", self.radicand) }
     }
 }
 

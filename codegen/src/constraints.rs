@@ -1,24 +1,64 @@
 //! Φ(q, t): the textbook primitives and the joints made of them. Nothing else of a joint is written anywhere: Φ_q, ν and γ
 //! are derived from these rows.
 
+use crate::coordinate;
 use crate::graph::{ExprId, Graph};
 use crate::linear::{Mat3, Vec3};
 use crate::system::{JointFrames, System};
-use gyro_model::{JointKind, Support};
+use gyro_model::{Coupler, JointCoordinate, JointKind, Support};
 
-/// All joint rows in the order of `Model::rows`.
-pub fn joint_rows(system: &mut System) -> Vec<ExprId> {
+/// The rows of `Model::rows`, in their order.
+pub fn rows(system: &mut System) -> Vec<ExprId> {
     let mut rows = Vec::new();
     for slot in 0..system.slots.len() {
         if system.model.bodies[system.slots[slot]].support == Support::Constrained {
             rows.extend(held(system, slot));
         }
     }
-    for joint in system.joints.clone() {
-        rows.extend(coincident_points(system, &joint));
-        rows.extend(rotation_rows(&mut system.graph, &joint));
+    for joint in 0..system.joints.len() {
+        rows.extend(joint_rows(system, joint));
     }
+    for coupler in &system.model.couplers {
+        rows.push(coupled(system, coupler));
+    }
+    for driver in &system.model.drivers {
+        let (coordinate, motion) =
+            (coordinate::value(system, driver.coordinate), system.prescribed(&driver.motion));
+        rows.push(system.graph.sub(coordinate, motion));
+    }
+    let (all, kept) = (system.model.all_rows(), system.model.rows());
+    all.iter().zip(rows).filter(|(row, _)| kept.contains(row)).map(|(_, phi)| phi).collect()
+}
+
+/// The rows of a joint, redundant ones included.
+fn joint_rows(system: &mut System, index: usize) -> Vec<ExprId> {
+    let joint = system.joints[index];
+    let (i, j) = (&joint.first, &joint.second);
+    let aligned = [(i.f, j.h), (i.g, j.h), (i.f, j.g)];
+    let (mut rows, dots) = match joint.kind {
+        JointKind::Revolute => (coincident(system, &joint), &aligned[..2]),
+        JointKind::Spherical => (coincident(system, &joint), &aligned[..0]),
+        JointKind::Fixed => (coincident(system, &joint), &aligned[..]),
+        JointKind::Universal => (coincident(system, &joint), &[(i.h, j.h)][..]),
+        JointKind::Cylindrical => (dot2(system, &joint, &[i.f, i.g]), &aligned[..2]),
+        JointKind::Prismatic => (dot2(system, &joint, &[i.f, i.g]), &aligned[..]),
+        JointKind::Planar => (dot2(system, &joint, &[i.h]), &aligned[..2]),
+        JointKind::PointOnLine => (dot2(system, &joint, &[i.f, i.g]), &aligned[..0]),
+        JointKind::Screw => (screw(system, index), &aligned[..2]),
+        JointKind::Rod => (vec![distance(system, &joint)], &aligned[..0]),
+    };
+    rows.extend(dots.iter().map(|(a, b)| dot1(&mut system.graph, a, &joint.relative, b)));
     rows
+}
+
+/// `second − ratio · first − offset`.
+fn coupled(system: &mut System, coupler: &Coupler) -> ExprId {
+    let (first, second) =
+        (coordinate::value(system, coupler.first), coordinate::value(system, coupler.second));
+    let [ratio, offset] = [&coupler.ratio, &coupler.offset].map(|number| system.number(number));
+    let driven = system.graph.mul(ratio, first);
+    let lag = system.graph.sub(second, driven);
+    system.graph.sub(lag, offset)
 }
 
 /// `pᵀp − 1` of each slot, eq. (12).
@@ -45,25 +85,35 @@ fn held(system: &mut System, slot: usize) -> Vec<ExprId> {
     position.into_iter().chain(orientation).collect()
 }
 
-/// `r_j + A_j s_j' − r_i − A_i s_i'`, eq. (7).
-fn coincident_points(system: &mut System, joint: &JointFrames) -> Vec3 {
-    let (i, j) = (system.poses[joint.first.body], system.poses[joint.second.body]);
-    let graph = &mut system.graph;
-    let (arm_i, arm_j) = (graph.mat_vec(&i.a, &joint.first.point), graph.mat_vec(&j.a, &joint.second.point));
-    let (point_i, point_j) = (graph.add_vec(&i.r, &arm_i), graph.add_vec(&j.r, &arm_j));
-    graph.sub_vec(&point_j, &point_i)
+/// Points that coincide: eq. (7).
+fn coincident(system: &mut System, joint: &JointFrames) -> Vec<ExprId> {
+    coordinate::between_points(system, joint).to_vec()
 }
 
-/// The rows that keep the axes parallel, eq. (8), or all directions aligned.
-fn rotation_rows(graph: &mut Graph, joint: &JointFrames) -> Vec<ExprId> {
-    let (i, j, a) = (&joint.first, &joint.second, &joint.relative);
-    match joint.kind {
-        JointKind::Spherical => Vec::new(),
-        JointKind::Revolute => vec![dot1(graph, &i.f, a, &j.h), dot1(graph, &i.g, a, &j.h)],
-        JointKind::Fixed => {
-            vec![dot1(graph, &i.f, a, &j.h), dot1(graph, &i.g, a, &j.h), dot1(graph, &i.f, a, &j.g)]
-        }
-    }
+/// `(A_i u')·d` for directions of the first body: Haug (1989), section 9.4, dot-2.
+fn dot2(system: &mut System, joint: &JointFrames, directions: &[Vec3]) -> Vec<ExprId> {
+    directions.iter().map(|u| coordinate::displacement(system, joint, u)).collect()
+}
+
+/// Across the axis nothing, along it as far as the angle says.
+fn screw(system: &mut System, index: usize) -> Vec<ExprId> {
+    let joint = system.joints[index];
+    let mut rows = dot2(system, &joint, &[joint.first.f, joint.first.g, joint.first.h]);
+    let angle = coordinate::value(system, JointCoordinate { joint: index, coordinate: 0 });
+    let advance = system.graph.mul(joint.lead, angle);
+    rows[2] = system.graph.sub(rows[2], advance);
+    rows
+}
+
+/// `½ (d·d / length − length)`: a distance, to first order.
+fn distance(system: &mut System, joint: &JointFrames) -> ExprId {
+    let d = coordinate::between_points(system, joint);
+    let graph = &mut system.graph;
+    let square = graph.dot(&d, &d);
+    let quotient = graph.div(square, joint.length);
+    let difference = graph.sub(quotient, joint.length);
+    let half = graph.fraction(1, 2);
+    graph.mul(half, difference)
 }
 
 /// `a_i'ᵀ A_iᵀ A_j b_j'`, eqs. (9) and (10).

@@ -10,15 +10,30 @@ use std::collections::HashMap;
 
 /// What symbols stand for.
 #[derive(Debug, Default)]
-pub struct Definitions(HashMap<Symbol, ExprId>);
+pub struct Definitions {
+    expressions: HashMap<Symbol, ExprId>,
+    /// Sine and cosine of each continuous angle, up to a common factor.
+    angles: HashMap<usize, (ExprId, ExprId)>,
+}
 
 impl Definitions {
     pub fn insert(&mut self, symbol: Symbol, expression: ExprId) {
-        self.0.insert(symbol, expression);
+        self.expressions.insert(symbol, expression);
+    }
+
+    /// A continuous angle differentiates by its sine and cosine: its turn reference is constant in all derivatives.
+    pub fn insert_angle(&mut self, turn: usize, angle: ExprId, sine_and_cosine: (ExprId, ExprId)) {
+        self.insert(Symbol::Angle(turn), angle);
+        self.angles.insert(turn, sine_and_cosine);
+    }
+
+    /// Sine and cosine of a continuous angle.
+    pub fn angle(&self, turn: usize) -> Option<(ExprId, ExprId)> {
+        self.angles.get(&turn).copied()
     }
 
     pub fn get(&self, symbol: Symbol) -> Option<ExprId> {
-        self.0.get(&symbol).copied()
+        self.expressions.get(&symbol).copied()
     }
 }
 
@@ -68,6 +83,8 @@ impl<'a> Expansion<'a> {
             Node::Sqrt(a) => graph.sqrt(self.memo[&a]),
             Node::Sin(a) => graph.sin(self.memo[&a]),
             Node::Cos(a) => graph.cos(self.memo[&a]),
+            Node::Tanh(a) => graph.tanh(self.memo[&a]),
+            Node::Atan2(a, b) => graph.atan2(self.memo[&a], self.memo[&b]),
         }
     }
 }

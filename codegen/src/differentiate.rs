@@ -67,6 +67,14 @@ impl<'a> Derivative<'a> {
                 let product = graph.mul(sin, self.memo[&a]);
                 graph.neg(product)
             }
+            // tanh' = (1 − tanh²) · a'
+            Node::Tanh(a) => {
+                let square = graph.mul(id, id);
+                let slope = graph.sub(Graph::ONE, square);
+                graph.mul(slope, self.memo[&a])
+            }
+            // atan2(y, x)' = (x y' − y x') / (x² + y²)
+            Node::Atan2(y, x) => angle_rate(graph, (y, x), (self.memo[&y], self.memo[&x])),
         }
     }
 
@@ -74,11 +82,31 @@ impl<'a> Derivative<'a> {
         if let Some(&derivative) = self.direction.get(&symbol) {
             return derivative;
         }
-        match self.definitions.get(symbol) {
-            Some(definition) => self.of(graph, definition),
-            None => Graph::ZERO,
+        match symbol {
+            Symbol::Table { table, order } => {
+                let rate = self.direction.get(&Symbol::Time).copied().unwrap_or(Graph::ZERO);
+                let slope = graph.symbol(Symbol::Table { table, order: order + 1 });
+                graph.mul(slope, rate)
+            }
+            Symbol::Angle(turn) => {
+                let (sine, cosine) = self.definitions.angle(turn).expect("every angle is defined");
+                let rates = (self.of(graph, sine), self.of(graph, cosine));
+                angle_rate(graph, (sine, cosine), rates)
+            }
+            _ => match self.definitions.get(symbol) {
+                Some(definition) => self.of(graph, definition),
+                None => Graph::ZERO,
+            },
         }
     }
+}
+
+/// The rate of the angle of the point (x, y): `(x y' − y x') / (x² + y²)`.
+pub fn angle_rate(graph: &mut Graph, (y, x): (ExprId, ExprId), (dy, dx): (ExprId, ExprId)) -> ExprId {
+    let (plus, minus) = (graph.mul(x, dy), graph.mul(y, dx));
+    let turned = graph.sub(plus, minus);
+    let square = graph.dot(&[x, y], &[x, y]);
+    graph.div(turned, square)
 }
 
 #[cfg(test)]
@@ -122,6 +150,8 @@ mod tests {
         check(|g, _, y| g.sqrt(y));
         check(|g, x, _| g.sin(x));
         check(|g, _, y| g.cos(y));
+        check(|g, x, _| g.tanh(x));
+        check(|g, x, y| g.atan2(x, y));
     }
 
     #[test]

@@ -1,11 +1,12 @@
 //! A straight-line program as Rust tokens.
 
+use crate::constant::Constant;
 use crate::graph::{ExprId, Graph, Node};
 use crate::schedule::Program;
 use crate::symbol::Symbol;
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::quote;
-use std::cell::Cell;
+use std::cell::RefCell;
 use std::collections::{BTreeSet, HashMap};
 
 /// The statements of a function and the values of its roots.
@@ -17,6 +18,8 @@ pub struct Body {
     pub values: Vec<TokenStream>,
     /// Variables that the program reads.
     pub symbols: BTreeSet<Symbol>,
+    /// Literals with the exact constants that they are rounded from.
+    pub constants: BTreeSet<(String, String)>,
 }
 
 /// Where the variables of a module come from.
@@ -42,7 +45,7 @@ pub fn body(graph: &Graph, variables: &impl Variables, roots: &[ExprId]) -> Body
     let program = Program::new(graph, roots);
     let names =
         program.temporaries.iter().enumerate().map(|(n, &id)| (id, ident(&format!("t{n}")))).collect();
-    let writer = Writer { graph, variables, program: &program, names, has_literals: Cell::new(false) };
+    let writer = Writer { graph, variables, program: &program, names, constants: RefCell::default() };
     let symbols: BTreeSet<_> = program.uses.order.iter().filter_map(|&id| writer.as_symbol(id)).collect();
     let bindings = symbols.iter().filter_map(|&symbol| match variables.variable(symbol) {
         (name, Some(source)) => Some(quote! { let #name = #source; }),
@@ -50,9 +53,10 @@ pub fn body(graph: &Graph, variables: &impl Variables, roots: &[ExprId]) -> Body
     });
     let values: Vec<_> = roots.iter().map(|&root| writer.expression(root, Binding::Sum)).collect();
     let temporaries = writer.temporaries(roots);
-    let literal = writer.has_literals.get().then(|| quote! { let k = T::constant; });
+    let constants = writer.constants.into_inner();
+    let literal = (!constants.is_empty()).then(|| quote! { let k = T::constant; });
     let statements = quote! { #literal #(#bindings)* #temporaries };
-    Body { statements, values, symbols }
+    Body { statements, values, symbols, constants }
 }
 
 /// A literal that reads back as the same number.
@@ -73,8 +77,8 @@ struct Writer<'a, V> {
     variables: &'a V,
     program: &'a Program,
     names: HashMap<ExprId, Ident>,
-    /// Set when a literal is written.
-    has_literals: Cell<bool>,
+    /// Literals written so far, each with its exact constant.
+    constants: RefCell<BTreeSet<(String, String)>>,
 }
 
 impl<V: Variables> Writer<'_, V> {
@@ -145,18 +149,23 @@ impl<V: Variables> Writer<'_, V> {
 
     fn operation(&self, id: ExprId) -> (TokenStream, Binding) {
         match self.graph.node(id) {
-            Node::Constant(value) => (self.literal(value.to_f64()), Binding::Unary),
+            Node::Constant(value) => (self.literal(value), Binding::Unary),
             Node::Symbol(symbol) => (self.variables.variable(*symbol).0, Binding::Unary),
             Node::Add(a, b) => (self.sum(*a, *b), Binding::Sum),
             Node::Mul(a, b) => (self.product(*a, *b), Binding::Product),
             Node::Neg(a) => self.negation(*a),
             Node::Recip(a) => {
-                let (one, a) = (self.literal(1.0), self.expression(*a, Binding::Unary));
+                let (one, a) = (self.literal(&Constant::integer(1)), self.expression(*a, Binding::Unary));
                 (quote! { #one / #a }, Binding::Product)
             }
             Node::Sqrt(a) => self.function("sqrt", *a),
             Node::Sin(a) => self.function("sin", *a),
             Node::Cos(a) => self.function("cos", *a),
+            Node::Tanh(a) => self.function("tanh", *a),
+            Node::Atan2(y, x) => {
+                let (y, x) = (self.expression(*y, Binding::Unary), self.expression(*x, Binding::Sum));
+                (quote! { #y.atan2(#x) }, Binding::Unary)
+            }
         }
     }
 
@@ -193,9 +202,9 @@ impl<V: Variables> Writer<'_, V> {
         (quote! { -#a }, Binding::Unary)
     }
 
-    fn literal(&self, value: f64) -> TokenStream {
-        self.has_literals.set(true);
-        let value = float(value);
+    fn literal(&self, constant: &Constant) -> TokenStream {
+        let value = float(constant.to_f64());
+        self.constants.borrow_mut().insert((value.to_string().replace(' ', ""), constant.to_string()));
         quote! { k(#value) }
     }
 

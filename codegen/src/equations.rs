@@ -1,15 +1,16 @@
 //! Everything that a module computes, as final expressions of one graph.
 
 use crate::Elimination;
+use crate::closing::closing_rows;
 use crate::definitions::Expansion;
-use crate::dynamics::{self, Dynamics};
+use crate::dynamics::Dynamics;
 use crate::graph::{ExprId, Graph};
 use crate::kinematics::{Kinematics, Matrix, non_zeros};
-use crate::null_space;
+use crate::outputs::{self, Sources};
 use crate::partition::Partition;
-use crate::saddle;
 use crate::system::System;
-use gyro_model::Model;
+use crate::{coordinate, null_space, readings, saddle};
+use gyro_model::{Model, Spline};
 
 /// Non-zeros with their places.
 pub type Sparse = Vec<(usize, usize, ExprId)>;
@@ -19,6 +20,8 @@ pub type Sparse = Vec<(usize, usize, ExprId)>;
 pub struct Equations<'m> {
     pub model: &'m Model,
     pub graph: Graph,
+    /// Tables of prescribed motions.
+    pub tables: Vec<&'m Spline>,
     /// Joint rows, then normalisations.
     pub phi: Vec<ExprId>,
     pub phi_q: Sparse,
@@ -29,15 +32,29 @@ pub struct Equations<'m> {
     pub applied_force: Vec<ExprId>,
     /// (s̈, ẇ') of each slot.
     pub accelerations: Vec<ExprId>,
+    /// Multipliers that are found with the accelerations.
+    pub closing: Vec<ExprId>,
+    /// All multipliers, the accelerations being known.
     pub lambda: Vec<ExprId>,
     /// (ṙ, ṗ) of each slot.
     pub position_rates: Vec<ExprId>,
-    /// Power of the non-conservative forces, where the state carries their work.
+    /// Power of non-conservative forces and drivers, where the state carries their work; the accelerations being known.
     pub power: Option<ExprId>,
+    /// Rates of the turn references.
+    pub turn_rates: Vec<ExprId>,
     pub kinetic: ExprId,
     pub potential: ExprId,
     pub readings: Vec<ExprId>,
-    pub chart_vectors: Vec<ExprId>,
+    /// The numbers of the outputs, the accelerations being known.
+    pub outputs: Vec<ExprId>,
+    /// Charts, where the mechanism is a tree that they cover.
+    pub charts: Option<Charts>,
+}
+
+/// The partition by charts.
+#[derive(Debug)]
+pub struct Charts {
+    pub vectors: Vec<ExprId>,
     pub newton_positions: Vec<ExprId>,
     pub solved_velocities: Vec<ExprId>,
 }
@@ -48,52 +65,46 @@ impl<'m> Equations<'m> {
         let kinematics = Kinematics::derive(&mut system);
         let dynamics = Dynamics::derive(&mut system);
         let solution = match elimination {
-            Elimination::NullSpace => null_space::solve(&mut system, &kinematics, &dynamics),
-            Elimination::Saddle => saddle::solve(&mut system, &kinematics, &dynamics),
+            Elimination::Saddle if closing_rows(&system).is_empty() => {
+                saddle::solve(&mut system, &kinematics, &dynamics)
+            }
+            _ => null_space::solve(&mut system, &kinematics, &dynamics),
         };
-        let readings = dynamics::readings(&mut system);
-        let partition = Partition::derive(&mut system, &kinematics);
+        let sources = Sources { kinematics: &kinematics, dynamics: &dynamics, lambda: &solution.lambda };
+        let outputs = outputs::derive(&mut system, &sources);
+        let drivers_power = outputs::drivers_power(&mut system, &sources);
+        let power = system.graph.add(dynamics.power, drivers_power);
+        let turns = model.turn_references();
+        let turn_rates: Vec<_> = turns.into_iter().map(|turn| coordinate::rate(&mut system, turn)).collect();
+        let readings = readings::readings(&mut system);
+        let partition = Partition::covers(&system).then(|| Partition::derive(&mut system, &kinematics));
+        let position_rates = position_rates(&mut system);
 
         let definitions = std::mem::take(&mut system.definitions);
         let mut expansion = Expansion::new(&definitions);
         let graph = &mut system.graph;
-        let phi_q = expand_matrix(&mut expansion, graph, &kinematics.phi_q);
-        let phi_pi = expand_matrix(&mut expansion, graph, &kinematics.phi_pi);
-        let gamma = expansion.all(graph, &kinematics.gamma);
-        let applied_force = expansion.all(graph, &dynamics.applied_force);
-        let velocity_residual = expansion.all(graph, &kinematics.velocity_residual);
         let all_phi: Vec<_> = kinematics.phi.iter().chain(&kinematics.normalisations).copied().collect();
-        let phi = expansion.all(graph, &all_phi);
-        let nu = expansion.all(graph, &kinematics.nu);
-        let readings = expansion.all(graph, &readings);
-        let vectors: Vec<_> = partition.chart_vectors.iter().flatten().copied().collect();
-        let chart_vectors = expansion.all(graph, &vectors);
-        let newton_positions = expansion.all(graph, &partition.positions);
-        let solved_velocities = expansion.all(graph, &partition.velocities);
-        let power = expansion.of(graph, dynamics.power);
-
-        let accelerations = expansion.all(graph, &solution.accelerations);
-        let lambda = expansion.all(graph, &solution.lambda);
-        let position_rates = position_rates(&mut system);
         Self {
             model,
-            phi,
-            phi_q: non_zeros(&phi_q),
-            phi_pi: non_zeros(&phi_pi),
-            nu,
-            gamma,
-            velocity_residual,
-            applied_force,
-            accelerations,
-            lambda,
+            phi: expansion.all(graph, &all_phi),
+            phi_q: non_zeros(&expand_matrix(&mut expansion, graph, &kinematics.phi_q)),
+            phi_pi: non_zeros(&expand_matrix(&mut expansion, graph, &kinematics.phi_pi)),
+            nu: expansion.all(graph, &kinematics.nu),
+            gamma: expansion.all(graph, &kinematics.gamma),
+            velocity_residual: expansion.all(graph, &kinematics.velocity_residual),
+            applied_force: expansion.all(graph, &dynamics.applied_force),
+            accelerations: expansion.all(graph, &solution.accelerations),
+            closing: expansion.all(graph, &solution.closing),
+            lambda: expansion.all(graph, &solution.lambda),
             position_rates,
-            power: model.has_work().then_some(power),
-            kinetic: dynamics.kinetic,
-            potential: dynamics.potential,
-            readings,
-            chart_vectors,
-            newton_positions,
-            solved_velocities,
+            power: model.has_work().then(|| expansion.of(graph, power)),
+            turn_rates: expansion.all(graph, &turn_rates),
+            kinetic: expansion.of(graph, dynamics.kinetic),
+            potential: expansion.of(graph, dynamics.potential),
+            readings: expansion.all(graph, &readings),
+            outputs: expansion.all(graph, &outputs),
+            charts: partition.map(|partition| Charts::expand(&mut expansion, graph, &partition)),
+            tables: system.tables,
             graph: system.graph,
         }
     }
@@ -106,12 +117,19 @@ impl<'m> Equations<'m> {
         self.lambda.len()
     }
 
-    pub fn n_charts(&self) -> usize {
-        self.chart_vectors.len() / 4
-    }
-
     pub fn n_state(&self) -> usize {
-        13 * self.n_slots() + usize::from(self.power.is_some())
+        13 * self.n_slots() + usize::from(self.power.is_some()) + self.turn_rates.len()
+    }
+}
+
+impl Charts {
+    fn expand(expansion: &mut Expansion, graph: &mut Graph, partition: &Partition) -> Self {
+        let vectors: Vec<_> = partition.chart_vectors.iter().flatten().copied().collect();
+        Self {
+            vectors: expansion.all(graph, &vectors),
+            newton_positions: expansion.all(graph, &partition.positions),
+            solved_velocities: expansion.all(graph, &partition.velocities),
+        }
     }
 }
 

@@ -18,6 +18,8 @@ pub fn evaluate(graph: &Graph, roots: &[ExprId], value: impl Fn(Symbol) -> f64) 
             Node::Sqrt(a) => values[a].sqrt(),
             Node::Sin(a) => values[a].sin(),
             Node::Cos(a) => values[a].cos(),
+            Node::Tanh(a) => values[a].tanh(),
+            Node::Atan2(a, b) => values[a].atan2(values[b]),
         };
         values.insert(id, result);
     }

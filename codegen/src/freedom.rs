@@ -3,11 +3,13 @@
 //! Both are written down from the joint's axes, with no solve. They hold for every configuration, also off the constraint
 //! manifold: a dot-1 row with the vector h of one body is blind to rotations about h whatever the other vector is.
 
+use crate::coordinate;
+use crate::differentiate::Derivative;
 use crate::graph::{ExprId, Graph};
 use crate::kinematics::Kinematics;
 use crate::linear::{Mat3, UNIT3, Vec3, ZERO3};
-use crate::system::{JointFrames, System};
-use gyro_model::{Attachment, JointKind, Link, RowOwner};
+use crate::system::{End, JointFrames, System};
+use gyro_model::{Attachment, JointCoordinate, JointKind, Link, RowOwner};
 use std::ops::Range;
 
 /// A velocity, virtual displacement or acceleration of a body at its joint point, or a wrench there, its dual.
@@ -25,7 +27,7 @@ pub struct Freedom {
     pub slot: usize,
     /// The body nearer to the root, if it has coordinates too.
     pub parent: Option<Parent>,
-    /// The joint point in the body's frame; its mass centre where no joint holds it.
+    /// The joint point as the body meets it, in the body's frame; its mass centre where no joint holds it.
     pub point: Vec3,
     /// Null space of the rows: with the parent at rest, these twists leave them all unchanged.
     pub free: Vec<Twist>,
@@ -39,42 +41,31 @@ pub struct Freedom {
 #[derive(Clone, Copy, Debug)]
 pub struct Parent {
     pub slot: usize,
-    /// The joint point in the parent's frame.
+    /// The joint point as the parent meets it, in the parent's frame.
     pub point: Vec3,
     /// `A_parentᵀ A_body`.
     pub relative: Mat3,
 }
 
+/// How a joint restrains its child relative to its parent at rest.
+struct Restraint {
+    /// For each row that is a length the displacement that changes it at unit rate, global frame.
+    held: Vec<Vec3>,
+    /// Displacements that it leaves free, global frame.
+    sliding: Vec<Vec3>,
+    /// Rotations that it leaves free, in the child's frame.
+    turning: Vec<Vec3>,
+}
+
 impl Freedom {
     pub fn of(system: &mut System, kinematics: &Kinematics, link: Link) -> Self {
         let slot = system.slot_of(link.body).expect("links have coordinates");
-        let (owner, joint, reversed) = match link.attachment {
-            Attachment::Free => return Self::whole(slot),
-            Attachment::Constrained => (RowOwner::Body(link.body), None, false),
+        match link.attachment {
+            Attachment::Free => Self::whole(slot),
+            Attachment::Constrained => Self::held(system, kinematics, link.body, slot),
             Attachment::Joint { joint, reversed, .. } => {
-                (RowOwner::Joint(joint), Some(system.joints[joint]), reversed)
+                Self::carried(system, kinematics, slot, joint, reversed)
             }
-        };
-        let rows = rows_of(system, owner);
-        // The point rows are second minus first, whatever the order of the tree.
-        let sign = if reversed { system.graph.integer(-1) } else { Graph::ONE };
-        let points = UNIT3.map(|unit| Twist { t: system.graph.scale_vec(sign, &unit), rho: ZERO3 });
-        let gradients: Vec<Vec3> = rows.clone().skip(3).map(|row| kinematics.rotation(row, slot)).collect();
-        let axis = joint.and_then(|joint| free_axis(&mut system.graph, &joint, reversed));
-        let rotations = right_inverse(&mut system.graph, &gradients, axis);
-        let rotate = |rho| Twist { t: ZERO3, rho };
-        let free = match (gradients.len(), axis) {
-            (0, _) => UNIT3.map(rotate).to_vec(),
-            (_, Some(axis)) => vec![rotate(axis)],
-            (_, None) => Vec::new(),
-        };
-        Self {
-            slot,
-            parent: joint.and_then(|joint| Parent::of(system, &joint, reversed)),
-            point: joint.map_or(ZERO3, |joint| if reversed { joint.first.point } else { joint.second.point }),
-            free,
-            rows,
-            forced: points.into_iter().chain(rotations.into_iter().map(rotate)).collect(),
         }
     }
 
@@ -85,51 +76,248 @@ impl Freedom {
         let free = translations.into_iter().chain(rotations).collect();
         Self { slot, parent: None, point: ZERO3, free, rows: 0..0, forced: Vec::new() }
     }
+
+    /// The body's own six rows hold it.
+    fn held(system: &mut System, kinematics: &Kinematics, body: usize, slot: usize) -> Self {
+        let rows = system.model.rows_of(RowOwner::Body(body));
+        let gradients: Vec<_> = rows.clone().skip(3).map(|row| kinematics.rotation(row, slot)).collect();
+        let rotations = right_inverse(&mut system.graph, &gradients, &[]);
+        let translations = UNIT3.map(|t| Twist { t, rho: ZERO3 });
+        let rotations = rotations.into_iter().map(|rho| Twist { t: ZERO3, rho });
+        let forced = translations.into_iter().chain(rotations).collect();
+        Self { slot, parent: None, point: ZERO3, free: Vec::new(), rows, forced }
+    }
+
+    /// A joint holds the body. Its rows measure from the first body to the second, whichever of them is nearer to the root.
+    fn carried(
+        system: &mut System,
+        kinematics: &Kinematics,
+        slot: usize,
+        index: usize,
+        reversed: bool,
+    ) -> Self {
+        let joint = system.joints[index];
+        let rows = system.model.rows_of(RowOwner::Joint(index));
+        let restraint = Restraint::of(system, &joint, reversed);
+        let sign = system.graph.integer(if reversed { -1 } else { 1 });
+        let n_held = restraint.held.len();
+        let gradients: Vec<_> = rows.clone().skip(n_held).map(|row| kinematics.rotation(row, slot)).collect();
+        let rotations = right_inverse(&mut system.graph, &gradients, &restraint.turning);
+        let held = restraint.held.iter().map(|t| Twist { t: system.graph.scale_vec(sign, t), rho: ZERO3 });
+        let held: Vec<_> = held.collect();
+        let advance = Advance::of(system, &joint, index, slot, held.last());
+        let turn = |system: &mut System, rho: Vec3| advance.follow(&mut system.graph, rho);
+        let turning: Vec<_> = restraint.turning.iter().map(|&rho| turn(system, rho)).collect();
+        let rotations: Vec<_> = rotations.into_iter().map(|rho| turn(system, rho)).collect();
+        let (first, second) = (restraint.arm_of_first(system, &joint), joint.second.point);
+        let (point, parent_point) = if reversed { (first, second) } else { (second, first) };
+        let sliding = restraint.sliding.into_iter().map(|t| Twist { t, rho: ZERO3 });
+        Self {
+            slot,
+            parent: Parent::of(system, &joint, reversed, parent_point),
+            point,
+            free: sliding.chain(turning).collect(),
+            rows,
+            forced: held.into_iter().chain(rotations).collect(),
+        }
+    }
+}
+
+impl Restraint {
+    fn of(system: &mut System, joint: &JointFrames, reversed: bool) -> Self {
+        let End { body, f, g, h, .. } = joint.first;
+        let a = system.poses[body].a;
+        let [along_f, along_g, along_h] = [f, g, h].map(|u| system.graph.mat_vec(&a, &u));
+        let (held, sliding) = match joint.kind {
+            JointKind::Cylindrical | JointKind::Prismatic | JointKind::PointOnLine => {
+                (vec![along_f, along_g], vec![along_h])
+            }
+            JointKind::Planar => (vec![along_h], vec![along_f, along_g]),
+            JointKind::Screw => (vec![along_f, along_g, along_h], Vec::new()),
+            _ => (UNIT3.to_vec(), Vec::new()),
+        };
+        Self { held, sliding, turning: turning(&mut system.graph, joint, reversed) }
+    }
+
+    /// Where rows are measured along the first body's directions, that body is touched at the second joint point: there a
+    /// rotation of the first body changes them as little as one of the second.
+    fn arm_of_first(&self, system: &mut System, joint: &JointFrames) -> Vec3 {
+        match joint.kind {
+            JointKind::Revolute | JointKind::Spherical | JointKind::Fixed | JointKind::Universal => {
+                joint.first.point
+            }
+            _ => coordinate::arm_on_first(system, joint),
+        }
+    }
+}
+
+/// The rotations that are free, in the frame of the body further from the root. Rows with a vector of a body are blind to
+/// rotations about it.
+fn turning(graph: &mut Graph, joint: &JointFrames, reversed: bool) -> Vec<Vec3> {
+    let second = if reversed { graph.mat_vec(&joint.relative, &joint.second.h) } else { joint.second.h };
+    match joint.kind {
+        JointKind::Revolute | JointKind::Cylindrical | JointKind::Planar | JointKind::Screw => vec![second],
+        JointKind::Universal if reversed => vec![joint.first.h, second],
+        JointKind::Universal => vec![graph.transposed_vec(&joint.relative, &joint.first.h), second],
+        JointKind::Spherical | JointKind::PointOnLine => UNIT3.to_vec(),
+        JointKind::Fixed | JointKind::Prismatic | JointKind::Rod => Vec::new(),
+    }
+}
+
+/// The displacement that goes with a rotation: none, but along a screw's axis.
+struct Advance {
+    /// Change of the screw's row, per rotation in the child's frame, and the displacement that makes up for it.
+    screw: Option<(Vec3, Vec3)>,
+}
+
+impl Advance {
+    fn of(system: &mut System, joint: &JointFrames, index: usize, slot: usize, held: Option<&Twist>) -> Self {
+        if joint.kind != JointKind::Screw {
+            return Self { screw: None };
+        }
+        let angle = coordinate::value(system, JointCoordinate { joint: index, coordinate: 0 });
+        let gradient = std::array::from_fn(|k| {
+            let rotation = system.unit_motion(slot, 3 + k);
+            let rotation = system.direction(&rotation);
+            let rate = Derivative::new(&system.definitions, rotation).of(&mut system.graph, angle);
+            system.graph.mul(joint.lead, rate)
+        });
+        Self { screw: held.map(|along| (gradient, along.t)) }
+    }
+
+    fn follow(&self, graph: &mut Graph, rho: Vec3) -> Twist {
+        let Some((gradient, along)) = self.screw else { return Twist { t: ZERO3, rho } };
+        let advance = graph.dot(&gradient, &rho);
+        Twist { t: graph.scale_vec(advance, &along), rho }
+    }
 }
 
 impl Parent {
-    fn of(system: &mut System, joint: &JointFrames, reversed: bool) -> Option<Self> {
+    fn of(system: &mut System, joint: &JointFrames, reversed: bool, point: Vec3) -> Option<Self> {
         let end = if reversed { &joint.second } else { &joint.first };
         let turned = |column: usize| joint.relative.map(|row| row[column]);
         let relative = if reversed { [0, 1, 2].map(turned) } else { joint.relative };
-        system.slot_of(end.body).map(|slot| Self { slot, point: end.point, relative })
+        system.slot_of(end.body).map(|slot| Self { slot, point, relative })
     }
 }
 
-fn rows_of(system: &System, owner: RowOwner) -> Range<usize> {
-    let rows = system.model.rows();
-    let first = rows.iter().position(|row| row.owner == owner).expect("joints and held bodies have rows");
-    first..first + rows.iter().filter(|row| row.owner == owner).count()
-}
-
-/// The axis h of the second body, in the frame of the body further from the root, where rotation about it is free.
-fn free_axis(graph: &mut Graph, joint: &JointFrames, reversed: bool) -> Option<Vec3> {
-    match joint.kind {
-        JointKind::Revolute if reversed => Some(graph.mat_vec(&joint.relative, &joint.second.h)),
-        JointKind::Revolute => Some(joint.second.h),
-        JointKind::Spherical | JointKind::Fixed => None,
-    }
-}
-
-/// Rotations that change one of the rows with these gradients and not the others; perpendicular to the free axis.
-fn right_inverse(graph: &mut Graph, gradients: &[Vec3], axis: Option<Vec3>) -> Vec<Vec3> {
-    match (gradients, axis) {
+/// Rotations that change one of the rows with these gradients and not the others; perpendicular to a single free axis.
+fn right_inverse(graph: &mut Graph, gradients: &[Vec3], free: &[Vec3]) -> Vec<Vec3> {
+    match (gradients, free) {
         ([], _) => Vec::new(),
-        ([a, b], Some(h)) => {
-            let (of_a, of_b) = (graph.cross(b, &h), graph.cross(&h, a));
+        ([a], _) => {
+            let square = graph.dot(a, a);
+            scaled(graph, square, &[*a])
+        }
+        ([a, b], [h]) => {
+            let (of_a, of_b) = (graph.cross(b, h), graph.cross(h, a));
             let unit = graph.dot(a, &of_a);
             scaled(graph, unit, &[of_a, of_b])
         }
-        ([a, b, c], None) => {
+        ([a, b, c], []) => {
             let cofactors = [graph.cross(b, c), graph.cross(c, a), graph.cross(a, b)];
             let determinant = graph.dot(c, &cofactors[2]);
             scaled(graph, determinant, &cofactors)
         }
-        _ => unreachable!("a joint forbids no rotation, all but one, or all"),
+        _ => unreachable!("what a joint does not forbid of the three rotations it leaves free"),
     }
 }
 
 fn scaled(graph: &mut Graph, divisor: ExprId, vectors: &[Vec3]) -> Vec<Vec3> {
     let inverse = graph.recip(divisor);
     vectors.iter().map(|vector| graph.scale_vec(inverse, vector)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::definitions::Expansion;
+    use crate::evaluate::{evaluate, sample};
+    use crate::null_space::{Arm, Outwards};
+    use crate::symbol::Symbol;
+
+    /// Products of a dozen numbers of order one.
+    const ROUNDING: f64 = 1e-12;
+
+    /// Two bodies one after the other, so that the second hangs on a parent that moves.
+    fn page(kind: &str, reversed: bool) -> String {
+        let (first, second) = if reversed { ("b", "a") } else { ("a", "b") };
+        let frame = if kind == "spherical" { "" } else { "axis = [1, 2, 2]\nzero = [0, 1, 0]" };
+        let more = if kind == "screw" { "lead = 0.1" } else { "" };
+        format!(
+            "format = 1\nname = \"chain\"\n[[body]]\nname = \"a\"\nfree = true\nmass = 1\ninertia = [1, 1, 1]\n\
+             [[body]]\nname = \"b\"\nmass = 1\ninertia = [1, 1, 1]\n\
+             [[joint]]\nname = \"j\"\nkind = \"{kind}\"\n{frame}\n{more}\n\
+             first = {{ body = \"{first}\", point = [0.1, 0.2, 0.3] }}\nsecond = {{ body = \"{second}\", point = [0.3, -0.1, 0.2] }}\n"
+        )
+    }
+
+    /// A state anyhow, but with unit Euler parameters.
+    fn state(seed: u64) -> impl Fn(Symbol) -> f64 {
+        move |symbol| {
+            let value = sample(seed);
+            match symbol {
+                Symbol::Euler { slot, .. } => {
+                    let p: [f64; 4] = std::array::from_fn(|k| value(Symbol::Euler { slot, k }));
+                    value(symbol) / p.iter().map(|x| x * x).sum::<f64>().sqrt()
+                }
+                _ => value(symbol),
+            }
+        }
+    }
+
+    /// Free twists leave every row unchanged, each forced twist changes its own row alone, whatever the state.
+    fn check(kind: &str, reversed: bool) {
+        let text = page(kind, reversed);
+        let model = gyro_model::read("chain.toml", &text).unwrap_or_else(|e| panic!("{e}\n{text}"));
+        let mut system = System::new(&model);
+        let kinematics = Kinematics::derive(&mut system);
+        let link = system.tree.links.iter().copied().find(|link| link.body == 1).expect("b hangs on a");
+        let freedom = Freedom::of(&mut system, &kinematics, link);
+        assert_eq!(freedom.free.len() + freedom.forced.len(), 6, "{kind}");
+        let arm = Arm::new(&mut system, freedom.slot, &freedom.point, Outwards::No);
+        let mut changes = Vec::new();
+        for twist in freedom.free.iter().chain(&freedom.forced) {
+            let centre = arm.twist(&mut system.graph, twist);
+            for row in freedom.rows.clone() {
+                let columns = &kinematics.phi_pi[row][6 * freedom.slot..6 * freedom.slot + 6];
+                let gradient = Twist {
+                    t: [columns[0], columns[1], columns[2]],
+                    rho: [columns[3], columns[4], columns[5]],
+                };
+                changes.push(gradient.dot(&mut system.graph, &centre));
+            }
+        }
+        let changes = Expansion::new(&system.definitions).all(&mut system.graph, &changes);
+        for seed in 0..10 {
+            let values = evaluate(&system.graph, &changes, state(seed));
+            for (index, value) in values.into_iter().enumerate() {
+                let (twist, row) = (index / freedom.rows.len(), index % freedom.rows.len());
+                let expected = if twist == freedom.free.len() + row { 1.0 } else { 0.0 };
+                assert!(
+                    (value - expected).abs() <= ROUNDING,
+                    "{kind} {reversed} twist {twist} row {row}: {value}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn free_and_forced_twists_are_dual_to_the_rows_off_the_constraints() {
+        let kinds = [
+            "revolute",
+            "spherical",
+            "fixed",
+            "universal",
+            "cylindrical",
+            "prismatic",
+            "planar",
+            "screw",
+            "point_on_line",
+        ];
+        for kind in kinds {
+            check(kind, false);
+            check(kind, true);
+        }
+    }
 }

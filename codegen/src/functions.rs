@@ -1,6 +1,6 @@
 //! The functions of a generated module: which expressions each of them computes.
 
-use crate::equations::{Equations, Sparse};
+use crate::equations::{Charts, Equations, Sparse};
 use crate::graph::ExprId;
 
 /// The roots of each function that computes something.
@@ -14,9 +14,11 @@ pub struct Functions {
     pub velocity_residual: Vec<ExprId>,
     pub applied_force: Vec<ExprId>,
     pub accelerations: Vec<ExprId>,
+    pub multipliers: Vec<ExprId>,
     pub derivative: Vec<ExprId>,
     pub energy: Vec<ExprId>,
     pub read_joints: Vec<ExprId>,
+    pub outputs: Vec<ExprId>,
     pub chart_vectors: Vec<ExprId>,
     pub newton_step: Vec<ExprId>,
     pub solve_velocities: Vec<ExprId>,
@@ -25,6 +27,10 @@ pub struct Functions {
 impl Functions {
     pub fn of(equations: &Equations) -> Self {
         let values = |sparse: &Sparse| sparse.iter().map(|entry| entry.2).collect::<Vec<_>>();
+        let of_charts = |part: fn(&Charts) -> &Vec<ExprId>| {
+            equations.charts.as_ref().map_or_else(Vec::new, |charts| part(charts).clone())
+        };
+        let rates = equations.position_rates.iter().chain(&equations.power).chain(&equations.turn_rates);
         Self {
             phi: equations.phi.clone(),
             phi_q: values(&equations.phi_q),
@@ -33,19 +39,21 @@ impl Functions {
             gamma: equations.gamma.clone(),
             velocity_residual: equations.velocity_residual.clone(),
             applied_force: equations.applied_force.clone(),
-            accelerations: equations.accelerations.iter().chain(&equations.lambda).copied().collect(),
-            derivative: equations.position_rates.iter().chain(&equations.power).copied().collect(),
+            accelerations: equations.accelerations.iter().chain(&equations.closing).copied().collect(),
+            multipliers: equations.lambda.clone(),
+            derivative: rates.copied().collect(),
             energy: vec![equations.kinetic, equations.potential],
             read_joints: equations.readings.clone(),
-            chart_vectors: equations.chart_vectors.clone(),
-            newton_step: equations.newton_positions.clone(),
-            solve_velocities: equations.solved_velocities.clone(),
+            outputs: equations.outputs.clone(),
+            chart_vectors: of_charts(|charts| &charts.vectors),
+            newton_step: of_charts(|charts| &charts.newton_positions),
+            solve_velocities: of_charts(|charts| &charts.solved_velocities),
         }
     }
 
-    /// Name and roots of each, in the order of the data sheet.
-    pub fn list(&self) -> [(&'static str, &'static str, &[ExprId]); 14] {
-        [
+    /// Name, meaning and roots of each that there is, in the order of the data sheet.
+    pub fn list(&self) -> Vec<(&'static str, &'static str, &[ExprId])> {
+        let all: [(_, _, &[ExprId]); 16] = [
             ("phi", "Φ", &self.phi),
             ("phi_q", "Φ_q, non-zeros in (r, p)", &self.phi_q),
             ("phi_pi", "(Φ_r, Φ_π'), non-zeros", &self.phi_pi),
@@ -53,13 +61,16 @@ impl Functions {
             ("gamma", "γ", &self.gamma),
             ("velocity_residual", "Φ_r s + Φ_π' w' − ν", &self.velocity_residual),
             ("applied_force", "(f, n' − w̃'J'w')", &self.applied_force),
-            ("accelerations", "(s̈, ẇ') and λ, eq. (17)", &self.accelerations),
+            ("accelerations", "(s̈, ẇ'), eq. (17)", &self.accelerations),
+            ("multipliers", "λ, the accelerations being known", &self.multipliers),
             ("derivative", "ẏ but for the accelerations: eqs. (14), (16)", &self.derivative),
             ("energy", "T and V", &self.energy),
             ("read_joints", "joint coordinates and rates", &self.read_joints),
+            ("outputs", "outputs, the accelerations being known", &self.outputs),
             ("chart vectors", "for the choice of independent coordinates", &self.chart_vectors),
             ("newton_step", "dependent positions, one Newton step", &self.newton_step),
             ("solve_velocities", "dependent velocities, eq. (19)", &self.solve_velocities),
-        ]
+        ];
+        all.into_iter().filter(|(.., roots)| !roots.is_empty()).collect()
     }
 }

@@ -27,6 +27,9 @@ pub enum Node {
     Sqrt(ExprId),
     Sin(ExprId),
     Cos(ExprId),
+    Tanh(ExprId),
+    /// The angle of the point (second operand, first operand).
+    Atan2(ExprId, ExprId),
 }
 
 impl Node {
@@ -34,8 +37,10 @@ impl Node {
     pub fn operands(&self) -> impl Iterator<Item = ExprId> + use<> {
         let (a, b) = match *self {
             Self::Constant(_) | Self::Symbol(_) => (None, None),
-            Self::Add(a, b) | Self::Mul(a, b) => (Some(a), Some(b)),
-            Self::Neg(a) | Self::Recip(a) | Self::Sqrt(a) | Self::Sin(a) | Self::Cos(a) => (Some(a), None),
+            Self::Add(a, b) | Self::Mul(a, b) | Self::Atan2(a, b) => (Some(a), Some(b)),
+            Self::Neg(a) | Self::Recip(a) | Self::Sqrt(a) | Self::Sin(a) | Self::Cos(a) | Self::Tanh(a) => {
+                (Some(a), None)
+            }
         };
         a.into_iter().chain(b)
     }
@@ -180,12 +185,38 @@ impl Graph {
         }
     }
 
+    /// Odd: the sign moves outwards.
     pub fn sin(&mut self, a: ExprId) -> ExprId {
-        if a == Self::ZERO { a } else { self.intern(Node::Sin(a)) }
+        if a == Self::ZERO {
+            return a;
+        }
+        let (negative, x) = self.split_sign(a);
+        let sin = self.intern(Node::Sin(x));
+        if negative { self.neg(sin) } else { sin }
     }
 
+    /// Even: the sign vanishes.
     pub fn cos(&mut self, a: ExprId) -> ExprId {
-        if a == Self::ZERO { Self::ONE } else { self.intern(Node::Cos(a)) }
+        if a == Self::ZERO {
+            return Self::ONE;
+        }
+        let (_, x) = self.split_sign(a);
+        self.intern(Node::Cos(x))
+    }
+
+    /// Odd: the sign moves outwards.
+    pub fn tanh(&mut self, a: ExprId) -> ExprId {
+        if a == Self::ZERO {
+            return a;
+        }
+        let (negative, x) = self.split_sign(a);
+        let tanh = self.intern(Node::Tanh(x));
+        if negative { self.neg(tanh) } else { tanh }
+    }
+
+    /// The angle of the point (x, y), in (−π, π].
+    pub fn atan2(&mut self, y: ExprId, x: ExprId) -> ExprId {
+        self.intern(Node::Atan2(y, x))
     }
 
     /// `c · x`, the sign outermost.

@@ -31,7 +31,7 @@ pub struct Kinematics {
 
 impl Kinematics {
     pub fn derive(system: &mut System) -> Self {
-        let (phi, normalisations) = (constraints::joint_rows(system), constraints::normalisations(system));
+        let (phi, normalisations) = (constraints::rows(system), constraints::normalisations(system));
         let all: Vec<_> = phi.iter().chain(&normalisations).copied().collect();
         let n_slots = system.slots.len();
 

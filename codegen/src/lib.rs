@@ -37,8 +37,10 @@
 //! partition, `definitions` expands, `schedule` orders, `emit` and `module` write.
 #![deny(missing_docs)]
 
+mod closing;
 mod constant;
 mod constraints;
+mod coordinate;
 mod definitions;
 mod differentiate;
 mod dynamics;
@@ -46,14 +48,20 @@ mod emit;
 mod equations;
 #[cfg(test)]
 mod evaluate;
+mod forces;
 mod freedom;
 mod functions;
 mod graph;
 mod kinematics;
+mod ldl;
 mod linear;
 mod module;
+mod motion;
+mod multipliers;
 mod null_space;
+mod outputs;
 mod partition;
+mod readings;
 mod saddle;
 mod schedule;
 mod sheet;
@@ -72,6 +80,8 @@ pub struct Module {
     pub type_name: String,
     /// The text of the module's file.
     pub code: String,
+    /// The exact constant behind each literal of the code, one a line: `0.7071067811865476 = 1/2*sqrt(2)`.
+    pub constants: String,
 }
 
 impl Module {
@@ -117,6 +127,19 @@ pub fn generate(file_name: &str, text: &str) -> Result<Module, Error> {
     generate_model(file_name, &model)
 }
 
+/// The same for a page whose motions name tables: `load` gives the text of the file that the page calls by this name.
+///
+/// # Errors
+/// All mistakes on the page at once, or why no consistent start exists.
+pub fn generate_with(
+    file_name: &str,
+    text: &str,
+    load: &mut dyn FnMut(&str) -> Result<String, String>,
+) -> Result<Module, Error> {
+    let model = gyro_model::read_with(file_name, text, load).map_err(Error::Page)?;
+    generate_model(file_name, &model)
+}
+
 /// How eq. (17) is solved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Elimination {
@@ -142,6 +165,6 @@ pub fn generate_by(elimination: Elimination, file_name: &str, model: &Model) -> 
     let start = model.assemble().map_err(Error::Start)?;
     let equations = equations::Equations::derive(model, elimination);
     let type_name = module::type_name(&model.name);
-    let code = module::write(file_name, &type_name, &equations, &start);
-    Ok(Module { name: model.name.clone(), type_name, code })
+    let module::Text { code, constants } = module::write(file_name, &type_name, &equations, &start);
+    Ok(Module { name: model.name.clone(), type_name, code, constants })
 }

@@ -7,8 +7,8 @@
 //! spherical joint or a free body three are, so the fourth follows from the normalisation. The independent velocity of a
 //! revolute joint is the rate about its axis: holding a component of ṗ instead would let the parent's drift leak into a spin.
 
+use crate::closing::closing_rows;
 use crate::definitions::Expansion;
-use crate::dynamics::needs_chart;
 use crate::freedom::Freedom;
 use crate::graph::{ExprId, Graph};
 use crate::kinematics::Kinematics;
@@ -34,6 +34,20 @@ pub struct Partition {
 type Values = HashMap<Symbol, ExprId>;
 
 impl Partition {
+    /// Whether charts cover the mechanism: trees of revolute, spherical and fixed joints, and nothing that closes a loop.
+    pub fn covers(system: &System) -> bool {
+        let covered = |attachment: Attachment| match attachment {
+            Attachment::Free | Attachment::Constrained => true,
+            Attachment::Joint { joint, .. } => {
+                matches!(
+                    system.joints[joint].kind,
+                    JointKind::Revolute | JointKind::Spherical | JointKind::Fixed
+                )
+            }
+        };
+        system.tree.links.iter().all(|link| covered(link.attachment)) && closing_rows(system).is_empty()
+    }
+
     pub fn derive(system: &mut System, kinematics: &Kinematics) -> Self {
         let links = system.tree.links.clone();
         let mut blocks = Vec::new();
@@ -243,4 +257,13 @@ fn as_mat3(rows: &[Vec3]) -> Mat3 {
 
 fn as_vec3(rows: &[ExprId]) -> Vec3 {
     rows.try_into().expect("dot-1 rows and chart make three rows")
+}
+
+/// Whether a slot's attachment leaves its orientation partly free, so that it needs a chart.
+fn needs_chart(system: &System, attachment: Attachment) -> bool {
+    match attachment {
+        Attachment::Free => true,
+        Attachment::Constrained => false,
+        Attachment::Joint { joint, .. } => system.joints[joint].kind != JointKind::Fixed,
+    }
 }

@@ -9,6 +9,7 @@ use crate::definitions::Expansion;
 use crate::dynamics::Dynamics;
 use crate::graph::{ExprId, Graph};
 use crate::kinematics::{Kinematics, Matrix};
+use crate::ldl::Elimination;
 use crate::null_space::Solution;
 use crate::schedule::Operations;
 use crate::system::System;
@@ -43,7 +44,7 @@ const PREFERENCES: [Preference; 4] = [
     Preference::VelocitiesFirst,
 ];
 
-/// Solves eq. (17).
+/// Solves eq. (17) of a mechanism whose rows are all those of its trees' joints.
 pub fn solve(system: &mut System, kinematics: &Kinematics, dynamics: &Dynamics) -> Solution {
     let definitions = std::mem::take(&mut system.definitions);
     let mut expansion = Expansion::new(&definitions);
@@ -55,7 +56,7 @@ pub fn solve(system: &mut System, kinematics: &Kinematics, dynamics: &Dynamics) 
     let saddle = Saddle::new(&dynamics.mass_matrix, &phi_pi, &force, &gamma);
     let mut accelerations = saddle.solve(system);
     let lambda = accelerations.split_off(force.len());
-    Solution { accelerations, lambda }
+    Solution { accelerations, closing: Vec::new(), lambda }
 }
 
 impl Saddle {
@@ -82,11 +83,10 @@ impl Saddle {
     }
 
     fn eliminate(&self, graph: &mut Graph, places: &[Place], preference: Preference) -> Vec<ExprId> {
-        let mut elimination =
-            Elimination { entries: self.entries.clone(), rhs: self.rhs.clone(), columns: Vec::new() };
+        let mut elimination = Elimination::new(self.entries.clone(), self.rhs.clone());
         let mut remaining: Vec<usize> = (0..places.len()).collect();
         while !remaining.is_empty() {
-            let pivot = elimination.choose(places, &remaining, preference);
+            let pivot = choose(&elimination, places, &remaining, preference);
             remaining.retain(|&unknown| unknown != pivot);
             elimination.pivot(graph, pivot);
         }
@@ -121,104 +121,39 @@ impl Place {
 
 /// The slot of the body that hangs on a row: the child of its joint.
 fn child_slot(system: &System, owner: RowOwner) -> usize {
+    let hangs_on = |attachment: Attachment| match owner {
+        RowOwner::Joint(index) => matches!(attachment, Attachment::Joint { joint, .. } if joint == index),
+        _ => false,
+    };
     let body = match owner {
         RowOwner::Body(body) => body,
-        RowOwner::Joint(index) => {
-            let link =
-                system.tree.links.iter().find(
-                    |link| matches!(link.attachment, Attachment::Joint { joint, .. } if joint == index),
-                );
+        _ => {
+            let link = system.tree.links.iter().find(|link| hangs_on(link.attachment));
             link.expect("every joint of a tree leads to a body").body
         }
     };
     system.slot_of(body).expect("a body with rows has coordinates")
 }
 
-/// One column of L with its pivot.
-#[derive(Debug)]
-struct Column {
-    pivot: usize,
-    inverse: ExprId,
-    below: Vec<(usize, ExprId)>,
-}
-
-#[derive(Debug)]
-struct Elimination {
-    entries: BTreeMap<(usize, usize), ExprId>,
-    rhs: Vec<ExprId>,
-    columns: Vec<Column>,
-}
-
-impl Elimination {
-    fn neighbours(&self, unknown: usize) -> Vec<(usize, ExprId)> {
-        let row = self.entries.range((unknown, 0)..(unknown, unknown)).map(|(&(_, column), &v)| (column, v));
-        let column = self.entries.iter().filter(|((r, c), _)| *c == unknown && *r > unknown);
-        row.chain(column.map(|(&(row, _), &v)| (row, v))).collect()
-    }
-
-    /// The next pivot among those that the safe-order rule admits.
-    fn choose(&self, places: &[Place], remaining: &[usize], preference: Preference) -> usize {
-        let safe = |unknown: usize| {
-            let place = places[unknown];
-            let waits = |&other: &usize| !places[other].is_multiplier && places[other].slot == place.slot;
-            !place.is_multiplier || !remaining.iter().any(waits)
-        };
-        let key = |unknown: usize| {
-            let place = places[unknown];
-            let body = (place.from_leaf, usize::from(place.is_multiplier));
-            match preference {
-                Preference::FewestNeighbours => (self.neighbours(unknown).len(), body.0, body.1),
-                Preference::LeafToRoot => (body.0, body.1, 0),
-                Preference::LeafToRootRotationsFirst => (body.0, body.1, usize::from(!place.is_rotation)),
-                Preference::VelocitiesFirst => (body.1, body.0, 0),
-            }
-        };
-        let admitted = remaining.iter().copied().filter(|&unknown| safe(unknown));
-        admitted.min_by_key(|&unknown| (key(unknown), unknown)).expect("a velocity is always safe")
-    }
-
-    /// K_ij −= l_i K_jp, b_i −= l_i b_p with l_i = K_ip / d.
-    fn pivot(&mut self, graph: &mut Graph, pivot: usize) {
-        let diagonal = self.entries.remove(&(pivot, pivot)).unwrap_or(Graph::ZERO);
-        let inverse = graph.recip(diagonal);
-        let column = self.neighbours(pivot);
-        self.entries.retain(|&(row, column), _| row != pivot && column != pivot);
-        let mut below = Vec::new();
-        for (position, &(i, value)) in column.iter().enumerate() {
-            let factor = graph.mul(value, inverse);
-            for &(j, other) in &column[..=position] {
-                self.subtract(graph, i.max(j), i.min(j), factor, other);
-            }
-            let moved = graph.mul(factor, self.rhs[pivot]);
-            self.rhs[i] = graph.sub(self.rhs[i], moved);
-            below.push((i, factor));
+/// The next pivot among those that the safe-order rule admits.
+fn choose(elimination: &Elimination, places: &[Place], remaining: &[usize], preference: Preference) -> usize {
+    let safe = |unknown: usize| {
+        let place = places[unknown];
+        let waits = |&other: &usize| !places[other].is_multiplier && places[other].slot == place.slot;
+        !place.is_multiplier || !remaining.iter().any(waits)
+    };
+    let key = |unknown: usize| {
+        let place = places[unknown];
+        let body = (place.from_leaf, usize::from(place.is_multiplier));
+        match preference {
+            Preference::FewestNeighbours => (elimination.neighbours(unknown).len(), body.0, body.1),
+            Preference::LeafToRoot => (body.0, body.1, 0),
+            Preference::LeafToRootRotationsFirst => (body.0, body.1, usize::from(!place.is_rotation)),
+            Preference::VelocitiesFirst => (body.1, body.0, 0),
         }
-        self.columns.push(Column { pivot, inverse, below });
-    }
-
-    fn subtract(&mut self, graph: &mut Graph, row: usize, column: usize, factor: ExprId, value: ExprId) {
-        let product = graph.mul(factor, value);
-        let old = self.entries.get(&(row, column)).copied().unwrap_or(Graph::ZERO);
-        let new = graph.sub(old, product);
-        if new == Graph::ZERO {
-            self.entries.remove(&(row, column));
-        } else {
-            self.entries.insert((row, column), new);
-        }
-    }
-
-    /// x_p = b_p / d − Σ l_i x_i, last pivot first.
-    fn substitute_back(mut self, graph: &mut Graph) -> Vec<ExprId> {
-        for Column { pivot, inverse, below } in self.columns.iter().rev() {
-            let mut x = graph.mul(self.rhs[*pivot], *inverse);
-            for &(i, factor) in below {
-                let product = graph.mul(factor, self.rhs[i]);
-                x = graph.sub(x, product);
-            }
-            self.rhs[*pivot] = x;
-        }
-        self.rhs
-    }
+    };
+    let admitted = remaining.iter().copied().filter(|&unknown| safe(unknown));
+    admitted.min_by_key(|&unknown| (key(unknown), unknown)).expect("a velocity is always safe")
 }
 
 #[cfg(test)]
@@ -274,11 +209,11 @@ mod tests {
         let system = System::new(&model);
         let (n, n_rows) = (6 * system.slots.len(), model.rows().len());
         let places: Vec<_> = (0..n + n_rows).map(|unknown| Place::of(&system, unknown)).collect();
-        let elimination = Elimination { entries: BTreeMap::new(), rhs: Vec::new(), columns: Vec::new() };
+        let elimination = Elimination::new(BTreeMap::new(), Vec::new());
         for preference in PREFERENCES {
             let mut remaining: Vec<usize> = (0..places.len()).collect();
             while !remaining.is_empty() {
-                let pivot = elimination.choose(&places, &remaining, preference);
+                let pivot = choose(&elimination, &places, &remaining, preference);
                 remaining.retain(|&unknown| unknown != pivot);
                 let child = |unknown: &usize| {
                     !places[*unknown].is_multiplier && places[*unknown].slot == places[pivot].slot

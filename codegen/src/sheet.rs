@@ -4,7 +4,7 @@ use crate::equations::Equations;
 use crate::functions::Functions;
 use crate::graph::Graph;
 use crate::schedule::Operations;
-use gyro_model::{Model, Support};
+use gyro_model::{Model, RowOwner, Support};
 use std::fmt::Write;
 
 /// The first lines of the file.
@@ -29,7 +29,7 @@ fn lines(equations: &Equations, functions: &Functions) -> Vec<String> {
             7 * n,
             rows + n
         ),
-        format!("* degrees of freedom: {}", 6 * n - rows),
+        format!("* degrees of freedom: {}", (6 * n).saturating_sub(rows)),
         format!("* unknowns of eq. (17): {}", 6 * n + rows),
         format!(
             "* non-zeros: Φ_q {} of {}, (Φ_r, Φ_π') {} of {}",
@@ -69,9 +69,16 @@ fn left_out(model: &Model) -> Vec<String> {
     let mut left_out: Vec<String> = model
         .bodies
         .iter()
-        .filter(|body| body.support == Support::Fixed)
-        .map(|body| format!("coordinates of `{}` (fixed: folded into constants)", body.name))
+        .filter_map(|body| match body.support {
+            Support::Fixed => Some(format!("coordinates of `{}` (fixed: folded into constants)", body.name)),
+            Support::Driven => Some(format!("coordinates of `{}` (driven: a function of time)", body.name)),
+            _ => None,
+        })
         .collect();
+    left_out.extend(model.redundant.iter().map(|redundant| {
+        let (owner, index) = (owner_name(model, redundant.row.owner), redundant.row.index + 1);
+        format!("row {index} of {owner} (redundant)")
+    }));
     if model.gravity.iter().all(gyro_model::Number::is_zero) {
         left_out.push("gravity".into());
     }
@@ -79,4 +86,13 @@ fn left_out(model: &Model) -> Vec<String> {
         left_out.push("the work of non-conservative forces (there are none)".into());
     }
     left_out
+}
+
+fn owner_name(model: &Model, owner: RowOwner) -> String {
+    match owner {
+        RowOwner::Body(body) => format!("body `{}`", model.bodies[body].name),
+        RowOwner::Joint(joint) => format!("joint `{}`", model.joints[joint].name),
+        RowOwner::Coupler(coupler) => format!("coupler `{}`", model.couplers[coupler].name),
+        RowOwner::Driver(driver) => format!("driver `{}`", model.drivers[driver].name),
+    }
 }

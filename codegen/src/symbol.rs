@@ -17,6 +17,19 @@ pub enum Symbol {
     Chart { chart: usize, k: usize },
     /// A tunable number of the model.
     Parameter(usize),
+    /// A number that the caller sets at every step.
+    Input(usize),
+    /// The turn reference of an angle, by its place in `Model::turn_references`: part of the state, and constant in all
+    /// derivatives (the angle that it serves does not depend on it).
+    Turn(usize),
+    /// The continuous angle of that place, defined by its reference and the principal angle.
+    Angle(usize),
+    /// Value (order 0) or a derivative of a table's curve at t.
+    Table { table: usize, order: usize },
+    /// Component of (s̈, ẇ') of a slot, where accelerations are known.
+    Acceleration { slot: usize, k: usize },
+    /// Multiplier of a row that closes a loop, where accelerations are known.
+    Closing(usize),
     /// Entry of A(p), defined by eq. (3).
     Rotation { slot: usize, row: usize, column: usize },
     /// Entry of A_iᵀ A_j between a joint's first and second body, eq. (4).

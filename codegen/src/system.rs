@@ -1,10 +1,11 @@
 //! A model lowered to expressions: poses, joint frames, masses. Fixed bodies are constants, the others symbols.
 
+use crate::coordinate;
 use crate::definitions::Definitions;
 use crate::graph::{ExprId, Graph};
 use crate::linear::{Mat3, UNIT3, Vec3, Vec4, ZERO3};
 use crate::symbol::Symbol;
-use gyro_model::{JointEnd, JointKind, Model, Number, Tree};
+use gyro_model::{JointCoordinate, JointEnd, JointKind, Model, Number, Spline, Tree};
 use std::array::from_fn;
 use std::collections::BTreeMap;
 
@@ -41,6 +42,9 @@ pub struct JointFrames {
     pub second: End,
     /// A_iᵀ A_j: entries are symbols.
     pub relative: Mat3,
+    /// Screw: advance per radian. Rod: length.
+    pub lead: ExprId,
+    pub length: ExprId,
 }
 
 /// The model with its graph.
@@ -56,17 +60,51 @@ pub struct System<'m> {
     pub poses: Vec<Pose>,
     /// One for each joint of the model.
     pub joints: Vec<JointFrames>,
+    /// Tables of prescribed motions.
+    pub tables: Vec<&'m Spline>,
+    /// The angles that something acts on.
+    turns: Vec<JointCoordinate>,
 }
 
 impl<'m> System<'m> {
     pub fn new(model: &'m Model) -> Self {
         let (slots, tree) = (model.coordinate_bodies(), Tree::of(model));
-        let (graph, definitions) = (Graph::new(), Definitions::default());
-        let mut system =
-            Self { model, tree, graph, definitions, slots, poses: Vec::new(), joints: Vec::new() };
+        let mut system = Self {
+            model,
+            tree,
+            graph: Graph::new(),
+            definitions: Definitions::default(),
+            slots,
+            poses: Vec::new(),
+            joints: Vec::new(),
+            tables: Vec::new(),
+            turns: model.turn_references(),
+        };
         system.poses = (0..model.bodies.len()).map(|body| system.pose(body)).collect();
         system.joints = (0..model.joints.len()).map(|joint| system.joint_frames(joint)).collect();
+        system.define_angles();
         system
+    }
+
+    /// The place of an angle among `Model::turn_references`.
+    pub fn turn_of(&self, angle: JointCoordinate) -> usize {
+        self.turns.iter().position(|&known| known == angle).expect("acting on an angle gives it a reference")
+    }
+
+    /// Each continuous angle: its reference and the principal angle that is left once the frame is turned back by it.
+    fn define_angles(&mut self) {
+        for (turn, angle) in self.turns.clone().into_iter().enumerate() {
+            let (joint, kind) = (self.joints[angle.joint], self.model.coordinate_kind(angle));
+            let graph = &mut self.graph;
+            let (sine, cosine) = coordinate::sine_and_cosine(graph, kind, &joint, &joint.relative);
+            let reference = graph.symbol(Symbol::Turn(turn));
+            let (sin, cos) = (graph.sin(reference), graph.cos(reference));
+            let (minus_sin, point) = (graph.neg(sin), [cosine, sine]);
+            let (across, along) = (graph.dot(&point, &[minus_sin, cos]), graph.dot(&point, &[cos, sin]));
+            let rest = graph.atan2(across, along);
+            let angle = graph.add(reference, rest);
+            self.definitions.insert_angle(turn, angle, (sine, cosine));
+        }
     }
 
     pub fn slot_of(&self, body: usize) -> Option<usize> {
@@ -79,6 +117,10 @@ impl<'m> System<'m> {
             Number::Exact(value) => self.graph.rational(value.clone()),
             Number::Parameter { index, negated } => {
                 let symbol = self.graph.symbol(Symbol::Parameter(*index));
+                if *negated { self.graph.neg(symbol) } else { symbol }
+            }
+            Number::Input { index, negated } => {
+                let symbol = self.graph.symbol(Symbol::Input(*index));
                 if *negated { self.graph.neg(symbol) } else { symbol }
             }
         }
@@ -99,9 +141,10 @@ impl<'m> System<'m> {
     }
 
     fn pose(&mut self, body: usize) -> Pose {
-        match self.slot_of(body) {
-            Some(slot) => self.moving_pose(slot),
-            None => self.fixed_pose(body),
+        match (self.slot_of(body), &self.model.bodies[body].motion) {
+            (Some(slot), _) => self.moving_pose(slot),
+            (None, Some(motion)) => self.driven_pose(body, motion),
+            (None, None) => self.fixed_pose(body),
         }
     }
 
@@ -138,10 +181,11 @@ impl<'m> System<'m> {
         let description = &self.model.joints[joint];
         let (first, second) = (self.end(&description.first), self.end(&description.second));
         let relative = self.relative_rotation(joint, first.body, second.body);
-        JointFrames { kind: description.kind, first, second, relative }
+        let [lead, length] = [&description.lead, &description.length].map(|number| self.number(number));
+        JointFrames { kind: description.kind, first, second, relative, lead, length }
     }
 
-    /// A_iᵀ A_j, eq. (4). Against a fixed body it is no quantity of its own.
+    /// A_iᵀ A_j, eq. (4). Against a body without coordinates it is no quantity of its own.
     fn relative_rotation(&mut self, joint: usize, first: usize, second: usize) -> Mat3 {
         let (a_i, a_j) = (self.poses[first].a, self.poses[second].a);
         let both_move = self.slot_of(first).is_some() && self.slot_of(second).is_some();

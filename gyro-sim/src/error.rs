@@ -6,7 +6,7 @@ use core::fmt;
 /// A failure of a run, with the time and the number that failed. The run has not gone on past it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Error {
-    /// The state is no longer finite: the step is too large for the motion, or the start was not finite.
+    /// The state is no longer finite: the step is too large for the motion, the pose is singular, or the start was not finite.
     NotFinite {
         /// Time, s.
         t: f64,
@@ -28,6 +28,20 @@ pub enum Error {
         t: f64,
         /// The pivot that vanished.
         pivot: f64,
+        /// Whose constraint depends on others there, where that is known.
+        owner: Option<Owner>,
+    },
+    /// A correction would change the dependent positions by so much that the solution need not be the one nearby: it may be
+    /// another way to assemble the mechanism, in which the run must not go on.
+    Jump {
+        /// Time, s.
+        t: f64,
+        /// Largest change of a dependent coordinate (lengths divided by the mechanism's size).
+        change: f64,
+        /// The largest change that is safe in this pose; it shrinks to zero towards a singular one.
+        limit: f64,
+        /// Whose constraint was violated most.
+        owner: Owner,
     },
 }
 
@@ -40,9 +54,17 @@ impl fmt::Display for Error {
             Self::NoConvergence { t, violation, owner } => {
                 write!(f, "at t = {t} s the constraints of {owner:?} cannot be met: violation {violation:e}")
             }
-            Self::Singular { t, pivot } => {
+            Self::Singular { t, pivot, owner: None } => {
                 write!(f, "at t = {t} s the dependent coordinates are singular: pivot {pivot:e}")
             }
+            Self::Singular { t, pivot, owner: Some(owner) } => {
+                write!(f, "at t = {t} s the constraints of {owner:?} depend on others: pivot {pivot:e}")
+            }
+            Self::Jump { t, change, limit, owner } => write!(
+                f,
+                "at t = {t} s the constraints of {owner:?} need a change of {change:e} where {limit:e} is safe: it may lead to \
+                 another branch"
+            ),
         }
     }
 }

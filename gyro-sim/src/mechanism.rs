@@ -14,7 +14,7 @@ impl<T, B: Clone + Debug + AsRef<[T]> + AsMut<[T]>> Storage<T> for B {}
 pub trait Ode {
     /// The number type.
     type Scalar: Scalar;
-    /// The state y; for mechanisms `(q, v [, work])`, see the crate's conventions.
+    /// The state y; for mechanisms `(q, v [, work] [, turn references])`, see the crate's conventions.
     type State: Storage<Self::Scalar>;
 
     /// The state at the start.
@@ -29,7 +29,7 @@ pub trait Mechanism: Ode {
     type Rows: Storage<Self::Scalar>;
     /// One scalar for each joint row, then one for each body's normalisation.
     type Constraints: Storage<Self::Scalar>;
-    /// Raw joint coordinates, joint after joint: see [`Coordinate`].
+    /// Raw joint coordinates, joint after joint and coordinate after coordinate: see [`Coordinate`].
     type Readings: Storage<Self::Scalar>;
 
     /// Zeroed buffer.
@@ -44,9 +44,9 @@ pub trait Mechanism: Ode {
     /// Writes `Φ_r s + Φ_π' w' − ν`, the residual of eq. (18).
     fn velocity_residual(&self, t: Self::Scalar, y: &Self::State, out: &mut Self::Rows);
     /// Kinetic and potential energy, J.
-    fn energy(&self, y: &Self::State) -> Energy<Self::Scalar>;
+    fn energy(&self, t: Self::Scalar, y: &Self::State) -> Energy<Self::Scalar>;
     /// Writes the raw joint coordinates and rates.
-    fn read_joints(&self, y: &Self::State, out: &mut Self::Readings);
+    fn read_joints(&self, t: Self::Scalar, y: &Self::State, out: &mut Self::Readings);
 
     /// Number of bodies with coordinates.
     fn n_bodies(&self) -> usize;
@@ -54,8 +54,12 @@ pub trait Mechanism: Ode {
     fn n_joints(&self) -> usize;
     /// Name of a body with coordinates.
     fn body_name(&self, body: usize) -> &str;
-    /// Name and coordinate of a joint.
+    /// Name and coordinates of a joint.
     fn joint(&self, joint: usize) -> JointInfo<'_>;
+    /// Name of a coupler of two joint coordinates.
+    fn coupler_name(&self, coupler: usize) -> &str;
+    /// Name of a driver of a joint coordinate.
+    fn driver_name(&self, driver: usize) -> &str;
     /// What a joint row measures.
     fn row(&self, row: usize) -> RowInfo;
     /// A length typical of the mechanism, m, by which violations of length rows are divided.
@@ -105,6 +109,9 @@ pub trait Equations: Mechanism {
     type PhiQ: Storage<Self::Scalar>;
     /// The non-zeros of (Φ_r, Φ_π').
     type PhiPi: Storage<Self::Scalar>;
+    /// The accelerations `(s̈, ẇ')` body after body, and after them whatever [`Equations::multipliers`] needs to go on from
+    /// there; possibly nothing.
+    type Accelerations: Storage<Self::Scalar>;
 
     /// Zeroed buffer.
     fn velocities(&self) -> Self::Velocities;
@@ -112,6 +119,8 @@ pub trait Equations: Mechanism {
     fn phi_q_values(&self) -> Self::PhiQ;
     /// Zeroed buffer.
     fn phi_pi_values(&self) -> Self::PhiPi;
+    /// Zeroed buffer.
+    fn accelerations_buffer(&self) -> Self::Accelerations;
     /// Row and column of each non-zero of Φ_q, row by row.
     fn phi_q_pattern(&self) -> &[(u16, u16)];
     /// Row and column of each non-zero of (Φ_r, Φ_π'), row by row.
@@ -127,14 +136,51 @@ pub trait Equations: Mechanism {
     fn gamma(&self, t: Self::Scalar, y: &Self::State, out: &mut Self::Rows);
     /// Writes `(f, n' − w̃'J'w')`, body after body.
     fn applied_force(&self, t: Self::Scalar, y: &Self::State, out: &mut Self::Velocities);
-    /// Solves eq. (17): accelerations `(s̈, ẇ')` and multipliers λ.
-    fn accelerations(
+    /// Solves eq. (17) for the accelerations `(s̈, ẇ')`.
+    fn accelerations(&self, t: Self::Scalar, y: &Self::State, out: &mut Self::Accelerations);
+    /// Solves eq. (17) for the multipliers λ of all joint rows, at accelerations that [`Equations::accelerations`] has found
+    /// at the same time and state.
+    fn multipliers(
         &self,
         t: Self::Scalar,
         y: &Self::State,
-        out: &mut Self::Velocities,
+        accelerations: &Self::Accelerations,
         lambda: &mut Self::Rows,
     );
+}
+
+/// What goes in at every step and what comes out besides the motion: a mechanism's inputs (motor torques) and the outputs
+/// that its page asks for.
+pub trait Ports: Mechanism {
+    /// One scalar for each number of each output.
+    type Outputs: Storage<Self::Scalar>;
+
+    /// Zeroed buffer.
+    fn outputs_buffer(&self) -> Self::Outputs;
+    /// Writes all outputs, with the inputs as they are set.
+    fn outputs(&self, t: Self::Scalar, y: &Self::State, out: &mut Self::Outputs);
+    /// Number of numbers in the outputs.
+    fn n_outputs(&self) -> usize;
+    /// What a number of the outputs is; all of it empty for one that does not exist.
+    fn output(&self, index: usize) -> OutputInfo<'_>;
+
+    /// Number of inputs.
+    fn n_inputs(&self) -> usize;
+    /// Name of an input; empty for one that does not exist.
+    fn input_name(&self, index: usize) -> &str;
+    /// Sets an input until it is set anew; returns whether there is one of this index.
+    fn set_input(&mut self, index: usize, value: Self::Scalar) -> bool;
+}
+
+/// One number of the outputs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct OutputInfo<'a> {
+    /// The output's name on the model page.
+    pub name: &'a str,
+    /// Which of the output's numbers it is; empty for an output of a single number.
+    pub suffix: &'a str,
+    /// Its unit; empty for a pure number.
+    pub unit: &'a str,
 }
 
 /// Energy of a state, J.
@@ -142,7 +188,7 @@ pub trait Equations: Mechanism {
 pub struct Energy<T> {
     /// ½ Σ (sᵀ m s + w'ᵀ J' w').
     pub kinetic: T,
-    /// −Σ m gᵀ r.
+    /// −Σ m gᵀ r, and the energy of springs.
     pub potential: T,
 }
 
@@ -153,26 +199,33 @@ impl<T: Scalar> Energy<T> {
     }
 }
 
-/// Name and coordinate of a joint.
+/// Name and coordinates of a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct JointInfo<'a> {
     /// The name on the model page.
     pub name: &'a str,
-    /// What its readings are.
-    pub coordinate: Coordinate,
+    /// What its readings are, coordinate after coordinate; empty for a joint that does not move, or a rod.
+    pub coordinates: &'a [Coordinate],
 }
 
-/// What the readings of a joint are.
+impl JointInfo<'_> {
+    /// Number of raw readings of all its coordinates.
+    pub fn n_readings(&self) -> usize {
+        self.coordinates.iter().map(|coordinate| coordinate.n_readings()).sum()
+    }
+}
+
+/// What the readings of a joint's coordinate are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coordinate {
     /// Three readings: proportional to the sine and cosine of the angle by the same positive factor, and the rate,
     /// rad/s.
     Angle,
+    /// Two readings: a length, m, and its rate, m/s.
+    Length,
     /// Seven readings: Euler parameters of the second body's frame in the first's, and the second body's angular
     /// velocity relative to the first, in the second body's frame, rad/s.
     Orientation,
-    /// No readings.
-    None,
 }
 
 impl Coordinate {
@@ -180,8 +233,8 @@ impl Coordinate {
     pub const fn n_readings(self) -> usize {
         match self {
             Self::Angle => 3,
+            Self::Length => 2,
             Self::Orientation => 7,
-            Self::None => 0,
         }
     }
 }
@@ -202,4 +255,8 @@ pub enum Owner {
     Body(u16),
     /// A joint, by its index.
     Joint(u16),
+    /// A coupler of two joint coordinates, by its index.
+    Coupler(u16),
+    /// A driver of a joint coordinate, by its index.
+    Driver(u16),
 }

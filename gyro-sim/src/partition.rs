@@ -56,7 +56,7 @@ const MAX_ITERATIONS: u32 = 10;
 const CONVERGED_EPSILONS: f64 = 16.0;
 
 impl<M: Partition> Partitioned<M> {
-    /// A solver that starts with the best choice of independent coordinates at `state`.
+    /// A solver that starts with the best choice of independent coordinates at `state` and time zero.
     pub fn new(mechanism: &M, state: &M::State) -> Self {
         Self::with_independent(mechanism, state, mechanism.independent(M::Scalar::constant(0.0), state))
     }

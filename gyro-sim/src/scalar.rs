@@ -1,5 +1,6 @@
 //! What a number must offer: little for the generated kernels, a little more for the solvers around them.
 
+use crate::spline;
 use core::fmt::Debug;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -26,6 +27,16 @@ pub trait Scalar:
     /// Cosine.
     #[must_use]
     fn cos(self) -> Self;
+    /// Hyperbolic tangent.
+    #[must_use]
+    fn tanh(self) -> Self;
+    /// The angle of the point `(x, self)`, in `(−π, π]`.
+    #[must_use]
+    fn atan2(self, x: Self) -> Self;
+    /// Value, first and second derivative of a table's smooth curve at this time: see [`spline`](mod@crate::spline). Lanes of a
+    /// pack may lie in different pieces.
+    #[must_use]
+    fn spline(self, knots: &[f64], pieces: &[[f64; 4]]) -> [Self; 3];
 }
 
 /// A scalar on which a solver can decide.
@@ -35,9 +46,6 @@ pub trait Real: Scalar + PartialOrd {
     /// Absolute value.
     #[must_use]
     fn abs(self) -> Self;
-    /// The angle of the point `(x, self)`, in `(−π, π]`.
-    #[must_use]
-    fn atan2(self, x: Self) -> Self;
     /// The nearest integer.
     #[must_use]
     fn round(self) -> Self;
@@ -64,6 +72,18 @@ impl Scalar for f64 {
     fn cos(self) -> Self {
         libm::cos(self)
     }
+    #[inline]
+    fn tanh(self) -> Self {
+        libm::tanh(self)
+    }
+    #[inline]
+    fn atan2(self, x: Self) -> Self {
+        libm::atan2(self, x)
+    }
+    #[inline]
+    fn spline(self, knots: &[f64], pieces: &[[f64; 4]]) -> [Self; 3] {
+        spline::evaluate(knots, pieces, self)
+    }
 }
 
 impl Real for f64 {
@@ -71,10 +91,6 @@ impl Real for f64 {
     #[inline]
     fn abs(self) -> Self {
         libm::fabs(self)
-    }
-    #[inline]
-    fn atan2(self, x: Self) -> Self {
-        libm::atan2(self, x)
     }
     #[inline]
     fn round(self) -> Self {
@@ -108,6 +124,19 @@ impl Scalar for f32 {
     fn cos(self) -> Self {
         libm::cosf(self)
     }
+    #[inline]
+    fn tanh(self) -> Self {
+        libm::tanhf(self)
+    }
+    #[inline]
+    fn atan2(self, x: Self) -> Self {
+        libm::atan2f(self, x)
+    }
+    #[inline]
+    fn spline(self, knots: &[f64], pieces: &[[f64; 4]]) -> [Self; 3] {
+        // Times of a long table differ by less than an f32 can tell.
+        spline::evaluate(knots, pieces, f64::from(self)).map(Self::constant)
+    }
 }
 
 impl Real for f32 {
@@ -115,10 +144,6 @@ impl Real for f32 {
     #[inline]
     fn abs(self) -> Self {
         libm::fabsf(self)
-    }
-    #[inline]
-    fn atan2(self, x: Self) -> Self {
-        libm::atan2f(self, x)
     }
     #[inline]
     fn round(self) -> Self {

@@ -2,7 +2,7 @@
 
 use crate::{Coordinate, Mechanism, Real, Scalar};
 
-/// One joint's coordinate and rate.
+/// One coordinate of a joint and its rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum JointCoordinate<T> {
     /// Continuous angle, rad, positive by the right-hand rule from the first body to the second, and its rate.
@@ -12,6 +12,13 @@ pub enum JointCoordinate<T> {
         /// Rate, rad/s.
         rate: T,
     },
+    /// Displacement from the first body's joint point to the second's, and its rate.
+    Length {
+        /// Displacement, m.
+        position: T,
+        /// Rate, m/s.
+        rate: T,
+    },
     /// Relative orientation, and the relative angular velocity in the second body's frame.
     Orientation {
         /// Euler parameters.
@@ -19,37 +26,36 @@ pub enum JointCoordinate<T> {
         /// Angular velocity, rad/s.
         rate: [T; 3],
     },
-    /// A joint that does not move.
-    None,
 }
 
-/// The turn reference of each angle: the coordinate when it was last read. Held beside the state by the caller, in a
-/// buffer of the readings' own type.
+/// The joint coordinates when they were last read, angles continuous over turns. Held beside the state by the caller, in
+/// buffers of the readings' own type.
 ///
 /// An angle is continued from the last reading by the mean of the two rates, so it may turn many times between readings as
 /// long as that mean predicts it to within half a turn.
 #[derive(Clone, Debug)]
 pub struct Turns<M: Mechanism> {
     readings: M::Readings,
-    /// For each angle joint, at the place of its raw sine: the continuous angle; at its raw rate: the rate.
+    /// For each angle, at the place of its raw sine: the continuous angle; at its raw rate: the rate.
     last: M::Readings,
 }
 
 impl<M: Mechanism<Scalar: Real>> Turns<M> {
-    /// Takes the angles of a state to lie nearest to the given ones; joints that `nearest` does not cover to zero.
-    pub fn new(mechanism: &M, y: &M::State, nearest: &[M::Scalar]) -> Self {
+    /// Takes the angles of a state at time `t` to lie nearest to the given ones, one number for each coordinate, joint after
+    /// joint (those of lengths and orientations are not looked at); angles that `nearest` does not cover to zero.
+    pub fn new(mechanism: &M, t: M::Scalar, y: &M::State, nearest: &[M::Scalar]) -> Self {
         let mut turns = Self { readings: mechanism.readings(), last: mechanism.readings() };
-        mechanism.read_joints(y, &mut turns.readings);
+        mechanism.read_joints(t, y, &mut turns.readings);
         let zero = M::Scalar::constant(0.0);
-        for_each_angle(mechanism, |joint, at| {
-            turns.continue_angle(at, nearest.get(joint).copied().unwrap_or(zero));
+        for_each_angle(mechanism, |index, at| {
+            turns.continue_angle(at, nearest.get(index).copied().unwrap_or(zero));
         });
         turns
     }
 
-    /// Reads the state `dt` seconds after the last reading.
-    pub fn update(&mut self, mechanism: &M, dt: M::Scalar, y: &M::State) {
-        mechanism.read_joints(y, &mut self.readings);
+    /// Reads the state at time `t`, `dt` seconds after the last reading.
+    pub fn update(&mut self, mechanism: &M, t: M::Scalar, dt: M::Scalar, y: &M::State) {
+        mechanism.read_joints(t, y, &mut self.readings);
         for_each_angle(mechanism, |_, at| {
             let (last, readings) = (self.last.as_ref(), self.readings.as_ref());
             let mean_rate = (last[at + 2] + readings[at + 2]) * M::Scalar::constant(0.5);
@@ -57,14 +63,28 @@ impl<M: Mechanism<Scalar: Real>> Turns<M> {
         });
     }
 
-    /// The coordinate of a joint at the last reading; [`JointCoordinate::None`] also for a joint that does not exist.
-    pub fn joint(&self, mechanism: &M, joint: usize) -> JointCoordinate<M::Scalar> {
-        let at =
-            (0..joint.min(mechanism.n_joints())).map(|j| mechanism.joint(j).coordinate.n_readings()).sum();
-        match mechanism_coordinate(mechanism, joint) {
+    /// A coordinate of a joint at the last reading; `None` for one that does not exist.
+    pub fn coordinate(
+        &self,
+        mechanism: &M,
+        joint: usize,
+        index: usize,
+    ) -> Option<JointCoordinate<M::Scalar>> {
+        if joint >= mechanism.n_joints() {
+            return None;
+        }
+        let before: usize = (0..joint).map(|j| mechanism.joint(j).n_readings()).sum();
+        let coordinates = mechanism.joint(joint).coordinates;
+        let kind = coordinates.get(index)?;
+        let at = before + coordinates[..index].iter().map(|c| c.n_readings()).sum::<usize>();
+        Some(match kind {
             Coordinate::Angle => {
                 let last = self.last.as_ref();
                 JointCoordinate::Angle { position: last[at], rate: last[at + 2] }
+            }
+            Coordinate::Length => {
+                let readings = self.readings.as_ref();
+                JointCoordinate::Length { position: readings[at], rate: readings[at + 1] }
             }
             Coordinate::Orientation => {
                 let values = &self.readings.as_ref()[at..at + 7];
@@ -73,8 +93,7 @@ impl<M: Mechanism<Scalar: Real>> Turns<M> {
                     rate: core::array::from_fn(|k| values[4 + k]),
                 }
             }
-            Coordinate::None => JointCoordinate::None,
-        }
+        })
     }
 
     fn continue_angle(&mut self, at: usize, predicted: M::Scalar) {
@@ -88,18 +107,16 @@ impl<M: Mechanism<Scalar: Real>> Turns<M> {
     }
 }
 
-fn mechanism_coordinate<M: Mechanism>(mechanism: &M, joint: usize) -> Coordinate {
-    if joint < mechanism.n_joints() { mechanism.joint(joint).coordinate } else { Coordinate::None }
-}
-
-/// Calls `f` with the joint and the place of its readings for each joint that has an angle.
+/// Calls `f` with the index among all coordinates and the place of its readings for each angle.
 fn for_each_angle<M: Mechanism>(mechanism: &M, mut f: impl FnMut(usize, usize)) {
-    let mut at = 0;
+    let (mut index, mut at) = (0, 0);
     for joint in 0..mechanism.n_joints() {
-        let coordinate = mechanism.joint(joint).coordinate;
-        if coordinate == Coordinate::Angle {
-            f(joint, at);
+        for coordinate in mechanism.joint(joint).coordinates {
+            if *coordinate == Coordinate::Angle {
+                f(index, at);
+            }
+            index += 1;
+            at += coordinate.n_readings();
         }
-        at += coordinate.n_readings();
     }
 }

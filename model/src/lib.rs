@@ -10,23 +10,36 @@
 
 mod assemble;
 mod diagnostics;
+mod elements;
+mod kinematics;
+mod motion;
 mod number;
 mod parse;
+mod redundancy;
 mod spatial;
+mod spline;
 mod tree;
 mod validate;
 
-pub use assemble::{AssemblyError, JointStart, Start};
+pub use assemble::{AssemblyError, JointStart, Move, Start};
 pub use diagnostics::{Diagnostic, Diagnostics, Related};
+pub use elements::{
+    CoordinateKind, Coupler, Driver, Force, ForceKind, JointCoordinate, LoadFrame, Output, OutputKind,
+    StopSide,
+};
+pub use kinematics::Kinematics;
+pub use motion::{BodyMotion, Motion, Prescribed};
 pub use number::{Number, Rational, parse_decimal, to_f64};
-pub use parse::read;
+pub use parse::{read, read_with};
+pub use redundancy::{Analysis, analyse};
 pub use spatial::{Quaternion, Vector};
+pub use spline::Spline;
 pub use tree::{Attachment, Link, Tree};
 
 use std::ops::Range;
 
 /// A mechanism as its page describes it, checked: indices are in range, axes are not zero, inertias are physical and
-/// the bodies form trees rooted in a fixed or a free body.
+/// every body that moves is connected to a fixed, a driven or a free one.
 #[derive(Clone, Debug)]
 pub struct Model {
     /// Name of the mechanism, an identifier in `snake_case`, used for the generated module.
@@ -35,10 +48,22 @@ pub struct Model {
     pub gravity: [Number; 3],
     /// The numbers that stay tunable, in the order of the page.
     pub parameters: Vec<Parameter>,
+    /// Numbers that the caller sets at every step (motor torques), with their values until then. Only forces use them.
+    pub inputs: Vec<Parameter>,
     /// All bodies, fixed ones included, in the order of the page.
     pub bodies: Vec<Body>,
     /// All joints in the order of the page.
     pub joints: Vec<Joint>,
+    /// Gears and other couplings of two joint coordinates.
+    pub couplers: Vec<Coupler>,
+    /// Joint coordinates prescribed in time.
+    pub drivers: Vec<Driver>,
+    /// Forces besides gravity and the joints' own friction.
+    pub forces: Vec<Force>,
+    /// What is to be computed besides the motion.
+    pub outputs: Vec<Output>,
+    /// Constraint rows that depend on others and were dropped: found by rank when the page was read.
+    pub redundant: Vec<RedundantRow>,
     /// How the page asks to be simulated.
     pub simulation: Simulation,
 }
@@ -71,6 +96,10 @@ pub struct Body {
     pub velocity: [Number; 3],
     /// Start: absolute angular velocity in the body frame, rad/s, where the page gives one.
     pub angular_velocity: Option<[Number; 3]>,
+    /// Of a driven body, its motion.
+    pub motion: Option<BodyMotion>,
+    /// How strongly the assembly of the start holds the body near its guess, relative to other bodies; 1 unless given.
+    pub assembly_weight: Number,
 }
 
 /// How a body is held in space.
@@ -84,6 +113,8 @@ pub enum Support {
     Fixed,
     /// Fixed, with seven coordinates of its own and six constraint rows, paper eqs. (5) and (6).
     Constrained,
+    /// Its whole motion is prescribed in time ([`Body::motion`]) and folded into the formulas: it has no coordinates.
+    Driven,
 }
 
 /// A joint between two bodies.
@@ -101,6 +132,10 @@ pub struct Joint {
     pub friction: Number,
     /// Start of the joint's coordinate, as far as the page gives one.
     pub start: JointStartSpec,
+    /// Screw: advance along the axis per radian, m/rad. Zero otherwise.
+    pub lead: Number,
+    /// Rod: length, m. Zero otherwise.
+    pub length: Number,
 }
 
 /// The kinds of joint.
@@ -112,6 +147,20 @@ pub enum JointKind {
     Spherical,
     /// No relative motion: point rows and three dot-1 rows.
     Fixed,
+    /// Two crossing axes at right angles (Hooke): point rows and `h_i·h_j`.
+    Universal,
+    /// Rotation about and displacement along one axis.
+    Cylindrical,
+    /// Displacement along one axis.
+    Prismatic,
+    /// Two displacements in a plane and rotation about its normal h.
+    Planar,
+    /// Rotation about an axis and displacement along it in a fixed ratio, [`Joint::lead`].
+    Screw,
+    /// The second body's point stays on the first body's axis.
+    PointOnLine,
+    /// Two points at a fixed distance, [`Joint::length`].
+    Rod,
 }
 
 /// A joint as seen from one of its bodies; all vectors are in that body's frame.
@@ -130,13 +179,15 @@ pub struct JointEnd {
 /// What the page says of a joint's start.
 #[derive(Clone, Debug, Default)]
 pub struct JointStartSpec {
-    /// Revolute: angle, rad (may exceed a turn).
-    pub angle: Option<Number>,
-    /// Revolute: rate in rad/s, one number; spherical: the second body's angular velocity relative to the first in the
+    /// For each of the joint's scalar coordinates its value where the page gives one: rad (may exceed a turn) or m.
+    pub position: Vec<Option<Number>>,
+    /// One number for each scalar coordinate; spherical: the second body's angular velocity relative to the first in the
     /// second body's frame.
     pub rate: Option<Vec<Number>>,
     /// Spherical: Euler parameters of the second body's frame in the first's, of any length.
     pub orientation: Option<[Number; 4]>,
+    /// Whether the assembly may change the coordinates given here: they are guesses.
+    pub is_rough: bool,
 }
 
 /// How a run is to be made, all in seconds.
@@ -166,8 +217,10 @@ pub enum Method {
 /// What one scalar constraint row belongs to and measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Row {
-    /// The joint or constrained body that owns the row.
+    /// The joint, body, coupler or driver that owns the row.
     pub owner: RowOwner,
+    /// Which of the owner's rows it is, dropped ones counted.
+    pub index: usize,
     /// Whether the row is a length (m) or a pure number.
     pub unit: RowUnit,
 }
@@ -179,6 +232,19 @@ pub enum RowOwner {
     Body(usize),
     /// Index into [`Model::joints`].
     Joint(usize),
+    /// Index into [`Model::couplers`].
+    Coupler(usize),
+    /// Index into [`Model::drivers`].
+    Driver(usize),
+}
+
+/// A constraint row that depends on the others.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RedundantRow {
+    /// The row that was dropped.
+    pub row: Row,
+    /// Owners of the rows that it depends on, its own among them if they are: their multipliers are not unique.
+    pub shared_with: Vec<RowOwner>,
 }
 
 /// Unit of a constraint row.
@@ -190,14 +256,47 @@ pub enum RowUnit {
     Pure,
 }
 
+impl Support {
+    /// Whether the body has coordinates of its own.
+    pub fn has_coordinates(self) -> bool {
+        !matches!(self, Self::Fixed | Self::Driven)
+    }
+}
+
 impl JointKind {
-    /// Number of dot-1 rows that follow the three point rows: the rotations that the joint forbids.
-    pub fn n_rotation_rows(self) -> usize {
+    /// Units of the joint's rows, in their order: see [`Model::rows`].
+    pub fn row_units(self) -> &'static [RowUnit] {
+        use RowUnit::{Length, Pure};
         match self {
-            Self::Revolute => 2,
-            Self::Spherical => 0,
-            Self::Fixed => 3,
+            Self::Revolute => &[Length, Length, Length, Pure, Pure],
+            Self::Spherical => &[Length, Length, Length],
+            Self::Fixed => &[Length, Length, Length, Pure, Pure, Pure],
+            Self::Universal => &[Length, Length, Length, Pure],
+            Self::Cylindrical => &[Length, Length, Pure, Pure],
+            Self::Prismatic => &[Length, Length, Pure, Pure, Pure],
+            Self::Planar => &[Length, Pure, Pure],
+            Self::Screw => &[Length, Length, Length, Pure, Pure],
+            Self::PointOnLine => &[Length, Length],
+            Self::Rod => &[Length],
         }
+    }
+
+    /// The joint's scalar coordinates. A spherical joint has an orientation instead; fixed joints and rods have none.
+    pub fn coordinates(self) -> &'static [CoordinateKind] {
+        use CoordinateKind::{Angle, Displacement, FirstAngle, SecondAngle, X, Y};
+        match self {
+            Self::Revolute | Self::Screw => &[Angle],
+            Self::Spherical | Self::Fixed | Self::Rod => &[],
+            Self::Universal => &[FirstAngle, SecondAngle],
+            Self::Cylindrical => &[Angle, Displacement],
+            Self::Prismatic | Self::PointOnLine => &[Displacement],
+            Self::Planar => &[X, Y, Angle],
+        }
+    }
+
+    /// Whether the joint can carry a body in a tree: all but a rod.
+    pub fn carries(self) -> bool {
+        self != Self::Rod
     }
 }
 
@@ -208,6 +307,8 @@ impl Model {
             Number::Exact(value) => value.clone(),
             Number::Parameter { index, negated: false } => self.parameters[*index].value.clone(),
             Number::Parameter { index, negated: true } => -self.parameters[*index].value.clone(),
+            Number::Input { index, negated: false } => self.inputs[*index].value.clone(),
+            Number::Input { index, negated: true } => -self.inputs[*index].value.clone(),
         }
     }
 
@@ -224,40 +325,93 @@ impl Model {
     /// Indices of the bodies that have coordinates, in the order of the page: slot `s` of the generalised coordinates
     /// is body `coordinate_bodies()[s]`, with `q[7s..7s + 7] = (r, p)` and velocities `v[6s..6s + 6] = (s, w')`.
     pub fn coordinate_bodies(&self) -> Vec<usize> {
-        (0..self.bodies.len()).filter(|&b| self.bodies[b].support != Support::Fixed).collect()
+        (0..self.bodies.len()).filter(|&b| self.bodies[b].support.has_coordinates()).collect()
     }
 
-    /// The constraint rows in their order, paper eq. (11), without the Euler-parameter normalisations (which follow,
-    /// one for each coordinate body): constrained bodies first, then the joints.
+    /// The constraint rows in their order, paper eq. (11), redundant ones left out, without the Euler-parameter
+    /// normalisations (which follow, one for each coordinate body): constrained bodies, joints, couplers, drivers.
     ///
-    /// A constrained body has three position rows `r - r0` and three orientation rows, the vector part of `p0* p`. A
-    /// joint has the rows of its point (second minus first, eq. (7)), then its dot-1 rows: `f_i·h_j`, `g_i·h_j`
-    /// (eqs. (9), (10)) and, where the joint is fixed, `f_i·g_j`, where (f, g, h) is the joint frame on a body: unit
-    /// zero direction, `g = h × f`, unit axis.
+    /// A constrained body has three position rows `r - r0` and three orientation rows, the vector part of `p0* p`. With
+    /// (f, g, h) the joint frame on a body (unit zero direction, `g = h × f`, unit axis) and `d` from the first body's joint point to the
+    /// second's, both in the global frame, joints have
+    /// - revolute, spherical, fixed, universal: `d` (three components, eq. (7)); then `f_i·h_j`, `g_i·h_j` (revolute, fixed; eqs.
+    ///   (9), (10)), `f_i·g_j` (fixed), `h_i·h_j` (universal);
+    /// - cylindrical, prismatic, screw: `f_i·d`, `g_i·d`; `h_i·d − lead · angle` (screw); `f_i·h_j`, `g_i·h_j`; `f_i·g_j` (prismatic);
+    /// - planar: `h_i·d`, `f_i·h_j`, `g_i·h_j`;
+    /// - point on line: `f_i·d`, `g_i·d`;
+    /// - rod: `½ (d·d / length − length)`.
+    ///
+    /// A coupler has `second − ratio · first − offset`, a driver `coordinate − motion(t)`.
     pub fn rows(&self) -> Vec<Row> {
-        let row = |owner, unit| Row { owner, unit };
+        let all = self.all_rows();
+        all.into_iter().filter(|row| !self.redundant.iter().any(|dropped| dropped.row == *row)).collect()
+    }
+
+    /// The same with the redundant rows.
+    pub fn all_rows(&self) -> Vec<Row> {
+        use RowUnit::{Length, Pure};
         let mut rows = Vec::new();
+        let mut own = |owner, units: &[RowUnit]| {
+            rows.extend(units.iter().enumerate().map(|(index, &unit)| Row { owner, index, unit }));
+        };
         for (index, body) in self.bodies.iter().enumerate() {
             if body.support == Support::Constrained {
-                let owner = RowOwner::Body(index);
-                rows.extend([row(owner, RowUnit::Length); 3]);
-                rows.extend([row(owner, RowUnit::Pure); 3]);
+                own(RowOwner::Body(index), &[Length, Length, Length, Pure, Pure, Pure]);
             }
         }
         for (index, joint) in self.joints.iter().enumerate() {
-            let owner = RowOwner::Joint(index);
-            rows.extend([row(owner, RowUnit::Length); 3]);
-            rows.extend(std::iter::repeat_n(row(owner, RowUnit::Pure), joint.kind.n_rotation_rows()));
+            own(RowOwner::Joint(index), joint.kind.row_units());
+        }
+        for (index, coupler) in self.couplers.iter().enumerate() {
+            own(RowOwner::Coupler(index), &[self.coordinate_unit(coupler.second)]);
+        }
+        for (index, driver) in self.drivers.iter().enumerate() {
+            own(RowOwner::Driver(index), &[self.coordinate_unit(driver.coordinate)]);
         }
         rows
     }
 
-    /// The rows of one joint among [`Model::rows`].
-    pub fn joint_rows(&self, joint: usize) -> Range<usize> {
+    /// What a joint coordinate is.
+    pub fn coordinate_kind(&self, coordinate: JointCoordinate) -> CoordinateKind {
+        self.joints[coordinate.joint].kind.coordinates()[coordinate.coordinate]
+    }
+
+    fn coordinate_unit(&self, coordinate: JointCoordinate) -> RowUnit {
+        if self.coordinate_kind(coordinate).is_angle() { RowUnit::Pure } else { RowUnit::Length }
+    }
+
+    /// The rows of one joint, coupler, driver or body among [`Model::rows`].
+    pub fn rows_of(&self, owner: RowOwner) -> Range<usize> {
         let rows = self.rows();
-        let start =
-            rows.iter().position(|r| r.owner == RowOwner::Joint(joint)).expect("every joint has rows");
-        start..start + 3 + self.joints[joint].kind.n_rotation_rows()
+        let start = rows.iter().position(|r| r.owner == owner).unwrap_or(rows.len());
+        start..start + rows.iter().filter(|r| r.owner == owner).count()
+    }
+
+    /// The angles on whose continuous value something acts (springs, stops, couplers, drivers, screws), without repetition, in
+    /// order of joint and coordinate. The state holds one number for each after the work: the *turn reference*, whose
+    /// derivative is the angle's rate, so that it never strays by half a turn; the continuous angle is
+    /// `reference + atan2(S cos reference − C sin reference, C cos reference + S sin reference)` with `atan2(S, C)` the
+    /// principal angle.
+    pub fn turn_references(&self) -> Vec<JointCoordinate> {
+        let mut used = Vec::new();
+        for force in &self.forces {
+            if let ForceKind::Spring { on, .. } | ForceKind::Stop { on, .. } = force.kind {
+                used.push(on);
+            }
+        }
+        used.extend(self.couplers.iter().flat_map(|c| [c.first, c.second]));
+        used.extend(self.drivers.iter().map(|d| d.coordinate));
+        let screws = self.joints.iter().enumerate().filter(|(_, j)| j.kind == JointKind::Screw);
+        used.extend(screws.map(|(joint, _)| JointCoordinate { joint, coordinate: 0 }));
+        used.retain(|&c| self.coordinate_kind(c).is_angle());
+        used.sort_by_key(|c| (c.joint, c.coordinate));
+        used.dedup();
+        used
+    }
+
+    /// Whether anything moves by prescription, so that time enters the equations and drivers do work.
+    pub fn is_driven(&self) -> bool {
+        !self.drivers.is_empty() || self.bodies.iter().any(|b| b.support == Support::Driven)
     }
 
     /// A length typical of the mechanism, m, by which violations of length rows are divided: the largest distance of a
@@ -266,7 +420,7 @@ impl Model {
         let norm = |v: [f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
         let points =
             self.joints.iter().flat_map(|j| [&j.first.point, &j.second.point]).map(|p| norm(self.values(p)));
-        let gyration = self.bodies.iter().filter(|b| b.support != Support::Fixed).map(|b| {
+        let gyration = self.bodies.iter().filter(|b| b.support.has_coordinates()).map(|b| {
             let [xx, yy, zz, ..] = self.values(&b.inertia);
             (xx.max(yy).max(zz) / self.value(&b.mass)).sqrt()
         });
@@ -274,17 +428,43 @@ impl Model {
         if size > 0.0 { size } else { 1.0 }
     }
 
-    /// Whether some force does work that the energy does not account for (today: viscous friction).
+    /// Whether something does work that the energy does not account for: friction, dampers, stops, motors, loads, drivers.
     ///
-    /// Such a model carries the work done so far as one more element of its state.
+    /// Such a model carries the work done so far as one more element of its state, after positions and velocities.
     pub fn has_work(&self) -> bool {
-        self.joints.iter().any(|j| !j.friction.is_zero())
+        let does_work = |force: &Force| match &force.kind {
+            ForceKind::Spring { .. } => false,
+            ForceKind::Link { damping, .. } => !damping.is_zero(),
+            ForceKind::Damper { .. }
+            | ForceKind::Coulomb { .. }
+            | ForceKind::Stop { .. }
+            | ForceKind::Motor { .. }
+            | ForceKind::Load { .. } => true,
+        };
+        self.is_driven()
+            || self.joints.iter().any(|j| !j.friction.is_zero())
+            || self.forces.iter().any(does_work)
+    }
+
+    /// The rows that are dropped shape the formulas: other parameters must leave them as they are.
+    fn keeps_redundant_rows(&self) -> Result<(), String> {
+        let found = analyse(self).map_err(|error| error.to_string())?;
+        let rows = |redundant: &[RedundantRow]| redundant.iter().map(|r| r.row).collect::<Vec<Row>>();
+        if rows(&found.redundant) == rows(&self.redundant) {
+            return Ok(());
+        }
+        let (now, before) = (found.redundant.len(), self.redundant.len());
+        Err(format!(
+            "with these parameters other constraint rows are redundant ({now} in place of {before}): write the numbers \
+             into the page"
+        ))
     }
 
     /// The same model with parameters set anew. Start over from the page's start: assemble it again.
     ///
     /// # Errors
-    /// The message names the unknown parameter and the nearest one that exists, or what the new value makes unphysical.
+    /// The message names the unknown parameter and the nearest one that exists, or what the new value makes unphysical, or says
+    /// that a mechanism with loops cannot be assembled or that other rows have become redundant.
     pub fn with_parameters(&self, settings: &[(String, Rational)]) -> Result<Self, String> {
         let mut model = self.clone();
         for (name, value) in settings {
@@ -293,6 +473,9 @@ impl Model {
             };
             parameter.value = value.clone();
         }
-        validate::physical(&model).map_or(Ok(model), Err)
+        if let Some(problem) = validate::physical(&model) {
+            return Err(problem);
+        }
+        model.keeps_redundant_rows().map(|()| model)
     }
 }

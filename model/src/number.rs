@@ -18,6 +18,13 @@ pub enum Number {
         /// Whether the parameter enters with a minus sign.
         negated: bool,
     },
+    /// An input, by its index, with its sign. Only forces have inputs.
+    Input {
+        /// Index into [`crate::Model::inputs`].
+        index: usize,
+        /// Whether the input enters with a minus sign.
+        negated: bool,
+    },
 }
 
 impl Number {

@@ -1,6 +1,6 @@
-//! The trees that the joints make of the bodies, rooted in fixed and free bodies.
+//! The trees that the joints make of the bodies, rooted in fixed, driven and free bodies.
 
-use crate::{Model, Support};
+use crate::{JointKind, Model, Support};
 
 /// A body that has coordinates, with what holds it. Links come root first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,7 +14,7 @@ pub struct Link {
 /// What leads to a body from the root of its tree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Attachment {
-    /// Nothing: a free root.
+    /// Nothing: a free root, or a body that only rods hold.
     Free,
     /// Its own six rows: a constrained root.
     Constrained,
@@ -34,43 +34,132 @@ pub enum Attachment {
 pub struct Tree {
     /// Bodies with coordinates, parents before children.
     pub links: Vec<Link>,
-    /// Joints that close a loop: both of their bodies were reached without them.
+    /// Joints that carry no body of a tree: they close loops, or are rods.
     pub loop_joints: Vec<usize>,
-    /// Bodies that no joint connects to a root.
+    /// Bodies that only rods tie to a root: roots of trees of their own, placed by their own guess.
+    pub floating: Vec<usize>,
+    /// Bodies that nothing connects to a root.
     pub unreached: Vec<usize>,
 }
 
 impl Tree {
     /// Walks the joints breadth first from the roots; bodies and joints are met in the order of the page.
+    ///
+    /// Joints that do not say how a body is turned come last: only where the walk ends before every body is reached does it go
+    /// on over the first point on a line of the page that leads to another body, and only where there is none from the
+    /// first body that a rod ties to one that is reached.
     pub fn of(model: &Model) -> Self {
-        let mut tree = Self::default();
-        let mut reached: Vec<bool> = model.bodies.iter().map(|b| b.support != Support::Moving).collect();
-        let mut used = vec![false; model.joints.len()];
-        let mut queue: Vec<usize> = (0..reached.len()).filter(|&b| reached[b]).collect();
-        for &body in &queue {
-            match model.bodies[body].support {
-                Support::Free => tree.links.push(Link { body, attachment: Attachment::Free }),
-                Support::Constrained => tree.links.push(Link { body, attachment: Attachment::Constrained }),
-                Support::Fixed | Support::Moving => {}
+        Self::along(model, |_| true)
+    }
+
+    /// The same, but joints that are not preferred are followed, one by one in the order of the page, only where no other
+    /// leads on.
+    pub(crate) fn along(model: &Model, is_preferred: impl Fn(usize) -> bool) -> Self {
+        let mut walk = Walk::of(model);
+        for (body, support) in model.bodies.iter().map(|body| body.support).enumerate() {
+            match support {
+                Support::Free => walk.start(body, Some(Attachment::Free)),
+                Support::Constrained => walk.start(body, Some(Attachment::Constrained)),
+                Support::Fixed | Support::Driven => walk.start(body, None),
+                Support::Moving => {}
             }
         }
-        let mut head = 0;
-        while let Some(&parent) = queue.get(head) {
-            head += 1;
-            for (joint, ends) in model.joints.iter().enumerate() {
-                let (reversed, body) = match (ends.first.body == parent, ends.second.body == parent) {
-                    (true, false) => (false, ends.second.body),
-                    (false, true) => (true, ends.first.body),
+        let turns = |kind: JointKind| kind.carries() && kind != JointKind::PointOnLine;
+        loop {
+            walk.follow_all(|joint| turns(model.joints[joint].kind) && is_preferred(joint));
+            let led = walk.follow_one(turns)
+                || walk.follow_one(|kind| kind == JointKind::PointOnLine)
+                || walk.float_on_rod();
+            if !led {
+                return walk.finish();
+            }
+        }
+    }
+
+    /// Whether the joints alone hold every body, each by one path: no joint closes a loop and no rod holds a body.
+    pub fn is_open(&self) -> bool {
+        self.loop_joints.is_empty() && self.floating.is_empty()
+    }
+}
+
+/// The work in progress.
+struct Walk<'m> {
+    model: &'m Model,
+    tree: Tree,
+    reached: Vec<bool>,
+    used: Vec<bool>,
+    /// Bodies reached, in the order in which joints are followed from them.
+    queue: Vec<usize>,
+    /// How many of them have been done.
+    done: usize,
+}
+
+impl<'m> Walk<'m> {
+    fn of(model: &'m Model) -> Self {
+        let (reached, used) = (vec![false; model.bodies.len()], vec![false; model.joints.len()]);
+        Self { model, tree: Tree::default(), reached, used, queue: Vec::new(), done: 0 }
+    }
+
+    fn start(&mut self, body: usize, attachment: Option<Attachment>) {
+        self.reached[body] = true;
+        self.queue.push(body);
+        self.tree.links.extend(attachment.map(|attachment| Link { body, attachment }));
+    }
+
+    /// Follows joints from all bodies that are reached and have not been done.
+    fn follow_all(&mut self, follows: impl Fn(usize) -> bool) {
+        while let Some(&parent) = self.queue.get(self.done) {
+            self.done += 1;
+            for (joint, ends) in self.model.joints.iter().enumerate() {
+                let body = match (ends.first.body == parent, ends.second.body == parent) {
+                    (true, false) => ends.second.body,
+                    (false, true) => ends.first.body,
                     _ => continue,
                 };
-                if !used[joint] && !reached[body] {
-                    (used[joint], reached[body]) = (true, true);
-                    let attachment = Attachment::Joint { joint, parent, reversed };
-                    tree.links.push(Link { body, attachment });
-                    queue.push(body);
+                if follows(joint) && !self.reached[body] {
+                    self.hang(joint, parent, body);
                 }
             }
         }
+    }
+
+    /// Whether a body could be hung on the first joint of some kinds that leads to one.
+    fn follow_one(&mut self, of: impl Fn(JointKind) -> bool) -> bool {
+        let next = self.ways(of).next();
+        if let Some((joint, parent, body)) = next {
+            self.hang(joint, parent, body);
+        }
+        next.is_some()
+    }
+
+    fn hang(&mut self, joint: usize, parent: usize, body: usize) {
+        self.used[joint] = true;
+        let reversed = self.model.joints[joint].second.body == parent;
+        self.start(body, Some(Attachment::Joint { joint, parent, reversed }));
+    }
+
+    /// Whether a body could be reached over a rod.
+    fn float_on_rod(&mut self) -> bool {
+        let next = self.ways(|kind| !kind.carries()).map(|(.., body)| body).min();
+        if let Some(body) = next {
+            self.tree.floating.push(body);
+            self.start(body, Some(Attachment::Free));
+        }
+        next.is_some()
+    }
+
+    /// Joints of some kinds from a body that is reached to one that is not: joint, from, to.
+    fn ways(&self, of: impl Fn(JointKind) -> bool) -> impl Iterator<Item = (usize, usize, usize)> {
+        let joints = self.model.joints.iter().enumerate().filter(move |(_, joint)| of(joint.kind));
+        let ends = joints.flat_map(|(index, joint)| {
+            let [first, second] = [joint.first.body, joint.second.body];
+            [(index, first, second), (index, second, first)]
+        });
+        ends.filter(|&(_, from, to)| self.reached[from] && !self.reached[to])
+    }
+
+    fn finish(self) -> Tree {
+        let Self { mut tree, used, reached, .. } = self;
         tree.loop_joints = (0..used.len()).filter(|&j| !used[j]).collect();
         tree.unreached = (0..reached.len()).filter(|&b| !reached[b]).collect();
         tree

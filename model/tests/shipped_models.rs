@@ -2,10 +2,14 @@
 
 mod support;
 
-use gyro_model::{JointStart, Model, Start, read};
+use gyro_model::{JointKind, JointStart, Model, OutputKind, RowOwner, Start, Support, read};
 
 fn model(stem: &str) -> Model {
-    let path = support::folder("models").join(format!("{stem}.toml"));
+    model_in("models", stem)
+}
+
+fn model_in(folder: &str, stem: &str) -> Model {
+    let path = support::folder(folder).join(format!("{stem}.toml"));
     let text = std::fs::read_to_string(path).expect("a shipped page");
     read(stem, &text).unwrap_or_else(|mistakes| panic!("{mistakes}"))
 }
@@ -21,7 +25,7 @@ fn rates(stem: &str) -> Vec<f64> {
 #[test]
 fn every_page_is_named_after_its_file() {
     let pages = support::pages("models");
-    assert!(pages.len() >= 10);
+    assert!(pages.len() >= 16);
     for (path, _) in pages {
         let stem = path.file_stem().and_then(|s| s.to_str()).expect("a name");
         assert_eq!(model(stem).name, stem.replace('-', "_"));
@@ -84,4 +88,96 @@ fn the_heavy_top_and_the_pendulum_lean_as_their_comments_say() {
     assert_eq!(pendulum.joints, [expected]);
     near(pendulum.q[0], 0.5);
     near(pendulum.q[1], 0.0);
+}
+
+#[test]
+fn moving_bases_carry_the_gyroscope_from_rest_in_the_base() {
+    use std::f64::consts::TAU;
+    for (stem, base) in [
+        ("driven-gyroscope", [0.1 * 2.0 * TAU, 0.0, 0.0]),
+        ("pitching-gyroscope", [0.1 * 2.0 * TAU, 0.0, 0.05 * 3.0 * TAU]),
+    ] {
+        assert_eq!(rates(stem), [0.0, 0.0, 100.0], "{stem}");
+        assert_eq!(model(stem).bodies[0].support, Support::Driven);
+        assert_eq!(model(stem).rows().len(), 15);
+        // The rings turn with the base, the rotor 100 rad/s faster about its x axis.
+        let v = start(stem).v;
+        for (slot, spin) in [(0, 0.0), (1, 0.0), (2, 100.0)] {
+            for (k, base) in base.into_iter().enumerate() {
+                let expected = base + if k == 0 { spin } else { 0.0 };
+                assert!((v[6 * slot + 3 + k] - expected).abs() <= 1e-13, "{stem} {v:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn four_bars_have_one_degree_of_freedom_with_and_without_redundant_rows() {
+    let (free, revolute) = (model("four-bar"), model("four-bar-revolute"));
+    assert_eq!((free.rows().len(), free.redundant.len(), free.degrees_of_freedom()), (17, 0, 1));
+    assert_eq!((revolute.rows().len(), revolute.redundant.len(), revolute.degrees_of_freedom()), (17, 3, 1));
+    let knee = revolute.joints.iter().position(|j| j.name == "knee").expect("the joint that closes the loop");
+    assert!(revolute.redundant.iter().all(|r| r.row.owner == RowOwner::Joint(knee)));
+    let (free, revolute) = (start("four-bar"), start("four-bar-revolute"));
+    for (a, b) in free.q.iter().zip(&revolute.q).chain(free.v.iter().zip(&revolute.v)) {
+        assert!((a - b).abs() <= 1e-12, "{a} {b}");
+    }
+    // The joint of coupler and rocker, from the circles about the crank's end and the rocker's pivot.
+    let [x, y] = [0.547_005_012_015_678_2, 0.397_228_559_956_866_7];
+    let (centre, angle) = (&revolute.q[14..16], revolute.joints[1].position[0]);
+    assert!((centre[0] + 0.2 * angle.cos() - x).abs() <= 1e-12);
+    assert!((centre[1] + 0.2 * angle.sin() - y).abs() <= 1e-12);
+}
+
+#[test]
+fn the_spring_of_the_torsion_page_is_wound_up_by_turns() {
+    assert_eq!(start("torsion").joints[0].position, [6.5 * std::f64::consts::PI]);
+    assert_eq!(model("torsion").turn_references().len(), 1);
+    assert!(model("torsion").has_work());
+}
+
+#[test]
+fn the_spinning_top_starts_as_its_source_says() {
+    let top = start("spinning-top");
+    assert_eq!(top.q, [0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0]);
+    assert_eq!(top.v, [4.61538, 0.0, 0.0, 0.0, 150.0, -4.61538]);
+}
+
+#[test]
+fn all_joints_has_every_kind_and_starts_where_its_points_were_chosen() {
+    let model = model_in("tests/models", "all-joints");
+    let kinds = [
+        JointKind::Revolute,
+        JointKind::Spherical,
+        JointKind::Fixed,
+        JointKind::Universal,
+        JointKind::Cylindrical,
+        JointKind::Prismatic,
+        JointKind::Planar,
+        JointKind::Screw,
+        JointKind::PointOnLine,
+        JointKind::Rod,
+    ];
+    assert!(kinds.iter().all(|kind| model.joints.iter().any(|j| j.kind == *kind)));
+    assert_eq!(
+        (model.coordinate_bodies().len(), model.redundant.len(), model.degrees_of_freedom()),
+        (7, 0, 2)
+    );
+    assert!(model.outputs.iter().any(|o| matches!(o.kind, OutputKind::Inertial { .. })));
+    let start = model.assemble().expect("a start");
+    let positions = [
+        [0.2, 0.1, 0.4],
+        [0.5, 0.2, 0.5],
+        [0.8, 0.3, 0.4],
+        [0.1, 0.7, 0.2],
+        [0.3, 0.8, 0.4],
+        [0.4, 0.8, 0.6],
+        [0.9, 0.7, 0.3],
+    ];
+    for (slot, position) in positions.into_iter().enumerate() {
+        let expected = position.into_iter().chain([1.0, 0.0, 0.0, 0.0]);
+        for (q, expected) in start.q[7 * slot..7 * slot + 7].iter().zip(expected) {
+            assert!((q - expected).abs() <= 1e-14, "body {slot}: {:?}", &start.q[7 * slot..7 * slot + 7]);
+        }
+    }
 }

@@ -1,8 +1,8 @@
 //! The program that the command line compiles around a generated mechanism: all but its five lines.
 
 use crate::protocol::{Reply, Request, sample_line};
-use crate::{Event, Failure, run};
-use gyro_sim::Partition;
+use crate::{Event, Summary, run};
+use gyro_sim::{Partition, Ports};
 use std::io::{self, BufWriter, Write};
 use std::process::ExitCode;
 
@@ -10,19 +10,23 @@ use std::process::ExitCode;
 /// the samples to standard output as they come.
 ///
 /// The exit code says whether the run was complete; the last line says why not.
-pub fn main<M: Partition>(build: impl FnOnce(&[f64]) -> M) -> ExitCode {
+pub fn main<M: Partition + Ports>(build: impl FnOnce(&[f64]) -> M) -> ExitCode {
     let mut output = BufWriter::new(io::stdout().lock());
     let outcome = answer(build, &mut output);
-    let last = match &outcome {
-        Ok(reply) | Err(reply) => writeln!(output, "{}", reply.to_line()).and_then(|()| output.flush()),
-    };
-    if outcome.is_ok() && last.is_ok() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+    let is_complete = outcome.is_ok();
+    let last = outcome.map_or_else(Reply::Failed, Reply::Done);
+    let told = writeln!(output, "{}", last.to_line()).and_then(|()| output.flush());
+    if is_complete && told.is_ok() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
-fn answer<M: Partition>(build: impl FnOnce(&[f64]) -> M, output: &mut impl Write) -> Result<Reply, Reply> {
-    let text = io::read_to_string(io::stdin()).map_err(failed)?;
-    let request = Request::parse(&text).map_err(failed)?;
-    let mechanism = build(&request.parameters);
+/// The figures of the run, or in words why there are none.
+fn answer<M: Partition + Ports>(
+    build: impl FnOnce(&[f64]) -> M,
+    output: &mut impl Write,
+) -> Result<Summary, String> {
+    let text = io::read_to_string(io::stdin()).map_err(|e| e.to_string())?;
+    let request = Request::parse(&text).map_err(|e| e.to_string())?;
+    let mut mechanism = build(&request.parameters);
     let told = |event: Event<'_>| match event {
         Event::Sample(sample) => writeln!(output, "{}", sample_line(sample)),
         Event::Progress(t) => {
@@ -30,10 +34,5 @@ fn answer<M: Partition>(build: impl FnOnce(&[f64]) -> M, output: &mut impl Write
             output.flush()
         }
     };
-    let summary = run(&mechanism, &request.settings, &request.start, told).map_err(|f: Failure| failed(f))?;
-    Ok(Reply::Done(summary))
-}
-
-fn failed(why: impl std::fmt::Display) -> Reply {
-    Reply::Failed(why.to_string())
+    run(&mut mechanism, &request.settings, &request.start, told).map_err(|e| e.to_string())
 }

@@ -41,9 +41,20 @@ pub fn describe<M: Mechanism>(mechanism: &M, error: &Error) -> String {
              try a smaller --step or --correct-every",
             name(mechanism, *owner)
         ),
-        Error::Singular { t, pivot } => format!(
-            "at t = {t} s the dependent coordinates cannot be solved for: a pivot is {pivot:e}; the mechanism is in \
-             a singular pose, or the step is too large: try a smaller --step or --correct-every"
+        Error::Singular { t, pivot, owner } => {
+            let whose = owner.map_or(String::new(), |owner| {
+                format!(", where the constraints of {} depend on others", name(mechanism, owner))
+            });
+            format!(
+                "at t = {t} s the dependent coordinates cannot be solved for: a pivot is {pivot:e}; the mechanism is in \
+                 a singular pose{whose}, or the step is too large: try a smaller --step or --correct-every"
+            )
+        }
+        Error::Jump { t, change, limit, owner } => format!(
+            "at t = {t} s the constraints of {} can be met only by a change of {change:e} where {limit:e} is safe: the \
+             mechanism is near a singular pose and might go on in another way than it came, or the step is too large: try a \
+             smaller --step or --correct-every",
+            name(mechanism, *owner)
         ),
     }
 }
@@ -52,10 +63,12 @@ fn name<M: Mechanism>(mechanism: &M, owner: Owner) -> String {
     match owner {
         Owner::Body(body) => format!("body `{}`", mechanism.body_name(usize::from(body))),
         Owner::Joint(joint) => format!("joint `{}`", mechanism.joint(usize::from(joint)).name),
+        Owner::Coupler(coupler) => format!("coupler `{}`", mechanism.coupler_name(usize::from(coupler))),
+        Owner::Driver(driver) => format!("driver `{}`", mechanism.driver_name(usize::from(driver))),
     }
 }
 
-/// What an element of the state is: `(r, p)` of each body, `(s, w')` of each body, work.
+/// What an element of the state is: `(r, p)` of each body, `(s, w')` of each body, work, turn references.
 fn element<M: Mechanism>(mechanism: &M, index: usize) -> String {
     let positions = 7 * mechanism.n_bodies();
     let velocities = positions + 6 * mechanism.n_bodies();
@@ -65,7 +78,7 @@ fn element<M: Mechanism>(mechanism: &M, index: usize) -> String {
         let k = index - positions;
         (k / 6, if k % 6 < 3 { "velocity" } else { "angular velocity" })
     } else {
-        return "the work done".to_owned();
+        return "the work done or the count of a joint's turns".to_owned();
     };
     format!("the {what} of body `{}`", mechanism.body_name(body))
 }
@@ -77,7 +90,7 @@ mod tests {
 
     #[test]
     fn errors_name_time_part_and_number() {
-        let spinner = Spinner { rate: 1.0 };
+        let spinner = Spinner::default();
         for (error, words) in [
             (
                 Error::NotFinite { t: 0.25, index: 5 },
@@ -92,8 +105,22 @@ mod tests {
                 "at t = 0.5 s the constraints of joint `axle` cannot be met: 3e-3 remains",
             ),
             (
-                Error::Singular { t: 1.0, pivot: 0.0 },
-                "at t = 1 s the dependent coordinates cannot be solved for",
+                Error::Singular { t: 1.0, pivot: 0.0, owner: Some(Owner::Joint(0)) },
+                "at t = 1 s the dependent coordinates cannot be solved for: a pivot is 0e0; the mechanism is in a singular \
+                 pose, where the constraints of joint `axle` depend on others",
+            ),
+            (
+                Error::Singular { t: 1.0, pivot: 0.0, owner: None },
+                "at t = 1 s the dependent coordinates cannot be solved for: a pivot is 0e0; the mechanism is in a singular \
+                 pose, or",
+            ),
+            (
+                Error::Jump { t: 1.0, change: 0.5, limit: 1e-2, owner: Owner::Driver(0) },
+                "at t = 1 s the constraints of driver `crank` can be met only by a change of 5e-1 where 1e-2 is safe",
+            ),
+            (
+                Error::NoConvergence { t: 0.5, violation: 3e-3, owner: Owner::Coupler(0) },
+                "at t = 0.5 s the constraints of coupler `gear` cannot be met: 3e-3 remains",
             ),
         ] {
             let found = describe(&spinner, &error);

@@ -11,6 +11,7 @@
 
 pub mod child;
 mod failure;
+mod input;
 pub mod protocol;
 mod run;
 mod sample;
@@ -18,6 +19,7 @@ mod schedule;
 mod summary;
 
 pub use failure::{Failure, describe};
+pub use input::Input;
 pub use run::{Event, Start, run};
 pub use sample::{BodySample, JointSample, Sample};
 pub use schedule::{Impossible, Schedule, Segment, Settings};

@@ -3,7 +3,7 @@
 //! Numbers are printed with as many digits as it takes to read the same number back. The command line writes one
 //! [`Request`] to the program's standard input; the program answers with [`Reply`] lines on its standard output.
 
-use crate::{BodySample, JointSample, Sample, Settings, Start, Summary};
+use crate::{BodySample, Input, JointSample, Sample, Settings, Start, Summary};
 use std::fmt::Write as _;
 use std::str::{FromStr, SplitAsciiWhitespace};
 
@@ -54,8 +54,14 @@ impl Request {
         line(&mut text, "parameters", &self.parameters);
         line(&mut text, "positions", &self.start.positions);
         line(&mut text, "velocities", &self.start.velocities);
+        line(&mut text, "turn_references", &self.start.turn_references);
         line(&mut text, "angles", &self.start.angles);
         line(&mut text, "observe", &self.start.observed_bodies);
+        for input in &self.start.inputs {
+            let _ = write!(text, "input {}", input.index);
+            input.rows.iter().for_each(|row| words(&mut text, "", row));
+            text.push('\n');
+        }
         text
     }
 
@@ -83,8 +89,10 @@ impl Request {
             "parameters" => self.parameters = list(values)?,
             "positions" => self.start.positions = list(values)?,
             "velocities" => self.start.velocities = list(values)?,
+            "turn_references" => self.start.turn_references = list(values)?,
             "angles" => self.start.angles = list(values)?,
             "observe" => self.start.observed_bodies = list(values)?,
+            "input" => self.start.inputs.push(input(values)?),
             _ => return None,
         }
         Some(())
@@ -171,19 +179,25 @@ impl Words<'_> {
             velocity_violation: self.next()?,
             norm_violation: self.next()?,
             chart_switches: self.next()?,
-            joints: Vec::new(),
+            coordinates: Vec::new(),
+            outputs: Vec::new(),
             bodies: Vec::new(),
         };
         while let Some(kind) = self.0.next() {
             match kind {
                 "angle" => {
-                    sample.joints.push(JointSample::Angle { position: self.next()?, rate: self.next()? });
+                    let (position, rate) = (self.next()?, self.next()?);
+                    sample.coordinates.push(JointSample::Angle { position, rate });
+                }
+                "length" => {
+                    let (position, rate) = (self.next()?, self.next()?);
+                    sample.coordinates.push(JointSample::Length { position, rate });
                 }
                 "orientation" => {
                     let (position, rate) = (self.array()?, self.array()?);
-                    sample.joints.push(JointSample::Orientation { position, rate });
+                    sample.coordinates.push(JointSample::Orientation { position, rate });
                 }
-                "none" => sample.joints.push(JointSample::None),
+                "output" => sample.outputs.push(self.next()?),
                 "body" => sample.bodies.push(BodySample { pose: self.array()?, velocity: self.array()? }),
                 _ => return None,
             }
@@ -198,15 +212,18 @@ pub(crate) fn sample_line(sample: &Sample) -> String {
     words(&mut text, "", &[sample.kinetic, sample.potential, sample.work]);
     words(&mut text, "", &[sample.position_violation, sample.velocity_violation, sample.norm_violation]);
     words(&mut text, "", &[sample.chart_switches]);
-    for joint in &sample.joints {
-        match joint {
+    for coordinate in &sample.coordinates {
+        match coordinate {
             JointSample::Angle { position, rate } => words(&mut text, " angle", &[*position, *rate]),
+            JointSample::Length { position, rate } => words(&mut text, " length", &[*position, *rate]),
             JointSample::Orientation { position, rate } => {
                 words(&mut text, " orientation", position);
                 words(&mut text, "", rate);
             }
-            JointSample::None => text.push_str(" none"),
         }
+    }
+    for output in &sample.outputs {
+        words(&mut text, " output", &[*output]);
     }
     for body in &sample.bodies {
         words(&mut text, " body", &body.pose);
@@ -225,6 +242,14 @@ fn words<T: std::fmt::Debug>(text: &mut String, key: &str, values: &[T]) {
 fn line<T: std::fmt::Debug>(text: &mut String, key: &str, values: &[T]) {
     words(text, key, values);
     text.push('\n');
+}
+
+/// The index of an input and the rows of its table.
+fn input(text: &str) -> Option<Input> {
+    let (index, rows) = text.split_once(' ').unwrap_or((text, ""));
+    let numbers: Vec<f64> = list(rows)?;
+    let (rows, rest) = numbers.as_chunks::<2>();
+    rest.is_empty().then_some(Input { index: index.parse().ok()?, rows: rows.to_vec() })
 }
 
 fn list<T: FromStr>(text: &str) -> Option<Vec<T>> {
@@ -246,7 +271,12 @@ mod tests {
                 start: Start {
                     positions: AWKWARD.to_vec(),
                     velocities: AWKWARD[..6].to_vec(),
+                    turn_references: vec![AWKWARD[1]],
                     angles: vec![],
+                    inputs: vec![
+                        Input { index: 1, rows: vec![[0.0, AWKWARD[2]], [AWKWARD[0], AWKWARD[4]]] },
+                        Input { index: 0, rows: vec![] },
+                    ],
                     observed_bodies: vec![0, 12],
                 },
             };
@@ -256,14 +286,15 @@ mod tests {
 
     #[test]
     fn replies_come_back_bit_by_bit() {
-        let joints = vec![
+        let coordinates = vec![
             JointSample::Angle { position: AWKWARD[0], rate: AWKWARD[1] },
-            JointSample::None,
+            JointSample::Length { position: AWKWARD[5], rate: AWKWARD[3] },
             JointSample::Orientation { position: [0.5; 4], rate: [AWKWARD[2]; 3] },
         ];
         let sample = Sample {
             t: 0.1 + 0.2,
-            joints,
+            coordinates,
+            outputs: vec![AWKWARD[4], AWKWARD[3]],
             bodies: vec![BodySample { pose: AWKWARD, velocity: [AWKWARD[6]; 6] }],
             kinetic: 1.0,
             potential: -2.0 / 3.0,

@@ -1,20 +1,26 @@
 //! The loop.
 
+use crate::input::{any_varies, set};
 use crate::sample::Observer;
-use crate::{Failure, Sample, Schedule, Segment, Settings, Summary, Tracker, describe};
-use gyro_sim::{Direct, Partition, Partitioned, Scalar, Turns};
+use crate::{Failure, Input, Sample, Schedule, Segment, Settings, Summary, Tracker, describe};
+use gyro_sim::{Direct, Error, Partition, Partitioned, Ports, Scalar, Turns};
 use std::io;
 use std::time::{Duration, Instant};
 
-/// Where a run starts and what is watched besides the joints.
+/// Where a run starts, what is fed into it and what is watched besides joints and outputs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Start {
     /// `(r, p)` of each body with coordinates.
     pub positions: Vec<f64>,
     /// `(s, w')` of each body with coordinates.
     pub velocities: Vec<f64>,
-    /// For each joint the angle that its continuous angle starts nearest to, rad; zero for joints without angle.
+    /// The mechanism's turn references: the last elements of its state.
+    pub turn_references: Vec<f64>,
+    /// For each coordinate, joint after joint, the angle that its continuous angle starts nearest to, rad; anything for
+    /// coordinates that are no angles.
     pub angles: Vec<f64>,
+    /// What the mechanism's inputs are over time; those that are not here stay as they are.
+    pub inputs: Vec<Input>,
     /// Indices of the bodies whose pose and velocity are sampled.
     pub observed_bodies: Vec<usize>,
 }
@@ -37,25 +43,28 @@ const PROGRESS_EVERY: Duration = Duration::from_millis(100);
 
 /// Runs a mechanism to a schedule and hands what happens to `tell`.
 ///
-/// The first sample is the start as given, uncorrected. An error of `tell` ends the run.
+/// The first sample is the start as given, uncorrected. Where an input varies it is set anew before every step. An error of
+/// `tell` ends the run.
 ///
 /// # Errors
 /// [`Failure::Run`] if a solver fails or the start does not fit the mechanism; [`Failure::Output`] from `tell`.
-pub fn run<M: Partition>(
-    mechanism: &M,
+pub fn run<M: Partition + Ports>(
+    mechanism: &mut M,
     settings: &Settings,
     start: &Start,
     mut tell: impl FnMut(Event<'_>) -> io::Result<()>,
 ) -> Result<Summary, Failure> {
     settings.check().map_err(|e| Failure::Run(e.to_string()))?;
-    let mut run = Run::new(mechanism, state(mechanism, start)?, start);
+    let y = state(mechanism, start)?;
+    refuse_singular(mechanism, &y)?;
+    let mut run = Run::new(mechanism, y, start);
     let mut tracker = Tracker::default();
     let mut last_told = Instant::now();
     let sample = run.sample(0.0);
     tracker.add(&sample);
     tell(Event::Sample(&sample))?;
     for segment in Schedule::new(settings) {
-        run.advance(&segment).map_err(|e| Failure::Run(describe(mechanism, &e)))?;
+        run.advance(&segment).map_err(|e| Failure::Run(describe(run.mechanism, &e)))?;
         if segment.samples {
             let sample = run.sample(segment.to);
             tracker.add(&sample);
@@ -70,9 +79,20 @@ pub fn run<M: Partition>(
     Ok(run.summary)
 }
 
+/// In a singular pose accelerations are not defined: better to say so than to integrate what is not finite.
+fn refuse_singular<M: Partition>(mechanism: &M, start: &M::State) -> Result<(), Failure> {
+    let t = Scalar::constant(0.0);
+    match mechanism.newton_step(t, &mechanism.independent(t, start), &mut start.clone()) {
+        Err(error @ Error::Singular { .. }) => Err(Failure::Run(describe(mechanism, &error))),
+        _ => Ok(()),
+    }
+}
+
 /// The state under way, with its solvers.
-struct Run<'a, M: Partition> {
-    mechanism: &'a M,
+struct Run<'a, M: Partition + Ports> {
+    mechanism: &'a mut M,
+    inputs: &'a [Input],
+    steps_at_once: u64,
     y: M::State,
     direct: Direct<M::State>,
     partitioned: Partitioned<M>,
@@ -81,21 +101,23 @@ struct Run<'a, M: Partition> {
     summary: Summary,
 }
 
-impl<'a, M: Partition> Run<'a, M> {
-    fn new(mechanism: &'a M, y: M::State, start: &'a Start) -> Self {
+impl<'a, M: Partition + Ports> Run<'a, M> {
+    fn new(mechanism: &'a mut M, y: M::State, start: &'a Start) -> Self {
         let angles: Vec<M::Scalar> = start.angles.iter().map(|&a| Scalar::constant(a)).collect();
         Self {
-            mechanism,
+            inputs: &start.inputs,
+            steps_at_once: if any_varies(&start.inputs) { 1 } else { STEPS_BETWEEN_READINGS },
             direct: Direct::new(&y),
             partitioned: Partitioned::new(mechanism, &y),
-            turns: Turns::new(mechanism, &y, &angles),
+            turns: Turns::new(mechanism, Scalar::constant(0.0), &y, &angles),
             observer: Observer::new(mechanism, &start.observed_bodies),
+            mechanism,
             y,
             summary: Summary::default(),
         }
     }
 
-    fn advance(&mut self, segment: &Segment) -> Result<(), gyro_sim::Error> {
+    fn advance(&mut self, segment: &Segment) -> Result<(), Error> {
         let began = Instant::now();
         self.integrate(segment)?;
         if segment.corrects {
@@ -108,15 +130,21 @@ impl<'a, M: Partition> Run<'a, M> {
     }
 
     #[expect(clippy::cast_precision_loss, reason = "step numbers stay below 2⁵³")]
-    fn integrate(&mut self, segment: &Segment) -> Result<(), gyro_sim::Error> {
+    fn integrate(&mut self, segment: &Segment) -> Result<(), Error> {
         let h = (segment.to - segment.from) / segment.n_steps as f64;
         let mut done = 0;
         while done < segment.n_steps {
-            let n_steps = (segment.n_steps - done).min(STEPS_BETWEEN_READINGS) as u32;
-            let t = segment.from + done as f64 * h;
-            let (t, step) = (Scalar::constant(t), M::Scalar::constant(h));
-            self.direct.advance(self.mechanism, t, step, n_steps, &mut self.y)?;
-            self.turns.update(self.mechanism, Scalar::constant(f64::from(n_steps) * h), &self.y);
+            let n_steps = (segment.n_steps - done).min(self.steps_at_once) as u32;
+            let (t, dt) = (segment.from + done as f64 * h, f64::from(n_steps) * h);
+            set(self.mechanism, self.inputs, t);
+            self.direct.advance(
+                self.mechanism,
+                Scalar::constant(t),
+                Scalar::constant(h),
+                n_steps,
+                &mut self.y,
+            )?;
+            self.turns.update(self.mechanism, Scalar::constant(t + dt), Scalar::constant(dt), &self.y);
             done += u64::from(n_steps);
         }
         Ok(())
@@ -124,32 +152,45 @@ impl<'a, M: Partition> Run<'a, M> {
 
     /// The state may have been corrected since the turns were read: they are read again, no time having passed.
     fn sample(&mut self, t: f64) -> Sample {
-        self.turns.update(self.mechanism, Scalar::constant(0.0), &self.y);
-        self.observer.sample(t, &self.y, &self.turns, self.summary.chart_switches)
+        set(self.mechanism, self.inputs, t);
+        self.turns.update(self.mechanism, Scalar::constant(t), Scalar::constant(0.0), &self.y);
+        self.observer.sample(self.mechanism, t, &self.y, &self.turns, self.summary.chart_switches)
     }
 }
 
-/// The state of a start: `(q, v)`, then zero work where the mechanism counts work.
+/// The state of a start: `(q, v)`, then zero work where the mechanism counts work, then turn references.
 fn state<M: Partition>(mechanism: &M, start: &Start) -> Result<M::State, Failure> {
     let mut state = mechanism.start();
-    let n_bodies = mechanism.n_bodies();
-    let expected = (7 * n_bodies, 6 * n_bodies);
-    if (start.positions.len(), start.velocities.len()) != expected
-        || start.observed_bodies.iter().any(|&body| body >= n_bodies)
-    {
-        return Err(Failure::Run(format!(
-            "the start has {} positions and {} velocities, the mechanism's {n_bodies} bodies have {} and {}",
-            start.positions.len(),
-            start.velocities.len(),
-            expected.0,
-            expected.1
-        )));
+    refuse_misfit(mechanism, state.as_ref().len(), start)?;
+    let (known, rest) = state.as_mut().split_at_mut(13 * mechanism.n_bodies());
+    let (work, references) = rest.split_at_mut(rest.len() - start.turn_references.len());
+    work.fill(Scalar::constant(0.0));
+    for (element, value) in known.iter_mut().zip(start.positions.iter().chain(&start.velocities)) {
+        *element = Scalar::constant(*value);
     }
-    let values = start.positions.iter().chain(&start.velocities).chain(std::iter::repeat(&0.0));
-    for (element, value) in state.as_mut().iter_mut().zip(values) {
+    for (element, value) in references.iter_mut().zip(&start.turn_references) {
         *element = Scalar::constant(*value);
     }
     Ok(state)
+}
+
+/// At most the work is left of the state when positions, velocities and turn references are taken away.
+fn refuse_misfit<M: Partition>(mechanism: &M, length: usize, start: &Start) -> Result<(), Failure> {
+    let n_bodies = mechanism.n_bodies();
+    let found = [start.positions.len(), start.velocities.len(), start.turn_references.len()];
+    let left = length.checked_sub(found.iter().sum());
+    let fits = found[0] == 7 * n_bodies
+        && found[1] == 6 * n_bodies
+        && left.is_some_and(|left| left <= 1)
+        && start.observed_bodies.iter().all(|&body| body < n_bodies);
+    if fits {
+        return Ok(());
+    }
+    Err(Failure::Run(format!(
+        "the start has {} positions, {} velocities and {} turn references, the mechanism has {n_bodies} bodies and {length} \
+         elements of its state",
+        found[0], found[1], found[2]
+    )))
 }
 
 #[cfg(test)]
@@ -159,8 +200,13 @@ mod tests {
     use crate::spinner::Spinner;
 
     fn samples(rate: f64, settings: &Settings) -> (Vec<Sample>, Summary) {
-        let (spinner, mut samples) = (Spinner { rate }, Vec::new());
-        let summary = run(&spinner, settings, &spinner.initial(), |event| {
+        let spinner = Spinner { rate, torque: 0.0 };
+        samples_of(spinner.initial(), spinner, settings)
+    }
+
+    fn samples_of(start: Start, mut spinner: Spinner, settings: &Settings) -> (Vec<Sample>, Summary) {
+        let mut samples = Vec::new();
+        let summary = run(&mut spinner, settings, &start, |event| {
             if let Event::Sample(sample) = event {
                 samples.push(sample.clone());
             }
@@ -178,7 +224,7 @@ mod tests {
             for correct_every in [None, Some(5.0 * step)] {
                 let settings = Settings { t_end: 1000.0 * step, step, correct_every, sample_every: 1.0 };
                 let (samples, summary) = samples(rate, &settings);
-                let JointSample::Angle { position, .. } = samples.last().unwrap().joints[0] else {
+                let JointSample::Angle { position, .. } = samples.last().unwrap().coordinates[0] else {
                     panic!("an angle was expected")
                 };
                 let expected = rate * settings.t_end;
@@ -200,17 +246,41 @@ mod tests {
     }
 
     #[test]
+    fn inputs_are_set_before_every_step_and_every_sample() {
+        let ramp = Input { index: 0, rows: vec![[0.0, 0.0], [1.0, 2.0]] };
+        let start = Start { inputs: vec![ramp], ..Spinner::default().initial() };
+        for correct_every in [None, Some(0.2)] {
+            let settings = Settings { t_end: 2.0, step: 0.05, correct_every, sample_every: 1.0 };
+            let (samples, _) = samples_of(start.clone(), Spinner::default(), &settings);
+            let outputs: Vec<f64> = samples.iter().map(|s| s.outputs[0]).collect();
+            assert_eq!(outputs, [0.0, 2.0, 2.0]);
+            let rate = |sample: &Sample| sample.bodies[0].velocity[3];
+            // Held over each of the ramp's 20 steps: Σ 2 k/20 · 1/20 = 19/20.
+            assert!((rate(&samples[1]) - 0.95).abs() < 1e-12, "{}", rate(&samples[1]));
+            assert!((rate(&samples[2]) - 2.95).abs() < 1e-12, "{}", rate(&samples[2]));
+        }
+    }
+
+    #[test]
+    fn turn_references_are_the_last_elements_of_the_state() {
+        let start = Start { turn_references: vec![7.0], ..Spinner::default().initial() };
+        let failure = state(&Spinner::default(), &start).unwrap_err().to_string();
+        assert!(failure.contains("1 turn references") && failure.contains("13 elements"), "{failure}");
+    }
+
+    #[test]
     fn a_run_that_blows_up_says_where() {
-        let spinner = Spinner { rate: f64::MAX };
+        let mut spinner = Spinner { rate: f64::MAX, torque: 0.0 };
+        let start = spinner.initial();
         let settings = Settings { t_end: 1.0, step: 0.1, correct_every: None, sample_every: 0.1 };
-        let failure = run(&spinner, &settings, &spinner.initial(), |_| Ok(())).unwrap_err().to_string();
+        let failure = run(&mut spinner, &settings, &start, |_| Ok(())).unwrap_err().to_string();
         assert!(failure.contains("orientation of body `rotor` is no longer finite"), "{failure}");
     }
 
     #[test]
     fn a_start_of_another_mechanism_is_refused() {
         let settings = Settings { t_end: 1.0, step: 0.1, correct_every: None, sample_every: 0.1 };
-        let failure = run(&Spinner { rate: 1.0 }, &settings, &Start::default(), |_| Ok(())).unwrap_err();
+        let failure = run(&mut Spinner::default(), &settings, &Start::default(), |_| Ok(())).unwrap_err();
         assert!(failure.to_string().starts_with("the start has 0 positions"), "{failure}");
     }
 }

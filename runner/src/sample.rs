@@ -1,14 +1,16 @@
 //! What is recorded at a sample time.
 
-use gyro_sim::{JointCoordinate, Mechanism, Real, Turns, violation};
+use gyro_sim::{JointCoordinate, Mechanism, Ports, Real, Scalar, Turns, violation};
 
 /// The mechanism at one time, in `f64` whatever the run's precision.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sample {
     /// Time, s.
     pub t: f64,
-    /// Every joint, in the order of the page.
-    pub joints: Vec<JointSample>,
+    /// Every coordinate of every joint, in the order of the page.
+    pub coordinates: Vec<JointSample>,
+    /// Every number of every output, in the order of the page.
+    pub outputs: Vec<f64>,
     /// The bodies that were asked for.
     pub bodies: Vec<BodySample>,
     /// Kinetic energy, J.
@@ -27,8 +29,8 @@ pub struct Sample {
     pub chart_switches: u64,
 }
 
-/// A joint's coordinate and rate: continuous angles in rad, orientations as Euler parameters with the relative angular
-/// velocity in the second body's frame.
+/// A joint's coordinate and rate: continuous angles in rad, displacements in m, orientations as Euler parameters with the
+/// relative angular velocity in the second body's frame.
 pub type JointSample = JointCoordinate<f64>;
 
 /// Pose and velocity of a body: `(r, p)` and `(s, w')`.
@@ -49,25 +51,35 @@ impl Sample {
 
 /// Takes samples; holds the buffers that this needs.
 #[derive(Debug)]
-pub(crate) struct Observer<'a, M: Mechanism> {
-    mechanism: &'a M,
+pub(crate) struct Observer<'a, M: Ports> {
     observed_bodies: &'a [usize],
     phi: M::Constraints,
     residual: M::Rows,
+    outputs: M::Outputs,
 }
 
-impl<'a, M: Mechanism<Scalar: Real>> Observer<'a, M> {
-    pub(crate) fn new(mechanism: &'a M, observed_bodies: &'a [usize]) -> Self {
-        Self { mechanism, observed_bodies, phi: mechanism.constraints(), residual: mechanism.rows() }
+impl<'a, M: Ports<Scalar: Real>> Observer<'a, M> {
+    pub(crate) fn new(mechanism: &M, observed_bodies: &'a [usize]) -> Self {
+        let (phi, residual) = (mechanism.constraints(), mechanism.rows());
+        Self { observed_bodies, phi, residual, outputs: mechanism.outputs_buffer() }
     }
 
-    pub(crate) fn sample(&mut self, t: f64, y: &M::State, turns: &Turns<M>, chart_switches: u64) -> Sample {
-        let mechanism = self.mechanism;
-        let energy = mechanism.energy(y);
-        let [position_violation, velocity_violation, norm_violation] = self.violations(t, y);
+    pub(crate) fn sample(
+        &mut self,
+        mechanism: &M,
+        t: f64,
+        y: &M::State,
+        turns: &Turns<M>,
+        chart_switches: u64,
+    ) -> Sample {
+        let time = Scalar::constant(t);
+        let energy = mechanism.energy(time, y);
+        let [position_violation, velocity_violation, norm_violation] = self.violations(mechanism, time, y);
+        mechanism.outputs(time, y, &mut self.outputs);
         Sample {
             t,
-            joints: (0..mechanism.n_joints()).map(|j| in_f64(turns.joint(mechanism, j))).collect(),
+            coordinates: coordinates(mechanism, turns),
+            outputs: self.outputs.as_ref().iter().map(|x| x.to_f64()).collect(),
             bodies: self.observed_bodies.iter().map(|&slot| body(mechanism, slot, y)).collect(),
             kinetic: energy.kinetic.to_f64(),
             potential: energy.potential.to_f64(),
@@ -80,8 +92,7 @@ impl<'a, M: Mechanism<Scalar: Real>> Observer<'a, M> {
     }
 
     /// Of the joint rows of Φ, of the velocity residual, and of the normalisations.
-    fn violations(&mut self, t: f64, y: &M::State) -> [f64; 3] {
-        let (mechanism, t) = (self.mechanism, <M::Scalar as gyro_sim::Scalar>::constant(t));
+    fn violations(&mut self, mechanism: &M, t: M::Scalar, y: &M::State) -> [f64; 3] {
         mechanism.phi(t, y, &mut self.phi);
         mechanism.velocity_residual(t, y, &mut self.residual);
         let phi = self.phi.as_ref();
@@ -92,15 +103,24 @@ impl<'a, M: Mechanism<Scalar: Real>> Observer<'a, M> {
     }
 }
 
+/// All coordinates of all joints at the last reading.
+fn coordinates<M: Mechanism<Scalar: Real>>(mechanism: &M, turns: &Turns<M>) -> Vec<JointSample> {
+    let all = (0..mechanism.n_joints())
+        .flat_map(|joint| (0..mechanism.joint(joint).coordinates.len()).map(move |index| (joint, index)));
+    all.filter_map(|(joint, index)| turns.coordinate(mechanism, joint, index)).map(in_f64).collect()
+}
+
 fn in_f64<T: Real>(coordinate: JointCoordinate<T>) -> JointSample {
     match coordinate {
         JointCoordinate::Angle { position, rate } => {
             JointSample::Angle { position: position.to_f64(), rate: rate.to_f64() }
         }
+        JointCoordinate::Length { position, rate } => {
+            JointSample::Length { position: position.to_f64(), rate: rate.to_f64() }
+        }
         JointCoordinate::Orientation { position, rate } => {
             JointSample::Orientation { position: position.map(Real::to_f64), rate: rate.map(Real::to_f64) }
         }
-        JointCoordinate::None => JointSample::None,
     }
 }
 

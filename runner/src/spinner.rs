@@ -1,12 +1,18 @@
-//! A rotor on an axle along x, turning at a constant rate: the smallest mechanism, for the tests of this crate.
+//! A rotor of 1 kg·m² on an axle along x, turned by a torque: the smallest mechanism, for the tests of this crate.
 
 use crate::Start;
-use gyro_sim::{Coordinate, Energy, Error, JointInfo, Mechanism, Ode, Owner, Partition, RowInfo, charts};
+use gyro_sim::{
+    Coordinate, Energy, Error, JointInfo, Mechanism, Ode, OutputInfo, Owner, Partition, Ports, RowInfo,
+    charts,
+};
 
 /// State: r, p, s, w'.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct Spinner {
+    /// At the start.
     pub(crate) rate: f64,
+    /// The only input.
+    pub(crate) torque: f64,
 }
 
 impl Spinner {
@@ -15,7 +21,9 @@ impl Spinner {
         Start {
             positions: state[..7].to_vec(),
             velocities: state[7..].to_vec(),
+            turn_references: vec![],
             angles: vec![0.0],
+            inputs: vec![],
             observed_bodies: vec![0],
         }
     }
@@ -41,6 +49,7 @@ impl Ode for Spinner {
         for (rate, tangent) in dy[3..7].iter_mut().zip(Self::tangent(y)[0]) {
             *rate = tangent * y[10];
         }
+        dy[10] = self.torque;
     }
 }
 
@@ -65,10 +74,10 @@ impl Mechanism for Spinner {
     fn velocity_residual(&self, _: f64, y: &[f64; 13], out: &mut [f64; 5]) {
         *out = [y[7], y[8], y[9], y[11], y[12]];
     }
-    fn energy(&self, y: &[f64; 13]) -> Energy<f64> {
+    fn energy(&self, _: f64, y: &[f64; 13]) -> Energy<f64> {
         Energy { kinetic: 0.5 * y[10] * y[10], potential: 0.0 }
     }
-    fn read_joints(&self, y: &[f64; 13], out: &mut [f64; 3]) {
+    fn read_joints(&self, _: f64, y: &[f64; 13], out: &mut [f64; 3]) {
         *out = [2.0 * y[3] * y[4], y[3] * y[3] - y[4] * y[4], y[10]];
     }
     fn n_bodies(&self) -> usize {
@@ -81,7 +90,13 @@ impl Mechanism for Spinner {
         "rotor"
     }
     fn joint(&self, _: usize) -> JointInfo<'_> {
-        JointInfo { name: "axle", coordinate: Coordinate::Angle }
+        JointInfo { name: "axle", coordinates: &[Coordinate::Angle] }
+    }
+    fn coupler_name(&self, _: usize) -> &str {
+        "gear"
+    }
+    fn driver_name(&self, _: usize) -> &str {
+        "crank"
     }
     fn row(&self, row: usize) -> RowInfo {
         RowInfo { owner: Owner::Joint(0), is_length: row < 3 }
@@ -91,6 +106,36 @@ impl Mechanism for Spinner {
     }
     fn work(&self, _: &[f64; 13]) -> f64 {
         0.0
+    }
+}
+
+/// The torque goes in and comes out.
+impl Ports for Spinner {
+    type Outputs = [f64; 1];
+
+    fn outputs_buffer(&self) -> [f64; 1] {
+        [0.0]
+    }
+    fn outputs(&self, _: f64, _: &[f64; 13], out: &mut [f64; 1]) {
+        *out = [self.torque];
+    }
+    fn n_outputs(&self) -> usize {
+        1
+    }
+    fn output(&self, _: usize) -> OutputInfo<'_> {
+        OutputInfo { name: "motor", suffix: "", unit: "N*m" }
+    }
+    fn n_inputs(&self) -> usize {
+        1
+    }
+    fn input_name(&self, _: usize) -> &str {
+        "torque"
+    }
+    fn set_input(&mut self, index: usize, value: f64) -> bool {
+        if index == 0 {
+            self.torque = value;
+        }
+        index == 0
     }
 }
 

@@ -69,7 +69,8 @@ mod tests {
     fn sample(kinetic: f64, potential: f64, work: f64) -> Sample {
         Sample {
             t: 0.0,
-            joints: vec![],
+            coordinates: vec![],
+            outputs: vec![],
             bodies: vec![],
             kinetic,
             potential,

@@ -3,9 +3,9 @@
 
 use gyro_assembled::Careful;
 use gyro_runner::{BodySample, Settings};
-use gyro_sim::Partition;
 use gyro_sim::generated::{compound_pendulum::CompoundPendulum, free_body::FreeBody, heavy_top::HeavyTop};
-use gyro_sim_suite::{Check, Engine, PAPER, Run, angle, for_each_generated, model, simulate};
+use gyro_sim::{Partition, Ports};
+use gyro_sim_suite::{Check, Engine, PAPER, Run, coordinate, for_each_generated, model, simulate};
 use std::f64::consts::{FRAC_PI_4, PI};
 
 /// As the issue asks, relative.
@@ -29,7 +29,7 @@ fn agm(mut a: f64, mut b: f64) -> f64 {
 /// samples on both sides.
 fn upward_crossings(run: &Run) -> Vec<f64> {
     let crossing = |pair: &[gyro_runner::Sample]| {
-        let [(a, a_rate), (b, b_rate)] = [angle(&pair[0], 0), angle(&pair[1], 0)];
+        let [(a, a_rate), (b, b_rate)] = [coordinate(&pair[0], 0), coordinate(&pair[1], 0)];
         let h = pair[1].t - pair[0].t;
         (a < 0.0 && b >= 0.0).then(|| pair[0].t + h * hermite_root([a, h * a_rate, b, h * b_rate]))
     };
@@ -45,7 +45,7 @@ fn hermite_root([a, a_slope, b, b_slope]: [f64; 4]) -> f64 {
 }
 
 /// The compound pendulum, released from horizontal: two whole swings.
-fn check_period<M: Partition>(mechanism: &M) {
+fn check_period<M: Partition + Ports + Clone>(mechanism: &M) {
     // The cubic between samples 1 ms apart is good to (1e-3)⁴ · 100 / 384 rad: 1e-13 s.
     let settings = Settings { t_end: 6.0, step: 5e-4, correct_every: Some(2.5e-3), sample_every: 1e-3 };
     let run = simulate(mechanism, &model("compound-pendulum"), &settings);
@@ -75,7 +75,7 @@ fn axis(body: &BodySample) -> [f64; 3] {
 }
 
 /// The axis of symmetry circles Z at `rate` from `start` on, at a constant tilt.
-fn check_cone<M: Partition>(mechanism: &M, page: &str, rate: f64, start: [f64; 3]) {
+fn check_cone<M: Partition + Ports + Clone>(mechanism: &M, page: &str, rate: f64, start: [f64; 3]) {
     let settings = Settings { t_end: 2.0, step: FINE, ..PAPER };
     let run = simulate(mechanism, &model(page), &settings);
     let [x, y, z] = start;
@@ -146,23 +146,47 @@ fn a_motion_that_is_a_little_wrong_is_noticed() {
     assert!(std::panic::catch_unwind(wrong).is_err());
 }
 
-/// No forces but gravity: every shipped mechanism without friction keeps its energy, and one with friction accounts for it.
-struct Energy;
+/// What gains or loses energy accounts for it, all others keep it.
+#[derive(Default)]
+struct Energy {
+    /// Pages that do not, with their drift.
+    failed: Vec<(String, f64)>,
+}
 
 /// Over a second at the paper's step.
 const DRIFT: f64 = 1e-11;
 
+/// Of tops that turn faster for their size, and of a stop that throws a body back within a hundredth of a second.
+const FAST: [&str; 2] = ["spinning-top", "stops"];
+const DRIFT_OF_FAST: f64 = 1e-10;
+
+/// Of a linkage that passes a pose in which its rows depend on each other: on both sides of it accelerations are quotients of
+/// small numbers.
+const SINGULAR: &str = "parallelogram";
+const DRIFT_OF_SINGULAR: f64 = 1e-7;
+
 impl Check<f64> for Energy {
     fn check<M: Engine<f64>>(&mut self, page: &str, mechanism: &M) {
-        let run = simulate(mechanism, &model(page), &PAPER);
+        let model = model(page);
+        let run = simulate(mechanism, &model, &PAPER);
         let (drift, work) = (run.summary.energy_drift, run.last().work);
         println!("{page}: energy drift {drift:e}, work {work:e} J");
-        assert!(drift <= DRIFT, "{page}: {drift:e}");
-        assert_eq!(work < 0.0, page == "gyroscope-viscous", "{page}: friction alone takes energy");
+        let allowed = match page {
+            SINGULAR => DRIFT_OF_SINGULAR,
+            _ if FAST.contains(&page) => DRIFT_OF_FAST,
+            _ => DRIFT,
+        };
+        if drift > allowed || drift.is_nan() {
+            self.failed.push((page.to_owned(), drift));
+        }
+        assert!(model.has_work() || work == 0.0, "{page}: nothing does work");
+        assert!(page != "gyroscope-viscous" || work < 0.0, "friction takes energy");
     }
 }
 
 #[test]
 fn energy_is_accounted_for() {
-    for_each_generated(&mut Energy);
+    let mut energy = Energy::default();
+    for_each_generated(&mut energy);
+    assert!(energy.failed.is_empty(), "energy is lost: {:?}", energy.failed);
 }

@@ -4,9 +4,9 @@
 use gyro_assembled::Careful;
 use gyro_reference::{Gyroscope as Reference, Sample};
 use gyro_runner::Settings;
-use gyro_sim::Partition;
 use gyro_sim::generated::{gyroscope::Gyroscope, gyroscope_combined_offsets::GyroscopeCombinedOffsets};
-use gyro_sim_suite::{PAPER, angle, model, simulate};
+use gyro_sim::{Partition, Ports};
+use gyro_sim_suite::{PAPER, coordinate, model, simulate};
 
 /// Truncation dominates: at a tenth of these rounding shows, and at four times these the damping of the nutation, of the
 /// fifth order, is as large as its change of phase.
@@ -19,18 +19,23 @@ const ORDER: std::ops::Range<f64> = 3.9..4.1;
 const STEPS_PER_CORRECTION: f64 = 5.0;
 
 /// The largest errors of α and φ over the second. (β is nutation alone: the damping shows longer.)
-fn errors<M: Partition>(mechanism: &M, page: &str, reference: &[Sample], settings: &Settings) -> [f64; 2] {
+fn errors<M: Partition + Ports + Clone>(
+    mechanism: &M,
+    page: &str,
+    reference: &[Sample],
+    settings: &Settings,
+) -> [f64; 2] {
     let run = simulate(mechanism, &model(page), settings);
     let error = |joint: usize| {
         let expected = |sample: &Sample| if joint == 0 { sample.alpha } else { sample.phi };
         let errors =
-            reference.iter().map(|sample| (angle(run.at(sample.t), joint).0 - expected(sample)).abs());
+            reference.iter().map(|sample| (coordinate(run.at(sample.t), joint).0 - expected(sample)).abs());
         errors.fold(0.0, f64::max)
     };
     [0, 2].map(error)
 }
 
-fn check<M: Partition>(mechanism: &M, page: &str, reference: &Reference) {
+fn check<M: Partition + Ports + Clone>(mechanism: &M, page: &str, reference: &Reference) {
     let times: Vec<f64> = (0..=50).map(|k| f64::from(k) / 50.0).collect();
     let reference = reference.solve(&times);
     let at = |step: f64| {

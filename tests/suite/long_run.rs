@@ -7,7 +7,7 @@ use gyro_reference::{Gyroscope as Reference, Scheme};
 use gyro_runner::Settings;
 use gyro_sim::generated::gyroscope::Gyroscope;
 use gyro_sim::{Direct, Error, Mechanism, Ode, Partition, Partitioned, Turns, violation};
-use gyro_sim_suite::{PAPER, angle, model, simulate};
+use gyro_sim_suite::{PAPER, coordinate, model, simulate};
 use std::sync::LazyLock;
 
 const T_END: f64 = 100.0;
@@ -36,7 +36,7 @@ static ALPHA_AT_END: LazyLock<f64> = LazyLock::new(|| {
 fn the_partition_lasts_a_hundred_seconds() {
     let settings = Settings { t_end: T_END, sample_every: 0.1, ..PAPER };
     let run = simulate(&Gyroscope::<f64>::default(), &model("gyroscope"), &settings);
-    let (summary, alpha) = (run.summary, angle(run.last(), 0).0);
+    let (summary, alpha) = (run.summary, coordinate(run.last(), 0).0);
     let error = (alpha - *ALPHA_AT_END).abs();
     println!("{summary:?}, error of alpha {error:e} rad");
     assert!(summary.position_violation <= VIOLATION, "violation {:e}", summary.position_violation);
@@ -86,11 +86,11 @@ fn one_fixed_choice_of_independent_coordinates_does_not() {
         Ok(y) => y,
         Err(error) => return println!("a fixed choice fails: {error}"),
     };
-    let energies = (mechanism.energy(&y), mechanism.energy(&mechanism.start()));
+    let energies = (mechanism.energy(T_END, &y), mechanism.energy(0.0, &mechanism.start()));
     let drift = (energies.0.total() - energies.1.total()) / energies.0.kinetic;
     let expected = *ALPHA_AT_END;
-    let alpha = match Turns::new(&mechanism, &y, &[expected]).joint(&mechanism, 0) {
-        gyro_sim::JointCoordinate::Angle { position, .. } => position,
+    let alpha = match Turns::new(&mechanism, T_END, &y, &[expected]).coordinate(&mechanism, 0, 0) {
+        Some(gyro_sim::JointCoordinate::Angle { position, .. }) => position,
         other => panic!("{other:?}"),
     };
     println!("a fixed choice: energy drift {drift:e}, error of alpha {:e} rad", alpha - expected);

@@ -4,7 +4,7 @@
 use gyro_assembled::{Careful, Dense};
 use gyro_model::Model;
 use gyro_reference::{DoubleDouble, Sample, Scene, tabulated};
-use gyro_sim_suite::{Check, Engine, PAPER, Run, angle, model, simulate, with_generated};
+use gyro_sim_suite::{Check, Engine, PAPER, Run, coordinate, model, simulate, with_generated};
 
 /// Which scene of the table each page shows.
 const PAGES: [(&str, &str); 7] = [
@@ -49,7 +49,7 @@ fn errors(scene: &Scene, run: &Run) -> [(f64, f64); 3] {
     std::array::from_fn(|joint| {
         let scale = table.iter().map(|s| joints(s)[joint].1.abs()).fold(LEAST_RATE, f64::max);
         let error = |sample: &Sample| {
-            let ((position, rate), expected) = (angle(run.at(sample.t), joint), joints(sample)[joint]);
+            let ((position, rate), expected) = (coordinate(run.at(sample.t), joint), joints(sample)[joint]);
             ((position - expected.0).abs(), (rate - expected.1).abs() / scale)
         };
         let worst = |(a, b): (f64, f64), (x, y): (f64, f64)| (a.max(x), b.max(y));

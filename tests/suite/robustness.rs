@@ -49,12 +49,15 @@ fn exercise<T: Real, M: Engine<T>>(mechanism: &M, y: &M::State) -> Result<(), Er
     mechanism.phi_pi(t, y, &mut phi_pi);
     let mut velocities = mechanism.velocities();
     mechanism.applied_force(t, y, &mut velocities);
-    mechanism.accelerations(t, y, &mut velocities, &mut rows);
-    mechanism.energy(y);
-    let mut turns = Turns::new(mechanism, y, &[]);
-    turns.update(mechanism, T::constant(f64::INFINITY), y);
+    let (mut accelerations, mut outputs) = (mechanism.accelerations_buffer(), mechanism.outputs_buffer());
+    mechanism.accelerations(t, y, &mut accelerations);
+    mechanism.multipliers(t, y, &accelerations, &mut rows);
+    mechanism.outputs(t, y, &mut outputs);
+    mechanism.energy(t, y);
+    let mut turns = Turns::new(mechanism, t, y, &[]);
+    turns.update(mechanism, t, T::constant(f64::INFINITY), y);
     for joint in 0..=mechanism.n_joints() {
-        turns.joint(mechanism, joint);
+        turns.coordinate(mechanism, joint, 0);
     }
     let mut solver = Partitioned::new(mechanism, y);
     let mut corrected = y.clone();
@@ -65,7 +68,7 @@ fn exercise<T: Real, M: Engine<T>>(mechanism: &M, y: &M::State) -> Result<(), Er
 /// Counts outcomes; a panic ends the test with the state printed.
 #[derive(Default)]
 struct Survives {
-    errors: [usize; 3],
+    errors: [usize; 4],
     survivors: usize,
 }
 
@@ -84,6 +87,7 @@ impl<T: Real> Check<T> for Survives {
                 Err(Error::NotFinite { .. }) => self.errors[0] += 1,
                 Err(Error::NoConvergence { .. }) => self.errors[1] += 1,
                 Err(Error::Singular { .. }) => self.errors[2] += 1,
+                Err(Error::Jump { .. }) => self.errors[3] += 1,
             }
             let is_finite = y.as_ref().iter().all(|x| x.is_finite());
             assert!(is_finite || outcome.is_err(), "{page}, state {index} passes: {values:?}");
@@ -95,7 +99,7 @@ fn check<T: Real>() {
     let mut survives = Survives::default();
     for_each_generated::<T>(&mut survives);
     println!(
-        "not finite, no convergence, singular: {:?}; run through: {}",
+        "not finite, no convergence, singular, jump: {:?}; run through: {}",
         survives.errors, survives.survivors
     );
     // The states must be hard enough, and not all of them hopeless.

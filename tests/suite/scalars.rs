@@ -69,6 +69,16 @@ impl Scalar for Lanes {
     fn cos(self) -> Self {
         Self(self.0.map(Scalar::cos))
     }
+    fn tanh(self) -> Self {
+        Self(self.0.map(Scalar::tanh))
+    }
+    fn atan2(self, x: Self) -> Self {
+        Self([0, 1].map(|k| self.0[k].atan2(x.0[k])))
+    }
+    fn spline(self, knots: &[f64], pieces: &[[f64; 4]]) -> [Self; 3] {
+        let lanes = self.0.map(|t| t.spline(knots, pieces));
+        [0, 1, 2].map(|order| Self(lanes.map(|lane| lane[order])))
+    }
 }
 
 fn dual(value: f64, slope: f64) -> Dual {
@@ -124,6 +134,24 @@ impl Scalar for Dual {
     }
     fn cos(self) -> Self {
         dual(self.value.cos(), -self.slope * self.value.sin())
+    }
+    fn tanh(self) -> Self {
+        let tanh = self.value.tanh();
+        dual(tanh, self.slope * (1.0 - tanh * tanh))
+    }
+    fn atan2(self, x: Self) -> Self {
+        let turned = x.value * self.slope - self.value * x.slope;
+        dual(self.value.atan2(x.value), turned / (self.value * self.value + x.value * x.value))
+    }
+    fn spline(self, knots: &[f64], pieces: &[[f64; 4]]) -> [Self; 3] {
+        // The third derivative is constant between knots.
+        let [value, first, second] = self.value.spline(knots, pieces);
+        let third = (self.value + 1e-6).spline(knots, pieces)[2] - second;
+        [
+            dual(value, first * self.slope),
+            dual(first, second * self.slope),
+            dual(second, third * 1e6 * self.slope),
+        ]
     }
 }
 

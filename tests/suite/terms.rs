@@ -6,10 +6,15 @@
 use gyro_assembled::{Careful, Dense};
 use gyro_model::Model;
 use gyro_sim_suite::{
-    Check, Engine, Matrix, Random, difference, for_each_generated, model, phi_pi, phi_q, state, state_of,
+    Check, Engine, Matrix, Random, difference, for_each_generated, is_open, model, phi_pi, phi_q, state,
+    state_of,
 };
+use nalgebra::{DMatrix, Matrix3, Matrix6};
 
 const STATES: usize = 1000;
+
+/// Time, s: any, for what is driven.
+const T: f64 = 0.37;
 
 /// Angular velocities, rad/s: the paper's rotor turns at 100.
 const RATE: f64 = 100.0;
@@ -19,6 +24,17 @@ const AGREEMENT: f64 = 1e-12;
 
 /// The same where a linear system has been solved in between.
 const AGREEMENT_OF_SOLUTIONS: f64 = 1e-10;
+
+/// Roundings by which two solutions of a mechanism with loops may differ for each unit of the condition number of its rows: what
+/// a few dozen eliminations lose, and a universal joint in the tree whose axes come to be parallel. Trees that stay trees lose
+/// nothing.
+const ROUNDINGS: f64 = 1000.0;
+
+/// More than this no state may lose; it is ten times what any of these states loses.
+const LOST: f64 = 1e-8;
+
+/// The largest condition number of states that are looked at: a wrong formula is off by more than is lost then.
+const CONDITION: f64 = 1e8;
 
 /// One kind of numbers of one state: they have a unit, and so a scale, in common.
 struct Kind {
@@ -35,7 +51,7 @@ fn kind(name: &'static str, values: Vec<f64>) -> Kind {
 
 /// Everything that a mechanism says of a state, kind by kind.
 fn terms<M: Engine<f64>>(mechanism: &M, model: &Model, values: &[f64]) -> Vec<Kind> {
-    let (t, y) = (0.0, state_of(mechanism, values));
+    let (t, y) = (T, state_of(mechanism, values));
     let mut kinds = Vec::new();
     let mut constraints = mechanism.constraints();
     mechanism.phi(t, &y, &mut constraints);
@@ -51,20 +67,37 @@ fn terms<M: Engine<f64>>(mechanism: &M, model: &Model, values: &[f64]) -> Vec<Ki
     kinds.extend(by_unit(mechanism, ["γ, lengths", "γ, pure"], out.as_ref()));
     mechanism.velocity_residual(t, &y, &mut out);
     kinds.extend(by_unit(mechanism, ["velocity, lengths", "velocity, pure"], out.as_ref()));
-    kinds.extend(by_block(["Φ_r of Φ_q", "Φ_p"], 7, &phi_q(mechanism, &y)));
-    kinds.extend(by_block(["Φ_r", "Φ_π'"], 6, &phi_pi(mechanism, &y)));
+    let phi_q = without_stretching(phi_q(mechanism, T, &y), values, n_rows);
+    kinds.extend(by_block(["Φ_r of Φ_q", "Φ_p"], 7, &phi_q));
+    kinds.extend(by_block(["Φ_r", "Φ_π'"], 6, &phi_pi(mechanism, T, &y)));
     let mut force = mechanism.velocities();
     mechanism.applied_force(t, &y, &mut force);
-    kinds.extend(halves(["f", "n' − w̃'J'w'"], 6, force.as_ref()));
+    let mut forces = halves(["f", "n' − w̃'J'w'"], 6, force.as_ref());
+    // A body with equal moments has no gyroscopic torque but rounding.
+    let moments = model.bodies.iter().flat_map(|body| model.values(&body.inertia));
+    forces[1].scale = RATE * RATE * moments.fold(0.0, |largest: f64, x| largest.max(x.abs()));
+    kinds.extend(forces);
     kinds.extend(readings_and_energy(mechanism, model, &y));
     kinds
+}
+
+/// Φ_q with the joint rows' derivatives along p itself taken away: rows are functions of rotations, and what A(p) is of a p that is
+/// not of unit length, as in eq. (3) or otherwise, is nobody's business.
+fn without_stretching(mut phi_q: Matrix, values: &[f64], n_rows: usize) -> Matrix {
+    for row in &mut phi_q.rows[..n_rows] {
+        for (row, q) in row.chunks_exact_mut(7).zip(values.chunks_exact(7)) {
+            let along: f64 = row[3..].iter().zip(&q[3..]).map(|(a, e)| a * e).sum();
+            row[3..].iter_mut().zip(&q[3..]).for_each(|(a, e)| *a -= along * e);
+        }
+    }
+    phi_q
 }
 
 /// Readings: sines and cosines, Euler parameters and rates all have values up to 2π or 2 · [`RATE`].
 fn readings_and_energy<M: Engine<f64>>(mechanism: &M, model: &Model, y: &M::State) -> Vec<Kind> {
     let mut readings = mechanism.readings();
-    mechanism.read_joints(y, &mut readings);
-    let energy = mechanism.energy(y);
+    mechanism.read_joints(T, y, &mut readings);
+    let energy = mechanism.energy(T, y);
     let weight: f64 = model.values(&model.gravity).map(f64::abs).iter().sum::<f64>();
     let masses = model.coordinate_bodies().into_iter().map(|body| model.value(&model.bodies[body].mass));
     vec![
@@ -77,21 +110,81 @@ fn readings_and_energy<M: Engine<f64>>(mechanism: &M, model: &Model, y: &M::Stat
     ]
 }
 
+/// A random state with the condition number of its rows, which is one for trees.
+fn drawn<M: Engine<f64>>(mechanism: &M, model: &Model, random: &mut Random) -> (Vec<f64>, f64) {
+    loop {
+        let values = state(mechanism, RATE, random);
+        let condition = if is_open(model) { 1.0 } else { condition(mechanism, model, &values) };
+        if condition <= CONDITION {
+            return (values, condition);
+        }
+    }
+}
+
+/// The condition number of `Φ_π' M⁻¹ Φ_π'ᵀ`, rows of lengths and pure rows scaled so that the largest element of the diagonal is one.
+fn condition<M: Engine<f64>>(mechanism: &M, model: &Model, values: &[f64]) -> f64 {
+    let rows = phi_pi(mechanism, T, &state_of(mechanism, values)).rows;
+    let n_columns = 6 * mechanism.n_bodies();
+    let jacobian = DMatrix::from_fn(rows.len(), n_columns, |row, column| rows[row][column]);
+    let mut mobility = DMatrix::zeros(n_columns, n_columns);
+    for (slot, body) in model.coordinate_bodies().into_iter().enumerate() {
+        let body = &model.bodies[body];
+        let ([xx, yy, zz, xy, xz, yz], mass) = (model.values(&body.inertia), model.value(&body.mass));
+        let inertia = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
+        let mut mass_matrix = Matrix6::identity() * mass;
+        mass_matrix.fixed_view_mut::<3, 3>(3, 3).copy_from(&inertia);
+        let inverse = mass_matrix.try_inverse().expect("masses and inertias are positive");
+        mobility.view_mut((6 * slot, 6 * slot), (6, 6)).copy_from(&inverse);
+    }
+    let matrix = &jacobian * mobility * jacobian.transpose();
+    let is_length = |row: usize| mechanism.row(row).is_length;
+    let largest = |row: usize| {
+        let alike = (0..matrix.nrows()).filter(|&other| is_length(other) == is_length(row));
+        alike.map(|other| matrix[(other, other)]).fold(0.0, f64::max)
+    };
+    let scaled = matrix.map_with_location(|i, j, x: f64| x / (largest(i) * largest(j)).sqrt());
+    let eigenvalues = scaled.symmetric_eigenvalues();
+    let (least, largest) = (eigenvalues.min(), eigenvalues.max());
+    if least > 0.0 { largest / least } else { f64::INFINITY }
+}
+
 /// What follows from eq. (17).
-fn solutions<M: Engine<f64>>(mechanism: &M, _: &Model, values: &[f64]) -> Vec<Kind> {
+fn solutions<M: Engine<f64>>(mechanism: &M, model: &Model, values: &[f64]) -> Vec<Kind> {
     let y = &state_of(mechanism, values);
-    let (mut accelerations, mut lambda) = (mechanism.velocities(), mechanism.rows());
-    mechanism.accelerations(0.0, y, &mut accelerations, &mut lambda);
-    let mut kinds = halves(["s̈", "ẇ'"], 6, accelerations.as_ref());
+    let (mut accelerations, mut lambda) = (mechanism.accelerations_buffer(), mechanism.rows());
+    mechanism.accelerations(T, y, &mut accelerations);
+    mechanism.multipliers(T, y, &accelerations, &mut lambda);
+    let n_velocities = 6 * mechanism.n_bodies();
+    let mut kinds = halves(["s̈", "ẇ'"], 6, &accelerations.as_ref()[..n_velocities]);
     kinds.extend(by_unit(mechanism, ["λ, forces", "λ, torques"], lambda.as_ref()));
     let mut dy = mechanism.start();
-    mechanism.derivative(0.0, y, &mut dy);
+    mechanism.derivative(T, y, &mut dy);
     let (q_dot, rest) = dy.as_ref().split_at(7 * mechanism.n_bodies());
-    let (v_dot, power) = rest.split_at(6 * mechanism.n_bodies());
+    let (v_dot, others) = rest.split_at(n_velocities);
+    let (power, turns) = others.split_at(usize::from(model.has_work()));
     kinds.extend(halves(["ṙ", "ṗ"], 7, q_dot));
     kinds.extend(halves(["s̈ of ẏ", "ẇ' of ẏ"], 6, v_dot));
     kinds.push(kind("power", power.to_vec()));
+    kinds.push(kind("rates of turn references", turns.to_vec()));
+    kinds.extend(outputs(mechanism, y));
     kinds.into_iter().map(|kind| Kind { agreement: AGREEMENT_OF_SOLUTIONS, ..kind }).collect()
+}
+
+/// Each output by itself, numbers of one unit together. A torque is as inexact as the forces at an arm of the mechanism's size.
+fn outputs<M: Engine<f64>>(mechanism: &M, y: &M::State) -> Vec<Kind> {
+    let mut out = mechanism.outputs_buffer();
+    mechanism.outputs(T, y, &mut out);
+    let out = out.as_ref();
+    let unit = |index: usize| (mechanism.output(index).name, mechanism.output(index).unit);
+    let places: Vec<usize> = (0..mechanism.n_outputs()).collect();
+    let groups = places.chunk_by(|&a, &b| unit(a) == unit(b));
+    let of_group = |group: &[usize]| {
+        let forces = places.iter().filter(|&&k| unit(k) == (unit(group[0]).0, "N")).map(|&k| out[k].abs());
+        let is_torque = unit(group[0]).1 == "N*m";
+        let scale = if is_torque { mechanism.size() * forces.fold(0.0, f64::max) } else { 0.0 };
+        Kind { scale, ..kind("outputs", group.iter().map(|&k| out[k]).collect()) }
+    };
+    groups.map(of_group).collect()
 }
 
 /// Rows apart by what they measure.
@@ -125,13 +218,14 @@ struct Worst {
 }
 
 impl Worst {
-    /// Compares one state; `what` says which.
-    fn compare(&mut self, what: &str, generated: &[Kind], twin: &[Kind]) {
+    /// Compares one state; `what` says which. Solutions may differ by `lost` more.
+    fn compare(&mut self, (what, lost): (&str, f64), generated: &[Kind], twin: &[Kind]) {
         assert_eq!(generated.len(), twin.len(), "{what}");
         for (a, b) in generated.iter().zip(twin) {
             let error = difference(&a.values, &b.values, a.scale);
+            let lost = if a.agreement == AGREEMENT_OF_SOLUTIONS { lost } else { 0.0 };
             assert!(
-                error <= a.agreement,
+                error <= a.agreement.max(lost),
                 "{what}: {} differs by {error:e}:\n{:?}\n{:?}",
                 a.name,
                 a.values,
@@ -159,34 +253,58 @@ impl Worst {
 }
 
 /// Compares with both forms of the twin.
-struct WithTwins;
+#[derive(Default)]
+struct WithTwins {
+    /// Pages that do not agree.
+    failed: Vec<String>,
+}
 
 impl Check<f64> for WithTwins {
     fn check<M: Engine<f64>>(&mut self, page: &str, mechanism: &M) {
-        let model = model(page);
-        let (careful, dense) = (Careful::new(&model).unwrap(), Dense::new(&model).unwrap());
-        let (mut random, mut to_careful, mut to_dense) = (Random::new(7), Worst::default(), Worst::default());
-        for index in 0..STATES {
-            let values = state(mechanism, RATE, &mut random);
-            let what = format!("{page}, state {index}: {values:?}");
-            let generated = terms(mechanism, &model, &values);
-            to_careful.compare(&what, &generated, &terms(&careful, &model, &values));
-            to_dense.compare(&what, &generated, &terms(&dense, &model, &values));
-            let generated = solutions(mechanism, &model, &values);
-            to_careful.compare(&what, &generated, &solutions(&careful, &model, &values));
-            to_dense.compare(&what, &generated, &solutions(&dense, &model, &values));
+        let agrees = || Self::compare(page, mechanism);
+        if std::panic::catch_unwind(std::panic::AssertUnwindSafe(agrees)).is_err() {
+            self.failed.push(page.to_owned());
         }
-        println!("{page}: {}; dense: {}", to_careful.summary(), to_dense.summary());
-        assert!(
-            to_careful.differ && to_dense.differ,
-            "{page}: bit for bit the same: one is compared with itself"
-        );
+    }
+}
+
+impl WithTwins {
+    fn compare<M: Engine<f64>>(page: &str, mechanism: &M) {
+        let model = model(page);
+        let careful = Careful::<f64>::supports(&model).ok().map(|()| Careful::new(&model).unwrap());
+        let dense = Dense::new(&model).unwrap();
+        let (mut random, mut to_careful, mut to_dense) = (Random::new(7), Worst::default(), Worst::default());
+        let mut most_lost = 0.0_f64;
+        for index in 0..STATES {
+            let (values, condition) = drawn(mechanism, &model, &mut random);
+            let (what, lost) = (
+                format!("{page}, state {index}: {values:?}"),
+                (ROUNDINGS * f64::EPSILON * condition).min(LOST),
+            );
+            let state = (what.as_str(), lost);
+            most_lost = most_lost.max(lost);
+            let mut generated = terms(mechanism, &model, &values);
+            generated.extend(solutions(mechanism, &model, &values));
+            let all = |twin: &dyn Fn() -> [Vec<Kind>; 2]| twin().into_iter().flatten().collect::<Vec<_>>();
+            if let Some(careful) = &careful {
+                let twin = all(&|| [terms(careful, &model, &values), solutions(careful, &model, &values)]);
+                to_careful.compare(state, &generated, &twin);
+            }
+            let twin = all(&|| [terms(&dense, &model, &values), solutions(&dense, &model, &values)]);
+            to_dense.compare(state, &generated, &twin);
+        }
+        let summaries = (to_careful.summary(), to_dense.summary());
+        println!("{page}: {}; dense: {}; allowed {most_lost:.0e}", summaries.0, summaries.1);
+        let differ = to_dense.differ && (careful.is_none() || to_careful.differ);
+        assert!(differ, "{page}: bit for bit the same: one is compared with itself");
     }
 }
 
 #[test]
 fn generated_terms_agree_with_the_twins() {
-    for_each_generated(&mut WithTwins);
+    let mut twins = WithTwins::default();
+    for_each_generated(&mut twins);
+    assert!(twins.failed.is_empty(), "these do not agree: {:?}", twins.failed);
 }
 
 #[test]

@@ -1,14 +1,18 @@
-//! What the integration tests share: the shipped models with their generated mechanisms, seeded random states, runs,
-//! nested builds.
+//! What the integration tests share: the pages with their generated mechanisms, seeded random states, runs, nested builds.
 
+mod against;
+pub mod generated;
 mod matrix;
 mod nested;
 mod random;
 mod runs;
-mod shipped;
+mod shelves;
 
+pub use against::{along, body, check, check_pairs, cross, pair, reference_body, times, worst};
 pub use matrix::{Matrix, difference, phi_pi, phi_q};
 pub use nested::{Said, cargo, say};
-pub use random::{Random, posed, state, state_of, violated_start};
-pub use runs::{PAPER, Run, angle, simulate, start_of};
-pub use shipped::{Check, Engine, for_each_generated, model, page, pages, with_generated};
+pub use random::{Random, posed, state, state_at, state_of, violated_start};
+pub use runs::{PAPER, Run, as_paged, coordinate, fed, multipliers, output, played, simulate, start_of};
+pub use shelves::{
+    Check, Engine, Shelf, for_each_generated, is_open, model, module, page, pages, shelves, with_generated,
+};

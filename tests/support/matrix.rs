@@ -26,17 +26,17 @@ impl Matrix {
 }
 
 /// Φ_q with respect to (r, p), normalisation rows included.
-pub fn phi_q<M: Equations<Scalar = f64>>(mechanism: &M, y: &M::State) -> Matrix {
+pub fn phi_q<M: Equations<Scalar = f64>>(mechanism: &M, t: f64, y: &M::State) -> Matrix {
     let mut values = mechanism.phi_q_values();
-    mechanism.phi_q(0.0, y, &mut values);
+    mechanism.phi_q(t, y, &mut values);
     let (n_rows, n_columns) = (mechanism.constraints().as_ref().len(), 7 * mechanism.n_bodies());
     Matrix::scattered(n_rows, n_columns, mechanism.phi_q_pattern(), values.as_ref())
 }
 
 /// (Φ_r, Φ_π').
-pub fn phi_pi<M: Equations<Scalar = f64>>(mechanism: &M, y: &M::State) -> Matrix {
+pub fn phi_pi<M: Equations<Scalar = f64>>(mechanism: &M, t: f64, y: &M::State) -> Matrix {
     let mut values = mechanism.phi_pi_values();
-    mechanism.phi_pi(0.0, y, &mut values);
+    mechanism.phi_pi(t, y, &mut values);
     let (n_rows, n_columns) = (mechanism.rows().as_ref().len(), 6 * mechanism.n_bodies());
     Matrix::scattered(n_rows, n_columns, mechanism.phi_pi_pattern(), values.as_ref())
 }

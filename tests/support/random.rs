@@ -1,6 +1,8 @@
 //! Seeded random states.
 
-use gyro_model::{JointKind, JointStartSpec, Model, Number, Support, parse_decimal};
+use gyro_model::{
+    CoordinateKind, JointCoordinate, JointKind, JointStartSpec, Model, Number, Start, Support, parse_decimal,
+};
 use gyro_sim::{Mechanism, Scalar};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -43,7 +45,8 @@ impl Random {
 }
 
 /// A state with every joint row violated: mass centres anywhere within the mechanism's size of where they start, any
-/// orientations with |p| = 1, angular velocities up to `rate` rad/s and velocities up to `rate` sizes a second.
+/// orientations with |p| = 1, angular velocities up to `rate` rad/s and velocities up to `rate` sizes a second; work and turn
+/// references up to one.
 pub fn state<M: Mechanism<Scalar = f64>>(mechanism: &M, rate: f64, random: &mut Random) -> Vec<f64> {
     let (mut y, n_bodies, size) =
         (mechanism.start().as_ref().to_vec(), mechanism.n_bodies(), mechanism.size());
@@ -52,12 +55,12 @@ pub fn state<M: Mechanism<Scalar = f64>>(mechanism: &M, rate: f64, random: &mut 
         q[..3].iter_mut().for_each(|r| *r += size * random.signed());
         q[3..].copy_from_slice(&random.unit());
     }
-    let (velocities, work) = rest.split_at_mut(6 * n_bodies);
+    let (velocities, others) = rest.split_at_mut(6 * n_bodies);
     for v in velocities.as_chunks_mut::<6>().0 {
         v[..3].iter_mut().for_each(|s| *s = rate * size * random.signed());
         v[3..].iter_mut().for_each(|w| *w = rate * random.signed());
     }
-    work.iter_mut().for_each(|work| *work = random.signed());
+    others.iter_mut().for_each(|other| *other = random.signed());
     y
 }
 
@@ -85,43 +88,44 @@ pub fn posed(model: &Model, rate: f64, random: &mut Random) -> Model {
         }
     }
     for joint in &mut model.joints {
-        joint.start = match joint.kind {
-            JointKind::Revolute => {
-                let (angle, rate) = (10.0 * random.signed(), rate * random.signed());
-                JointStartSpec {
-                    angle: Some(number(angle)),
-                    rate: Some(vec![number(rate)]),
-                    orientation: None,
-                }
-            }
-            JointKind::Spherical => {
-                let (p, rate) = (random.unit(), random.vector(rate));
-                JointStartSpec {
-                    orientation: Some(p.map(number)),
-                    rate: Some(rate.map(number).to_vec()),
-                    angle: None,
-                }
-            }
-            JointKind::Fixed => JointStartSpec::default(),
+        let coordinates = joint.kind.coordinates();
+        let is_spherical = joint.kind == JointKind::Spherical;
+        let n_rates = if is_spherical { 3 } else { coordinates.len() };
+        let mut position = |kind: &CoordinateKind| {
+            let reach = if kind.is_angle() { 10.0 } else { 1.0 };
+            Some(number(reach * random.signed()))
+        };
+        joint.start = JointStartSpec {
+            position: coordinates.iter().map(&mut position).collect(),
+            rate: (n_rates > 0).then(|| (0..n_rates).map(|_| number(rate * random.signed())).collect()),
+            orientation: is_spherical.then(|| random.unit().map(number)),
+            is_rough: false,
         };
     }
     model
 }
 
+/// A start of a model in the order of the state, no work done yet.
+pub fn state_at(model: &Model, start: &Start) -> Vec<f64> {
+    let angle = |turn: JointCoordinate| start.joints[turn.joint].position[turn.coordinate];
+    let mut y = [&start.q[..], &start.v].concat();
+    y.extend(model.has_work().then_some(0.0));
+    y.extend(model.turn_references().into_iter().map(angle));
+    y
+}
+
 /// The start of a model in the order of the state, its positions moved by up to `violation`: mass centres in terms of
 /// `size`, Euler parameters in terms of one and then normalised.
 pub fn violated_start(model: &Model, violation: f64, random: &mut Random) -> Vec<f64> {
-    let start = model.assemble().expect("any pose of a tree of joints can be assembled");
-    let (mut y, size) = (start.q, model.size());
+    let mut start = model.assemble().expect("any pose of a tree of joints can be assembled");
+    let (y, size) = (&mut start.q, model.size());
     for q in y.as_chunks_mut::<7>().0 {
         q[..3].iter_mut().for_each(|r| *r += violation * size * random.signed());
         q[3..].iter_mut().for_each(|e| *e += violation * random.signed());
         let norm = q[3..].iter().map(|e| e * e).sum::<f64>().sqrt();
         q[3..].iter_mut().for_each(|e| *e /= norm);
     }
-    y.extend(start.v);
-    y.extend(model.has_work().then_some(0.0));
-    y
+    state_at(model, &start)
 }
 
 /// The number that is written with the digits of a finite `f64`.

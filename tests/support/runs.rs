@@ -1,8 +1,8 @@
 //! Runs of a mechanism from its model's start, by the loop that the command line uses.
 
-use gyro_model::Model;
-use gyro_runner::{Event, JointSample, Sample, Settings, Start, Summary, run};
-use gyro_sim::Partition;
+use gyro_model::{Joint, JointKind, Model};
+use gyro_runner::{Event, Failure, Input, JointSample, Sample, Settings, Start, Summary, run};
+use gyro_sim::{Equations, Partition, Ports};
 
 /// The paper's settings for one second, section 7.
 pub const PAPER: Settings =
@@ -39,12 +39,16 @@ impl Run {
 /// The start of a model, with all its bodies observed.
 pub fn start_of(model: &Model) -> Start {
     let start = model.assemble().expect("the model has a start");
-    let angles = start.joints.iter().map(|joint| match joint.position[..] {
-        [angle] => angle,
-        _ => 0.0,
+    let angles = start.joints.iter().zip(&model.joints).flat_map(|(joint, description)| {
+        // An orientation is one coordinate, and no angle.
+        let is_spherical = description.kind == JointKind::Spherical;
+        if is_spherical { vec![0.0] } else { joint.position.clone() }
     });
+    let turns = model.turn_references().into_iter();
     Start {
         angles: angles.collect(),
+        turn_references: turns.map(|turn| start.joints[turn.joint].position[turn.coordinate]).collect(),
+        inputs: Vec::new(),
         observed_bodies: (0..model.coordinate_bodies().len()).collect(),
         positions: start.q,
         velocities: start.v,
@@ -55,25 +59,79 @@ pub fn start_of(model: &Model) -> Start {
 ///
 /// # Panics
 /// If the run fails.
-pub fn simulate<M: Partition>(mechanism: &M, model: &Model, settings: &Settings) -> Run {
+pub fn simulate<M: Partition + Ports + Clone>(mechanism: &M, model: &Model, settings: &Settings) -> Run {
+    let (samples, outcome) = fed(mechanism, model, settings, Vec::new());
+    let summary = outcome.unwrap_or_else(|failure| panic!("{}: {failure}", model.name));
+    Run { samples, summary }
+}
+
+/// The same with inputs; a run that fails gives the samples up to there.
+pub fn fed<M: Partition + Ports + Clone>(
+    mechanism: &M,
+    model: &Model,
+    settings: &Settings,
+    inputs: Vec<Input>,
+) -> (Vec<Sample>, Result<Summary, Failure>) {
     let mut samples = Vec::new();
-    let summary = run(mechanism, settings, &start_of(model), |event| {
+    let start = Start { inputs, ..start_of(model) };
+    let outcome = run(&mut mechanism.clone(), settings, &start, |event| {
         if let Event::Sample(sample) = event {
             samples.push(sample.clone());
         }
         Ok(())
     });
-    let summary = summary.unwrap_or_else(|failure| panic!("{}: {failure}", model.name));
-    Run { samples, summary }
+    (samples, outcome)
 }
 
-/// Angle and rate of a revolute joint.
+/// The settings that a page asks for, with samples so far apart.
+pub fn as_paged(model: &Model, sample_every: f64) -> Settings {
+    let asked = &model.simulation;
+    Settings { t_end: asked.t_end, step: asked.step, correct_every: Some(asked.correct_every), sample_every }
+}
+
+/// Runs the mechanism of a page as the page asks, sampled twenty times.
+pub fn played<M: Partition + Ports + Clone>(mechanism: &M, model: &Model) -> Run {
+    simulate(mechanism, model, &as_paged(model, model.simulation.t_end / 20.0))
+}
+
+/// Value and rate of a scalar coordinate, counted joint after joint.
 ///
 /// # Panics
-/// If the joint is of another kind.
-pub fn angle(sample: &Sample, joint: usize) -> (f64, f64) {
-    match sample.joints[joint] {
-        JointSample::Angle { position, rate } => (position, rate),
-        other => panic!("joint {joint} is not revolute: {other:?}"),
+/// If it is an orientation.
+pub fn coordinate(sample: &Sample, index: usize) -> (f64, f64) {
+    match sample.coordinates[index] {
+        JointSample::Angle { position, rate } | JointSample::Length { position, rate } => (position, rate),
+        other => panic!("coordinate {index} is no number: {other:?}"),
     }
+}
+
+/// The numbers of the output of this name.
+///
+/// # Panics
+/// If there is none.
+pub fn output<M: Ports>(mechanism: &M, sample: &Sample, name: &str) -> Vec<f64> {
+    let is_asked = |index: &usize| mechanism.output(*index).name == name;
+    let found: Vec<f64> = (0..mechanism.n_outputs()).filter(is_asked).map(|k| sample.outputs[k]).collect();
+    assert!(!found.is_empty(), "there is no output `{name}`");
+    found
+}
+
+/// λ of all rows at a sample of all bodies.
+pub fn multipliers<M: Equations<Scalar = f64>>(mechanism: &M, model: &Model, sample: &Sample) -> Vec<f64> {
+    let mut values: Vec<f64> = sample.bodies.iter().flat_map(|body| body.pose).collect();
+    values.extend(sample.bodies.iter().flat_map(|body| body.velocity));
+    values.extend(model.has_work().then_some(sample.work));
+    let first = |joint: usize| -> usize { model.joints[..joint].iter().map(n_samples).sum() };
+    let turns = model.turn_references().into_iter();
+    values.extend(turns.map(|turn| coordinate(sample, first(turn.joint) + turn.coordinate).0));
+    let y = crate::state_of(mechanism, &values);
+    let (mut accelerations, mut lambda) = (mechanism.accelerations_buffer(), mechanism.rows());
+    mechanism.accelerations(sample.t, &y, &mut accelerations);
+    mechanism.multipliers(sample.t, &y, &accelerations, &mut lambda);
+    lambda.as_ref().to_vec()
+}
+
+/// How many coordinates a sample has of a joint: an orientation is one.
+fn n_samples(joint: &Joint) -> usize {
+    if joint.kind == JointKind::Spherical { 1 } else { joint.kind.coordinates().len() }
 }

@@ -16,6 +16,8 @@ pub(crate) struct Cli {
 pub(crate) enum Command {
     Generate(GenerateArgs),
     Simulate(SimulateArgs),
+    Import(ImportArgs),
+    Verify(VerifyArgs),
 }
 
 /// Write the Rust modules of models
@@ -37,6 +39,30 @@ pub(crate) struct GenerateArgs {
     /// Where to write the module of a single model
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
+    /// Refuse models with redundant constraint rows instead of dropping the rows with a warning
+    #[arg(long)]
+    pub(crate) strict: bool,
+}
+
+/// Prove generated modules against the textbook
+///
+/// Parses the module of each model back from its file and decides, by identity testing over a prime field, whether every
+/// function computes what the textbook says. See docs/verification.md.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  cargo xtask verify                            every module of the workspace
+  cargo xtask verify ~/gimbal.toml              the module that `cargo xtask generate` wrote beside the page
+  cargo xtask verify --json models/gyroscope.toml")]
+pub(crate) struct VerifyArgs {
+    /// Model pages; all of the workspace if none is given
+    #[arg(value_name = "MODEL")]
+    pub(crate) models: Vec<PathBuf>,
+    /// One point for each claim instead of two
+    #[arg(long)]
+    pub(crate) quick: bool,
+    /// Print one JSON array and nothing else
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 /// Simulate a model
@@ -48,7 +74,8 @@ pub(crate) struct GenerateArgs {
   cargo xtask simulate models/gyroscope.toml
   cargo xtask simulate models/gyroscope.toml --engine assembled --t-end 10
   cargo xtask simulate models/gyroscope.toml --method direct --step 2e-4 --out /tmp/direct
-  cargo xtask simulate my-gimbal.toml --set rotor_mass=0.085 --json")]
+  cargo xtask simulate my-gimbal.toml --set rotor_mass=0.085 --json
+  cargo xtask simulate my-gimbal.toml --input motor=torque.csv --input brake=0.01")]
 pub(crate) struct SimulateArgs {
     /// Model page, anywhere on disk
     #[arg(value_name = "MODEL")]
@@ -77,6 +104,14 @@ pub(crate) struct SimulateArgs {
     /// Value of one of the model's parameters; may be given several times. The start is assembled anew
     #[arg(long, value_name = "PARAMETER=VALUE", value_parser = setting)]
     pub(crate) set: Vec<(String, Rational)>,
+    /// What one of the model's inputs is, once for each input: a number, or a CSV file with two columns, time and value.
+    /// Between rows the value is linear, beyond them it is held; each step has the value at its start. Other inputs keep the
+    /// page's value
+    #[arg(long, value_name = "NAME=FILE.csv|NUMBER", value_parser = feed)]
+    pub(crate) input: Vec<(String, Feed)>,
+    /// Refuse a model with redundant constraint rows instead of dropping the rows with a warning
+    #[arg(long)]
+    pub(crate) strict: bool,
     /// Folder for the CSV file and the plots [default: out/NAME; none with --json]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
@@ -89,7 +124,8 @@ pub(crate) struct SimulateArgs {
 pub(crate) enum Engine {
     /// Generated code, compiled for the purpose
     Generated,
-    /// The runtime-assembled twin, as a careful engineer would make it: starts at once
+    /// The runtime-assembled twin, as a careful engineer would make it where the model allows (trees of revolute, spherical and
+    /// fixed joints): starts at once
     Assembled,
     /// The twin in the paper's plain dense form
     Dense,
@@ -134,6 +170,48 @@ impl From<MethodName> for Method {
             MethodName::Direct => Self::Direct,
             MethodName::Partitioned => Self::Partitioned,
         }
+    }
+}
+
+/// Write the model page of a URDF robot
+///
+/// Says what of the robot has no counterpart on the page. Link frames become body frames at the mass centres; links without
+/// mass are merged with what they are fixed to.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  cargo xtask import arm.urdf                    writes arm.toml beside it
+  cargo xtask import arm.urdf --out models/arm.toml")]
+pub(crate) struct ImportArgs {
+    /// Robot in the Unified Robot Description Format
+    #[arg(value_name = "FILE.urdf")]
+    pub(crate) file: PathBuf,
+    /// Where to write the page [default: beside the robot, with the extension toml]
+    #[arg(long, value_name = "MODEL.toml")]
+    pub(crate) out: Option<PathBuf>,
+    /// Replace a page that is there already
+    #[arg(long)]
+    pub(crate) force: bool,
+}
+
+/// What is fed into an input.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Feed {
+    /// A constant.
+    Number(f64),
+    /// A table.
+    File(PathBuf),
+}
+
+fn feed(text: &str) -> Result<(String, Feed), String> {
+    let (name, value) = text
+        .split_once('=')
+        .ok_or("NAME=FILE.csv or NAME=NUMBER was expected, such as motor=torque.csv or motor=0.02")?;
+    let (name, value) = (name.trim().to_owned(), value.trim());
+    match value.parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok((name, Feed::Number(number))),
+        Ok(_) => Err(format!("`{value}` is not a finite number")),
+        Err(_) if value.is_empty() => Err(format!("nothing stands after `{name}=`")),
+        Err(_) => Ok((name, Feed::File(PathBuf::from(value)))),
     }
 }
 
@@ -184,6 +262,11 @@ mod tests {
             "m=-0.1",
             "--set",
             "g=1e1",
+            "--input",
+            "motor=a=b.csv",
+            "--input",
+            "brake=-1e-3",
+            "--strict",
             "--out",
             "d",
             "--json",
@@ -195,6 +278,9 @@ mod tests {
         assert_eq!(args.method, Some(MethodName::Direct));
         assert_eq!(args.set[0], ("m".to_owned(), parse_decimal("-0.1").unwrap()));
         assert_eq!(args.set[1], ("g".to_owned(), parse_decimal("10").unwrap()));
+        assert_eq!(args.input[0], ("motor".to_owned(), Feed::File(PathBuf::from("a=b.csv"))));
+        assert_eq!(args.input[1], ("brake".to_owned(), Feed::Number(-1e-3)));
+        assert!(args.strict);
     }
 
     #[test]
@@ -208,6 +294,9 @@ mod tests {
             (&["--set", "mass"], "PARAMETER=VALUE was expected"),
             (&["--set", "mass=heavy"], "`heavy` is not a decimal number"),
             (&["--set", "mass=nan"], "`nan` is not a decimal number"),
+            (&["--input", "motor"], "NAME=FILE.csv or NAME=NUMBER was expected"),
+            (&["--input", "motor="], "nothing stands after `motor=`"),
+            (&["--input", "motor=nan"], "`nan` is not a finite number"),
             (&["--engine", "steam"], "possible values: generated, assembled, dense"),
             (&["--methd", "direct"], "--method"),
         ] {

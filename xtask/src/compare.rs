@@ -1,11 +1,11 @@
 //! The motion of each angle in three numbers, beside what linear theory says they are.
 
-use crate::csv::angle;
+use crate::columns::{self, scalar};
 use crate::fit::{Fit, NoFit, fit};
 use crate::linear::{Linear, Response};
 use crate::scene::Scene;
 use crate::words::{number, table};
-use gyro_model::JointKind;
+use gyro_model::CoordinateKind;
 use gyro_runner::Sample;
 use std::fmt::Write as _;
 
@@ -23,22 +23,25 @@ const DIGITS: usize = 9;
 /// does.
 const LEVEL: f64 = 1e-2;
 
-/// The fits of all angles as text; empty for a mechanism without angles.
+/// The fits of all angles as text; empty for a mechanism without angles, and for one of more than bodies and joints.
 pub(crate) fn text(scene: &Scene, samples: &[Sample]) -> String {
-    let is_angle = |j: &usize| scene.model.joints[*j].kind == JointKind::Revolute;
-    let joints: Vec<usize> = (0..scene.model.joints.len()).filter(is_angle).collect();
-    if joints.is_empty() {
+    let all = columns::coordinates(&scene.model).into_iter().enumerate();
+    let angles: Vec<(usize, usize)> = all
+        .filter(|(_, c)| c.kind == Some(CoordinateKind::Angle))
+        .map(|(index, c)| (index, c.joint))
+        .collect();
+    if angles.is_empty() || !Linear::is_about(&scene.model) {
         return String::new();
     }
     let n_regular = n_regular(samples, scene.settings.sample_every);
     let interval = scene.settings.sample_every;
     let theory =
         Linear::about_start(&scene.model).and_then(|l| l.response(&scene.model, interval, n_regular));
-    let compared: Vec<Compared<'_>> = joints
+    let compared: Vec<Compared<'_>> = angles
         .iter()
-        .map(|&joint| Compared {
+        .map(|&(index, joint)| Compared {
             name: &scene.model.joints[joint].name,
-            run: fit(interval, &values(&samples[..n_regular], joint)),
+            run: fit(interval, &values(&samples[..n_regular], index)),
             theory: theory.as_ref().ok().and_then(|r| theory_of(r, joint)).map(|v| fit(interval, v)),
         })
         .collect();
@@ -52,8 +55,8 @@ fn n_regular(samples: &[Sample], interval: f64) -> usize {
     samples.iter().enumerate().take_while(is_regular).count()
 }
 
-fn values(samples: &[Sample], joint: usize) -> Vec<f64> {
-    samples.iter().map(|s| angle(&s.joints[joint]).0).collect()
+fn values(samples: &[Sample], index: usize) -> Vec<f64> {
+    samples.iter().map(|s| scalar(&s.coordinates[index]).0).collect()
 }
 
 fn theory_of(response: &Response, joint: usize) -> Option<&[f64]> {

@@ -30,10 +30,15 @@ fn unreadable(path: &Path, error: &io::Error) -> String {
     }
 }
 
+/// Whether a file is there with just this text.
+pub(crate) fn holds(path: &Path, text: &str) -> bool {
+    fs::read(path).is_ok_and(|old| old == text.as_bytes())
+}
+
 /// Writes a file unless it has this text already, through a neighbour that is renamed, so that the file is always
 /// whole. Returns whether it was written.
 pub(crate) fn write_if_changed(path: &Path, text: &str) -> io::Result<bool> {
-    if fs::read(path).is_ok_and(|old| old == text.as_bytes()) {
+    if holds(path, text) {
         return Ok(false);
     }
     let file_name = path.file_name().unwrap_or_default().to_string_lossy();

@@ -2,8 +2,9 @@
 
 use crate::args::GenerateArgs;
 use crate::failure::Failure;
+use crate::verify::verify_quickly;
 use crate::words::count;
-use crate::{files, scene};
+use crate::{files, remarks, scene};
 use similar::TextDiff;
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -12,21 +13,25 @@ use std::{fs, io};
 
 /// Writes the modules of the models, or checks that they are fresh.
 pub(crate) fn generate(args: &GenerateArgs) -> Result<(), Failure> {
-    let outputs = outputs(args, &Places::of_workspace())?;
+    let outputs = outputs(args, &Places::of_workspace(&files::root()))?;
     if args.check { check(&outputs, &mend(args)) } else { write(&outputs) }
 }
 
-/// Where models and generated modules of the workspace are.
+/// Where pages and their generated modules are in the workspace.
 #[derive(Clone, Debug)]
-struct Places {
+pub(crate) struct Places {
     models: PathBuf,
     generated: PathBuf,
 }
 
 impl Places {
-    fn of_workspace() -> Self {
-        let root = files::root();
-        Self { models: root.join("models"), generated: root.join("gyro-sim").join("src").join("generated") }
+    /// What is shipped, and what only tests need.
+    pub(crate) fn of_workspace(root: &Path) -> [Self; 2] {
+        let (shipped, tests) = (root.join("gyro-sim").join("src"), root.join("tests"));
+        [
+            Self { models: root.join("models"), generated: shipped.join("generated") },
+            Self { models: tests.join("models"), generated: tests.join("support").join("generated") },
+        ]
     }
 }
 
@@ -42,38 +47,55 @@ struct Outputs {
 #[derive(Debug)]
 struct Output {
     path: PathBuf,
-    code: String,
+    text: String,
 }
 
 /// Generates everything in memory: a mistake anywhere leaves all files as they are.
-fn outputs(args: &GenerateArgs, places: &Places) -> Result<Outputs, Failure> {
-    let pages = if args.models.is_empty() { shipped(&places.models)? } else { args.models.clone() };
+fn outputs(args: &GenerateArgs, places: &[Places]) -> Result<Outputs, Failure> {
+    let pages = if args.models.is_empty() { all_pages(places)? } else { args.models.clone() };
     if args.out.is_some() && pages.len() != 1 {
         return Err(Failure::Usage("--out takes the module of a single MODEL: give one".to_owned()));
     }
     let mut outputs = Outputs::default();
-    let mut names = Vec::new();
+    let mut names = vec![Vec::new(); places.len()];
+    let mut sources: Vec<(PathBuf, &PathBuf)> = Vec::new();
     for page in &pages {
         let model = scene::read(page)?;
+        remarks::report_redundant(&model, &page.display().to_string(), args.strict)?;
         let module = gyro_codegen::generate_model(&files::shown(page), &model)
             .map_err(|e| Failure::Usage(format!("{}: {e}", page.display())))?;
-        let is_shipped = args.out.is_none() && is_in(page, &places.models);
-        let path = match &args.out {
-            Some(out) => out.clone(),
-            None if is_shipped => places.generated.join(format!("{}.rs", module.name)),
-            None => page.with_file_name(format!("{}.rs", module.name)),
-        };
-        if let Some(other) = outputs.files.iter().position(|o| o.path == path) {
-            let (this, other) = (page.display(), pages[other].display());
+        let place = places.iter().position(|place| args.out.is_none() && is_in(page, &place.models));
+        let path = args.out.clone().unwrap_or_else(|| module_path(places, page, &module.name));
+        if !args.check && !files::holds(&path, &module.code) {
+            verify_quickly(&model, &module)?;
+        }
+        if let Some((_, other)) = sources.iter().find(|(known, _)| *known == path) {
+            let (this, other) = (page.display(), other.display());
             return Err(Failure::Usage(format!("{this} and {other} have the same name `{}`", module.name)));
         }
-        if is_shipped {
-            names.push(module.name);
+        sources.push((path.clone(), page));
+        if let Some(place) = place {
+            names[place].push(module.name);
         }
-        outputs.files.push(Output { path, code: module.code });
+        outputs.files.push(Output { path: path.with_extension("exact"), text: module.constants });
+        outputs.files.push(Output { path, text: module.code });
     }
-    outputs.to_do = by_hand(&places.generated, &names, args.models.is_empty())?;
+    for (place, names) in places.iter().zip(&names) {
+        outputs.to_do.extend(by_hand(&place.generated, names, args.models.is_empty())?);
+    }
     Ok(outputs)
+}
+
+/// How a generated module begins.
+const MARK: &str = "// @generated";
+
+/// Where a page's module is: in the workspace, or beside the page.
+pub(crate) fn module_path(places: &[Places], page: &Path, name: &str) -> PathBuf {
+    let file = format!("{name}.rs");
+    match places.iter().find(|place| is_in(page, &place.models)) {
+        Some(place) => place.generated.join(file),
+        None => page.with_file_name(file),
+    }
 }
 
 /// Writes what has changed and says where.
@@ -82,7 +104,7 @@ fn write(outputs: &Outputs) -> Result<(), Failure> {
     outputs.files.iter().try_for_each(spare_what_is_not_generated)?;
     let mut n_fresh = 0;
     for output in &outputs.files {
-        if files::write(&output.path, &output.code)? {
+        if files::write(&output.path, &output.text)? {
             say(&format!("wrote {}", output.path.display()));
         } else {
             n_fresh += 1;
@@ -94,10 +116,12 @@ fn write(outputs: &Outputs) -> Result<(), Failure> {
     if outputs.to_do.is_empty() { Ok(()) } else { Err(Failure::Run(outputs.to_do.join("\n"))) }
 }
 
-/// Refuses to replace a file that somebody wrote.
+/// Refuses to replace a module that somebody wrote.
 fn spare_what_is_not_generated(output: &Output) -> Result<(), Failure> {
-    let is_written_by_hand = fs::read_to_string(&output.path)
-        .is_ok_and(|text| !text.trim().is_empty() && !text.starts_with("// @generated"));
+    let is_module = output.text.starts_with(MARK);
+    let is_written_by_hand = is_module
+        && fs::read_to_string(&output.path)
+            .is_ok_and(|text| !text.trim().is_empty() && !text.starts_with(MARK));
     if is_written_by_hand {
         let path = output.path.display();
         return Err(Failure::Usage(format!(
@@ -137,12 +161,12 @@ const SHOWN_LINES: usize = 20;
 fn difference(output: &Output) -> Option<String> {
     let path = output.path.display();
     let found = match fs::read_to_string(&output.path) {
-        Ok(found) if found == output.code => return None,
+        Ok(found) if found == output.text => return None,
         Ok(found) => found,
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Some(format!("{path} is missing\n")),
         Err(error) => return Some(format!("{path} cannot be read: {error}\n")),
     };
-    let diff = TextDiff::from_lines(&found, &output.code);
+    let diff = TextDiff::from_lines(&found, &output.text);
     let unified = diff.unified_diff().context_radius(1).header("as it is", "as its model says").to_string();
     let mut words = format!("{path} is not what its model says:\n");
     for line in unified.lines().take(SHOWN_LINES) {
@@ -178,15 +202,22 @@ fn by_hand(generated: &Path, names: &[String], all: bool) -> Result<Vec<String>,
 fn orphans(generated: &Path, names: &[String]) -> Result<Vec<String>, Failure> {
     let is_orphan = |path: &PathBuf| {
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-        path.extension().is_some_and(|e| e == "rs") && stem != "mod" && !names.iter().any(|n| *n == stem)
+        let is_generated = path.extension().is_some_and(|e| e == "rs" || e == "exact");
+        is_generated && stem != "mod" && !names.iter().any(|n| *n == stem)
     };
     let orphans = listing(generated)?.into_iter().filter(is_orphan);
     Ok(orphans.map(|p| format!("{} has no model: delete it and its line in mod.rs", p.display())).collect())
 }
 
-/// The pages of models/, in the order of their names.
-fn shipped(models: &Path) -> Result<Vec<PathBuf>, Failure> {
-    Ok(listing(models)?.into_iter().filter(|p| p.extension().is_some_and(|e| e == "toml")).collect())
+/// The pages of the workspace, in the order of their names.
+pub(crate) fn all_pages(places: &[Places]) -> Result<Vec<PathBuf>, Failure> {
+    let mut pages = Vec::new();
+    for place in places {
+        pages.extend(
+            listing(&place.models)?.into_iter().filter(|p| p.extension().is_some_and(|e| e == "toml")),
+        );
+    }
+    Ok(pages)
 }
 
 fn listing(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
@@ -225,18 +256,18 @@ inertia = [1e-4, 1e-4, 2e-4]
 ";
 
     /// A workspace with one model and, if so, its line in the door file.
-    fn workspace(door: &str) -> (Folder, Places) {
+    fn workspace(door: &str) -> (Folder, [Places; 1]) {
         let folder = Folder::new();
         let places = Places { models: folder.0.join("models"), generated: folder.0.join("generated") };
         fs::create_dir_all(&places.models).unwrap();
         fs::create_dir_all(&places.generated).unwrap();
         fs::write(places.models.join("plate.toml"), PAGE).unwrap();
         fs::write(places.generated.join("mod.rs"), door).unwrap();
-        (folder, places)
+        (folder, [places])
     }
 
     fn args(models: &[PathBuf], out: Option<PathBuf>) -> GenerateArgs {
-        GenerateArgs { models: models.to_vec(), check: false, out }
+        GenerateArgs { models: models.to_vec(), check: false, out, strict: false }
     }
 
     fn words(outcome: Result<(), Failure>) -> String {
@@ -254,7 +285,7 @@ inertia = [1e-4, 1e-4, 2e-4]
         assert!(words(check(&outputs, mend)).contains("plate.rs is missing"));
         write(&outputs).unwrap();
         check(&outputs, mend).unwrap();
-        let path = places.generated.join("plate.rs");
+        let path = places[0].generated.join("plate.rs");
         let edited = fs::read_to_string(&path).unwrap() + "// edited\n";
         fs::write(&path, edited).unwrap();
         let found = words(check(&outputs, mend));
@@ -265,7 +296,7 @@ inertia = [1e-4, 1e-4, 2e-4]
     #[test]
     fn the_door_file_is_told_line_by_line() {
         let (_folder, places) = workspace("// pub mod plate;\n");
-        fs::write(places.generated.join("old.rs"), "").unwrap();
+        fs::write(places[0].generated.join("old.rs"), "").unwrap();
         let outputs = outputs(&args(&[], None), &places).unwrap();
         let found = words(write(&outputs));
         assert!(found.contains("mod.rs: pub mod plate;"), "{found}");
@@ -278,7 +309,7 @@ inertia = [1e-4, 1e-4, 2e-4]
         let page = folder.0.join("mine.toml");
         fs::write(&page, PAGE).unwrap();
         let path =
-            |out| outputs(&args(std::slice::from_ref(&page), out), &places).unwrap().files[0].path.clone();
+            |out| outputs(&args(std::slice::from_ref(&page), out), &places).unwrap().files[1].path.clone();
         assert_eq!(path(None), folder.0.join("plate.rs"));
         assert_eq!(path(Some(folder.0.join("x.rs"))), folder.0.join("x.rs"));
         let two = args(&[page.clone(), page.clone()], Some(folder.0.join("x.rs")));
@@ -292,8 +323,8 @@ inertia = [1e-4, 1e-4, 2e-4]
     #[test]
     fn a_mistake_in_any_page_writes_nothing() {
         let (_folder, places) = workspace("pub mod plate;\n");
-        fs::write(places.models.join("zbad.toml"), PAGE.replace("mass = 0.1", "mass = -1")).unwrap();
+        fs::write(places[0].models.join("zbad.toml"), PAGE.replace("mass = 0.1", "mass = -1")).unwrap();
         assert!(matches!(outputs(&args(&[], None), &places), Err(Failure::Page(_))));
-        assert!(!places.generated.join("plate.rs").exists());
+        assert!(!places[0].generated.join("plate.rs").exists());
     }
 }

@@ -1,7 +1,8 @@
 //! The summary as one JSON object.
 
 use crate::scene::Scene;
-use gyro_model::Joint;
+use crate::{columns, remarks};
+use gyro_model::Model;
 use gyro_runner::{JointSample, Sample, Summary};
 use serde_json::{Map, Value, json};
 
@@ -13,7 +14,10 @@ pub(crate) fn object(scene: &Scene, last: &Sample, summary: &Summary) -> Value {
         "method": scene.method(),
         "step": scene.settings.step,
         "t": last.t,
-        "joints": joints(&scene.model.joints, &last.joints),
+        "degrees_of_freedom": scene.model.degrees_of_freedom(),
+        "redundant": redundant(&scene.model),
+        "joints": joints(&scene.model, &last.coordinates),
+        "outputs": outputs(&scene.model, &last.outputs),
         "constraint_violation": summary.position_violation,
         "velocity_violation": summary.velocity_violation,
         "energy": last.energy(),
@@ -24,14 +28,54 @@ pub(crate) fn object(scene: &Scene, last: &Sample, summary: &Summary) -> Value {
     })
 }
 
-fn joints(joints: &[Joint], samples: &[JointSample]) -> Map<String, Value> {
-    joints.iter().zip(samples).map(|(joint, sample)| (joint.name.clone(), coordinate(sample))).collect()
+/// For each joint its coordinates: numbers if there is a single one, else arrays in their order.
+fn joints(model: &Model, samples: &[JointSample]) -> Map<String, Value> {
+    let coordinates = columns::coordinates(model);
+    let of = |joint: usize| {
+        coordinates.iter().zip(samples).filter(move |(c, _)| c.joint == joint).map(|(_, sample)| sample)
+    };
+    let joints = model.joints.iter().enumerate();
+    joints.map(|(index, joint)| (joint.name.clone(), object_of(&of(index).collect::<Vec<_>>()))).collect()
 }
 
-fn coordinate(sample: &JointSample) -> Value {
-    match sample {
-        JointSample::Angle { position, rate } => json!({ "position": position, "rate": rate }),
-        JointSample::Orientation { position, rate } => json!({ "position": position, "rate": rate }),
-        JointSample::None => json!({ "position": [], "rate": [] }),
+fn object_of(samples: &[&JointSample]) -> Value {
+    match samples {
+        [JointSample::Orientation { position, rate }] => json!({ "position": position, "rate": rate }),
+        [single] => {
+            let (position, rate) = columns::scalar(single);
+            json!({ "position": position, "rate": rate })
+        }
+        several => {
+            let (positions, rates): (Vec<f64>, Vec<f64>) =
+                several.iter().map(|sample| columns::scalar(sample)).unzip();
+            json!({ "position": positions, "rate": rates })
+        }
     }
+}
+
+/// For each output its number, or an array of them.
+fn outputs(model: &Model, values: &[f64]) -> Map<String, Value> {
+    let mut rest = values;
+    let mut object = Map::new();
+    for output in &model.outputs {
+        let (own, after) = rest.split_at(output.kind.columns().len().min(rest.len()));
+        rest = after;
+        let value = if let [single] = own { json!(single) } else { json!(own) };
+        object.insert(output.name.clone(), value);
+    }
+    object
+}
+
+fn redundant(model: &Model) -> Vec<Value> {
+    let rows = model.redundant.iter().map(|dropped| {
+        let (kind, name) = remarks::kind_and_name(model, dropped.row.owner);
+        let shared = dropped.shared_with.iter().map(|o| remarks::kind_and_name(model, *o).1);
+        json!({
+            "owner": kind,
+            "name": name,
+            "row": dropped.row.index + 1,
+            "shared_with": shared.collect::<Vec<_>>(),
+        })
+    });
+    rows.collect()
 }

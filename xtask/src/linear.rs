@@ -49,6 +49,17 @@ const ANGLE_STEP: f64 = 0.01;
 const RATE_STEP: f64 = 1.0;
 
 impl Linear {
+    /// Whether this theory is about such models at all: bodies on revolute, spherical and fixed joints, with viscous friction
+    /// and gravity and nothing else.
+    pub(crate) fn is_about(model: &Model) -> bool {
+        let kinds = [JointKind::Revolute, JointKind::Spherical, JointKind::Fixed];
+        model.forces.is_empty()
+            && model.couplers.is_empty()
+            && !model.is_driven()
+            && model.joints.iter().all(|joint| kinds.contains(&joint.kind))
+            && Tree::of(model).loop_joints.is_empty()
+    }
+
     /// Linearises a model about its start; says why that cannot be done.
     pub(crate) fn about_start(model: &Model) -> Result<Self, String> {
         let joints = revolute_joints(model)?;
@@ -182,8 +193,12 @@ impl System<'_> {
         };
         for (k, &joint) in self.joints.iter().enumerate() {
             let (angle, rate) = (number(x[k])?, number(x[self.joints.len() + k])?);
-            model.joints[joint].start =
-                JointStartSpec { angle: Some(angle), rate: Some(vec![rate]), orientation: None };
+            model.joints[joint].start = JointStartSpec {
+                position: vec![Some(angle)],
+                rate: Some(vec![rate]),
+                orientation: None,
+                is_rough: false,
+            };
         }
         for body in &mut model.bodies {
             body.angular_velocity = None;

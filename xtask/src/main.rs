@@ -1,21 +1,25 @@
 //! The command line of the project. See `cargo xtask --help`.
 
 mod args;
+mod columns;
 mod compare;
-mod csv;
 mod failure;
 mod files;
 mod fit;
 mod generate;
+mod inputs;
 mod json;
 mod linear;
 mod nested;
 mod plot;
 mod progress;
+mod remarks;
 mod scene;
 mod simulate;
 mod spectrum;
 mod summary;
+mod urdf;
+mod verify;
 mod words;
 
 use args::{Cli, Command};
@@ -26,6 +30,8 @@ fn main() -> ExitCode {
     let outcome = match Cli::parse().command {
         Command::Generate(args) => generate::generate(&args),
         Command::Simulate(args) => simulate::simulate(&args),
+        Command::Import(args) => urdf::import(&args),
+        Command::Verify(args) => verify::verify_models(&args),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

@@ -9,6 +9,7 @@ use crate::failure::Failure;
 use crate::files;
 use crate::progress::Spinner;
 use crate::scene::Scene;
+use crate::verify::verify_quickly;
 use gyro_codegen::Module;
 use gyro_runner::protocol::{Reply, Request};
 use gyro_runner::{Event, Summary};
@@ -23,7 +24,11 @@ use std::process::{Command, Stdio};
 pub(crate) fn simulate(scene: &Scene, tell: impl FnMut(Event<'_>)) -> Result<Summary, Failure> {
     let module = gyro_codegen::generate_model(&scene.page_name, &scene.page)
         .map_err(|e| Failure::Usage(e.to_string()))?;
-    let program = build(&Package::new(&module, scene.precision))?;
+    let package = Package::new(&module, scene.precision);
+    if !package.is_there() {
+        verify_quickly(&scene.page, &module)?;
+    }
+    let program = build(&package)?;
     let request =
         Request { settings: scene.settings, parameters: scene.parameters(), start: scene.start.clone() };
     converse(&program, &request, tell)
@@ -44,6 +49,15 @@ impl Package {
         (&main, &module.code).hash(&mut hasher);
         let name = format!("{}-{:016x}", module.name, hasher.finish());
         Self { manifest: manifest(&name), name, main, mechanism: module.code.clone() }
+    }
+
+    fn folder(&self) -> PathBuf {
+        cache().join("programs").join(&self.name)
+    }
+
+    /// Whether this very module was written, and so verified, before.
+    fn is_there(&self) -> bool {
+        files::holds(&self.folder().join("src").join("mechanism.rs"), &self.mechanism)
     }
 }
 
@@ -93,10 +107,14 @@ debug = false
     )
 }
 
+fn cache() -> PathBuf {
+    files::root().join("target").join("simulate")
+}
+
 /// Brings a package up to date; returns the program.
 fn build(package: &Package) -> Result<PathBuf, Failure> {
-    let cache = files::root().join("target").join("simulate");
-    let (folder, target) = (cache.join("programs").join(&package.name), cache.join("build"));
+    let cache = cache();
+    let (folder, target) = (package.folder(), cache.join("build"));
     let said = |e: std::io::Error| Failure::Run(format!("{} cannot be used: {e}", cache.display()));
     fs::create_dir_all(folder.join("src")).map_err(said)?;
     let lock = File::create(cache.join("lock")).map_err(said)?;
@@ -220,6 +238,7 @@ mod tests {
             name: "top".to_owned(),
             type_name: "Top".to_owned(),
             code: code.to_owned(),
+            constants: String::new(),
         };
         let name = |code, precision| Package::new(&module(code), precision).name;
         assert_eq!(name("a", Precision::F64), name("a", Precision::F64));

@@ -1,28 +1,29 @@
-//! The plots of a run: joints, residuals, energy.
+//! The plots of a run: joints, outputs, residuals, energy.
 
 mod axis;
 mod decimate;
 mod draw;
 
-use crate::csv::{angle, orientation};
+use crate::columns::{self, Shown, orientation, scalar};
 use crate::scene::observed;
 use axis::Scale;
 use draw::{Page, Panel, Series};
-use gyro_model::{JointKind, Model};
+use gyro_model::Model;
 use gyro_runner::{Sample, energy_error};
 
 /// The names of the pages.
-pub(crate) const NAMES: [&str; 3] = ["motion", "residuals", "energy"];
+pub(crate) const NAMES: [&str; 4] = ["motion", "outputs", "residuals", "energy"];
 
 /// Name and SVG text of each plot.
 pub(crate) fn pages(model: &Model, samples: &[Sample]) -> Result<Vec<(&'static str, String)>, String> {
-    let [motion, residuals, energy] = NAMES;
+    let [motion, outputs, residuals, energy] = NAMES;
     let all = Samples { model, samples };
     let mut pages = Vec::new();
-    let rows = all.motion();
-    if !rows.is_empty() {
-        let title = format!("{}: motion", model.name);
-        pages.push((motion, draw::svg(&Page { title, rows })?));
+    for (name, rows) in [(motion, all.motion()), (outputs, all.outputs())] {
+        if !rows.is_empty() {
+            let title = format!("{}: {name}", model.name);
+            pages.push((name, draw::svg(&Page { title, rows })?));
+        }
     }
     let title = format!("{}: residuals", model.name);
     pages.push((residuals, draw::svg(&Page { title, rows: all.residuals() })?));
@@ -37,37 +38,54 @@ struct Samples<'a> {
 }
 
 impl Samples<'_> {
-    /// A row for each joint that moves and for each free body: positions to the left, rates to the right.
+    /// A row for each joint coordinate and for each free body: positions to the left, rates to the right.
     fn motion(&self) -> Vec<Vec<Panel>> {
         let mut rows = Vec::new();
-        for (j, joint) in self.model.joints.iter().enumerate() {
-            let name = &joint.name;
-            match joint.kind {
-                JointKind::Revolute => rows.push(vec![
-                    self.panel(name, "rad", vec![self.series("", |s| angle(&s.joints[j]).0)]),
-                    self.panel(
-                        &format!("{name} rate"),
-                        "rad/s",
-                        vec![self.series("", |s| angle(&s.joints[j]).1)],
-                    ),
-                ]),
-                JointKind::Spherical => rows.push(vec![
-                    self.panel(
-                        &format!("{name}: Euler parameters"),
-                        "",
-                        self.many(&EULER, |s, k| orientation(&s.joints[j]).0[k]),
-                    ),
-                    self.panel(
-                        &format!("{name} rate"),
-                        "rad/s",
-                        self.many(&AXES, |s, k| orientation(&s.joints[j]).1[k]),
-                    ),
-                ]),
-                JointKind::Fixed => {}
-            }
+        for (index, shown) in columns::coordinates(self.model).iter().enumerate() {
+            rows.push(if shown.kind.is_some() {
+                self.scalar(index, shown)
+            } else {
+                self.orientation(index, &shown.name)
+            });
         }
         for (b, (_, name)) in observed(self.model).iter().enumerate() {
             rows.extend(self.body(b, name));
+        }
+        rows
+    }
+
+    fn scalar(&self, index: usize, shown: &Shown) -> Vec<Panel> {
+        let (name, rate) = (&shown.name, format!("{} rate", shown.name));
+        vec![
+            self.panel(name, shown.unit(), vec![self.series("", |s| scalar(&s.coordinates[index]).0)]),
+            self.panel(&rate, shown.rate_unit(), vec![self.series("", |s| scalar(&s.coordinates[index]).1)]),
+        ]
+    }
+
+    fn orientation(&self, index: usize, name: &str) -> Vec<Panel> {
+        let (parameters, rate) = (format!("{name}: Euler parameters"), format!("{name} rate"));
+        vec![
+            self.panel(&parameters, "", self.many(&EULER, |s, k| orientation(&s.coordinates[index]).0[k])),
+            self.panel(&rate, "rad/s", self.many(&AXES, |s, k| orientation(&s.coordinates[index]).1[k])),
+        ]
+    }
+
+    /// A row for each output, a panel for each of its units.
+    fn outputs(&self) -> Vec<Vec<Panel>> {
+        let mut first = 0;
+        let mut rows = Vec::new();
+        for output in &self.model.outputs {
+            let mut row: Vec<Panel> = Vec::new();
+            for (suffix, unit) in columns::output_columns(self.model, output) {
+                let series = self.series(suffix, |s| s.outputs[first]);
+                first += 1;
+                match row.last_mut().filter(|panel| panel.unit == unit) {
+                    Some(panel) => panel.series.push(series),
+                    None => row.push(self.panel(&output.name, unit, vec![series])),
+                }
+            }
+            row.iter_mut().for_each(shorten);
+            rows.push(row);
         }
         rows
     }
@@ -132,6 +150,19 @@ impl Samples<'_> {
 
     fn many(&self, names: &[&'static str], value: impl Fn(&Sample, usize) -> f64) -> Vec<Series> {
         names.iter().enumerate().map(|(k, name)| self.series(name, |s| value(s, k))).collect()
+    }
+}
+
+/// Moves what the names of all series begin with into the title: `force_f`, `force_g`, `force_h`.
+fn shorten(panel: &mut Panel) {
+    let Some((prefix, _)) = panel.series.first().and_then(|series| series.name.split_once('_')) else {
+        return;
+    };
+    let rest: Option<Vec<&str>> =
+        panel.series.iter().map(|series| series.name.strip_prefix(prefix)?.strip_prefix('_')).collect();
+    if let Some(rest) = rest.filter(|rest| rest.len() > 1) {
+        panel.title = format!("{}.{prefix}", panel.title);
+        panel.series.iter_mut().zip(rest).for_each(|(series, name)| series.name = name);
     }
 }
 

@@ -2,9 +2,10 @@
 
 use crate::args::{Engine, Precision, SimulateArgs};
 use crate::failure::Failure;
-use crate::files;
-use gyro_model::{AssemblyError, JointKind, Method, Model, Rational, Support};
+use crate::{files, inputs, remarks};
+use gyro_model::{JointKind, Method, Model, Move, Rational, Support};
 use gyro_runner::{Settings, Start};
+use std::fs;
 use std::path::Path;
 
 /// A run to be made.
@@ -18,20 +19,35 @@ pub(crate) struct Scene {
     pub(crate) model: Model,
     pub(crate) settings: Settings,
     pub(crate) start: Start,
+    /// How far the assembly has moved what the page gives of the start.
+    pub(crate) moved: Vec<Move>,
     pub(crate) engine: Engine,
     pub(crate) precision: Precision,
 }
 
 impl Scene {
-    /// Reads the page, sets parameters and assembles the start.
+    /// Reads the page, sets parameters, assembles the start and reads what is fed in.
     pub(crate) fn new(args: &SimulateArgs) -> Result<Self, Failure> {
         let page = read(&args.model)?;
+        remarks::report_redundant(&page, &args.model.display().to_string(), args.strict)?;
         let model = with_parameters(&page, &args.set)?;
         let settings = settings(&model, args);
         settings.check().map_err(|e| Failure::Usage(e.to_string()))?;
-        let start = start(&model).map_err(|e| Failure::Usage(format!("{}: {e}", args.model.display())))?;
+        let assembled =
+            model.assemble().map_err(|e| Failure::Usage(format!("{}: {e}", args.model.display())))?;
+        let start = Start { inputs: inputs::inputs(&model, &args.input)?, ..start(&model, &assembled) };
         let page_name = files::shown(&args.model);
-        Ok(Self { page, page_name, model, settings, start, engine: args.engine, precision: args.precision })
+        let moved = assembled.moved;
+        Ok(Self {
+            page,
+            page_name,
+            model,
+            settings,
+            start,
+            moved,
+            engine: args.engine,
+            precision: args.precision,
+        })
     }
 
     /// Values of the parameters in their order.
@@ -45,10 +61,15 @@ impl Scene {
     }
 }
 
-/// Reads and checks a model page.
+/// Reads and checks a model page; tables of motions are beside it.
 pub(crate) fn read(path: &Path) -> Result<Model, Failure> {
     let text = files::read_page(path)?;
-    gyro_model::read(&path.display().to_string(), &text).map_err(Failure::Page)
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let mut load = |table: &str| {
+        let path = folder.join(table);
+        fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))
+    };
+    gyro_model::read_with(&path.display().to_string(), &text, &mut load).map_err(Failure::Page)
 }
 
 fn with_parameters(page: &Model, set: &[(String, Rational)]) -> Result<Model, Failure> {
@@ -80,19 +101,28 @@ fn nearest_multiple(interval: f64, grid: f64) -> f64 {
     grid * (interval / grid).round().max(1.0)
 }
 
-/// The assembled start; free bodies are observed, as no joint shows how they move.
-pub(crate) fn start(model: &Model) -> Result<Start, AssemblyError> {
-    let assembled = model.assemble()?;
-    let angle = |(joint, start): (&gyro_model::Joint, &gyro_model::JointStart)| match joint.kind {
-        JointKind::Revolute => start.position[0],
-        JointKind::Spherical | JointKind::Fixed => 0.0,
-    };
-    Ok(Start {
-        angles: model.joints.iter().zip(&assembled.joints).map(angle).collect(),
-        positions: assembled.q,
-        velocities: assembled.v,
+/// Where a run starts; free bodies are observed, as no joint shows how they move.
+pub(crate) fn start(model: &Model, assembled: &gyro_model::Start) -> Start {
+    let position = |joint: usize, coordinate: usize| assembled.joints[joint].position[coordinate];
+    let mut angles = Vec::new();
+    for (joint, described) in model.joints.iter().enumerate() {
+        if described.kind == JointKind::Spherical {
+            angles.push(0.0);
+        }
+        angles.extend((0..described.kind.coordinates().len()).map(|k| position(joint, k)));
+    }
+    Start {
+        positions: assembled.q.clone(),
+        velocities: assembled.v.clone(),
+        turn_references: model
+            .turn_references()
+            .into_iter()
+            .map(|c| position(c.joint, c.coordinate))
+            .collect(),
+        angles,
+        inputs: Vec::new(),
         observed_bodies: observed(model).into_iter().map(|(slot, _)| slot).collect(),
-    })
+    }
 }
 
 /// Slot and name of each free body.

@@ -4,7 +4,7 @@ use crate::args::{Engine, Precision, SimulateArgs};
 use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::scene::Scene;
-use crate::{csv, files, json, nested, plot, summary, words};
+use crate::{columns, files, json, nested, plot, summary, words};
 use gyro_assembled::{Form, QuickLookError, quick_look};
 use gyro_model::Model;
 use gyro_runner::{Event, Sample, Summary};
@@ -53,7 +53,7 @@ fn run(scene: &Scene, samples: &mut Vec<Sample>) -> Result<Summary, Failure> {
     };
     let outcome = match scene.engine {
         Engine::Generated => nested::simulate(scene, &mut tell),
-        Engine::Assembled => twin(scene, Form::Careful, &mut tell),
+        Engine::Assembled => twin(scene, Form::for_model(&scene.model), &mut tell),
         Engine::Dense => twin(scene, Form::Dense, &mut tell),
     };
     progress.finish();
@@ -97,7 +97,7 @@ fn write_files(model: &Model, samples: &[Sample], folder: &Path) -> Result<Vec<P
 
 fn write_table(model: &Model, samples: &[Sample], folder: &Path) -> Result<PathBuf, Failure> {
     let path = folder.join(format!("{}.csv", model.name));
-    files::write(&path, &csv::text(&csv::columns(model, samples)))?;
+    files::write(&path, &columns::text(&columns::columns(model, samples)))?;
     Ok(path)
 }
 

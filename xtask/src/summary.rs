@@ -1,9 +1,11 @@
 //! The summary that a run prints.
 
-use crate::compare;
+use crate::args::Engine;
 use crate::scene::Scene;
 use crate::words::{count, number, table};
-use gyro_model::Model;
+use crate::{columns, compare, remarks};
+use gyro_assembled::Careful;
+use gyro_model::{Model, Move};
 use gyro_runner::{JointSample, Sample, Summary};
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -18,7 +20,9 @@ const FEW: usize = 3;
 pub(crate) fn text(scene: &Scene, samples: &[Sample], run: &Summary, written: &[PathBuf]) -> String {
     let last = samples.last().expect("the start is a sample");
     let mut text = head(scene, run, last);
+    text += &moved(&scene.moved);
     text += &motion(&scene.model, last);
+    text += &outputs(&scene.model, last);
     text += &quality(scene, samples, run, last);
     text += &compare::text(scene, samples);
     if !written.is_empty() {
@@ -42,31 +46,73 @@ fn head(scene: &Scene, run: &Summary, last: &Sample) -> String {
         last.t,
         count(run.steps, "step"),
         number(last.t / run.steps.max(1) as f64, 6),
-        scene.engine.name(),
+        engine(scene),
         scene.precision.name()
     );
+    text += &mechanism(scene);
     for parameter in &scene.model.parameters {
         let _ = writeln!(text, "parameter {} = {:?}", parameter.name, gyro_model::to_f64(&parameter.value));
     }
     text
 }
 
+/// The engine's name, and why it is not what it is elsewhere.
+fn engine(scene: &Scene) -> String {
+    let name = scene.engine.name();
+    match Careful::<f64>::supports(&scene.model) {
+        Err(reason) if scene.engine == Engine::Assembled => format!("{name} (in its dense form: {reason})"),
+        _ => name.to_owned(),
+    }
+}
+
+/// Degrees of freedom, and what is fed in.
+fn mechanism(scene: &Scene) -> String {
+    let model = &scene.model;
+    let freedom = model.degrees_of_freedom() as u64;
+    let mut text =
+        if freedom == 1 { "1 degree of freedom".to_owned() } else { format!("{freedom} degrees of freedom") };
+    if !model.redundant.is_empty() {
+        let _ = write!(text, ", {} dropped", count(model.redundant.len() as u64, "redundant row"));
+    }
+    text.push('\n');
+    for (index, input) in model.inputs.iter().enumerate() {
+        let given = scene.start.inputs.iter().find(|given| given.index == index);
+        let _ = match given.map(|given| given.rows.as_slice()) {
+            None => writeln!(text, "input {} = {:?}", input.name, gyro_model::to_f64(&input.value)),
+            Some([[_, value]]) => writeln!(text, "input {} = {value:?}", input.name),
+            Some(rows) => {
+                writeln!(text, "input {}: table of {}", input.name, count(rows.len() as u64, "row"))
+            }
+        };
+    }
+    text
+}
+
+/// How far the start is from where the page put it.
+fn moved(moved: &[Move]) -> String {
+    if moved.is_empty() {
+        return String::new();
+    }
+    let row = |m: &Move| {
+        vec![format!("{}.{}", m.name, m.coordinate), format!("{} {}", number(m.amount, FEW), m.unit)]
+    };
+    let rows: Vec<Vec<String>> = moved.iter().map(row).collect();
+    format!("\nmoved to close the mechanism at the start\n{}", table(&rows))
+}
+
 fn motion(model: &Model, last: &Sample) -> String {
     let mut rows = vec![vec![String::new(), format!("at t = {} s", last.t), "rate".to_owned()]];
-    for (joint, sample) in model.joints.iter().zip(&last.joints) {
-        match sample {
-            JointSample::Angle { position, rate } => rows.push(vec![
-                joint.name.clone(),
-                format!("{} rad", number(*position, DIGITS)),
-                format!("{} rad/s", number(*rate, DIGITS)),
-            ]),
-            JointSample::Orientation { position, rate } => rows.push(vec![
-                joint.name.clone(),
-                format!("({})", list(position)),
-                format!("({}) rad/s", list(rate)),
-            ]),
-            JointSample::None => {}
-        }
+    for (coordinate, sample) in columns::coordinates(model).iter().zip(&last.coordinates) {
+        let (position, rate) = match sample {
+            JointSample::Orientation { position, rate } => {
+                (format!("({})", list(position)), format!("({}) rad/s", list(rate)))
+            }
+            JointSample::Angle { position, rate } | JointSample::Length { position, rate } => (
+                format!("{} {}", number(*position, DIGITS), coordinate.unit()),
+                format!("{} {}", number(*rate, DIGITS), coordinate.rate_unit()),
+            ),
+        };
+        rows.push(vec![coordinate.name.clone(), position, rate]);
     }
     for ((_, name), body) in crate::scene::observed(model).iter().zip(&last.bodies) {
         let [x, y, z, euler @ ..] = &body.pose;
@@ -77,6 +123,25 @@ fn motion(model: &Model, last: &Sample) -> String {
         rows.push(vec![format!("{name} orientation"), orientation, format!("({}) rad/s", list(spin))]);
     }
     format!("\n{}", table(&rows))
+}
+
+/// The outputs at the end.
+fn outputs(model: &Model, last: &Sample) -> String {
+    let mut rows = Vec::new();
+    let mut values = last.outputs.iter();
+    for output in &model.outputs {
+        for ((suffix, unit), value) in columns::output_columns(model, output).into_iter().zip(&mut values) {
+            let dot = if suffix.is_empty() { "" } else { "." };
+            let cells =
+                [format!("{}{dot}{suffix}", output.name), format!("{} {unit}", number(*value, DIGITS))];
+            let mut row = cells.map(|cell| cell.trim_end().to_owned()).to_vec();
+            if remarks::is_not_unique(model, &output.kind) {
+                row.push("not unique".to_owned());
+            }
+            rows.push(row);
+        }
+    }
+    if rows.is_empty() { String::new() } else { format!("\n{}", table(&rows)) }
 }
 
 fn list(values: &[f64]) -> String {
@@ -92,7 +157,9 @@ fn quality(scene: &Scene, samples: &[Sample], run: &Summary, last: &Sample) -> S
         vec!["energy drift".to_owned(), number(run.energy_drift, FEW)],
     ];
     if scene.model.has_work() {
-        rows.insert(4, vec!["work of friction".to_owned(), format!("{} J", number(last.work, DIGITS))]);
+        let is_plain = scene.model.forces.is_empty() && !scene.model.is_driven();
+        let name = if is_plain { "work of friction" } else { "work of forces and drivers" };
+        rows.insert(4, vec![name.to_owned(), format!("{} J", number(last.work, DIGITS))]);
     }
     if scene.settings.correct_every.is_some() {
         rows.push(vec!["chart switches".to_owned(), run.chart_switches.to_string()]);

@@ -33,6 +33,20 @@ pub(crate) fn count(number: u64, noun: &str) -> String {
     format!("{grouped} {noun}{}", if number == 1 { "" } else { "s" })
 }
 
+/// What to write in place of an unknown name.
+pub(crate) fn instead(written: &str, known: &[&str]) -> String {
+    let distance = |name: &&&str| strsim::damerau_levenshtein(written, name);
+    let nearest = known.iter().min_by_key(distance).filter(|name| {
+        let length = written.chars().count().max(name.chars().count());
+        distance(name) <= length.div_ceil(3)
+    });
+    let list = known.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+    match nearest {
+        Some(nearest) => format!("write `{nearest}`; there are {list}"),
+        None => format!("write one of {list}"),
+    }
+}
+
 /// Columns side by side: the first to the left, the others to the right, two spaces apart and two before.
 pub(crate) fn table(rows: &[Vec<String>]) -> String {
     let n_columns = rows.iter().map(Vec::len).max().unwrap_or(0);
@@ -70,6 +84,13 @@ mod tests {
         ] {
             assert_eq!(number(value, digits), text);
         }
+    }
+
+    #[test]
+    fn near_names_come_first() {
+        let known = ["motor", "brake"];
+        assert_eq!(instead("moter", &known), "write `motor`; there are `motor`, `brake`");
+        assert_eq!(instead("wind", &known), "write one of `motor`, `brake`");
     }
 
     #[test]

@@ -34,9 +34,12 @@ fn model(name: &str) -> String {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../models").join(name).display().to_string()
 }
 
+fn xtask(folder: &Folder, args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_xtask")).args(args).current_dir(&folder.0).output().unwrap()
+}
+
 fn simulate(folder: &Folder, args: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_xtask"));
-    command.arg("simulate").args(args).current_dir(&folder.0).output().unwrap()
+    xtask(folder, &[&["simulate"], args].concat())
 }
 
 fn json(folder: &Folder, args: &[&str]) -> Value {
@@ -63,12 +66,15 @@ fn json_is_one_object_and_both_engines_give_the_same() {
         [
             "chart_switches",
             "constraint_violation",
+            "degrees_of_freedom",
             "energy",
             "energy_drift",
             "engine",
             "joints",
             "method",
             "model",
+            "outputs",
+            "redundant",
             "run_time_s",
             "step",
             "steps",
@@ -108,6 +114,215 @@ fn the_summary_stands_beside_linear_theory_and_files_are_written() {
     let table = fs::read_to_string(folder.0.join("gyroscope.csv")).unwrap();
     assert!(table.starts_with("t [s],alpha [rad],alpha rate [rad/s],"), "{}", table.lines().next().unwrap());
     assert_eq!(table.lines().count(), 1 + 1001);
+}
+
+/// A disc on a shaft that a motor turns, J = 0.5 kg·m², with a sledge that slides on a table beside it.
+const MOTOR: &str = r#"format = 1
+name = "motor"
+[simulation]
+t_end = 2
+step = 1e-3
+[inputs]
+torque = 3
+push = 0
+[[body]]
+name = "frame"
+fixed = true
+[[body]]
+name = "disc"
+mass = 1
+inertia = [0.3, 0.3, 0.5]
+[[body]]
+name = "sledge"
+mass = 2
+inertia = [0.1, 0.1, 0.1]
+[[joint]]
+name = "shaft"
+kind = "revolute"
+axis = [0, 0, 1]
+zero = [1, 0, 0]
+first = { body = "frame" }
+second = { body = "disc" }
+[[joint]]
+name = "table"
+kind = "planar"
+axis = [0, 0, 1]
+zero = [1, 0, 0]
+first = { body = "frame" }
+second = { body = "sledge" }
+rate = [0.5, 0, 7]
+[[force]]
+name = "motor"
+kind = "motor"
+joint = "shaft"
+value = "torque"
+[[force]]
+name = "pusher"
+kind = "motor"
+joint = "table"
+coordinate = "y"
+value = "push"
+[[output]]
+name = "spin"
+kind = "velocity"
+body = "disc"
+[[output]]
+name = "energies"
+kind = "energy"
+"#;
+
+fn close(found: &Value, expected: f64) {
+    let found = found.as_f64().unwrap();
+    assert!((found - expected).abs() < 1e-9 * expected.abs().max(1.0), "{found} for {expected}");
+}
+
+#[test]
+fn inputs_come_from_the_page_from_numbers_and_from_tables() {
+    let folder = Folder::new("inputs");
+    fs::write(folder.0.join("motor.toml"), MOTOR).unwrap();
+    fs::write(folder.0.join("ramp.csv"), "t,torque\n0,0\n1,2\n").unwrap();
+    let run = |args: &[&str]| {
+        json(&folder, &[&["motor.toml", "--engine", "assembled", "--every", "0.5"], args].concat())
+    };
+    let constant = run(&["--input", "push=0.5"]);
+    close(&constant["joints"]["shaft"]["rate"], 3.0 / 0.5 * 2.0);
+    close(&constant["joints"]["shaft"]["position"], 3.0 / 0.5 * 2.0);
+    // Coordinates x, y, angle, of which the last has turned more than twice.
+    for (k, (position, rate)) in [(1.0, 0.5), (0.5, 0.5), (14.0, 7.0)].into_iter().enumerate() {
+        close(&constant["joints"]["table"]["position"][k], position);
+        close(&constant["joints"]["table"]["rate"][k], rate);
+    }
+    close(&constant["outputs"]["spin"][5], 12.0);
+    close(&constant["outputs"]["energies"][0], 0.25 * 144.0 + 0.25 + 0.25 + 0.05 * 49.0);
+    assert_eq!(constant["degrees_of_freedom"], 4);
+    let generated = json(&folder, &["motor.toml", "--input", "torque=ramp.csv", "--every", "0.5"]);
+    // The ramp is held over each of its thousand steps, then stays: Σ 2 k/1000 · 1e-3 = 0.999, and 2 N·m for a second.
+    let ramp = run(&["--input", "torque=ramp.csv"]);
+    for run in [&ramp, &generated] {
+        close(&run["joints"]["shaft"]["rate"], (0.999 + 2.0) / 0.5);
+    }
+    assert_eq!(generated["engine"], "generated");
+}
+
+#[test]
+fn columns_have_the_names_of_coordinates_and_outputs() {
+    let folder = Folder::new("columns");
+    fs::write(folder.0.join("motor.toml"), MOTOR).unwrap();
+    let output =
+        simulate(&folder, &["motor.toml", "--engine", "assembled", "--out", ".", "--input", "push=0.5"]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    for words in [
+        "dense form",
+        "4 degrees of freedom",
+        "input torque = 3.0",
+        "input push = 0.5",
+        "table.angle",
+        "spin.wz",
+    ] {
+        assert!(text.contains(words), "{words} is missing in\n{text}");
+    }
+    assert!(!text.contains("linear theory"), "{text}");
+    let table = fs::read_to_string(folder.0.join("motor.csv")).unwrap();
+    let header = table.lines().next().unwrap();
+    let expected = "t [s],shaft [rad],shaft rate [rad/s],table.x [m],table.x rate [m/s],table.y [m],table.y rate [m/s],\
+                    table.angle [rad],table.angle rate [rad/s],spin.vx [m/s],spin.vy [m/s],spin.vz [m/s],spin.wx [rad/s],\
+                    spin.wy [rad/s],spin.wz [rad/s],energies.kinetic [J],energies.potential [J],kinetic energy [J],";
+    assert!(header.starts_with(expected), "{header}");
+    let motion = fs::read_to_string(folder.0.join("motor-motion.svg")).unwrap();
+    assert!(motion.contains("table.x [m]") && motion.contains("table.angle [rad]"));
+    assert!(folder.files().contains(&"motor-outputs.svg".to_owned()));
+}
+
+#[test]
+fn bad_inputs_are_told_with_their_line() {
+    let folder = Folder::new("bad-inputs");
+    fs::write(folder.0.join("motor.toml"), MOTOR).unwrap();
+    fs::write(folder.0.join("back.csv"), "t,torque\n0,0\n1,2\n1,3\n").unwrap();
+    fs::write(folder.0.join("word.csv"), "t,torque\n0,zero\n").unwrap();
+    let gyroscope = model("gyroscope.toml");
+    for (page, inputs, message) in [
+        ("motor.toml", &["torqe=1"][..], "unknown input `torqe`: write `torque`; there are `torque`, `push`"),
+        ("motor.toml", &["torque=none.csv"], "--input torque=none.csv: the file cannot be read"),
+        ("motor.toml", &["torque=back.csv"], "torque=back.csv: line 4: the time 1.0 does not follow 1.0"),
+        ("motor.toml", &["torque=word.csv"], "torque=word.csv: line 2: found `zero`"),
+        ("motor.toml", &["torque=1", "torque=2"], "--input gives `torque` twice"),
+        (&gyroscope, &["torque=1"], "has no inputs"),
+    ] {
+        let given: Vec<&str> = inputs.iter().flat_map(|input| ["--input", *input]).collect();
+        let output = simulate(&folder, &[&[page, "--json"], &given[..]].concat());
+        let words = String::from_utf8(output.stderr).unwrap();
+        assert!(words.contains(message), "{inputs:?}: {words}");
+        assert!(output.status.code() == Some(2) && output.stdout.is_empty(), "{inputs:?}");
+    }
+}
+
+#[test]
+fn redundant_rows_are_warned_of_listed_and_refused_if_strict() {
+    let folder = Folder::new("redundant");
+    let page = model("four-bar-revolute.toml");
+    let args = [&page[..], "--engine", "assembled", "--t-end", "0.05"];
+    let output = simulate(&folder, &args);
+    let (warnings, text) =
+        (String::from_utf8(output.stderr).unwrap(), String::from_utf8(output.stdout).unwrap());
+    assert_eq!(warnings.lines().filter(|line| line.starts_with("warning: ")).count(), 3, "{warnings}");
+    assert!(warnings.contains("row 3 (d z) of joint `knee` depends on joint `crank_pivot`"), "{warnings}");
+    for words in ["1 degree of freedom, 3 redundant rows dropped", "moved to close", "elbow.angle"] {
+        assert!(text.contains(words), "{words} is missing in\n{text}");
+    }
+    let run = json(&folder, &args);
+    let rows: Vec<u64> =
+        run["redundant"].as_array().unwrap().iter().map(|r| r["row"].as_u64().unwrap()).collect();
+    assert_eq!((rows, &run["redundant"][0]["name"]), (vec![3, 4, 5], &Value::from("knee")));
+    let strict = simulate(&folder, &[&args[..], &["--strict"]].concat());
+    let words = String::from_utf8(strict.stderr).unwrap();
+    assert!(words.contains("has 3 redundant constraint rows, refused by --strict"), "{words}");
+    assert_eq!(strict.status.code(), Some(2));
+    let module = ["generate", &page[..], "--out", "x.rs"];
+    assert!(xtask(&folder, &module).status.success());
+    fs::remove_file(folder.0.join("x.rs")).unwrap();
+    let strict = xtask(&folder, &[&module[..], &["--strict"]].concat());
+    assert!(strict.status.code() == Some(2) && !folder.0.join("x.rs").exists());
+}
+
+/// A pendulum whose pivot is moved along x as a table beside the page says.
+const SHAKEN: &str = r#"format = 1
+name = "shaken"
+[simulation]
+t_end = 1
+[[body]]
+name = "cart"
+driven = { translation = [{ table = "motions/shake.csv" }, 0, 0] }
+[[body]]
+name = "plate"
+mass = 0.1
+inertia = [1e-4, 1e-4, 2e-4]
+[[joint]]
+name = "slide"
+kind = "prismatic"
+axis = [0, 1, 0]
+zero = [1, 0, 0]
+first = { body = "cart" }
+second = { body = "plate" }
+rate = 0.25
+[[output]]
+name = "pose"
+kind = "pose"
+body = "plate"
+"#;
+
+#[test]
+fn tables_of_motions_lie_beside_the_page() {
+    let folder = Folder::new("tables");
+    let pages = folder.0.join("pages");
+    fs::create_dir_all(pages.join("motions")).unwrap();
+    fs::write(pages.join("shaken.toml"), SHAKEN).unwrap();
+    let missing = simulate(&folder, &["pages/shaken.toml"]);
+    let words = String::from_utf8(missing.stderr).unwrap();
+    assert!(words.contains("motions/shake.csv") && words.contains("cannot be read"), "{words}");
+    fs::write(pages.join("motions/shake.csv"), "t,x\n0,0\n1,0.02\n2,0.04").unwrap();
+    let run = json(&folder, &["pages/shaken.toml", "--engine", "assembled"]);
+    close(&run["outputs"]["pose"][0], 0.02);
+    close(&run["outputs"]["pose"][1], 0.25);
 }
 
 #[test]

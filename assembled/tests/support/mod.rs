@@ -1,24 +1,40 @@
 //! What the tests share: models, seeded random states, dense copies of sparse values.
 #![allow(dead_code, reason = "every test file uses a part of it")]
 
+use gyro_assembled::{Careful, Dense};
 use gyro_model::Model;
 use gyro_sim::{Equations, Mechanism, Partition};
 use nalgebra::DMatrix;
 use std::path::{Path, PathBuf};
 
-/// Every model of the project, and the zoo of these tests.
+/// Every model of the project, and those of these tests.
 pub fn models() -> Vec<Model> {
-    let crate_dir = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let folder = crate_dir.join("../models");
-    let mut pages: Vec<PathBuf> = std::fs::read_dir(&folder)
-        .expect("the models folder is there")
-        .map(|entry| entry.expect("its entries can be read").path())
-        .filter(|path| path.extension().is_some_and(|extension| extension == "toml"))
-        .collect();
-    pages.sort();
-    assert!(pages.len() >= 2, "no models in {}", folder.display());
-    pages.push(crate_dir.join("tests/zoo.toml"));
-    pages.iter().map(|page| read(page)).collect()
+    let folders = ["../models", "tests/models"].map(|folder| {
+        let mut pages = pages(&Path::new(env!("CARGO_MANIFEST_DIR")).join(folder));
+        assert!(pages.len() >= 2, "no models in {folder}");
+        pages.sort();
+        pages
+    });
+    folders.concat().iter().map(|page| read(page)).collect()
+}
+
+/// Those of them that the careful form does.
+pub fn careful_models() -> Vec<Model> {
+    let mut models = models();
+    let all = models.len();
+    models.retain(|model| Careful::<f64>::supports(model).is_ok());
+    assert!(models.len() > 8 && models.len() < all, "{} of {all}", models.len());
+    models
+}
+
+/// The dense form of every model.
+pub fn twins() -> Vec<(String, Dense<f64>)> {
+    models().iter().map(|model| (model.name.clone(), dense(model))).collect()
+}
+
+/// The dense form of a model.
+pub fn dense(model: &Model) -> Dense<f64> {
+    Dense::new(model).unwrap_or_else(|error| panic!("{}: {error}", model.name))
 }
 
 /// One model of the project.
@@ -26,12 +42,35 @@ pub fn model(name: &str) -> Model {
     read(&Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../models/{name}.toml")))
 }
 
+/// One model of these tests.
+pub fn test_model(name: &str) -> Model {
+    read(&Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/models/{name}.toml")))
+}
+
+fn pages(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).expect("the folder is there");
+    let paths = entries.map(|entry| entry.expect("its entries can be read").path());
+    paths.filter(|path| path.extension().is_some_and(|extension| extension == "toml")).collect()
+}
+
 fn read(page: &Path) -> Model {
     let text = std::fs::read_to_string(page).expect("the page can be read");
-    match gyro_model::read(&page.display().to_string(), &text) {
-        Ok(model) => model,
-        Err(mistakes) => panic!("{mistakes}"),
-    }
+    let folder = page.parent().expect("a page is in a folder");
+    let mut load = |path: &str| std::fs::read_to_string(folder.join(path)).map_err(|error| error.to_string());
+    analysed(gyro_model::read_with(&page.display().to_string(), &text, &mut load))
+}
+
+/// The model of a page.
+pub fn read_text(page: &str) -> Model {
+    analysed(gyro_model::read("page", page))
+}
+
+/// The model without redundant rows.
+fn analysed(model: Result<Model, gyro_model::Diagnostics>) -> Model {
+    let mut model = model.unwrap_or_else(|mistakes| panic!("{mistakes}"));
+    let analysis = gyro_model::analyse(&model).unwrap_or_else(|error| panic!("{}: {error}", model.name));
+    model.redundant = analysis.redundant;
+    model
 }
 
 /// Seeded random numbers: Vigna's splitmix64.
@@ -57,13 +96,12 @@ pub fn state_near<M: Partition<Scalar = f64, State = Vec<f64>>>(
     random: &mut Random,
 ) -> Vec<f64> {
     let (mut y, n) = (mechanism.start(), mechanism.n_bodies());
-    let (q, v) = y.split_at_mut(7 * n);
+    let (q, v) = y[..13 * n].split_at_mut(7 * n);
     for q in q.as_chunks_mut::<7>().0 {
         q[..3].iter_mut().for_each(|r| *r += spread * mechanism.size() * random.signed());
         q[3..].iter_mut().for_each(|e| *e += spread * random.signed());
-        let norm = q[3..].iter().map(|e| e * e).sum::<f64>().sqrt();
-        q[3..].iter_mut().for_each(|e| *e /= norm);
     }
+    normalise(q);
     for v in v.as_chunks_mut::<6>().0 {
         v[..3].iter_mut().for_each(|s| *s = 10.0 * mechanism.size() * random.signed());
         v[3..].iter_mut().for_each(|w| *w = 10.0 * random.signed());
@@ -71,18 +109,26 @@ pub fn state_near<M: Partition<Scalar = f64, State = Vec<f64>>>(
     y
 }
 
+/// Makes the Euler parameters of positions unit vectors.
+pub fn normalise(q: &mut [f64]) {
+    for q in q.as_chunks_mut::<7>().0 {
+        let norm = q[3..].iter().map(|e| e * e).sum::<f64>().sqrt();
+        q[3..].iter_mut().for_each(|e| *e /= norm);
+    }
+}
+
 /// (Φ_r, Φ_π') as a dense matrix.
-pub fn dense_phi_pi<M: Equations<Scalar = f64>>(mechanism: &M, y: &M::State) -> DMatrix<f64> {
+pub fn dense_phi_pi<M: Equations<Scalar = f64>>(mechanism: &M, t: f64, y: &M::State) -> DMatrix<f64> {
     let mut values = mechanism.phi_pi_values();
-    mechanism.phi_pi(0.0, y, &mut values);
+    mechanism.phi_pi(t, y, &mut values);
     let n_rows = mechanism.rows().as_ref().len();
     scatter(n_rows, 6 * mechanism.n_bodies(), mechanism.phi_pi_pattern(), values.as_ref())
 }
 
 /// Φ_q as a dense matrix.
-pub fn dense_phi_q<M: Equations<Scalar = f64>>(mechanism: &M, y: &M::State) -> DMatrix<f64> {
+pub fn dense_phi_q<M: Equations<Scalar = f64>>(mechanism: &M, t: f64, y: &M::State) -> DMatrix<f64> {
     let mut values = mechanism.phi_q_values();
-    mechanism.phi_q(0.0, y, &mut values);
+    mechanism.phi_q(t, y, &mut values);
     let n_rows = mechanism.constraints().as_ref().len();
     scatter(n_rows, 7 * mechanism.n_bodies(), mechanism.phi_q_pattern(), values.as_ref())
 }
@@ -97,16 +143,16 @@ fn scatter(n_rows: usize, n_columns: usize, pattern: &[(u16, u16)], values: &[f6
 }
 
 /// Φ at a state.
-pub fn phi<M: Mechanism<Scalar = f64>>(mechanism: &M, y: &M::State) -> Vec<f64> {
+pub fn phi<M: Mechanism<Scalar = f64>>(mechanism: &M, t: f64, y: &M::State) -> Vec<f64> {
     let mut out = mechanism.constraints();
-    mechanism.phi(0.0, y, &mut out);
+    mechanism.phi(t, y, &mut out);
     out.as_ref().to_vec()
 }
 
 /// The velocity residual at a state.
-pub fn velocity_residual<M: Mechanism<Scalar = f64>>(mechanism: &M, y: &M::State) -> Vec<f64> {
+pub fn velocity_residual<M: Mechanism<Scalar = f64>>(mechanism: &M, t: f64, y: &M::State) -> Vec<f64> {
     let mut out = mechanism.rows();
-    mechanism.velocity_residual(0.0, y, &mut out);
+    mechanism.velocity_residual(t, y, &mut out);
     out.as_ref().to_vec()
 }
 

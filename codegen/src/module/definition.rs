@@ -16,9 +16,15 @@ impl ModuleWriter<'_> {
         let values: Vec<_> = parameters.iter().map(|p| float(gyro_model::to_f64(&p.value))).collect();
         let docs =
             parameters.iter().map(|p| format!(" Parameter; default {:?}.", gyro_model::to_f64(&p.value)));
+        let inputs = &self.equations.model.inputs;
+        let input_names: Vec<_> = inputs.iter().map(|p| ident(&p.name)).collect();
+        let input_values = inputs.iter().map(|p| float(gyro_model::to_f64(&p.value)));
+        let input_docs = inputs
+            .iter()
+            .map(|p| format!(" Input, set at every step; until then {:?}.", gyro_model::to_f64(&p.value)));
         let (count, positions) = (index(parameters.len()), (0..parameters.len()).map(index));
-        let (marker, marker_value) = if parameters.is_empty() {
-            let doc = " The model has no parameters.";
+        let (marker, marker_value) = if parameters.is_empty() && inputs.is_empty() {
+            let doc = " The model has neither parameters nor inputs.";
             (
                 quote! { #[doc = #doc] scalar: ::core::marker::PhantomData<T>, },
                 quote! { scalar: ::core::marker::PhantomData, },
@@ -48,12 +54,13 @@ impl ModuleWriter<'_> {
             #[derive(Clone, Copy, Debug, PartialEq)]
             pub struct #name<T> {
                 #(#[doc = #docs] pub #names: T,)*
+                #(#[doc = #input_docs] pub #input_names: T,)*
                 #marker
             }
 
             impl<T: gyro_sim::Scalar> ::core::default::Default for #name<T> {
                 fn default() -> Self {
-                    Self { #(#names: T::constant(#values),)* #marker_value }
+                    Self { #(#names: T::constant(#values),)* #(#input_names: T::constant(#input_values),)* #marker_value }
                 }
             }
 

@@ -3,6 +3,7 @@
 use super::ModuleWriter;
 use crate::emit::{ident, index};
 use crate::equations::Sparse;
+use crate::symbol::Symbol;
 use proc_macro2::TokenStream;
 use quote::quote;
 
@@ -10,8 +11,14 @@ impl ModuleWriter<'_> {
     pub fn equations(&self) -> TokenStream {
         let name = ident(self.type_name);
         let e = self.equations;
-        let [n_velocities, n_phi_q, n_phi_pi] =
-            [e.accelerations.len(), e.phi_q.len(), e.phi_pi.len()].map(index);
+        let [n_velocities, n_closing, n_phi_q, n_phi_pi] =
+            [e.accelerations.len(), e.closing.len(), e.phi_q.len(), e.phi_pi.len()].map(index);
+        let n_solved = index(e.accelerations.len() + e.closing.len());
+        let rest = if e.closing.is_empty() {
+            " (s̈, ẇ') of each body.".to_owned()
+        } else {
+            format!(" (s̈, ẇ') of each body, then {n_closing} multipliers of the rows that close loops.")
+        };
         let (phi_q_pattern, phi_pi_pattern) = (pattern(&e.phi_q), pattern(&e.phi_pi));
         let f = &self.functions;
         let filling = [
@@ -21,15 +28,18 @@ impl ModuleWriter<'_> {
             self.filling("gamma", "Writes γ", "Rows", &f.gamma),
             self.filling("applied_force", "Writes (f, n' − w̃'J'w')", "Velocities", &f.applied_force),
         ];
-        let accelerations = self.function("Solves eq. (17)", &f.accelerations, |body, t, y| {
-            let (statements, (out, lambda)) = (&body.statements, body.values.split_at(e.accelerations.len()));
+        let accelerations =
+            self.filling("accelerations", "Solves eq. (17)", "Accelerations", &f.accelerations);
+        let multipliers = self.function("Writes λ", &f.multipliers, |body, t, y| {
+            let (statements, values) = (&body.statements, &body.values);
+            let known = |s: &Symbol| matches!(s, Symbol::Acceleration { .. } | Symbol::Closing(_));
+            let name = ident(if body.symbols.iter().any(known) { "accelerations" } else { "_accelerations" });
             quote! {
-                fn accelerations(
-                    &self, #t: T, #y: &Self::State, out: &mut Self::Velocities, lambda: &mut Self::Rows,
+                fn multipliers(
+                    &self, #t: T, #y: &Self::State, #name: &Self::Accelerations, lambda: &mut Self::Rows,
                 ) {
                     #statements
-                    *out = [#(#out),*];
-                    *lambda = [#(#lambda),*];
+                    *lambda = [#(#values),*];
                 }
             }
         });
@@ -38,6 +48,8 @@ impl ModuleWriter<'_> {
                 type Velocities = [T; #n_velocities];
                 type PhiQ = [T; #n_phi_q];
                 type PhiPi = [T; #n_phi_pi];
+                #[doc = #rest]
+                type Accelerations = [T; #n_solved];
 
                 fn velocities(&self) -> Self::Velocities {
                     [T::constant(0.0); #n_velocities]
@@ -48,6 +60,9 @@ impl ModuleWriter<'_> {
                 fn phi_pi_values(&self) -> Self::PhiPi {
                     [T::constant(0.0); #n_phi_pi]
                 }
+                fn accelerations_buffer(&self) -> Self::Accelerations {
+                    [T::constant(0.0); #n_solved]
+                }
                 fn phi_q_pattern(&self) -> &[(u16, u16)] {
                     &[#(#phi_q_pattern),*]
                 }
@@ -57,6 +72,7 @@ impl ModuleWriter<'_> {
 
                 #(#filling)*
                 #accelerations
+                #multipliers
             }
         }
     }

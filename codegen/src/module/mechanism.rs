@@ -3,7 +3,7 @@
 use super::ModuleWriter;
 use crate::emit::{self, float, ident, index};
 use gyro_model::{JointKind, RowOwner, RowUnit};
-use proc_macro2::TokenStream;
+use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 
 impl ModuleWriter<'_> {
@@ -18,25 +18,17 @@ impl ModuleWriter<'_> {
             "Rows",
             &self.functions.velocity_residual,
         );
-        let energy = self.function("Kinetic and potential energy", &self.functions.energy, |body, _, y| {
+        let energy = self.function("Kinetic and potential energy", &self.functions.energy, |body, t, y| {
             let (statements, kinetic, potential) = (&body.statements, &body.values[0], &body.values[1]);
             quote! {
-                fn energy(&self, #y: &Self::State) -> gyro_sim::Energy<T> {
+                fn energy(&self, #t: T, #y: &Self::State) -> gyro_sim::Energy<T> {
                     #statements
                     gyro_sim::Energy { kinetic: #kinetic, potential: #potential }
                 }
             }
         });
         let readings =
-            self.function("Writes the joint readings", &self.functions.read_joints, |body, _, y| {
-                let (statements, values) = (&body.statements, &body.values);
-                quote! {
-                    fn read_joints(&self, #y: &Self::State, out: &mut Self::Readings) {
-                        #statements
-                        *out = [#(#values),*];
-                    }
-                }
-            });
+            self.filling("read_joints", "Writes the joint readings", "Readings", &self.functions.read_joints);
         let tables = self.tables();
         quote! {
             impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for #name<T> {
@@ -68,15 +60,8 @@ impl ModuleWriter<'_> {
         let e = self.equations;
         let bodies = self.slots().into_iter().map(|body| &e.model.bodies[body].name);
         let joints = e.model.joints.iter().map(|joint| {
-            let (name, coordinate) = (
-                &joint.name,
-                ident(match joint.kind {
-                    JointKind::Revolute => "Angle",
-                    JointKind::Spherical => "Orientation",
-                    JointKind::Fixed => "None",
-                }),
-            );
-            quote! { gyro_sim::JointInfo { name: #name, coordinate: gyro_sim::Coordinate::#coordinate } }
+            let (name, coordinates) = (&joint.name, coordinates(joint.kind));
+            quote! { gyro_sim::JointInfo { name: #name, coordinates: &[#(gyro_sim::Coordinate::#coordinates),*] } }
         });
         let rows = e.model.rows().into_iter().map(|row| {
             let is_length = row.unit == RowUnit::Length;
@@ -86,10 +71,15 @@ impl ModuleWriter<'_> {
                     self.slots().iter().position(|&b| b == body).expect("a held body has coordinates"),
                 ),
                 RowOwner::Joint(joint) => ("Joint", joint),
+                RowOwner::Coupler(coupler) => ("Coupler", coupler),
+                RowOwner::Driver(driver) => ("Driver", driver),
             };
             let (owner, index) = (ident(owner), emit::index(index));
             quote! { gyro_sim::RowInfo { owner: gyro_sim::Owner::#owner(#index), is_length: #is_length } }
         });
+        let (couplers, drivers) =
+            (e.model.couplers.iter().map(|c| &c.name), e.model.drivers.iter().map(|d| &d.name));
+        let [n_couplers, n_drivers] = [e.model.couplers.len(), e.model.drivers.len()].map(index);
         let [n_bodies, n_joints, n_rows] = [e.n_slots(), e.model.joints.len(), e.n_rows()].map(index);
         let size = float(e.model.size());
         let (y, work) = if e.model.has_work() {
@@ -111,7 +101,15 @@ impl ModuleWriter<'_> {
             }
             fn joint(&self, joint: usize) -> gyro_sim::JointInfo<'_> {
                 const JOINTS: [gyro_sim::JointInfo<'static>; #n_joints] = [#(#joints),*];
-                JOINTS.get(joint).copied().unwrap_or(gyro_sim::JointInfo { name: "", coordinate: gyro_sim::Coordinate::None })
+                JOINTS.get(joint).copied().unwrap_or(gyro_sim::JointInfo { name: "", coordinates: &[] })
+            }
+            fn coupler_name(&self, coupler: usize) -> &str {
+                const COUPLERS: [&str; #n_couplers] = [#(#couplers),*];
+                COUPLERS.get(coupler).copied().unwrap_or_default()
+            }
+            fn driver_name(&self, driver: usize) -> &str {
+                const DRIVERS: [&str; #n_drivers] = [#(#drivers),*];
+                DRIVERS.get(driver).copied().unwrap_or_default()
             }
             fn row(&self, row: usize) -> gyro_sim::RowInfo {
                 const ROWS: [gyro_sim::RowInfo; #n_rows] = [#(#rows),*];
@@ -125,4 +123,13 @@ impl ModuleWriter<'_> {
             }
         }
     }
+}
+
+/// What the readings of a joint are.
+fn coordinates(kind: JointKind) -> Vec<Ident> {
+    if kind == JointKind::Spherical {
+        return vec![ident("Orientation")];
+    }
+    let coordinates = kind.coordinates().iter();
+    coordinates.map(|c| ident(if c.is_angle() { "Angle" } else { "Length" })).collect()
 }

@@ -5,6 +5,7 @@ mod equations;
 mod mechanism;
 mod ode;
 mod partition;
+mod ports;
 mod variables;
 
 use crate::emit::ident;
@@ -16,8 +17,10 @@ use crate::schedule::Operations;
 use crate::sheet;
 use crate::symbol::Symbol;
 use gyro_model::Start;
-use proc_macro2::TokenStream;
+use proc_macro2::{Ident, TokenStream};
 use quote::quote;
+use std::cell::RefCell;
+use std::collections::BTreeSet;
 
 /// `gyroscope_maximal` to `GyroscopeMaximal`; what Rust or the generic parameter already means gets an underscore.
 pub fn type_name(module_name: &str) -> String {
@@ -32,13 +35,37 @@ pub fn type_name(module_name: &str) -> String {
     if ["Self", "T"].contains(&name.as_str()) { format!("{name}_") } else { name }
 }
 
-/// Writes the file.
-pub fn write(file_name: &str, type_name: &str, equations: &Equations, start: &Start) -> String {
-    let module = ModuleWriter { equations, type_name, functions: Functions::of(equations) };
+/// The text of a module and the exact constants of its literals.
+pub struct Text {
+    pub code: String,
+    pub constants: String,
+}
+
+/// Writes the files.
+pub fn write(file_name: &str, type_name: &str, equations: &Equations, start: &Start) -> Text {
+    let constants = RefCell::default();
+    let module = ModuleWriter { equations, type_name, functions: Functions::of(equations), constants };
     let tokens = module.tokens(start);
     let file = syn::parse2(tokens).expect("the emitted tokens are Rust");
     let sheet = sheet::write(file_name, equations, &module.functions);
-    format!("{sheet}\n{}", prettyplease::unparse(&file))
+    let code = format!("{sheet}\n{}", prettyplease::unparse(&file));
+    let constants = module.constants.into_inner();
+    let lines = constants.into_iter().map(|(literal, exact)| format!("{literal} = {exact}\n"));
+    Text { code, constants: lines.collect() }
+}
+
+fn table_of(symbol: &Symbol) -> Option<usize> {
+    if let Symbol::Table { table, .. } = symbol { Some(*table) } else { None }
+}
+
+fn table_names(table: usize) -> (Ident, Ident) {
+    (ident(&format!("KNOTS_{table}")), ident(&format!("PIECES_{table}")))
+}
+
+/// Binds value and derivatives of a table's curve.
+fn evaluated_table(table: usize) -> TokenStream {
+    let (name, (knots, pieces)) = (ident(&format!("table{table}")), table_names(table));
+    quote! { let #name = t.spline(&#knots, &#pieces); }
 }
 
 /// What the parts of a module are written from.
@@ -46,6 +73,8 @@ struct ModuleWriter<'a> {
     equations: &'a Equations<'a>,
     type_name: &'a str,
     functions: Functions,
+    /// Literals of all functions with their exact constants.
+    constants: RefCell<BTreeSet<(String, String)>>,
 }
 
 impl ModuleWriter<'_> {
@@ -54,7 +83,12 @@ impl ModuleWriter<'_> {
     }
 
     fn body(&self, roots: &[ExprId]) -> Body {
-        emit::body(&self.equations.graph, self, roots)
+        let mut body = emit::body(&self.equations.graph, self, roots);
+        let tables: BTreeSet<_> = body.symbols.iter().filter_map(table_of).collect();
+        let (statements, tables) = (&body.statements, tables.into_iter().map(evaluated_table));
+        body.statements = quote! { #(#tables)* #statements };
+        self.constants.borrow_mut().extend(body.constants.iter().cloned());
+        body
     }
 
     fn operations(&self, roots: &[ExprId]) -> Operations {
@@ -62,15 +96,37 @@ impl ModuleWriter<'_> {
     }
 
     fn tokens(&self, start: &Start) -> TokenStream {
-        let (definition, ode) = (self.definition(), self.ode(start));
-        let (mechanism, partition, equations) = (self.mechanism(), self.partition(), self.equations());
+        let (tables, definition, ode) = (self.tables_of_motions(), self.definition(), self.ode(start));
+        let (mechanism, partition) = (self.mechanism(), self.partition());
+        let (equations, ports) = (self.equations(), self.ports());
         quote! {
+            #tables
             #definition
             #ode
             #mechanism
             #partition
             #equations
+            #ports
         }
+    }
+
+    /// Knots and pieces of each table.
+    fn tables_of_motions(&self) -> TokenStream {
+        let tables = self.equations.tables.iter().enumerate().map(|(table, spline)| {
+            let (knots, pieces) = table_names(table);
+            let (n_knots, n_pieces) = (emit::index(spline.knots.len()), emit::index(spline.pieces.len()));
+            let times = spline.knots.iter().map(|&t| emit::float(t));
+            let coefficients = spline.pieces.iter().map(|piece| piece.map(emit::float));
+            let coefficients = coefficients.map(|c| quote! { [#(#c),*] });
+            let doc = format!(" Times of the points of `{}`, s.", spline.source);
+            quote! {
+                #[doc = #doc]
+                const #knots: [f64; #n_knots] = [#(#times),*];
+                /// Polynomials between them, from each point's own time.
+                const #pieces: [[f64; 4]; #n_pieces] = [#(#coefficients),*];
+            }
+        });
+        tables.collect()
     }
 
     /// A function of time and state that fills `out`.
@@ -102,9 +158,10 @@ impl ModuleWriter<'_> {
                     | Symbol::Euler { .. }
                     | Symbol::Velocity { .. }
                     | Symbol::Spin { .. }
+                    | Symbol::Turn(_)
             )
         });
-        let t = if body.symbols.contains(&Symbol::Time) {
+        let t = if body.symbols.iter().any(|s| matches!(s, Symbol::Time | Symbol::Table { .. })) {
             quote! { t }
         } else {
             quote! { _t }

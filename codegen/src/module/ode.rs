@@ -10,7 +10,9 @@ impl ModuleWriter<'_> {
     pub fn ode(&self, start: &Start) -> TokenStream {
         let (name, n_state) = (ident(self.type_name), index(self.equations.n_state()));
         let work = self.equations.model.has_work().then_some(0.0);
-        let start = start.q.iter().chain(&start.v).copied().chain(work);
+        let turns = self.equations.model.turn_references();
+        let turns = turns.iter().map(|turn| start.joints[turn.joint].position[turn.coordinate]);
+        let start = start.q.iter().chain(&start.v).copied().chain(work).chain(turns);
         let start: Vec<_> = start.map(|x| if x == 0.0 { float(0.0) } else { float(x) }).collect();
         let derivative = self.derivative();
         quote! {
@@ -29,20 +31,19 @@ impl ModuleWriter<'_> {
         }
     }
 
-    /// The position rates and the power; the accelerations are those of `Equations`, unrolled there and nowhere else.
+    /// The rates of everything but the velocities; the accelerations are those of `Equations`, unrolled there and nowhere else.
     fn derivative(&self) -> TokenStream {
         let n_positions = 7 * self.equations.n_slots();
         let what = "Writes ẏ; beyond what [`Equations::accelerations`] takes";
         self.function(what, &self.functions.derivative, |body, _, _| {
-            let (statements, (positions, power)) = (&body.statements, body.values.split_at(n_positions));
-            let accelerations = (0..self.equations.accelerations.len()).map(index);
+            let (statements, (positions, rest)) = (&body.statements, body.values.split_at(n_positions));
+            let places = (0..self.equations.accelerations.len()).map(index);
             quote! {
                 fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-                    let mut v = gyro_sim::Equations::velocities(self);
-                    let mut lambda = gyro_sim::Mechanism::rows(self);
-                    gyro_sim::Equations::accelerations(self, t, y, &mut v, &mut lambda);
+                    let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
+                    gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
                     #statements
-                    *dy = [#(#positions,)* #(v[#accelerations],)* #(#power),*];
+                    *dy = [#(#positions,)* #(accelerations[#places],)* #(#rest),*];
                 }
             }
         })

@@ -9,8 +9,43 @@ use quote::quote;
 
 impl ModuleWriter<'_> {
     pub fn partition(&self) -> TokenStream {
+        if self.equations.charts.is_some() { self.by_charts() } else { self.by_pivoting() }
+    }
+
+    /// Full pivoting at run time.
+    fn by_pivoting(&self) -> TokenStream {
         let name = ident(self.type_name);
-        let [n_charts, n_state] = [self.equations.n_charts(), self.equations.n_state()].map(index);
+        let [n_constraints, n_positions] =
+            [self.equations.phi.len(), 7 * self.equations.n_slots()].map(index);
+        quote! {
+            impl<T: gyro_sim::Real> gyro_sim::Partition for #name<T> {
+                type Independent = gyro_sim::pivoting::Pivots<#n_constraints, #n_positions>;
+
+                fn independent(&self, t: T, y: &Self::State) -> Self::Independent {
+                    gyro_sim::pivoting::independent(self, t, y)
+                }
+                fn follow(&self, t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
+                    gyro_sim::pivoting::follow(self, t, y, choice)
+                }
+                fn newton_step(
+                    &self, t: T, choice: &Self::Independent, y: &mut Self::State,
+                ) -> ::core::result::Result<(), gyro_sim::Error> {
+                    gyro_sim::pivoting::newton_step(self, t, choice, y)
+                }
+                fn solve_velocities(
+                    &self, t: T, choice: &Self::Independent, y: &mut Self::State,
+                ) -> ::core::result::Result<(), gyro_sim::Error> {
+                    gyro_sim::pivoting::solve_velocities(self, t, choice, y)
+                }
+            }
+        }
+    }
+
+    /// The unrolled solves with their charts.
+    fn by_charts(&self) -> TokenStream {
+        let name = ident(self.type_name);
+        let n_charts = index(self.functions.chart_vectors.len() / 4);
+        let n_state = index(self.equations.n_state());
         let vectors = self.function(
             "The four-vectors whose largest components are the special Euler parameters",
             &self.functions.chart_vectors,

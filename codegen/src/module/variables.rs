@@ -35,10 +35,32 @@ impl Variables for ModuleWriter<'_> {
                 let name = ident(&self.equations.model.parameters[parameter].name);
                 (quote! { self.#name }, None)
             }
-            Symbol::Rotation { .. }
+            Symbol::Input(input) => {
+                let name = ident(&self.equations.model.inputs[input].name);
+                (quote! { self.#name }, None)
+            }
+            Symbol::Turn(turn) => {
+                let work = usize::from(self.equations.power.is_some());
+                bound(format!("turn{turn}"), "y", 13 * self.equations.n_slots() + work + turn)
+            }
+            Symbol::Table { table, order } => {
+                let (name, order) = (ident(&format!("table{table}")), index(order));
+                (quote! { #name[#order] }, None)
+            }
+            Symbol::Acceleration { slot, k } => {
+                let kind = if k < 3 { "ds" } else { "dw" };
+                bound(format!("{}_{kind}{}", body(slot), AXES[k % 3]), "accelerations", 6 * slot + k)
+            }
+            Symbol::Closing(row) => {
+                bound(format!("closing{row}"), "accelerations", self.equations.accelerations.len() + row)
+            }
+            Symbol::Angle(_)
+            | Symbol::Rotation { .. }
             | Symbol::Relative { .. }
             | Symbol::RotationRate { .. }
-            | Symbol::RelativeRate { .. } => unreachable!("rotations are expanded before they are written"),
+            | Symbol::RelativeRate { .. } => {
+                unreachable!("angles and rotations are expanded before they are written")
+            }
         }
     }
 }

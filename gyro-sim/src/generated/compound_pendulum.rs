@@ -19,7 +19,8 @@
 //! | gamma | γ | 24 | 43 | 0 | 67 | 0 of 5 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 19 | 31 | 0 | 50 | 0 of 5 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 4 | 0 | 4 | 3 of 6 |
-//! | accelerations | (s̈, ẇ') and λ, eq. (17) | 44 | 81 | 1 | 126 | 0 of 11 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 37 | 68 | 1 | 106 | 0 of 6 |
+//! | multipliers | λ, the accelerations being known | 18 | 34 | 1 | 53 | 0 of 5 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 |
 //! | energy | T and V | 5 | 12 | 0 | 17 | 0 of 2 |
 //! | read_joints | joint coordinates and rates | 7 | 8 | 0 | 15 | 0 of 3 |
@@ -30,7 +31,7 @@
 /// The mechanism `compound_pendulum`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CompoundPendulum<T> {
-    /// The model has no parameters.
+    /// The model has neither parameters nor inputs.
     scalar: ::core::marker::PhantomData<T>,
 }
 impl<T: gyro_sim::Scalar> ::core::default::Default for CompoundPendulum<T> {
@@ -72,9 +73,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for CompoundPendulum<T> {
     }
     /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut v = gyro_sim::Equations::velocities(self);
-        let mut lambda = gyro_sim::Mechanism::rows(self);
-        gyro_sim::Equations::accelerations(self, t, y, &mut v, &mut lambda);
+        let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
+        gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
         let k = T::constant;
         let rod_e0 = y[3];
         let rod_e1 = y[4];
@@ -94,12 +94,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for CompoundPendulum<T> {
             k(0.5) * (rod_e0 * rod_wx - rod_e3 * rod_wy + rod_e2 * rod_wz),
             k(0.5) * (rod_e3 * rod_wx + rod_e0 * rod_wy - rod_e1 * rod_wz),
             -(k(0.5) * (rod_e2 * rod_wx - rod_e1 * rod_wy - rod_e0 * rod_wz)),
-            v[0],
-            v[1],
-            v[2],
-            v[3],
-            v[4],
-            v[5],
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
         ];
     }
 }
@@ -172,7 +172,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for CompoundPendulum<T> {
         ];
     }
     /// Kinetic and potential energy: 17 operations (5 ±, 12 ×, 0 ÷).
-    fn energy(&self, y: &Self::State) -> gyro_sim::Energy<T> {
+    fn energy(&self, _t: T, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let rod_ry = y[1];
         let rod_sx = y[7];
@@ -190,7 +190,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for CompoundPendulum<T> {
         }
     }
     /// Writes the joint readings: 15 operations (7 ±, 8 ×, 0 ÷).
-    fn read_joints(&self, y: &Self::State, out: &mut Self::Readings) {
+    fn read_joints(&self, _t: T, y: &Self::State, out: &mut Self::Readings) {
         let k = T::constant;
         let rod_e0 = y[3];
         let rod_e1 = y[4];
@@ -216,7 +216,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for CompoundPendulum<T> {
         const JOINTS: [gyro_sim::JointInfo<'static>; 1] = [
             gyro_sim::JointInfo {
                 name: "pivot",
-                coordinate: gyro_sim::Coordinate::Angle,
+                coordinates: &[gyro_sim::Coordinate::Angle],
             },
         ];
         JOINTS
@@ -224,8 +224,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for CompoundPendulum<T> {
             .copied()
             .unwrap_or(gyro_sim::JointInfo {
                 name: "",
-                coordinate: gyro_sim::Coordinate::None,
+                coordinates: &[],
             })
+    }
+    fn coupler_name(&self, coupler: usize) -> &str {
+        const COUPLERS: [&str; 0] = [];
+        COUPLERS.get(coupler).copied().unwrap_or_default()
+    }
+    fn driver_name(&self, driver: usize) -> &str {
+        const DRIVERS: [&str; 0] = [];
+        DRIVERS.get(driver).copied().unwrap_or_default()
     }
     fn row(&self, row: usize) -> gyro_sim::RowInfo {
         const ROWS: [gyro_sim::RowInfo; 5] = [
@@ -384,6 +392,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CompoundPendulum<T> {
     type Velocities = [T; 6];
     type PhiQ = [T; 25];
     type PhiPi = [T; 13];
+    /// (s̈, ẇ') of each body.
+    type Accelerations = [T; 6];
     fn velocities(&self) -> Self::Velocities {
         [T::constant(0.0); 6]
     }
@@ -392,6 +402,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CompoundPendulum<T> {
     }
     fn phi_pi_values(&self) -> Self::PhiPi {
         [T::constant(0.0); 13]
+    }
+    fn accelerations_buffer(&self) -> Self::Accelerations {
+        [T::constant(0.0); 6]
     }
     fn phi_q_pattern(&self) -> &[(u16, u16)] {
         &[
@@ -567,14 +580,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CompoundPendulum<T> {
             -(k(0.0999) * (rod_wx * rod_wy)),
         ];
     }
-    /// Solves eq. (17): 126 operations (44 ±, 81 ×, 1 ÷).
-    fn accelerations(
-        &self,
-        _t: T,
-        y: &Self::State,
-        out: &mut Self::Velocities,
-        lambda: &mut Self::Rows,
-    ) {
+    /// Solves eq. (17): 106 operations (37 ±, 68 ×, 1 ÷).
+    fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let rod_e0 = y[3];
         let rod_e1 = y[4];
@@ -602,36 +609,104 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CompoundPendulum<T> {
         let t16 = t2 - t1;
         let t17 = k(2.0) * t16;
         let t18 = k(1.0) / (t17 * t3 - t15 * t7);
-        let t19 = t17 * t18;
-        let t20 = rod_e0 * rod_e2;
-        let t21 = rod_e1 * rod_e3;
-        let t22 = t21 + t20;
-        let t23 = k(2.0) * t22;
-        let t24 = t23 * t9 - (t17 * t4 - t15 * t0);
-        let t25 = t7 * t18;
-        let t26 = t25 * t24 + t19 * t14;
-        let t27 = rod_wx * rod_wy;
-        let t28 = rod_wz * rod_wz + t8;
-        let t29 = k(0.5) * (t23 * t0 + (t17 * t27 + t15 * t28));
-        let t30 = k(0.5) * (t13 * t0 - (t7 * t27 + t3 * t28));
-        let t31 = t11 + t10;
-        let t32 = k(0.5) - (t5 + rod_e3 * rod_e3);
-        let t33 = k(2.0) * t32 * t0 - (k(2.0) * t31 * t27 - k(2.0) * (t21 - t20) * t28);
-        let t34 = k(0.5) * t33;
-        let t35 = t34 * (k(1.2) * t31) + (t30 * (k(1.2) * t6) - t29 * (k(1.2) * t16));
-        let t36 = k(2.5) * (t35 - (k(0.0999) * t27 - k(11.772) * t6));
-        let t37 = t29 + (t16 * t36 - t22 * t26);
-        let t38 = t30 - (t6 * t36 + t12 * t26);
-        let t39 = t34 - (t31 * t36 + t32 * t26);
-        let t40 = t15 * t18;
-        let t41 = t3 * t18;
-        let t42 = t41 * t24 + t40 * t14;
-        let t43 = k(1.2) * t37;
-        let t44 = k(11.772) + k(1.2) * t38;
-        let t45 = k(1.2) * t39;
-        let t46 = k(0.0001) * t42;
-        let t47 = t32 * t45 + (t12 * t44 + t22 * t43) + (k(0.0999) * t0 - k(0.1) * t26);
-        *out = [t37, t38, -t39, -t42, t26, t36];
-        *lambda = [-t43, -t44, t45, t40 * t46 - t19 * t47, t25 * t47 - t41 * t46];
+        let t19 = rod_e0 * rod_e2;
+        let t20 = rod_e1 * rod_e3;
+        let t21 = t20 + t19;
+        let t22 = k(2.0) * t21;
+        let t23 = t22 * t9 - (t17 * t4 - t15 * t0);
+        let t24 = t7 * t18 * t23 + t17 * t18 * t14;
+        let t25 = rod_wx * rod_wy;
+        let t26 = rod_wz * rod_wz + t8;
+        let t27 = k(0.5) * (t22 * t0 + (t17 * t25 + t15 * t26));
+        let t28 = k(0.5) * (t13 * t0 - (t7 * t25 + t3 * t26));
+        let t29 = t11 + t10;
+        let t30 = k(0.5) - (t5 + rod_e3 * rod_e3);
+        let t31 = k(2.0) * t30 * t0 - (k(2.0) * t29 * t25 - k(2.0) * (t20 - t19) * t26);
+        let t32 = k(0.5) * t31;
+        let t33 = t32 * (k(1.2) * t29) + (t28 * (k(1.2) * t6) - t27 * (k(1.2) * t16));
+        let t34 = k(2.5) * (t33 - (k(0.0999) * t25 - k(11.772) * t6));
+        *out = [
+            t27 + (t16 * t34 - t21 * t24),
+            t28 - (t6 * t34 + t12 * t24),
+            t29 * t34 + t30 * t24 - t32,
+            -(t3 * t18 * t23 + t15 * t18 * t14),
+            t24,
+            t34,
+        ];
+    }
+    /// Writes λ: 53 operations (18 ±, 34 ×, 1 ÷).
+    fn multipliers(
+        &self,
+        _t: T,
+        y: &Self::State,
+        accelerations: &Self::Accelerations,
+        lambda: &mut Self::Rows,
+    ) {
+        let k = T::constant;
+        let rod_e0 = y[3];
+        let rod_e1 = y[4];
+        let rod_e2 = y[5];
+        let rod_e3 = y[6];
+        let rod_wx = y[10];
+        let rod_wz = y[12];
+        let rod_dsx = accelerations[0];
+        let rod_dsy = accelerations[1];
+        let rod_dsz = accelerations[2];
+        let rod_dwx = accelerations[3];
+        let rod_dwy = accelerations[4];
+        let t0 = k(1.2) * rod_dsx;
+        let t1 = k(11.772) + k(1.2) * rod_dsy;
+        let t2 = k(1.2) * rod_dsz;
+        let t3 = rod_e0 * rod_e0;
+        let t4 = k(2.0) * (k(0.5) - (t3 + rod_e2 * rod_e2));
+        let t5 = k(2.0) * (k(0.5) - (t3 + rod_e1 * rod_e1));
+        let t6 = rod_e0 * rod_e3;
+        let t7 = rod_e1 * rod_e2;
+        let t8 = k(2.0) * (t7 + t6);
+        let t9 = k(2.0) * (t7 - t6);
+        let t10 = k(1.0) / (t9 * t8 - t5 * t4);
+        let t11 = k(0.0001) * rod_dwx;
+        let t12 = (rod_e2 * rod_e3 - rod_e0 * rod_e1) * t1
+            + (rod_e1 * rod_e3 + rod_e0 * rod_e2) * t0;
+        let t13 = k(0.0999) * (rod_wx * rod_wz) - k(0.1) * rod_dwy
+            - ((k(0.5) - (t3 + rod_e3 * rod_e3)) * t2 - t12);
+        *lambda = [
+            -t0,
+            -t1,
+            -t2,
+            -(t9 * t10 * t13 + t11 * (t5 * t10)),
+            t4 * t10 * t13 + t11 * (t8 * t10),
+        ];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::Ports for CompoundPendulum<T> {
+    type Outputs = [T; 0];
+    fn outputs_buffer(&self) -> Self::Outputs {
+        [T::constant(0.0); 0]
+    }
+    fn outputs(&self, _t: T, _y: &Self::State, _out: &mut Self::Outputs) {}
+    fn n_outputs(&self) -> usize {
+        0
+    }
+    fn output(&self, index: usize) -> gyro_sim::OutputInfo<'_> {
+        const OUTPUTS: [gyro_sim::OutputInfo<'static>; 0] = [];
+        OUTPUTS
+            .get(index)
+            .copied()
+            .unwrap_or(gyro_sim::OutputInfo {
+                name: "",
+                suffix: "",
+                unit: "",
+            })
+    }
+    fn n_inputs(&self) -> usize {
+        0
+    }
+    fn input_name(&self, index: usize) -> &str {
+        const INPUTS: [&str; 0] = [];
+        INPUTS.get(index).copied().unwrap_or_default()
+    }
+    fn set_input(&mut self, _index: usize, _value: T) -> bool {
+        false
     }
 }

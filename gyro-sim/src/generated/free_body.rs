@@ -14,15 +14,10 @@
 //! |---|---|---|---|---|---|---|
 //! | phi | Φ | 4 | 4 | 0 | 8 | 0 of 1 |
 //! | phi_q | Φ_q, non-zeros in (r, p) | 0 | 4 | 0 | 4 | 0 of 4 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 0 | 0 | 0 | 0 | 0 of 0 |
-//! | nu | ν | 0 | 0 | 0 | 0 | 0 of 0 |
-//! | gamma | γ | 0 | 0 | 0 | 0 | 0 of 0 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 0 | 0 | 0 | 0 | 0 of 0 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 4 | 0 | 4 | 4 of 6 |
-//! | accelerations | (s̈, ẇ') and λ, eq. (17) | 0 | 4 | 0 | 4 | 4 of 6 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 0 | 4 | 0 | 4 | 4 of 6 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 |
 //! | energy | T and V | 5 | 11 | 0 | 16 | 1 of 2 |
-//! | read_joints | joint coordinates and rates | 0 | 0 | 0 | 0 | 0 of 0 |
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 4 |
 //! | newton_step | dependent positions, one Newton step | 11 | 13 | 1 | 25 | 0 of 7 |
 //! | solve_velocities | dependent velocities, eq. (19) | 0 | 0 | 0 | 0 | 0 of 6 |
@@ -30,7 +25,7 @@
 /// The mechanism `free_body`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FreeBody<T> {
-    /// The model has no parameters.
+    /// The model has neither parameters nor inputs.
     scalar: ::core::marker::PhantomData<T>,
 }
 impl<T: gyro_sim::Scalar> ::core::default::Default for FreeBody<T> {
@@ -72,9 +67,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for FreeBody<T> {
     }
     /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut v = gyro_sim::Equations::velocities(self);
-        let mut lambda = gyro_sim::Mechanism::rows(self);
-        gyro_sim::Equations::accelerations(self, t, y, &mut v, &mut lambda);
+        let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
+        gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
         let k = T::constant;
         let body_e0 = y[3];
         let body_e1 = y[4];
@@ -94,12 +88,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for FreeBody<T> {
             k(0.5) * (body_e0 * body_wx - body_e3 * body_wy + body_e2 * body_wz),
             k(0.5) * (body_e3 * body_wx + body_e0 * body_wy - body_e1 * body_wz),
             -(k(0.5) * (body_e2 * body_wx - body_e1 * body_wy - body_e0 * body_wz)),
-            v[0],
-            v[1],
-            v[2],
-            v[3],
-            v[4],
-            v[5],
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
         ];
     }
 }
@@ -132,7 +126,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for FreeBody<T> {
         *out = [];
     }
     /// Kinetic and potential energy: 16 operations (5 ±, 11 ×, 0 ÷).
-    fn energy(&self, y: &Self::State) -> gyro_sim::Energy<T> {
+    fn energy(&self, _t: T, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let body_sx = y[7];
         let body_sy = y[8];
@@ -150,7 +144,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for FreeBody<T> {
         }
     }
     /// Writes the joint readings: 0 operations (0 ±, 0 ×, 0 ÷).
-    fn read_joints(&self, _y: &Self::State, out: &mut Self::Readings) {
+    fn read_joints(&self, _t: T, _y: &Self::State, out: &mut Self::Readings) {
         *out = [];
     }
     fn n_bodies(&self) -> usize {
@@ -170,8 +164,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for FreeBody<T> {
             .copied()
             .unwrap_or(gyro_sim::JointInfo {
                 name: "",
-                coordinate: gyro_sim::Coordinate::None,
+                coordinates: &[],
             })
+    }
+    fn coupler_name(&self, coupler: usize) -> &str {
+        const COUPLERS: [&str; 0] = [];
+        COUPLERS.get(coupler).copied().unwrap_or_default()
+    }
+    fn driver_name(&self, driver: usize) -> &str {
+        const DRIVERS: [&str; 0] = [];
+        DRIVERS.get(driver).copied().unwrap_or_default()
     }
     fn row(&self, row: usize) -> gyro_sim::RowInfo {
         const ROWS: [gyro_sim::RowInfo; 0] = [];
@@ -249,6 +251,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FreeBody<T> {
     type Velocities = [T; 6];
     type PhiQ = [T; 4];
     type PhiPi = [T; 0];
+    /// (s̈, ẇ') of each body.
+    type Accelerations = [T; 6];
     fn velocities(&self) -> Self::Velocities {
         [T::constant(0.0); 6]
     }
@@ -257,6 +261,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FreeBody<T> {
     }
     fn phi_pi_values(&self) -> Self::PhiPi {
         [T::constant(0.0); 0]
+    }
+    fn accelerations_buffer(&self) -> Self::Accelerations {
+        [T::constant(0.0); 6]
     }
     fn phi_q_pattern(&self) -> &[(u16, u16)] {
         &[(0, 3), (0, 4), (0, 5), (0, 6)]
@@ -301,13 +308,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FreeBody<T> {
         ];
     }
     /// Solves eq. (17): 4 operations (0 ±, 4 ×, 0 ÷).
-    fn accelerations(
-        &self,
-        _t: T,
-        y: &Self::State,
-        out: &mut Self::Velocities,
-        lambda: &mut Self::Rows,
-    ) {
+    fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let body_wx = y[10];
         let body_wy = y[11];
@@ -320,6 +321,46 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FreeBody<T> {
             k(0.3333333333333333) * (body_wx * body_wz),
             k(0.0),
         ];
+    }
+    /// Writes λ: 0 operations (0 ±, 0 ×, 0 ÷).
+    fn multipliers(
+        &self,
+        _t: T,
+        _y: &Self::State,
+        _accelerations: &Self::Accelerations,
+        lambda: &mut Self::Rows,
+    ) {
         *lambda = [];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::Ports for FreeBody<T> {
+    type Outputs = [T; 0];
+    fn outputs_buffer(&self) -> Self::Outputs {
+        [T::constant(0.0); 0]
+    }
+    fn outputs(&self, _t: T, _y: &Self::State, _out: &mut Self::Outputs) {}
+    fn n_outputs(&self) -> usize {
+        0
+    }
+    fn output(&self, index: usize) -> gyro_sim::OutputInfo<'_> {
+        const OUTPUTS: [gyro_sim::OutputInfo<'static>; 0] = [];
+        OUTPUTS
+            .get(index)
+            .copied()
+            .unwrap_or(gyro_sim::OutputInfo {
+                name: "",
+                suffix: "",
+                unit: "",
+            })
+    }
+    fn n_inputs(&self) -> usize {
+        0
+    }
+    fn input_name(&self, index: usize) -> &str {
+        const INPUTS: [&str; 0] = [];
+        INPUTS.get(index).copied().unwrap_or_default()
+    }
+    fn set_input(&mut self, _index: usize, _value: T) -> bool {
+        false
     }
 }

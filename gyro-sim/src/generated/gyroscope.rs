@@ -19,7 +19,8 @@
 //! | gamma | γ | 122 | 193 | 0 | 315 | 6 of 15 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 90 | 128 | 0 | 218 | 0 of 15 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 |
-//! | accelerations | (s̈, ẇ') and λ, eq. (17) | 246 | 377 | 5 | 628 | 7 of 33 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 216 | 339 | 5 | 560 | 7 of 18 |
+//! | multipliers | λ, the accelerations being known | 114 | 187 | 3 | 304 | 0 of 15 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
 //! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 |
@@ -30,7 +31,7 @@
 /// The mechanism `gyroscope`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gyroscope<T> {
-    /// The model has no parameters.
+    /// The model has neither parameters nor inputs.
     scalar: ::core::marker::PhantomData<T>,
 }
 impl<T: gyro_sim::Scalar> ::core::default::Default for Gyroscope<T> {
@@ -98,9 +99,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Gyroscope<T> {
     }
     /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 72 operations (24 ±, 48 ×, 0 ÷).
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut v = gyro_sim::Equations::velocities(self);
-        let mut lambda = gyro_sim::Mechanism::rows(self);
-        gyro_sim::Equations::accelerations(self, t, y, &mut v, &mut lambda);
+        let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
+        gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -172,24 +172,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Gyroscope<T> {
             k(0.5) * (rotor_e3 * rotor_wx + rotor_e0 * rotor_wy - rotor_e1 * rotor_wz),
             -(k(0.5)
                 * (rotor_e2 * rotor_wx - rotor_e1 * rotor_wy - rotor_e0 * rotor_wz)),
-            v[0],
-            v[1],
-            v[2],
-            v[3],
-            v[4],
-            v[5],
-            v[6],
-            v[7],
-            v[8],
-            v[9],
-            v[10],
-            v[11],
-            v[12],
-            v[13],
-            v[14],
-            v[15],
-            v[16],
-            v[17],
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            accelerations[6],
+            accelerations[7],
+            accelerations[8],
+            accelerations[9],
+            accelerations[10],
+            accelerations[11],
+            accelerations[12],
+            accelerations[13],
+            accelerations[14],
+            accelerations[15],
+            accelerations[16],
+            accelerations[17],
         ];
     }
 }
@@ -404,7 +404,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Gyroscope<T> {
         ];
     }
     /// Kinetic and potential energy: 52 operations (19 ±, 33 ×, 0 ÷).
-    fn energy(&self, y: &Self::State) -> gyro_sim::Energy<T> {
+    fn energy(&self, _t: T, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let outer_ring_ry = y[1];
         let inner_ring_ry = y[8];
@@ -452,7 +452,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Gyroscope<T> {
         }
     }
     /// Writes the joint readings: 114 operations (54 ±, 60 ×, 0 ÷).
-    fn read_joints(&self, y: &Self::State, out: &mut Self::Readings) {
+    fn read_joints(&self, _t: T, y: &Self::State, out: &mut Self::Readings) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -533,15 +533,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Gyroscope<T> {
         const JOINTS: [gyro_sim::JointInfo<'static>; 3] = [
             gyro_sim::JointInfo {
                 name: "alpha",
-                coordinate: gyro_sim::Coordinate::Angle,
+                coordinates: &[gyro_sim::Coordinate::Angle],
             },
             gyro_sim::JointInfo {
                 name: "beta",
-                coordinate: gyro_sim::Coordinate::Angle,
+                coordinates: &[gyro_sim::Coordinate::Angle],
             },
             gyro_sim::JointInfo {
                 name: "phi",
-                coordinate: gyro_sim::Coordinate::Angle,
+                coordinates: &[gyro_sim::Coordinate::Angle],
             },
         ];
         JOINTS
@@ -549,8 +549,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Gyroscope<T> {
             .copied()
             .unwrap_or(gyro_sim::JointInfo {
                 name: "",
-                coordinate: gyro_sim::Coordinate::None,
+                coordinates: &[],
             })
+    }
+    fn coupler_name(&self, coupler: usize) -> &str {
+        const COUPLERS: [&str; 0] = [];
+        COUPLERS.get(coupler).copied().unwrap_or_default()
+    }
+    fn driver_name(&self, driver: usize) -> &str {
+        const DRIVERS: [&str; 0] = [];
+        DRIVERS.get(driver).copied().unwrap_or_default()
     }
     fn row(&self, row: usize) -> gyro_sim::RowInfo {
         const ROWS: [gyro_sim::RowInfo; 15] = [
@@ -992,6 +1000,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gyroscope<T> {
     type Velocities = [T; 18];
     type PhiQ = [T; 77];
     type PhiPi = [T; 41];
+    /// (s̈, ẇ') of each body.
+    type Accelerations = [T; 18];
     fn velocities(&self) -> Self::Velocities {
         [T::constant(0.0); 18]
     }
@@ -1000,6 +1010,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gyroscope<T> {
     }
     fn phi_pi_values(&self) -> Self::PhiPi {
         [T::constant(0.0); 41]
+    }
+    fn accelerations_buffer(&self) -> Self::Accelerations {
+        [T::constant(0.0); 18]
     }
     fn phi_q_pattern(&self) -> &[(u16, u16)] {
         &[
@@ -1586,14 +1599,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gyroscope<T> {
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 628 operations (246 ±, 377 ×, 5 ÷).
-    fn accelerations(
-        &self,
-        _t: T,
-        y: &Self::State,
-        out: &mut Self::Velocities,
-        lambda: &mut Self::Rows,
-    ) {
+    /// Solves eq. (17): 560 operations (216 ±, 339 ×, 5 ÷).
+    fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -1632,227 +1639,369 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gyroscope<T> {
         let t13 = k(2.0) * (k(0.5) - (t10 + outer_ring_e1 * outer_ring_e1));
         let t14 = k(2.0) * (t2 + t1);
         let t15 = k(1.0) / (t14 * t3 - t13 * t11);
-        let t16 = t13 * t15;
-        let t17 = outer_ring_e0 * outer_ring_e3;
-        let t18 = outer_ring_e1 * outer_ring_e2;
-        let t19 = k(2.0) * (t18 - t17);
-        let t20 = t14 * t9 - (t19 * t5 + t13 * t0);
-        let t21 = t3 * t15;
-        let t22 = t21 * t20 - t16 * t12;
-        let t23 = rotor_e0 * rotor_e3;
-        let t24 = rotor_e1 * rotor_e2;
-        let t25 = k(2.0) * (t24 - t23);
-        let t26 = inner_ring_e0 * inner_ring_e0;
-        let t27 = k(2.0) * (k(0.5) - (t26 + inner_ring_e1 * inner_ring_e1));
-        let t28 = rotor_e0 * rotor_e0;
-        let t29 = k(2.0) * (k(0.5) - (t28 + rotor_e2 * rotor_e2));
-        let t30 = inner_ring_e0 * inner_ring_e3;
-        let t31 = inner_ring_e1 * inner_ring_e2;
-        let t32 = k(2.0) * (t31 + t30);
-        let t33 = rotor_e0 * rotor_e1;
-        let t34 = rotor_e2 * rotor_e3;
-        let t35 = k(2.0) * (t34 + t33);
-        let t36 = inner_ring_e0 * inner_ring_e2;
-        let t37 = inner_ring_e1 * inner_ring_e3;
-        let t38 = k(2.0) * (t37 - t36);
-        let t39 = t38 * t35 - (t32 * t29 + t27 * t25);
-        let t40 = k(5e-6) * t39;
-        let t41 = rotor_e0 * rotor_e2;
-        let t42 = rotor_e1 * rotor_e3;
-        let t43 = k(2.0) * (t42 + t41);
-        let t44 = k(2.0) * (t34 - t33);
-        let t45 = k(2.0) * (k(0.5) - (t28 + rotor_e3 * rotor_e3));
-        let t46 = t38 * t45 - (t32 * t44 - t27 * t43);
-        let t47 = k(5e-6) * t46;
-        let t48 = inner_ring_e0 * inner_ring_e1;
-        let t49 = inner_ring_e2 * inner_ring_e3;
-        let t50 = t49 - t48;
+        let t16 = outer_ring_e0 * outer_ring_e3;
+        let t17 = outer_ring_e1 * outer_ring_e2;
+        let t18 = k(2.0) * (t17 - t16);
+        let t19 = t14 * t9 - (t18 * t5 + t13 * t0);
+        let t20 = t3 * t15 * t19 - t13 * t15 * t12;
+        let t21 = rotor_e0 * rotor_e3;
+        let t22 = rotor_e1 * rotor_e2;
+        let t23 = k(2.0) * (t22 - t21);
+        let t24 = inner_ring_e0 * inner_ring_e0;
+        let t25 = k(2.0) * (k(0.5) - (t24 + inner_ring_e1 * inner_ring_e1));
+        let t26 = rotor_e0 * rotor_e0;
+        let t27 = k(2.0) * (k(0.5) - (t26 + rotor_e2 * rotor_e2));
+        let t28 = inner_ring_e0 * inner_ring_e3;
+        let t29 = inner_ring_e1 * inner_ring_e2;
+        let t30 = k(2.0) * (t29 + t28);
+        let t31 = rotor_e0 * rotor_e1;
+        let t32 = rotor_e2 * rotor_e3;
+        let t33 = k(2.0) * (t32 + t31);
+        let t34 = inner_ring_e0 * inner_ring_e2;
+        let t35 = inner_ring_e1 * inner_ring_e3;
+        let t36 = k(2.0) * (t35 - t34);
+        let t37 = t36 * t33 - (t30 * t27 + t25 * t23);
+        let t38 = k(5e-6) * t37;
+        let t39 = rotor_e0 * rotor_e2;
+        let t40 = rotor_e1 * rotor_e3;
+        let t41 = k(2.0) * (t40 + t39);
+        let t42 = k(2.0) * (t32 - t31);
+        let t43 = k(2.0) * (k(0.5) - (t26 + rotor_e3 * rotor_e3));
+        let t44 = t36 * t43 - (t30 * t42 - t25 * t41);
+        let t45 = k(5e-6) * t44;
+        let t46 = inner_ring_e0 * inner_ring_e1;
+        let t47 = inner_ring_e2 * inner_ring_e3;
+        let t48 = t47 - t46;
+        let t49 = k(2.0) * t48;
+        let t50 = t35 + t34;
         let t51 = k(2.0) * t50;
-        let t52 = t37 + t36;
+        let t52 = k(0.5) - (t24 + inner_ring_e3 * inner_ring_e3);
         let t53 = k(2.0) * t52;
-        let t54 = k(0.5) - (t26 + inner_ring_e3 * inner_ring_e3);
-        let t55 = k(2.0) * t54;
-        let t56 = t55 * t35 - (t53 * t25 - t51 * t29);
-        let t57 = t53 * t43 + t51 * t44 + t55 * t45;
-        let t58 = t57 * t47 + t56 * t40;
-        let t59 = k(1e-6)
-            + (k(1.25e-9) + (t57 * (k(5e-6) * t57) + t56 * (k(5e-6) * t56)));
-        let t60 = k(1.0) / t59;
-        let t61 = t60 * t58;
-        let t62 = t58 * t61 - (k(1e-6) + (t46 * t47 + t39 * t40));
-        let t63 = k(2.0) * (k(0.5) - (t10 + outer_ring_e2 * outer_ring_e2));
-        let t64 = t8 * t38 - (t63 * t32 + t19 * t27);
-        let t65 = k(0.5) - (t26 + inner_ring_e2 * inner_ring_e2);
+        let t54 = t53 * t33 - (t51 * t23 - t49 * t27);
+        let t55 = t51 * t41 + t49 * t42 + t53 * t43;
+        let t56 = t55 * t45 + t54 * t38;
+        let t57 = k(1e-6)
+            + (k(1.25e-9) + (t55 * (k(5e-6) * t55) + t54 * (k(5e-6) * t54)));
+        let t58 = k(1.0) / t57;
+        let t59 = t58 * t56;
+        let t60 = t56 * t59 - (k(1e-6) + (t44 * t45 + t37 * t38));
+        let t61 = k(2.0) * (k(0.5) - (t10 + outer_ring_e2 * outer_ring_e2));
+        let t62 = t8 * t36 - (t61 * t30 + t18 * t25);
+        let t63 = k(0.5) - (t24 + inner_ring_e2 * inner_ring_e2);
+        let t64 = k(2.0) * t63;
+        let t65 = t29 - t28;
         let t66 = k(2.0) * t65;
-        let t67 = t31 - t30;
+        let t67 = t47 + t46;
         let t68 = k(2.0) * t67;
-        let t69 = t49 + t48;
-        let t70 = k(2.0) * t69;
-        let t71 = t70 * t35 + (t68 * t25 + t66 * t29);
-        let t72 = t70 * t45 - (t68 * t43 - t66 * t44);
-        let t73 = k(5e-6) * t71;
-        let t74 = k(5e-6) * t72;
-        let t75 = t57 * t74 + t56 * t73;
-        let t76 = t75 * t61 - (t72 * t47 + t71 * t40);
-        let t77 = t8 * t70 + (t19 * t68 + t63 * t66);
-        let t78 = t58 - t59 * t61;
-        let t79 = t8 * t55 - (t19 * t53 - t63 * t51);
-        let t80 = t79 * t78 - (t77 * t76 + t64 * t62);
-        let t81 = t60 * t75;
-        let t82 = t75 * t81 - (k(2e-6) + (k(1.25e-9) + (t72 * t74 + t71 * t73)));
-        let t83 = t75 - t59 * t81;
-        let t84 = t79 * t83 - (t77 * t82 + t64 * t76);
-        let t85 = t77 * t83 + t64 * t78;
-        let t86 = k(2.0) * (k(0.5) - (t28 + rotor_e1 * rotor_e1));
-        let t87 = k(2.0) * (t24 + t23);
-        let t88 = k(2.0) * (t42 - t41);
-        let t89 = t38 * t88 + (t32 * t87 + t27 * t86);
-        let t90 = inner_ring_wx * inner_ring_wy;
-        let t91 = t70 * t88 - (t66 * t87 + t68 * t86);
-        let t92 = inner_ring_wx * inner_ring_wx;
-        let t93 = inner_ring_wz * inner_ring_wz;
-        let t94 = t55 * t88 - (t51 * t87 - t53 * t86);
-        let t95 = inner_ring_wy * inner_ring_wz;
-        let t96 = rotor_wy * t46 + rotor_wz * t39;
-        let t97 = k(2.0)
-            * (inner_ring_wx * (rotor_wy * t57 + rotor_wz * t56) + inner_ring_wz * t96);
-        let t98 = rotor_wz * rotor_wz + rotor_wy * rotor_wy;
-        let t99 = rotor_wx * rotor_wy;
-        let t100 = rotor_wx * rotor_wz;
-        let t101 = t100 * t72 - (t99 * t71 - t98 * t91) + t97
-            + (t95 * t94 + ((t93 + t92) * t91 - t90 * t89));
-        let t102 = k(1.0) / (t71 * t57 - t72 * t56);
-        let t103 = t56 * t102;
-        let t104 = inner_ring_wx * inner_ring_wz;
-        let t105 = inner_ring_wy * inner_ring_wy;
-        let t106 = t105 + t92;
-        let t107 = k(2.0)
-            * (inner_ring_wx * (rotor_wy * t72 + rotor_wz * t71) - inner_ring_wy * t96);
-        let t108 = t100 * t57 - (t99 * t56 - t98 * t94) - t107
-            + (t106 * t94 + (t95 * t91 + t104 * t89));
-        let t109 = t71 * t102;
-        let t110 = t109 * t108 - t103 * t101;
-        let t111 = k(5e-6) * (t100 + t110);
-        let t112 = t57 * t102;
-        let t113 = t72 * t102;
-        let t114 = t113 * t108 - t112 * t101;
-        let t115 = k(5e-6) * (t99 + t114);
-        let t116 = t93 + t105;
-        let t117 = t53 * t104 + (t68 * t90 + t27 * t116);
+        let t69 = t68 * t33 + (t66 * t23 + t64 * t27);
+        let t70 = t68 * t43 - (t66 * t41 - t64 * t42);
+        let t71 = k(5e-6) * t69;
+        let t72 = k(5e-6) * t70;
+        let t73 = t55 * t72 + t54 * t71;
+        let t74 = t73 * t59 - (t70 * t45 + t69 * t38);
+        let t75 = t8 * t68 + (t18 * t66 + t61 * t64);
+        let t76 = t56 - t57 * t59;
+        let t77 = t8 * t53 - (t18 * t51 - t61 * t49);
+        let t78 = t77 * t76 - (t75 * t74 + t62 * t60);
+        let t79 = t58 * t73;
+        let t80 = t73 * t79 - (k(2e-6) + (k(1.25e-9) + (t70 * t72 + t69 * t71)));
+        let t81 = t73 - t57 * t79;
+        let t82 = t77 * t81 - (t75 * t80 + t62 * t74);
+        let t83 = t75 * t81 + t62 * t76;
+        let t84 = k(2.0) * (k(0.5) - (t26 + rotor_e1 * rotor_e1));
+        let t85 = k(2.0) * (t22 + t21);
+        let t86 = k(2.0) * (t40 - t39);
+        let t87 = t36 * t86 + (t30 * t85 + t25 * t84);
+        let t88 = inner_ring_wx * inner_ring_wy;
+        let t89 = t68 * t86 - (t64 * t85 + t66 * t84);
+        let t90 = inner_ring_wx * inner_ring_wx;
+        let t91 = inner_ring_wz * inner_ring_wz;
+        let t92 = t53 * t86 - (t49 * t85 - t51 * t84);
+        let t93 = inner_ring_wy * inner_ring_wz;
+        let t94 = rotor_wy * t44 + rotor_wz * t37;
+        let t95 = k(2.0)
+            * (inner_ring_wx * (rotor_wy * t55 + rotor_wz * t54) + inner_ring_wz * t94);
+        let t96 = rotor_wz * rotor_wz + rotor_wy * rotor_wy;
+        let t97 = rotor_wx * rotor_wy;
+        let t98 = rotor_wx * rotor_wz;
+        let t99 = t98 * t70 - (t97 * t69 - t96 * t89) + t95
+            + (t93 * t92 + ((t91 + t90) * t89 - t88 * t87));
+        let t100 = k(1.0) / (t69 * t55 - t70 * t54);
+        let t101 = inner_ring_wx * inner_ring_wz;
+        let t102 = inner_ring_wy * inner_ring_wy;
+        let t103 = t102 + t90;
+        let t104 = k(2.0)
+            * (inner_ring_wx * (rotor_wy * t70 + rotor_wz * t69) - inner_ring_wy * t94);
+        let t105 = t98 * t55 - (t97 * t54 - t96 * t92) - t104
+            + (t103 * t92 + (t93 * t89 + t101 * t87));
+        let t106 = t69 * t100 * t105 - t54 * t100 * t99;
+        let t107 = k(5e-6) * (t98 + t106);
+        let t108 = t70 * t100 * t105 - t55 * t100 * t99;
+        let t109 = k(5e-6) * (t97 + t108);
+        let t110 = t91 + t102;
+        let t111 = t51 * t101 + (t66 * t88 + t25 * t110);
+        let t112 = k(1e-5) * t111;
+        let t113 = k(0.00025) * t65;
+        let t114 = t49 * t101 - (t64 * t88 + t30 * t110);
+        let t115 = k(0.8) + k(1e-5) * t114;
+        let t116 = k(0.00025) * t63;
+        let t117 = t53 * t101 - (t68 * t88 - t36 * t110);
         let t118 = k(1e-5) * t117;
         let t119 = k(0.00025) * t67;
-        let t120 = t51 * t104 - (t66 * t90 + t32 * t116);
-        let t121 = k(0.8) + k(1e-5) * t120;
-        let t122 = k(0.00025) * t65;
-        let t123 = t55 * t104 - (t70 * t90 - t38 * t116);
-        let t124 = k(1e-5) * t123;
-        let t125 = k(0.00025) * t69;
-        let t126 = t125 * t124 + (t122 * t121 - t119 * t118) + (t57 * t115 + t56 * t111);
-        let t127 = k(1e-6) * t90 - t126;
-        let t128 = t61 * t127 - (k(1e-6) * t95 - (t46 * t115 + t39 * t111));
-        let t129 = k(2.0) * (t18 + t17);
-        let t130 = t3 * t55 - (t129 * t51 - t13 * t53);
-        let t131 = k(2.0) * (t7 - t6);
-        let t132 = t14 * t53 + t131 * t51 + t11 * t55;
-        let t133 = outer_ring_wx * outer_ring_wz;
-        let t134 = t133 * t132
-            - (t0 * t79 - (t4 + outer_ring_wy * outer_ring_wy) * t130);
-        let t135 = t11 * t38 - (t131 * t32 - t14 * t27);
-        let t136 = t11 * t70 - (t14 * t68 - t131 * t66);
-        let t137 = inner_ring_wx * t136 - inner_ring_wy * t135;
+        let t120 = t119 * t118 + (t116 * t115 - t113 * t112) + (t55 * t109 + t54 * t107);
+        let t121 = k(1e-6) * t88 - t120;
+        let t122 = t58 * t121;
+        let t123 = t56 * t122 - (k(1e-6) * t93 - (t44 * t109 + t37 * t107));
+        let t124 = k(2.0) * (t17 + t16);
+        let t125 = t3 * t53 - (t124 * t49 - t13 * t51);
+        let t126 = k(2.0) * (t7 - t6);
+        let t127 = t14 * t51 + t126 * t49 + t11 * t53;
+        let t128 = outer_ring_wx * outer_ring_wz;
+        let t129 = t128 * t127
+            - (t0 * t77 - (t4 + outer_ring_wy * outer_ring_wy) * t125);
+        let t130 = t11 * t36 - (t126 * t30 - t14 * t25);
+        let t131 = t11 * t68 - (t14 * t66 - t126 * t64);
+        let t132 = inner_ring_wx * t131 - inner_ring_wy * t130;
+        let t133 = k(2.0)
+            * (outer_ring_wy * t132
+                + outer_ring_wz * (inner_ring_wx * t75 - inner_ring_wy * t62));
+        let t134 = t3 * t36 + (t124 * t30 + t13 * t25);
+        let t135 = t3 * t68 - (t124 * t64 + t13 * t66);
+        let t136 = t103 * t125 + (t93 * t135 + t101 * t134) - t133 + t129;
+        let t137 = k(1.0) / (t134 * t75 - t135 * t62);
         let t138 = k(2.0)
-            * (outer_ring_wy * t137
-                + outer_ring_wz * (inner_ring_wx * t77 - inner_ring_wy * t64));
-        let t139 = t3 * t38 + (t129 * t32 + t13 * t27);
-        let t140 = t3 * t70 - (t129 * t66 + t13 * t68);
-        let t141 = t106 * t130 + (t95 * t140 + t104 * t139) - t138 + t134;
-        let t142 = k(1.0) / (t139 * t77 - t140 * t64);
-        let t143 = t64 * t142;
-        let t144 = k(2.0)
-            * (outer_ring_wx * t137
-                + outer_ring_wz * (inner_ring_wx * t140 - inner_ring_wy * t139));
-        let t145 = t106 * t79 + (t95 * t77 + t104 * t64) + t144
-            + (t9 * t132 + (t5 * t79 - t0 * t130));
-        let t146 = t139 * t142;
-        let t147 = t146 * t145 - t143 * t141;
-        let t148 = t77 * t142;
-        let t149 = t140 * t142;
-        let t150 = t149 * t145 - t148 * t141;
-        let t151 = k(0.00025) * t52;
-        let t152 = k(0.00025) * t50;
-        let t153 = k(0.00025) * t54;
-        let t154 = t153 * t124 + (t152 * t121 + t151 * t118) - (t72 * t115 + t71 * t111);
-        let t155 = t77 * (t82 * t150 + t76 * t147 - (t81 * t127 - t154));
-        let t156 = t79 * (t83 * t150 + t78 * t147)
-            - (t155 + t64 * (t76 * t150 + t62 * t147 - t128));
-        let t157 = t77 * (t130 * t83 - (t140 * t82 + t139 * t76))
-            + t64 * (t130 * t78 - (t140 * t76 + t139 * t62));
-        let t158 = t14 * t15;
-        let t159 = t11 * t15;
-        let t160 = t159 * t20 - t158 * t12;
-        let t161 = t160 * (t132 * t85 + (t136 * t84 + t135 * t80))
-            + t22 * (t79 * (t140 * t83 + t139 * t78) + t157);
-        let t162 = (t161 - (k(1e-6) * t133 + t156))
-            / (k(1e-6) + (t79 * t85 + (t77 * t84 + t64 * t80)));
-        let t163 = t147 - (t135 * t160 - (t64 * t162 - t139 * t22));
-        let t164 = t150 - (t136 * t160 - (t77 * t162 - t140 * t22));
-        let t165 = t132 * t160 - (t79 * t162 - t130 * t22);
-        let t166 = t60 * (t127 + (t59 * t165 - (t75 * t164 + t58 * t163)));
-        let t167 = t165 - t166;
-        let t168 = k(0.000125) * t117 + (t119 * t167 - t151 * t164);
-        let t169 = k(0.000125) * t120 - (t122 * t167 + t152 * t164);
-        let t170 = k(0.000125) * t123 - (t125 * t167 + t153 * t164);
-        let t171 = t110 - (t56 * t167 - (t71 * t164 + t39 * t163));
-        let t172 = t114 - (t57 * t167 - (t72 * t164 + t46 * t163));
-        let t173 = k(0.08) * t168;
-        let t174 = k(0.8) + k(0.08) * t169;
-        let t175 = k(0.1) + t174;
-        let t176 = k(0.08) * t170;
-        let t177 = k(5e-6) * (t100 + t171);
-        let t178 = k(5e-6) * (t99 + t172);
-        let t179 = t46 * t178 + t39 * t177 - k(1e-6) * (t95 - t163);
-        let t180 = t153 * t176 + (t152 * t174 + t151 * t173) - (t72 * t178 + t71 * t177);
-        let t181 = t180 - k(2e-6) * t164;
-        let t182 = t125 * t176 + (t122 * t174 - t119 * t173) + (t57 * t178 + t56 * t177);
-        let t183 = t182 - k(1e-6) * (t90 + t167);
-        let t184 = t130 * t183 - (t140 * t181 - t139 * t179) - k(2e-6) * t22;
-        let t185 = t132 * t183 - (t136 * t181 - t135 * t179) + k(1e-6) * (t0 - t160);
+            * (outer_ring_wx * t132
+                + outer_ring_wz * (inner_ring_wx * t135 - inner_ring_wy * t134));
+        let t139 = t103 * t77 + (t93 * t75 + t101 * t62) + t138
+            + (t9 * t127 + (t5 * t77 - t0 * t125));
+        let t140 = t134 * t137 * t139 - t62 * t137 * t136;
+        let t141 = t135 * t137 * t139 - t75 * t137 * t136;
+        let t142 = k(0.00025) * t50;
+        let t143 = k(0.00025) * t48;
+        let t144 = k(0.00025) * t52;
+        let t145 = t144 * t118 + (t143 * t115 + t142 * t112) - (t70 * t109 + t69 * t107);
+        let t146 = t75 * (t80 * t141 + t74 * t140 - (t73 * t122 - t145));
+        let t147 = t77 * (t81 * t141 + t76 * t140 - (t121 - t57 * t122));
+        let t148 = t147 - (t146 + t62 * (t74 * t141 + t60 * t140 - t123));
+        let t149 = t75 * (t125 * t81 - (t135 * t80 + t134 * t74))
+            + t62 * (t125 * t76 - (t135 * t74 + t134 * t60));
+        let t150 = t11 * t15 * t19 - t14 * t15 * t12;
+        let t151 = t150 * (t127 * t83 + (t131 * t82 + t130 * t78))
+            + t20 * (t77 * (t135 * t81 + t134 * t76) + t149);
+        let t152 = (t151 - (k(1e-6) * t128 + t148))
+            / (k(1e-6) + (t77 * t83 + (t75 * t82 + t62 * t78)));
+        let t153 = t140 - (t130 * t150 - (t62 * t152 - t134 * t20));
+        let t154 = t141 - (t131 * t150 - (t75 * t152 - t135 * t20));
+        let t155 = t127 * t150 - (t77 * t152 - t125 * t20);
+        let t156 = t58 * (t121 + (t57 * t155 - (t73 * t154 + t56 * t153)));
+        let t157 = t155 - t156;
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -t22,
-            t162,
-            t160,
+            -t20,
+            t152,
+            t150,
             k(0.0),
             k(0.0),
             k(0.0),
-            t163,
-            t164,
-            t167,
-            t168,
-            t169,
-            -t170,
+            t153,
+            t154,
+            t157,
+            k(0.000125) * t111 + (t113 * t157 - t142 * t154),
+            k(0.000125) * t114 - (t116 * t157 + t143 * t154),
+            t119 * t157 + t144 * t154 - k(0.000125) * t117,
             k(0.0),
-            t171,
-            -t172,
+            t106 - (t54 * t157 - (t69 * t154 + t37 * t153)),
+            t55 * t157 - (t70 * t154 + t44 * t153) - t108,
         ];
+    }
+    /// Writes λ: 304 operations (114 ±, 187 ×, 3 ÷).
+    fn multipliers(
+        &self,
+        _t: T,
+        y: &Self::State,
+        accelerations: &Self::Accelerations,
+        lambda: &mut Self::Rows,
+    ) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        let outer_ring_dsx = accelerations[0];
+        let outer_ring_dsy = accelerations[1];
+        let outer_ring_dsz = accelerations[2];
+        let outer_ring_dwx = accelerations[3];
+        let outer_ring_dwz = accelerations[5];
+        let inner_ring_dsx = accelerations[6];
+        let inner_ring_dsy = accelerations[7];
+        let inner_ring_dsz = accelerations[8];
+        let inner_ring_dwx = accelerations[9];
+        let inner_ring_dwy = accelerations[10];
+        let inner_ring_dwz = accelerations[11];
+        let rotor_dsx = accelerations[12];
+        let rotor_dsy = accelerations[13];
+        let rotor_dsz = accelerations[14];
+        let rotor_dwx = accelerations[15];
+        let rotor_dwy = accelerations[16];
+        let rotor_dwz = accelerations[17];
+        let t0 = k(0.08) * rotor_dsx;
+        let t1 = k(0.01) * inner_ring_dsx + t0;
+        let t2 = k(0.8) + k(0.08) * rotor_dsy;
+        let t3 = k(0.1) + k(0.01) * inner_ring_dsy + t2;
+        let t4 = k(0.08) * rotor_dsz;
+        let t5 = k(0.01) * inner_ring_dsz + t4;
+        let t6 = rotor_e0 * rotor_e0;
+        let t7 = k(2.0) * (k(0.5) - (t6 + rotor_e1 * rotor_e1));
+        let t8 = inner_ring_e0 * inner_ring_e0;
+        let t9 = k(2.0) * (k(0.5) - (t8 + inner_ring_e1 * inner_ring_e1));
+        let t10 = rotor_e0 * rotor_e3;
+        let t11 = rotor_e1 * rotor_e2;
+        let t12 = k(2.0) * (t11 + t10);
+        let t13 = inner_ring_e0 * inner_ring_e3;
+        let t14 = inner_ring_e1 * inner_ring_e2;
+        let t15 = k(2.0) * (t14 + t13);
+        let t16 = rotor_e0 * rotor_e2;
+        let t17 = rotor_e1 * rotor_e3;
+        let t18 = k(2.0) * (t17 - t16);
+        let t19 = inner_ring_e0 * inner_ring_e2;
+        let t20 = inner_ring_e1 * inner_ring_e3;
+        let t21 = k(2.0) * (t20 - t19);
+        let t22 = k(1e-5) * rotor_dwx;
+        let t23 = k(2.0) * (t11 - t10);
+        let t24 = k(2.0) * (k(0.5) - (t6 + rotor_e2 * rotor_e2));
+        let t25 = rotor_e0 * rotor_e1;
+        let t26 = rotor_e2 * rotor_e3;
+        let t27 = k(2.0) * (t26 + t25);
+        let t28 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
+        let t29 = t28 * (t21 * t27 - (t15 * t24 + t9 * t23))
+            + t22 * (t21 * t18 + (t15 * t12 + t9 * t7));
+        let t30 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
+        let t31 = k(2.0) * (t17 + t16);
+        let t32 = k(2.0) * (t26 - t25);
+        let t33 = k(2.0) * (k(0.5) - (t6 + rotor_e3 * rotor_e3));
+        let t34 = (t21 * t33 - (t15 * t32 - t9 * t31)) * t30 + t29;
+        let t35 = t34 - k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx);
+        let t36 = outer_ring_e0 * outer_ring_e0;
+        let t37 = k(2.0) * (k(0.5) - (t36 + outer_ring_e1 * outer_ring_e1));
+        let t38 = outer_ring_e0 * outer_ring_e3;
+        let t39 = outer_ring_e1 * outer_ring_e2;
+        let t40 = k(2.0) * (t39 + t38);
+        let t41 = outer_ring_e0 * outer_ring_e2;
+        let t42 = outer_ring_e1 * outer_ring_e3;
+        let t43 = k(2.0) * (t42 - t41);
+        let t44 = t43 * t21 + (t40 * t15 + t37 * t9);
+        let t45 = t14 - t13;
+        let t46 = k(2.0) * t45;
+        let t47 = k(0.5) - (t8 + inner_ring_e2 * inner_ring_e2);
+        let t48 = k(2.0) * t47;
+        let t49 = inner_ring_e0 * inner_ring_e1;
+        let t50 = inner_ring_e2 * inner_ring_e3;
+        let t51 = t50 + t49;
+        let t52 = k(2.0) * t51;
+        let t53 = t52 * t27 + (t46 * t23 + t48 * t24);
+        let t54 = t28 * t53 + t22 * (t52 * t18 - (t48 * t12 + t46 * t7));
+        let t55 = t52 * t33 - (t46 * t31 - t48 * t32);
+        let t56 = t20 + t19;
+        let t57 = t50 - t49;
+        let t58 = k(0.5) - (t8 + inner_ring_e3 * inner_ring_e3);
+        let t59 = t4 * (k(0.00025) * t58)
+            - (t2 * (k(0.00025) * t57) + t0 * (k(0.00025) * t56));
+        let t60 = k(2e-6) * inner_ring_dwy + (t59 + (t55 * t30 + t54));
+        let t61 = t43 * t52 - (t40 * t48 + t37 * t46);
+        let t62 = k(2.0) * t56;
+        let t63 = k(2.0) * t57;
+        let t64 = k(2.0) * t58;
+        let t65 = t64 * t27 - (t62 * t23 - t63 * t24);
+        let t66 = t28 * t65 + t22 * (t64 * t18 - (t63 * t12 - t62 * t7));
+        let t67 = t62 * t31 + t63 * t32 + t64 * t33;
+        let t68 = t4 * (k(0.00025) * t51)
+            - (t2 * (k(0.00025) * t47) - t0 * (k(0.00025) * t45));
+        let t69 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz)
+            + (t68 - (t67 * t30 + t66));
+        let t70 = (t43 * t64 - (t40 * t63 - t37 * t62)) * t69 - (t61 * t60 + t44 * t35);
+        let t71 = k(2e-6) * outer_ring_dwx - t70;
+        let t72 = k(2.0) * (k(0.5) - (t36 + outer_ring_e3 * outer_ring_e3));
+        let t73 = k(2.0) * (t42 + t41);
+        let t74 = k(1.0) / (t73 * t43 - t37 * t72);
+        let t75 = outer_ring_e0 * outer_ring_e1;
+        let t76 = outer_ring_e2 * outer_ring_e3;
+        let t77 = k(2.0) * (t76 - t75);
+        let t78 = (t72 * t52 - (t73 * t46 - t77 * t48)) * t60
+            + (t72 * t21 - (t77 * t15 - t73 * t9)) * t35;
+        let t79 = (t73 * t62 + t77 * t63 + t72 * t64) * t69 - t78;
+        let t80 = t79 - k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz);
+        let t81 = k(2.0) * (t39 - t38);
+        let t82 = k(2.0) * (k(0.5) - (t36 + outer_ring_e2 * outer_ring_e2));
+        let t83 = k(2.0) * (t76 + t75);
+        let t84 = t83 * t21 - (t82 * t15 + t81 * t9);
+        let t85 = t83 * t52 + (t81 * t46 + t82 * t48);
+        let t86 = k(1.0) / (t44 * t85 - t61 * t84);
+        let t87 = k(1.0) / (t53 * t67 - t55 * t65);
         *lambda = [
-            -t173,
-            -(k(0.1) + t175),
-            t176,
-            -(t158 * t185 + t16 * t184),
-            -(t159 * t185 + t21 * t184),
-            -t173,
-            -t175,
-            t176,
-            t148 * t181 - t143 * t179,
-            t146 * t179 - t149 * t181,
-            -t173,
-            -t174,
-            t176,
-            t112 * t178 + t103 * t177,
-            t113 * t178 + t109 * t177,
+            -(k(0.01) * outer_ring_dsx + t1),
+            -(k(0.1) + k(0.01) * outer_ring_dsy + t3),
+            -(k(0.01) * outer_ring_dsz + t5),
+            t73 * t74 * t80 - t37 * t74 * t71,
+            t72 * t74 * t80 - t43 * t74 * t71,
+            -t1,
+            -t3,
+            -t5,
+            -(t85 * t86 * t60 + t84 * t86 * t35),
+            t61 * t86 * t60 + t44 * t86 * t35,
+            -t0,
+            -t2,
+            -t4,
+            t67 * t87 * t30 + t28 * (t65 * t87),
+            t55 * t87 * t30 + t28 * (t53 * t87),
         ];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::Ports for Gyroscope<T> {
+    type Outputs = [T; 0];
+    fn outputs_buffer(&self) -> Self::Outputs {
+        [T::constant(0.0); 0]
+    }
+    fn outputs(&self, _t: T, _y: &Self::State, _out: &mut Self::Outputs) {}
+    fn n_outputs(&self) -> usize {
+        0
+    }
+    fn output(&self, index: usize) -> gyro_sim::OutputInfo<'_> {
+        const OUTPUTS: [gyro_sim::OutputInfo<'static>; 0] = [];
+        OUTPUTS
+            .get(index)
+            .copied()
+            .unwrap_or(gyro_sim::OutputInfo {
+                name: "",
+                suffix: "",
+                unit: "",
+            })
+    }
+    fn n_inputs(&self) -> usize {
+        0
+    }
+    fn input_name(&self, index: usize) -> &str {
+        const INPUTS: [&str; 0] = [];
+        INPUTS.get(index).copied().unwrap_or_default()
+    }
+    fn set_input(&mut self, _index: usize, _value: T) -> bool {
+        false
     }
 }

@@ -19,7 +19,8 @@
 //! | gamma | γ | 169 | 255 | 0 | 424 | 6 of 15 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 120 | 173 | 0 | 293 | 0 of 15 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 |
-//! | accelerations | (s̈, ẇ') and λ, eq. (17) | 468 | 666 | 5 | 1139 | 6 of 33 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 423 | 613 | 5 | 1041 | 6 of 18 |
+//! | multipliers | λ, the accelerations being known | 144 | 229 | 3 | 376 | 0 of 15 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
 //! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 |
@@ -30,7 +31,7 @@
 /// The mechanism `gyroscope_combined_offsets`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GyroscopeCombinedOffsets<T> {
-    /// The model has no parameters.
+    /// The model has neither parameters nor inputs.
     scalar: ::core::marker::PhantomData<T>,
 }
 impl<T: gyro_sim::Scalar> ::core::default::Default for GyroscopeCombinedOffsets<T> {
@@ -98,9 +99,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for GyroscopeCombinedOffsets<T> {
     }
     /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 72 operations (24 ±, 48 ×, 0 ÷).
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut v = gyro_sim::Equations::velocities(self);
-        let mut lambda = gyro_sim::Mechanism::rows(self);
-        gyro_sim::Equations::accelerations(self, t, y, &mut v, &mut lambda);
+        let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
+        gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -172,24 +172,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for GyroscopeCombinedOffsets<T> {
             k(0.5) * (rotor_e3 * rotor_wx + rotor_e0 * rotor_wy - rotor_e1 * rotor_wz),
             -(k(0.5)
                 * (rotor_e2 * rotor_wx - rotor_e1 * rotor_wy - rotor_e0 * rotor_wz)),
-            v[0],
-            v[1],
-            v[2],
-            v[3],
-            v[4],
-            v[5],
-            v[6],
-            v[7],
-            v[8],
-            v[9],
-            v[10],
-            v[11],
-            v[12],
-            v[13],
-            v[14],
-            v[15],
-            v[16],
-            v[17],
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            accelerations[6],
+            accelerations[7],
+            accelerations[8],
+            accelerations[9],
+            accelerations[10],
+            accelerations[11],
+            accelerations[12],
+            accelerations[13],
+            accelerations[14],
+            accelerations[15],
+            accelerations[16],
+            accelerations[17],
         ];
     }
 }
@@ -449,7 +449,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeCombinedOffsets<T> {
         ];
     }
     /// Kinetic and potential energy: 52 operations (19 ±, 33 ×, 0 ÷).
-    fn energy(&self, y: &Self::State) -> gyro_sim::Energy<T> {
+    fn energy(&self, _t: T, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let outer_ring_ry = y[1];
         let inner_ring_ry = y[8];
@@ -497,7 +497,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeCombinedOffsets<T> {
         }
     }
     /// Writes the joint readings: 114 operations (54 ±, 60 ×, 0 ÷).
-    fn read_joints(&self, y: &Self::State, out: &mut Self::Readings) {
+    fn read_joints(&self, _t: T, y: &Self::State, out: &mut Self::Readings) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -578,15 +578,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeCombinedOffsets<T> {
         const JOINTS: [gyro_sim::JointInfo<'static>; 3] = [
             gyro_sim::JointInfo {
                 name: "alpha",
-                coordinate: gyro_sim::Coordinate::Angle,
+                coordinates: &[gyro_sim::Coordinate::Angle],
             },
             gyro_sim::JointInfo {
                 name: "beta",
-                coordinate: gyro_sim::Coordinate::Angle,
+                coordinates: &[gyro_sim::Coordinate::Angle],
             },
             gyro_sim::JointInfo {
                 name: "phi",
-                coordinate: gyro_sim::Coordinate::Angle,
+                coordinates: &[gyro_sim::Coordinate::Angle],
             },
         ];
         JOINTS
@@ -594,8 +594,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeCombinedOffsets<T> {
             .copied()
             .unwrap_or(gyro_sim::JointInfo {
                 name: "",
-                coordinate: gyro_sim::Coordinate::None,
+                coordinates: &[],
             })
+    }
+    fn coupler_name(&self, coupler: usize) -> &str {
+        const COUPLERS: [&str; 0] = [];
+        COUPLERS.get(coupler).copied().unwrap_or_default()
+    }
+    fn driver_name(&self, driver: usize) -> &str {
+        const DRIVERS: [&str; 0] = [];
+        DRIVERS.get(driver).copied().unwrap_or_default()
     }
     fn row(&self, row: usize) -> gyro_sim::RowInfo {
         const ROWS: [gyro_sim::RowInfo; 15] = [
@@ -1083,6 +1091,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
     type Velocities = [T; 18];
     type PhiQ = [T; 91];
     type PhiPi = [T; 53];
+    /// (s̈, ẇ') of each body.
+    type Accelerations = [T; 18];
     fn velocities(&self) -> Self::Velocities {
         [T::constant(0.0); 18]
     }
@@ -1091,6 +1101,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
     }
     fn phi_pi_values(&self) -> Self::PhiPi {
         [T::constant(0.0); 53]
+    }
+    fn accelerations_buffer(&self) -> Self::Accelerations {
+        [T::constant(0.0); 18]
     }
     fn phi_q_pattern(&self) -> &[(u16, u16)] {
         &[
@@ -1785,14 +1798,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 1139 operations (468 ±, 666 ×, 5 ÷).
-    fn accelerations(
-        &self,
-        _t: T,
-        y: &Self::State,
-        out: &mut Self::Velocities,
-        lambda: &mut Self::Rows,
-    ) {
+    /// Solves eq. (17): 1041 operations (423 ±, 613 ×, 5 ÷).
+    fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -1830,91 +1837,84 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
             t15,
             t16,
             t17,
-            t18,
+            t19,
             t20,
-            t21,
-            t22,
-            t29,
-            t36,
-            t44,
-            t45,
-            t54,
-            t57,
+            t27,
+            t34,
+            t42,
+            t43,
+            t52,
+            t55,
+            t56,
             t58,
-            t59,
-            t60,
+            t61,
+            t62,
             t63,
             t64,
-            t65,
-            t66,
+            t69,
+            t70,
             t71,
             t72,
-            t73,
-            t74,
+            t75,
             t77,
             t78,
-            t79,
             t80,
-            t82,
             t83,
+            t84,
+            t85,
             t86,
-            t87,
-            t88,
             t89,
+            t90,
+            t91,
             t92,
-            t93,
-            t94,
             t95,
+            t96,
+            t97,
             t98,
-            t99,
-            t100,
             t101,
+            t102,
+            t103,
             t104,
             t105,
             t106,
             t107,
             t108,
-            t109,
-            t110,
-            t111,
+            t116,
             t119,
+            t120,
             t122,
-            t123,
             t124,
             t125,
+            t126,
             t127,
             t128,
             t129,
             t130,
             t131,
             t132,
-            t133,
-            t134,
-            t135,
+            t144,
+            t145,
+            t146,
             t147,
             t148,
             t149,
-            t150,
-            t151,
             t152,
+            t153,
             t154,
             t155,
             t156,
-            t157,
-            t158,
-            t159,
-            t163,
+            t160,
+            t161,
             t164,
             t166,
-            t167,
-            t169,
-            t173,
-            t175,
-            t182,
-            t188,
+            t170,
+            t172,
+            t179,
+            t185,
+            t191,
+            t192,
+            t193,
             t194,
-            t195,
-            t196,
             t197,
             t198,
             t199,
@@ -1935,212 +1935,215 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
             let t13 = k(2.0) * (k(0.5) - (t10 + outer_ring_e1 * outer_ring_e1));
             let t14 = k(2.0) * (t2 + t1);
             let t15 = k(1.0) / (t14 * t3 - t13 * t11);
-            let t16 = t13 * t15;
-            let t17 = outer_ring_e0 * outer_ring_e3;
-            let t18 = outer_ring_e1 * outer_ring_e2;
-            let t19 = k(2.0) * (t18 - t17);
-            let t20 = t14 * t9 - (t19 * t5 + t13 * t0);
-            let t21 = t3 * t15;
-            let t22 = t21 * t20 - t16 * t12;
-            let t23 = rotor_e0 * rotor_e3;
-            let t24 = rotor_e1 * rotor_e2;
-            let t25 = t24 - t23;
-            let t26 = k(2.0) * t25;
-            let t27 = inner_ring_e0 * inner_ring_e0;
-            let t28 = k(0.5) - (t27 + inner_ring_e1 * inner_ring_e1);
-            let t29 = k(2.0) * t28;
-            let t30 = rotor_e0 * rotor_e0;
-            let t31 = k(0.5) - (t30 + rotor_e2 * rotor_e2);
-            let t32 = k(2.0) * t31;
-            let t33 = inner_ring_e0 * inner_ring_e3;
-            let t34 = inner_ring_e1 * inner_ring_e2;
-            let t35 = t34 + t33;
-            let t36 = k(2.0) * t35;
-            let t37 = rotor_e0 * rotor_e1;
-            let t38 = rotor_e2 * rotor_e3;
-            let t39 = t38 + t37;
-            let t40 = k(2.0) * t39;
-            let t41 = inner_ring_e0 * inner_ring_e2;
-            let t42 = inner_ring_e1 * inner_ring_e3;
-            let t43 = t42 - t41;
-            let t44 = k(2.0) * t43;
-            let t45 = t44 * t40 - (t36 * t32 + t29 * t26);
-            let t46 = rotor_e0 * rotor_e2;
-            let t47 = rotor_e1 * rotor_e3;
-            let t48 = t47 + t46;
+            let t16 = outer_ring_e0 * outer_ring_e3;
+            let t17 = outer_ring_e1 * outer_ring_e2;
+            let t18 = k(2.0) * (t17 - t16);
+            let t19 = t14 * t9 - (t18 * t5 + t13 * t0);
+            let t20 = t3 * t15 * t19 - t13 * t15 * t12;
+            let t21 = rotor_e0 * rotor_e3;
+            let t22 = rotor_e1 * rotor_e2;
+            let t23 = t22 - t21;
+            let t24 = k(2.0) * t23;
+            let t25 = inner_ring_e0 * inner_ring_e0;
+            let t26 = k(0.5) - (t25 + inner_ring_e1 * inner_ring_e1);
+            let t27 = k(2.0) * t26;
+            let t28 = rotor_e0 * rotor_e0;
+            let t29 = k(0.5) - (t28 + rotor_e2 * rotor_e2);
+            let t30 = k(2.0) * t29;
+            let t31 = inner_ring_e0 * inner_ring_e3;
+            let t32 = inner_ring_e1 * inner_ring_e2;
+            let t33 = t32 + t31;
+            let t34 = k(2.0) * t33;
+            let t35 = rotor_e0 * rotor_e1;
+            let t36 = rotor_e2 * rotor_e3;
+            let t37 = t36 + t35;
+            let t38 = k(2.0) * t37;
+            let t39 = inner_ring_e0 * inner_ring_e2;
+            let t40 = inner_ring_e1 * inner_ring_e3;
+            let t41 = t40 - t39;
+            let t42 = k(2.0) * t41;
+            let t43 = t42 * t38 - (t34 * t30 + t27 * t24);
+            let t44 = rotor_e0 * rotor_e2;
+            let t45 = rotor_e1 * rotor_e3;
+            let t46 = t45 + t44;
+            let t47 = k(2.0) * t46;
+            let t48 = t36 - t35;
             let t49 = k(2.0) * t48;
-            let t50 = t38 - t37;
+            let t50 = k(0.5) - (t28 + rotor_e3 * rotor_e3);
             let t51 = k(2.0) * t50;
-            let t52 = k(0.5) - (t30 + rotor_e3 * rotor_e3);
-            let t53 = k(2.0) * t52;
-            let t54 = t44 * t53 - (t36 * t51 - t29 * t49);
-            let t55 = k(2.400191904047976e-9) * t54 - k(5.002599744127936e-6) * t45;
-            let t56 = k(5.003999856071964e-6) * t54 - k(2.400191904047976e-9) * t45;
-            let t57 = k(0.0004) * t48 + k(0.0003) * t25;
-            let t58 = k(0.08) * t57;
-            let t59 = k(7996.001999000499) * t57;
-            let t60 = t59 * t58;
-            let t61 = t34 - t33;
-            let t62 = t42 + t41;
-            let t63 = k(0.0001) * t62 + k(6e-5) * t61;
-            let t64 = k(0.0004) * t50 - k(0.0003) * t31;
-            let t65 = k(0.08) * t64;
-            let t66 = t59 * t65;
-            let t67 = k(0.5) - (t27 + inner_ring_e2 * inner_ring_e2);
-            let t68 = inner_ring_e0 * inner_ring_e1;
-            let t69 = inner_ring_e2 * inner_ring_e3;
-            let t70 = t69 - t68;
-            let t71 = k(0.0001) * t70 - k(6e-5) * t67;
-            let t72 = k(0.0004) * t52 - k(0.0003) * t39;
-            let t73 = k(0.08) * t72;
-            let t74 = t73 * t59;
-            let t75 = t69 + t68;
-            let t76 = k(0.5) - (t27 + inner_ring_e3 * inner_ring_e3);
-            let t77 = k(0.0001) * t76 - k(6e-5) * t75;
-            let t78 = k(7996.001999000499) * t64;
-            let t79 = t78 * t65;
-            let t80 = t73 * t78;
-            let t81 = t71 * (t77 * t80 + (t71 * t79 + t63 * t66))
-                + t63 * (t77 * t74 + (t71 * t66 + t63 * t60));
-            let t82 = k(7996.001999000499) * t72;
-            let t83 = t82 * t73;
-            let t84 = t77 * (t77 * t83 + (t71 * t80 + t63 * t74)) + t81;
-            let t85 = k(0.5) - (t30 + rotor_e1 * rotor_e1);
-            let t86 = k(0.0002) * t48 - k(0.0003) * t85;
-            let t87 = k(1.2793603198400799e-5) * t57 - k(0.08) * t86;
-            let t88 = k(0.0002) * t25 + k(0.0004) * t85;
-            let t89 = k(9.595202398800599e-6) * t57 - k(0.08) * t88;
-            let t90 = t54 * t89 + t45 * t87;
-            let t91 = t24 + t23;
-            let t92 = k(0.0002) * t50 + k(0.0003) * t91;
-            let t93 = k(1.2793603198400799e-5) * t64 - k(0.08) * t92;
-            let t94 = k(0.0002) * t31 + k(0.0004) * t91;
-            let t95 = k(9.595202398800599e-6) * t64 + k(0.08) * t94;
-            let t96 = t54 * t95 + t45 * t93;
-            let t97 = t47 - t46;
-            let t98 = k(0.0002) * t52 - k(0.0003) * t97;
-            let t99 = k(1.2793603198400799e-5) * t72 - k(0.08) * t98;
-            let t100 = k(0.0002) * t39 - k(0.0004) * t97;
-            let t101 = k(9.595202398800599e-6) * t72 + k(0.08) * t100;
-            let t102 = t54 * t101 + t45 * t99;
-            let t103 = k(2.0) * (t77 * t102 + (t71 * t96 + t63 * t90)) + t84;
-            let t104 = k(2.0) * t70;
-            let t105 = k(2.0) * t62;
-            let t106 = k(2.0) * t76;
-            let t107 = t106 * t40 - (t105 * t26 - t104 * t32);
-            let t108 = t105 * t49 + t104 * t51 + t106 * t53;
-            let t109 = k(0.00025) * t61 + k(0.0001) * t28;
-            let t110 = k(0.00025) * t67 + k(0.0001) * t35;
-            let t111 = k(0.00025) * t75 - k(0.0001) * t43;
-            let t112 = t111 * t74 + (t110 * t66 - t109 * t60);
-            let t113 = t111 * t80 + (t110 * t79 - t109 * t66);
-            let t114 = t111 * t83 + (t110 * t80 - t109 * t74);
-            let t115 = t108 * t89 + t107 * t87;
-            let t116 = t108 * t95 + t107 * t93;
-            let t117 = t108 * t101 + t107 * t99;
-            let t118 = t111 * t102 + (t110 * t96 - t109 * t90)
-                + (t77 * t117 + (t71 * t116 + t63 * t115));
-            let t119 = t118 + (t77 * t114 + (t71 * t113 + t63 * t112))
-                + (k(3e-10) - (t108 * t56 - t107 * t55));
-            let t120 = t108
-                * (k(5.003999856071964e-6) * t108 - k(2.400191904047976e-9) * t107)
-                - t107
-                    * (k(2.400191904047976e-9) * t108 - k(5.002599744127936e-6) * t107);
-            let t121 = k(2.0) * (t111 * t117 + (t110 * t116 - t109 * t115))
-                + (t111 * t114 + (t110 * t113 - t109 * t112));
-            let t122 = k(1e-6) - (t121 - (k(1.45e-9) + t120));
-            let t123 = k(1.0) / t122;
-            let t124 = t123 * t119;
-            let t125 = t119 * t124
-                - (k(1e-6) - (t103 - (k(2.72e-10) + (t54 * t56 - t45 * t55))));
-            let t126 = k(2.0) * (k(0.5) - (t10 + outer_ring_e2 * outer_ring_e2));
-            let t127 = t8 * t44 - (t126 * t36 + t19 * t29);
-            let t128 = k(2.0) * t67;
-            let t129 = k(2.0) * t61;
-            let t130 = k(2.0) * t75;
-            let t131 = t130 * t40 + (t129 * t26 + t128 * t32);
-            let t132 = t130 * t53 - (t129 * t49 - t128 * t51);
-            let t133 = k(0.00025) * t62 - k(6e-5) * t28;
-            let t134 = k(0.00025) * t70 + k(6e-5) * t35;
-            let t135 = k(0.00025) * t76 - k(6e-5) * t43;
-            let t136 = t135 * t74 + (t134 * t66 + t133 * t60);
-            let t137 = t135 * t80 + (t134 * t79 + t133 * t66);
-            let t138 = t135 * t83 + (t134 * t80 + t133 * t74);
-            let t139 = t132 * t89 + t131 * t87;
-            let t140 = t132 * t95 + t131 * t93;
-            let t141 = t132 * t101 + t131 * t99;
-            let t142 = t135 * t102 + (t134 * t96 + t133 * t90)
-                - (t77 * t141 + (t71 * t140 + t63 * t139));
-            let t143 = t142 + (t77 * t138 + (t71 * t137 + t63 * t136))
-                - (k(5e-10) - (t132 * t56 - t131 * t55));
-            let t144 = k(2.400191904047976e-9) * t132 - k(5.002599744127936e-6) * t131;
-            let t145 = k(5.003999856071964e-6) * t132 - k(2.400191904047976e-9) * t131;
-            let t146 = t111 * t141 + (t110 * t140 - t109 * t139)
-                - (t135 * t117 + (t134 * t116 + t133 * t115));
-            let t147 = t146 - (t135 * t114 + (t134 * t113 + t133 * t112))
-                + (k(1.2e-10) - (t108 * t145 - t107 * t144));
-            let t148 = t147 * t124 - t143;
-            let t149 = t8 * t130 + (t19 * t129 + t126 * t128);
-            let t150 = t119 - t122 * t124;
-            let t151 = t8 * t106 - (t19 * t105 - t126 * t104);
-            let t152 = t151 * t150 + (t149 * t148 + t127 * t125);
-            let t153 = k(2.0) * (t135 * t141 + (t134 * t140 + t133 * t139))
-                - (t135 * t138 + (t134 * t137 + t133 * t136));
-            let t154 = t123 * t147;
-            let t155 = t147 * t154
-                - (k(2e-6) + (t153 + (k(1.322e-9) + (t132 * t145 - t131 * t144))));
-            let t156 = t147 - t122 * t154;
-            let t157 = t151 * t156 + (t149 * t155 + t127 * t148);
-            let t158 = t149 * t156 + t127 * t150;
-            let t159 = rotor_wx * rotor_wz;
-            let t160 = inner_ring_wy * inner_ring_wy;
-            let t161 = inner_ring_wz * inner_ring_wz;
-            let t162 = t161 + t160;
-            let t163 = inner_ring_wx * inner_ring_wy;
-            let t164 = inner_ring_wx * inner_ring_wz;
-            let t165 = inner_ring_wx * inner_ring_wx;
-            let t166 = t161 + t165;
-            let t167 = inner_ring_wy * inner_ring_wz;
-            let t168 = k(5e-5) * (t105 * t167 - (t129 * t166 + t29 * t163))
-                + k(0.000125) * (t105 * t164 + (t129 * t163 + t29 * t162));
-            let t169 = t160 + t165;
-            let t170 = k(3e-5) * (t105 * t169 - (t129 * t167 - t29 * t164)) + t168;
-            let t171 = rotor_wy * rotor_wy;
-            let t172 = rotor_wz * rotor_wz;
-            let t173 = t172 + t171;
-            let t174 = k(2.0) * t85;
-            let t175 = rotor_wx * rotor_wy;
-            let t176 = rotor_wx * rotor_wx;
-            let t177 = t172 + t176;
-            let t178 = rotor_wy * rotor_wz;
-            let t179 = k(0.0002) * (t49 * t178 - (t26 * t177 + t174 * t175))
-                + k(0.0001) * (t49 * t159 + (t26 * t175 + t174 * t173));
-            let t180 = t171 + t176;
-            let t181 = k(0.00015) * (t49 * t180 - (t26 * t178 - t174 * t159)) + t179;
-            let t182 = t181 - t170;
-            let t183 = k(5e-5) * (t104 * t167 + (t128 * t166 + t36 * t163))
-                + k(0.000125) * (t104 * t164 - (t128 * t163 + t36 * t162));
-            let t184 = k(3e-5) * (t104 * t169 + (t128 * t167 - t36 * t164)) + t183;
-            let t185 = k(2.0) * t91;
-            let t186 = k(0.0002) * (t51 * t178 + (t32 * t177 + t185 * t175))
-                + k(0.0001) * (t51 * t159 - (t32 * t175 + t185 * t173));
-            let t187 = k(0.00015) * (t51 * t180 + (t32 * t178 - t185 * t159)) + t186;
-            let t188 = t187 - t184;
-            let t189 = k(5e-5) * (t106 * t167 + (t130 * t166 - t44 * t163))
-                + k(0.000125) * (t106 * t164 - (t130 * t163 - t44 * t162));
-            let t190 = k(3e-5) * (t106 * t169 + (t130 * t167 + t44 * t164)) + t189;
-            let t191 = k(2.0) * t97;
-            let t192 = k(0.0002) * (t53 * t178 + (t40 * t177 - t191 * t175))
-                + k(0.0001) * (t53 * t159 - (t40 * t175 - t191 * t173));
-            let t193 = k(0.00015) * (t53 * t180 + (t40 * t178 + t191 * t159)) + t192;
-            let t194 = t193 - t190;
-            let t195 = t44 * t191 + (t36 * t185 + t29 * t174);
-            let t196 = t130 * t191 - (t128 * t185 + t129 * t174);
-            let t197 = t106 * t191 - (t104 * t185 - t105 * t174);
-            let t198 = rotor_wy * t54 + rotor_wz * t45;
+            let t52 = t42 * t51 - (t34 * t49 - t27 * t47);
+            let t53 = k(2.400191904047976e-9) * t52 - k(5.002599744127936e-6) * t43;
+            let t54 = k(5.003999856071964e-6) * t52 - k(2.400191904047976e-9) * t43;
+            let t55 = k(0.0004) * t46 + k(0.0003) * t23;
+            let t56 = k(0.08) * t55;
+            let t57 = k(7996.001999000499) * t55;
+            let t58 = t57 * t56;
+            let t59 = t32 - t31;
+            let t60 = t40 + t39;
+            let t61 = k(0.0001) * t60 + k(6e-5) * t59;
+            let t62 = k(0.0004) * t48 - k(0.0003) * t29;
+            let t63 = k(0.08) * t62;
+            let t64 = t57 * t63;
+            let t65 = k(0.5) - (t25 + inner_ring_e2 * inner_ring_e2);
+            let t66 = inner_ring_e0 * inner_ring_e1;
+            let t67 = inner_ring_e2 * inner_ring_e3;
+            let t68 = t67 - t66;
+            let t69 = k(0.0001) * t68 - k(6e-5) * t65;
+            let t70 = k(0.0004) * t50 - k(0.0003) * t37;
+            let t71 = k(0.08) * t70;
+            let t72 = t71 * t57;
+            let t73 = t67 + t66;
+            let t74 = k(0.5) - (t25 + inner_ring_e3 * inner_ring_e3);
+            let t75 = k(0.0001) * t74 - k(6e-5) * t73;
+            let t76 = k(7996.001999000499) * t62;
+            let t77 = t76 * t63;
+            let t78 = t71 * t76;
+            let t79 = t69 * (t75 * t78 + (t69 * t77 + t61 * t64))
+                + t61 * (t75 * t72 + (t69 * t64 + t61 * t58));
+            let t80 = k(7996.001999000499) * t70 * t71;
+            let t81 = t75 * (t75 * t80 + (t69 * t78 + t61 * t72)) + t79;
+            let t82 = k(0.5) - (t28 + rotor_e1 * rotor_e1);
+            let t83 = k(0.0002) * t46 - k(0.0003) * t82;
+            let t84 = k(1.2793603198400799e-5) * t55 - k(0.08) * t83;
+            let t85 = k(0.0002) * t23 + k(0.0004) * t82;
+            let t86 = k(9.595202398800599e-6) * t55 - k(0.08) * t85;
+            let t87 = t52 * t86 + t43 * t84;
+            let t88 = t22 + t21;
+            let t89 = k(0.0002) * t48 + k(0.0003) * t88;
+            let t90 = k(1.2793603198400799e-5) * t62 - k(0.08) * t89;
+            let t91 = k(0.0002) * t29 + k(0.0004) * t88;
+            let t92 = k(9.595202398800599e-6) * t62 + k(0.08) * t91;
+            let t93 = t52 * t92 + t43 * t90;
+            let t94 = t45 - t44;
+            let t95 = k(0.0002) * t50 - k(0.0003) * t94;
+            let t96 = k(1.2793603198400799e-5) * t70 - k(0.08) * t95;
+            let t97 = k(0.0002) * t37 - k(0.0004) * t94;
+            let t98 = k(9.595202398800599e-6) * t70 + k(0.08) * t97;
+            let t99 = t52 * t98 + t43 * t96;
+            let t100 = k(2.0) * (t75 * t99 + (t69 * t93 + t61 * t87)) + t81;
+            let t101 = k(2.0) * t68;
+            let t102 = k(2.0) * t60;
+            let t103 = k(2.0) * t74;
+            let t104 = t103 * t38 - (t102 * t24 - t101 * t30);
+            let t105 = t102 * t47 + t101 * t49 + t103 * t51;
+            let t106 = k(0.00025) * t59 + k(0.0001) * t26;
+            let t107 = k(0.00025) * t65 + k(0.0001) * t33;
+            let t108 = k(0.00025) * t73 - k(0.0001) * t41;
+            let t109 = t108 * t72 + (t107 * t64 - t106 * t58);
+            let t110 = t108 * t78 + (t107 * t77 - t106 * t64);
+            let t111 = t108 * t80 + (t107 * t78 - t106 * t72);
+            let t112 = t105 * t86 + t104 * t84;
+            let t113 = t105 * t92 + t104 * t90;
+            let t114 = t105 * t98 + t104 * t96;
+            let t115 = t108 * t99 + (t107 * t93 - t106 * t87)
+                + (t75 * t114 + (t69 * t113 + t61 * t112));
+            let t116 = t115 + (t75 * t111 + (t69 * t110 + t61 * t109))
+                + (k(3e-10) - (t105 * t54 - t104 * t53));
+            let t117 = t105
+                * (k(5.003999856071964e-6) * t105 - k(2.400191904047976e-9) * t104)
+                - t104
+                    * (k(2.400191904047976e-9) * t105 - k(5.002599744127936e-6) * t104);
+            let t118 = k(2.0) * (t108 * t114 + (t107 * t113 - t106 * t112))
+                + (t108 * t111 + (t107 * t110 - t106 * t109));
+            let t119 = k(1e-6) - (t118 - (k(1.45e-9) + t117));
+            let t120 = k(1.0) / t119;
+            let t121 = t120 * t116;
+            let t122 = t116 * t121
+                - (k(1e-6) - (t100 - (k(2.72e-10) + (t52 * t54 - t43 * t53))));
+            let t123 = k(2.0) * (k(0.5) - (t10 + outer_ring_e2 * outer_ring_e2));
+            let t124 = t8 * t42 - (t123 * t34 + t18 * t27);
+            let t125 = k(2.0) * t65;
+            let t126 = k(2.0) * t59;
+            let t127 = k(2.0) * t73;
+            let t128 = t127 * t38 + (t126 * t24 + t125 * t30);
+            let t129 = t127 * t51 - (t126 * t47 - t125 * t49);
+            let t130 = k(0.00025) * t60 - k(6e-5) * t26;
+            let t131 = k(0.00025) * t68 + k(6e-5) * t33;
+            let t132 = k(0.00025) * t74 - k(6e-5) * t41;
+            let t133 = t132 * t72 + (t131 * t64 + t130 * t58);
+            let t134 = t132 * t78 + (t131 * t77 + t130 * t64);
+            let t135 = t132 * t80 + (t131 * t78 + t130 * t72);
+            let t136 = t129 * t86 + t128 * t84;
+            let t137 = t129 * t92 + t128 * t90;
+            let t138 = t129 * t98 + t128 * t96;
+            let t139 = t132 * t99 + (t131 * t93 + t130 * t87)
+                - (t75 * t138 + (t69 * t137 + t61 * t136));
+            let t140 = t139 + (t75 * t135 + (t69 * t134 + t61 * t133))
+                - (k(5e-10) - (t129 * t54 - t128 * t53));
+            let t141 = k(2.400191904047976e-9) * t129 - k(5.002599744127936e-6) * t128;
+            let t142 = k(5.003999856071964e-6) * t129 - k(2.400191904047976e-9) * t128;
+            let t143 = t108 * t138 + (t107 * t137 - t106 * t136)
+                - (t132 * t114 + (t131 * t113 + t130 * t112));
+            let t144 = t143 - (t132 * t111 + (t131 * t110 + t130 * t109))
+                + (k(1.2e-10) - (t105 * t142 - t104 * t141));
+            let t145 = t144 * t121 - t140;
+            let t146 = t8 * t127 + (t18 * t126 + t123 * t125);
+            let t147 = t116 - t119 * t121;
+            let t148 = t8 * t103 - (t18 * t102 - t123 * t101);
+            let t149 = t148 * t147 + (t146 * t145 + t124 * t122);
+            let t150 = k(2.0) * (t132 * t138 + (t131 * t137 + t130 * t136))
+                - (t132 * t135 + (t131 * t134 + t130 * t133));
+            let t151 = t120 * t144;
+            let t152 = t144 * t151
+                - (k(2e-6) + (t150 + (k(1.322e-9) + (t129 * t142 - t128 * t141))));
+            let t153 = t144 - t119 * t151;
+            let t154 = t148 * t153 + (t146 * t152 + t124 * t145);
+            let t155 = t146 * t153 + t124 * t147;
+            let t156 = rotor_wx * rotor_wz;
+            let t157 = inner_ring_wy * inner_ring_wy;
+            let t158 = inner_ring_wz * inner_ring_wz;
+            let t159 = t158 + t157;
+            let t160 = inner_ring_wx * inner_ring_wy;
+            let t161 = inner_ring_wx * inner_ring_wz;
+            let t162 = inner_ring_wx * inner_ring_wx;
+            let t163 = t158 + t162;
+            let t164 = inner_ring_wy * inner_ring_wz;
+            let t165 = k(5e-5) * (t102 * t164 - (t126 * t163 + t27 * t160))
+                + k(0.000125) * (t102 * t161 + (t126 * t160 + t27 * t159));
+            let t166 = t157 + t162;
+            let t167 = k(3e-5) * (t102 * t166 - (t126 * t164 - t27 * t161)) + t165;
+            let t168 = rotor_wy * rotor_wy;
+            let t169 = rotor_wz * rotor_wz;
+            let t170 = t169 + t168;
+            let t171 = k(2.0) * t82;
+            let t172 = rotor_wx * rotor_wy;
+            let t173 = rotor_wx * rotor_wx;
+            let t174 = t169 + t173;
+            let t175 = rotor_wy * rotor_wz;
+            let t176 = k(0.0002) * (t47 * t175 - (t24 * t174 + t171 * t172))
+                + k(0.0001) * (t47 * t156 + (t24 * t172 + t171 * t170));
+            let t177 = t168 + t173;
+            let t178 = k(0.00015) * (t47 * t177 - (t24 * t175 - t171 * t156)) + t176;
+            let t179 = t178 - t167;
+            let t180 = k(5e-5) * (t101 * t164 + (t125 * t163 + t34 * t160))
+                + k(0.000125) * (t101 * t161 - (t125 * t160 + t34 * t159));
+            let t181 = k(3e-5) * (t101 * t166 + (t125 * t164 - t34 * t161)) + t180;
+            let t182 = k(2.0) * t88;
+            let t183 = k(0.0002) * (t49 * t175 + (t30 * t174 + t182 * t172))
+                + k(0.0001) * (t49 * t156 - (t30 * t172 + t182 * t170));
+            let t184 = k(0.00015) * (t49 * t177 + (t30 * t175 - t182 * t156)) + t183;
+            let t185 = t184 - t181;
+            let t186 = k(5e-5) * (t103 * t164 + (t127 * t163 - t42 * t160))
+                + k(0.000125) * (t103 * t161 - (t127 * t160 - t42 * t159));
+            let t187 = k(3e-5) * (t103 * t166 + (t127 * t164 + t42 * t161)) + t186;
+            let t188 = k(2.0) * t94;
+            let t189 = k(0.0002) * (t51 * t175 + (t38 * t174 - t188 * t172))
+                + k(0.0001) * (t51 * t156 - (t38 * t172 - t188 * t170));
+            let t190 = k(0.00015) * (t51 * t177 + (t38 * t175 + t188 * t156)) + t189;
+            let t191 = t190 - t187;
+            let t192 = t42 * t188 + (t34 * t182 + t27 * t171);
+            let t193 = t127 * t188 - (t125 * t182 + t126 * t171);
+            let t194 = t103 * t188 - (t101 * t182 - t102 * t171);
+            let t195 = rotor_wy * t52 + rotor_wz * t43;
+            let t196 = k(2.0)
+                * (inner_ring_wx * (rotor_wy * t105 + rotor_wz * t104)
+                    + inner_ring_wz * t195);
+            let t197 = t156 * t129 - (t172 * t128 - t170 * t193) + t196
+                + (t164 * t194 + (t163 * t193 - t160 * t192));
+            let t198 = k(1.0) / (t128 * t105 - t129 * t104);
             let t199 = k(2.0)
-                * (inner_ring_wx * (rotor_wy * t108 + rotor_wz * t107)
-                    + inner_ring_wz * t198);
+                * (inner_ring_wx * (rotor_wy * t129 + rotor_wz * t128)
+                    - inner_ring_wy * t195);
             (
                 t0,
                 t3,
@@ -2156,311 +2159,399 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
                 t15,
                 t16,
                 t17,
-                t18,
+                t19,
                 t20,
-                t21,
-                t22,
-                t29,
-                t36,
-                t44,
-                t45,
-                t54,
-                t57,
+                t27,
+                t34,
+                t42,
+                t43,
+                t52,
+                t55,
+                t56,
                 t58,
-                t59,
-                t60,
+                t61,
+                t62,
                 t63,
                 t64,
-                t65,
-                t66,
+                t69,
+                t70,
                 t71,
                 t72,
-                t73,
-                t74,
+                t75,
                 t77,
                 t78,
-                t79,
                 t80,
-                t82,
                 t83,
+                t84,
+                t85,
                 t86,
-                t87,
-                t88,
                 t89,
+                t90,
+                t91,
                 t92,
-                t93,
-                t94,
                 t95,
+                t96,
+                t97,
                 t98,
-                t99,
-                t100,
                 t101,
+                t102,
+                t103,
                 t104,
                 t105,
                 t106,
                 t107,
                 t108,
-                t109,
-                t110,
-                t111,
+                t116,
                 t119,
+                t120,
                 t122,
-                t123,
                 t124,
                 t125,
+                t126,
                 t127,
                 t128,
                 t129,
                 t130,
                 t131,
                 t132,
-                t133,
-                t134,
-                t135,
+                t144,
+                t145,
+                t146,
                 t147,
                 t148,
                 t149,
-                t150,
-                t151,
                 t152,
+                t153,
                 t154,
                 t155,
                 t156,
-                t157,
-                t158,
-                t159,
-                t163,
+                t160,
+                t161,
                 t164,
                 t166,
-                t167,
-                t169,
-                t173,
-                t175,
-                t182,
-                t188,
+                t170,
+                t172,
+                t179,
+                t185,
+                t191,
+                t192,
+                t193,
                 t194,
-                t195,
-                t196,
                 t197,
                 t198,
                 t199,
             )
         };
-        let (
-            t202,
-            t205,
-            t207,
-            t208,
-            t238,
-            t241,
-            t243,
-            t244,
-            t251,
-            t252,
-            t253,
-            t255,
-            t256,
-            t257,
-            t260,
-            t265,
-            t266,
-            t268,
-            t269,
-            t270,
-            t271,
-            t272,
-            t273,
-            t274,
-            t275,
-            t277,
-            t278,
-            t280,
-            t282,
-            t285,
-            t286,
-        ) = {
-            let t200 = t159 * t132 - (t175 * t131 - t173 * t196) + t199
-                + (t167 * t197 + (t166 * t196 - t163 * t195));
-            let t201 = k(1.0) / (t131 * t108 - t132 * t107);
-            let t202 = t107 * t201;
-            let t203 = k(2.0)
-                * (inner_ring_wx * (rotor_wy * t132 + rotor_wz * t131)
-                    - inner_ring_wy * t198);
-            let t204 = t159 * t108 - (t175 * t107 - t173 * t197) - t203
-                + (t169 * t197 + (t167 * t196 + t164 * t195));
-            let t205 = t131 * t201;
-            let t206 = t205 * t204 - t202 * t200;
-            let t207 = t108 * t201;
-            let t208 = t132 * t201;
-            let t209 = t208 * t204 - t207 * t200;
-            let t210 = k(2.400191904047976e-9) * t209 - k(5.002599744127936e-6) * t206
-                - (t194 * t99 + (t188 * t93 + t182 * t87));
-            let t211 = t210
-                + (k(0.000127936031984008) * t64 - (k(5e-6) * t159 + k(0.8) * t92));
-            let t212 = k(5.003999856071964e-6) * t209 - k(2.400191904047976e-9) * t206
-                + (t194 * t101 + (t188 * t95 + t182 * t89));
-            let t213 = t212
-                - (k(9.595202398800599e-5) * t64 - (k(5e-6) * t175 - k(0.8) * t94));
-            let t214 = k(0.8) * t64;
-            let t215 = t194 * t74 + (t188 * t66 + t182 * t60) - k(0.08) * t182;
-            let t216 = t89 * t209 + t87 * t206 - t215 + t59 * t214;
-            let t217 = t194 * t80 + (t188 * t79 + t182 * t66) - k(0.08) * t188;
-            let t218 = t95 * t209 + t93 * t206 - t217 - (k(0.8) - t78 * t214);
-            let t219 = t194 * t83 + (t188 * t80 + t182 * t74) - k(0.08) * t194;
-            let t220 = t101 * t209 + t99 * t206 - t219 + t82 * t214;
-            let t221 = t77 * t220 + (t71 * t218 + t63 * t216)
-                - (t54 * t213 - t45 * t211);
-            let t222 = t111 * t220 + (t110 * t218 - t109 * t216)
-                - (t108 * t213 - t107 * t211);
-            let t223 = k(1e-6) * t163 + t222;
-            let t224 = k(2.0) * (t18 + t17);
-            let t225 = t3 * t106 - (t224 * t104 - t13 * t105);
-            let t226 = k(2.0) * (t7 - t6);
-            let t227 = t14 * t105 + t226 * t104 + t11 * t106;
-            let t228 = outer_ring_wx * outer_ring_wz;
-            let t229 = t228 * t227
-                - (t0 * t151 - (t4 + outer_ring_wy * outer_ring_wy) * t225);
-            let t230 = t11 * t44 - (t226 * t36 - t14 * t29);
-            let t231 = t11 * t130 - (t14 * t129 - t226 * t128);
-            let t232 = inner_ring_wx * t231 - inner_ring_wy * t230;
-            let t233 = k(2.0)
-                * (outer_ring_wy * t232
-                    + outer_ring_wz * (inner_ring_wx * t149 - inner_ring_wy * t127));
-            let t234 = t3 * t44 + (t224 * t36 + t13 * t29);
-            let t235 = t3 * t130 - (t224 * t128 + t13 * t129);
-            let t236 = t169 * t225 + (t167 * t235 + t164 * t234) - t233 + t229;
-            let t237 = k(1.0) / (t234 * t149 - t235 * t127);
-            let t238 = t127 * t237;
-            let t239 = k(2.0)
-                * (outer_ring_wx * t232
-                    + outer_ring_wz * (inner_ring_wx * t235 - inner_ring_wy * t234));
-            let t240 = t169 * t151 + (t167 * t149 + t164 * t127) + t239
-                + (t9 * t227 + (t5 * t151 - t0 * t225));
-            let t241 = t234 * t237;
-            let t242 = t241 * t240 - t238 * t236;
-            let t243 = t149 * t237;
-            let t244 = t235 * t237;
-            let t245 = t244 * t240 - t243 * t236;
-            let t246 = t148 * t245 + t125 * t242
-                + (t124 * t223 + (k(1e-6) * t167 + t221));
-            let t247 = t135 * t220 + (t134 * t218 + t133 * t216)
-                + (t132 * t213 - t131 * t211);
-            let t248 = t149 * (t155 * t245 + t148 * t242 + (t154 * t223 - t247));
-            let t249 = t151 * (t156 * t245 + t150 * t242) + (t248 + t127 * t246);
-            let t250 = t149 * (t225 * t156 + (t235 * t155 + t234 * t148))
-                + t127 * (t225 * t150 + (t235 * t148 + t234 * t125));
-            let t251 = t14 * t15;
-            let t252 = t11 * t15;
-            let t253 = t252 * t20 - t251 * t12;
-            let t254 = t253 * (t227 * t158 + (t231 * t157 + t230 * t152))
-                + t22 * (t151 * (t235 * t156 + t234 * t150) + t250);
-            let t255 = (t254 + (k(1e-6) * t228 - t249))
-                / (k(1e-6) - (t151 * t158 + (t149 * t157 + t127 * t152)));
-            let t256 = t242 - (t230 * t253 + (t127 * t255 + t234 * t22));
-            let t257 = t245 - (t231 * t253 + (t149 * t255 + t235 * t22));
-            let t258 = t227 * t253 + (t151 * t255 + t225 * t22);
-            let t259 = t123 * (t223 + (t122 * t258 + (t147 * t257 + t119 * t256)));
-            let t260 = t258 - t259;
-            let t261 = t182 - (t109 * t260 - (t133 * t257 - t63 * t256));
-            let t262 = t188 + (t110 * t260 + (t134 * t257 - t71 * t256));
-            let t263 = t194 + (t111 * t260 + (t135 * t257 - t77 * t256));
-            let t264 = t197 * t260 - (t196 * t257 + t195 * t256);
-            let t265 = t206 - (t107 * t260 - (t131 * t257 + t45 * t256));
-            let t266 = t209 - (t108 * t260 - (t132 * t257 + t54 * t256));
-            let t267 = k(1.2e-9) * t266 + (k(1.6e-9) * t265 + k(1.0005e-5) * t264)
-                - (t73 * t263 + (t65 * t262 + t58 * t261));
-            let t268 = t264 - k(99950.02498750624) * (t214 + t267);
-            let t269 = t261 - (t88 * t266 + (t86 * t265 + t57 * t268));
-            let t270 = t262 + (t94 * t266 - (t92 * t265 + t64 * t268));
-            let t271 = t263 + (t100 * t266 - (t98 * t265 + t72 * t268));
-            let t272 = k(0.08) * t269;
-            let t273 = k(0.8) - k(0.08) * t270;
-            let t274 = k(0.1) + t273;
-            let t275 = k(0.08) * t271;
-            let t276 = t72 * t275 - (t64 * t273 - t57 * t272) - k(1e-5) * t268;
-            let t277 = t98 * t275 - (t92 * t273 - t86 * t272) - k(5e-6) * (t159 + t265);
-            let t278 = t100 * t275 - (t94 * t273 + t88 * t272) + k(5e-6) * (t175 + t266);
-            let t279 = t77 * t275 - (t71 * t273 - t63 * t272)
-                - (t54 * t278 - (t45 * t277 - t195 * t276));
-            let t280 = t279 + k(1e-6) * (t167 - t256);
-            let t281 = t135 * t275 - (t134 * t273 - t133 * t272)
-                + (t132 * t278 - (t131 * t277 - t196 * t276));
-            let t282 = t281 + k(2e-6) * t257;
-            let t283 = t111 * t275 - (t110 * t273 + t109 * t272)
-                - (t108 * t278 - (t107 * t277 - t197 * t276));
-            let t284 = t283 + k(1e-6) * (t163 + t260);
-            let t285 = t225 * t284 - (t235 * t282 - t234 * t280) + k(2e-6) * t22;
-            let t286 = t227 * t284 - (t231 * t282 - t230 * t280) - k(1e-6) * (t0 - t253);
-            (
-                t202,
-                t205,
-                t207,
-                t208,
-                t238,
-                t241,
-                t243,
-                t244,
-                t251,
-                t252,
-                t253,
-                t255,
-                t256,
-                t257,
-                t260,
-                t265,
-                t266,
-                t268,
-                t269,
-                t270,
-                t271,
-                t272,
-                t273,
-                t274,
-                t275,
-                t277,
-                t278,
-                t280,
-                t282,
-                t285,
-                t286,
-            )
+        let (t241, t243, t244, t245, t248, t249, t250, t251, t253, t254, t256) = {
+            let t200 = t156 * t105 - (t172 * t104 - t170 * t194) - t199
+                + (t166 * t194 + (t164 * t193 + t161 * t192));
+            let t201 = t128 * t198 * t200 - t104 * t198 * t197;
+            let t202 = t129 * t198 * t200 - t105 * t198 * t197;
+            let t203 = k(2.400191904047976e-9) * t202 - k(5.002599744127936e-6) * t201
+                - (t191 * t96 + (t185 * t90 + t179 * t84));
+            let t204 = t203
+                + (k(0.000127936031984008) * t62 - (k(5e-6) * t156 + k(0.8) * t89));
+            let t205 = k(5.003999856071964e-6) * t202 - k(2.400191904047976e-9) * t201
+                + (t191 * t98 + (t185 * t92 + t179 * t86));
+            let t206 = t205
+                - (k(9.595202398800599e-5) * t62 - (k(5e-6) * t172 - k(0.8) * t91));
+            let t207 = k(79960.01999000499) * t62;
+            let t208 = t191 * t72 + (t185 * t64 + t179 * t58) - k(0.08) * t179;
+            let t209 = t86 * t202 + t84 * t201 - t208 + t56 * t207;
+            let t210 = t191 * t78 + (t185 * t77 + t179 * t64) - k(0.08) * t185;
+            let t211 = t92 * t202 + t90 * t201 - t210 - (k(0.8) - t63 * t207);
+            let t212 = t191 * t80 + (t185 * t78 + t179 * t72) - k(0.08) * t191;
+            let t213 = t98 * t202 + t96 * t201 - t212 + t71 * t207;
+            let t214 = t75 * t213 + (t69 * t211 + t61 * t209)
+                - (t52 * t206 - t43 * t204);
+            let t215 = t108 * t213 + (t107 * t211 - t106 * t209)
+                - (t105 * t206 - t104 * t204);
+            let t216 = k(1e-6) * t160 + t215;
+            let t217 = t120 * t216;
+            let t218 = k(2.0) * (t17 + t16);
+            let t219 = t3 * t103 - (t218 * t101 - t13 * t102);
+            let t220 = k(2.0) * (t7 - t6);
+            let t221 = t14 * t102 + t220 * t101 + t11 * t103;
+            let t222 = outer_ring_wx * outer_ring_wz;
+            let t223 = t222 * t221
+                - (t0 * t148 - (t4 + outer_ring_wy * outer_ring_wy) * t219);
+            let t224 = t11 * t42 - (t220 * t34 - t14 * t27);
+            let t225 = t11 * t127 - (t14 * t126 - t220 * t125);
+            let t226 = inner_ring_wx * t225 - inner_ring_wy * t224;
+            let t227 = k(2.0)
+                * (outer_ring_wy * t226
+                    + outer_ring_wz * (inner_ring_wx * t146 - inner_ring_wy * t124));
+            let t228 = t3 * t42 + (t218 * t34 + t13 * t27);
+            let t229 = t3 * t127 - (t218 * t125 + t13 * t126);
+            let t230 = t166 * t219 + (t164 * t229 + t161 * t228) - t227 + t223;
+            let t231 = k(1.0) / (t228 * t146 - t229 * t124);
+            let t232 = k(2.0)
+                * (outer_ring_wx * t226
+                    + outer_ring_wz * (inner_ring_wx * t229 - inner_ring_wy * t228));
+            let t233 = t166 * t148 + (t164 * t146 + t161 * t124) + t232
+                + (t9 * t221 + (t5 * t148 - t0 * t219));
+            let t234 = t228 * t231 * t233 - t124 * t231 * t230;
+            let t235 = t229 * t231 * t233 - t146 * t231 * t230;
+            let t236 = t145 * t235 + t122 * t234
+                + (t116 * t217 + (k(1e-6) * t164 + t214));
+            let t237 = t132 * t213 + (t131 * t211 + t130 * t209)
+                + (t129 * t206 - t128 * t204);
+            let t238 = t146 * (t152 * t235 + t145 * t234 + (t144 * t217 - t237));
+            let t239 = t148 * (t153 * t235 + t147 * t234 + (t216 - t119 * t217));
+            let t240 = t146 * (t219 * t153 + (t229 * t152 + t228 * t145))
+                + t124 * (t219 * t147 + (t229 * t145 + t228 * t122));
+            let t241 = t11 * t15 * t19 - t14 * t15 * t12;
+            let t242 = t241 * (t221 * t155 + (t225 * t154 + t224 * t149))
+                + t20 * (t148 * (t229 * t153 + t228 * t147) + t240);
+            let t243 = (t242 + (k(1e-6) * t222 - (t239 + (t238 + t124 * t236))))
+                / (k(1e-6) - (t148 * t155 + (t146 * t154 + t124 * t149)));
+            let t244 = t234 - (t224 * t241 + (t124 * t243 + t228 * t20));
+            let t245 = t235 - (t225 * t241 + (t146 * t243 + t229 * t20));
+            let t246 = t221 * t241 + (t148 * t243 + t219 * t20);
+            let t247 = t120 * (t216 + (t119 * t246 + (t144 * t245 + t116 * t244)));
+            let t248 = t246 - t247;
+            let t249 = t179 - (t106 * t248 - (t130 * t245 - t61 * t244));
+            let t250 = t185 + (t107 * t248 + (t131 * t245 - t69 * t244));
+            let t251 = t191 + (t108 * t248 + (t132 * t245 - t75 * t244));
+            let t252 = t194 * t248 - (t193 * t245 + t192 * t244);
+            let t253 = t201 - (t104 * t248 - (t128 * t245 + t43 * t244));
+            let t254 = t202 - (t105 * t248 - (t129 * t245 + t52 * t244));
+            let t255 = k(1.2e-9) * t254 + (k(1.6e-9) * t253 + k(1.0005e-5) * t252)
+                - (t71 * t251 + (t63 * t250 + t56 * t249));
+            let t256 = t252 - k(99950.02498750624) * (t255 + k(0.8) * t62);
+            (t241, t243, t244, t245, t248, t249, t250, t251, t253, t254, t256)
         };
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -t22,
-            -t255,
+            -t20,
+            -t243,
+            t241,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t244,
+            t245,
+            t248,
+            t85 * t254 + (t83 * t253 + t55 * t256) - t249,
+            -(t250 + (t91 * t254 - (t89 * t253 + t62 * t256))),
+            t251 + (t97 * t254 - (t95 * t253 + t70 * t256)),
+            -t256,
             t253,
-            k(0.0),
-            k(0.0),
-            k(0.0),
-            t256,
-            t257,
-            t260,
-            -t269,
-            -t270,
-            t271,
-            -t268,
-            t265,
-            -t266,
+            -t254,
         ];
+    }
+    /// Writes λ: 376 operations (144 ±, 229 ×, 3 ÷).
+    fn multipliers(
+        &self,
+        _t: T,
+        y: &Self::State,
+        accelerations: &Self::Accelerations,
+        lambda: &mut Self::Rows,
+    ) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        let outer_ring_dsx = accelerations[0];
+        let outer_ring_dsy = accelerations[1];
+        let outer_ring_dsz = accelerations[2];
+        let outer_ring_dwx = accelerations[3];
+        let outer_ring_dwz = accelerations[5];
+        let inner_ring_dsx = accelerations[6];
+        let inner_ring_dsy = accelerations[7];
+        let inner_ring_dsz = accelerations[8];
+        let inner_ring_dwx = accelerations[9];
+        let inner_ring_dwy = accelerations[10];
+        let inner_ring_dwz = accelerations[11];
+        let rotor_dsx = accelerations[12];
+        let rotor_dsy = accelerations[13];
+        let rotor_dsz = accelerations[14];
+        let rotor_dwx = accelerations[15];
+        let rotor_dwy = accelerations[16];
+        let rotor_dwz = accelerations[17];
+        let t0 = k(0.08) * rotor_dsx;
+        let t1 = k(0.01) * inner_ring_dsx + t0;
+        let t2 = k(0.8) + k(0.08) * rotor_dsy;
+        let t3 = k(0.1) + k(0.01) * inner_ring_dsy + t2;
+        let t4 = k(0.08) * rotor_dsz;
+        let t5 = k(0.01) * inner_ring_dsz + t4;
+        let t6 = rotor_e0 * rotor_e3;
+        let t7 = rotor_e1 * rotor_e2;
+        let t8 = t7 - t6;
+        let t9 = rotor_e0 * rotor_e2;
+        let t10 = rotor_e1 * rotor_e3;
+        let t11 = t10 + t9;
+        let t12 = rotor_e0 * rotor_e0;
+        let t13 = k(0.5) - (t12 + rotor_e2 * rotor_e2);
+        let t14 = rotor_e0 * rotor_e1;
+        let t15 = rotor_e2 * rotor_e3;
+        let t16 = t15 - t14;
+        let t17 = t2 * (k(0.0004) * t16 - k(0.0003) * t13)
+            + t0 * (k(0.0004) * t11 + k(0.0003) * t8);
+        let t18 = t15 + t14;
+        let t19 = k(0.5) - (t12 + rotor_e3 * rotor_e3);
+        let t20 = k(1e-5) * rotor_dwx + (t4 * (k(0.0004) * t19 - k(0.0003) * t18) - t17);
+        let t21 = k(0.5) - (t12 + rotor_e1 * rotor_e1);
+        let t22 = k(2.0) * t21;
+        let t23 = inner_ring_e0 * inner_ring_e0;
+        let t24 = k(0.5) - (t23 + inner_ring_e1 * inner_ring_e1);
+        let t25 = k(2.0) * t24;
+        let t26 = t7 + t6;
+        let t27 = k(2.0) * t26;
+        let t28 = inner_ring_e0 * inner_ring_e3;
+        let t29 = inner_ring_e1 * inner_ring_e2;
+        let t30 = t29 + t28;
+        let t31 = k(2.0) * t30;
+        let t32 = t10 - t9;
+        let t33 = k(2.0) * t32;
+        let t34 = inner_ring_e0 * inner_ring_e2;
+        let t35 = inner_ring_e1 * inner_ring_e3;
+        let t36 = t35 - t34;
+        let t37 = k(2.0) * t36;
+        let t38 = t2 * (k(0.0002) * t16 + k(0.0003) * t26)
+            + t0 * (k(0.0002) * t11 - k(0.0003) * t21);
+        let t39 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy)
+            - (t4 * (k(0.0002) * t19 - k(0.0003) * t32) - t38);
+        let t40 = k(2.0) * t8;
+        let t41 = k(2.0) * t13;
+        let t42 = k(2.0) * t18;
+        let t43 = (t37 * t42 - (t31 * t41 + t25 * t40)) * t39
+            + (t37 * t33 + (t31 * t27 + t25 * t22)) * t20;
+        let t44 = t2 * (k(0.0002) * t13 + k(0.0004) * t26)
+            - t0 * (k(0.0002) * t8 + k(0.0004) * t21);
+        let t45 = t4 * (k(0.0002) * t18 - k(0.0004) * t32) - t44
+            + k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
+        let t46 = k(2.0) * t11;
+        let t47 = k(2.0) * t16;
+        let t48 = k(2.0) * t19;
+        let t49 = (t37 * t48 - (t31 * t47 - t25 * t46)) * t45 + t43;
+        let t50 = t29 - t28;
+        let t51 = t35 + t34;
+        let t52 = k(0.5) - (t23 + inner_ring_e2 * inner_ring_e2);
+        let t53 = inner_ring_e0 * inner_ring_e1;
+        let t54 = inner_ring_e2 * inner_ring_e3;
+        let t55 = t54 - t53;
+        let t56 = t2 * (k(0.0001) * t55 - k(6e-5) * t52)
+            + t0 * (k(0.0001) * t51 + k(6e-5) * t50);
+        let t57 = t54 + t53;
+        let t58 = k(0.5) - (t23 + inner_ring_e3 * inner_ring_e3);
+        let t59 = t4 * (k(0.0001) * t58 - k(6e-5) * t57) - t56 - t49
+            + k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx);
+        let t60 = outer_ring_e0 * outer_ring_e0;
+        let t61 = k(2.0) * (k(0.5) - (t60 + outer_ring_e1 * outer_ring_e1));
+        let t62 = outer_ring_e0 * outer_ring_e3;
+        let t63 = outer_ring_e1 * outer_ring_e2;
+        let t64 = k(2.0) * (t63 + t62);
+        let t65 = outer_ring_e0 * outer_ring_e2;
+        let t66 = outer_ring_e1 * outer_ring_e3;
+        let t67 = k(2.0) * (t66 - t65);
+        let t68 = t67 * t37 + (t64 * t31 + t61 * t25);
+        let t69 = k(2.0) * t50;
+        let t70 = k(2.0) * t52;
+        let t71 = k(2.0) * t57;
+        let t72 = t71 * t42 + (t69 * t40 + t70 * t41);
+        let t73 = t72 * t39 + (t71 * t33 - (t70 * t27 + t69 * t22)) * t20;
+        let t74 = t71 * t48 - (t69 * t46 - t70 * t47);
+        let t75 = t2 * (k(0.00025) * t55 + k(6e-5) * t30)
+            + t0 * (k(0.00025) * t51 - k(6e-5) * t24);
+        let t76 = t4 * (k(0.00025) * t58 - k(6e-5) * t36) - t75 + (t74 * t45 + t73);
+        let t77 = k(2e-6) * inner_ring_dwy + t76;
+        let t78 = t67 * t71 - (t64 * t70 + t61 * t69);
+        let t79 = k(2.0) * t51;
+        let t80 = k(2.0) * t55;
+        let t81 = k(2.0) * t58;
+        let t82 = t81 * t42 - (t79 * t40 - t80 * t41);
+        let t83 = t82 * t39 + (t81 * t33 - (t80 * t27 - t79 * t22)) * t20;
+        let t84 = t79 * t46 + t80 * t47 + t81 * t48;
+        let t85 = t2 * (k(0.00025) * t52 + k(0.0001) * t30)
+            - t0 * (k(0.00025) * t50 + k(0.0001) * t24);
+        let t86 = t4 * (k(0.00025) * t57 - k(0.0001) * t36) - t85 - (t84 * t45 + t83);
+        let t87 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz) + t86;
+        let t88 = (t67 * t81 - (t64 * t80 - t61 * t79)) * t87 - (t78 * t77 - t68 * t59);
+        let t89 = k(2e-6) * outer_ring_dwx - t88;
+        let t90 = k(2.0) * (k(0.5) - (t60 + outer_ring_e3 * outer_ring_e3));
+        let t91 = k(2.0) * (t66 + t65);
+        let t92 = k(1.0) / (t91 * t67 - t61 * t90);
+        let t93 = outer_ring_e0 * outer_ring_e1;
+        let t94 = outer_ring_e2 * outer_ring_e3;
+        let t95 = k(2.0) * (t94 - t93);
+        let t96 = (t90 * t71 - (t91 * t69 - t95 * t70)) * t77
+            - (t90 * t37 - (t95 * t31 - t91 * t25)) * t59;
+        let t97 = (t91 * t79 + t95 * t80 + t90 * t81) * t87 - t96;
+        let t98 = t97 - k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz);
+        let t99 = k(2.0) * (t63 - t62);
+        let t100 = k(2.0) * (k(0.5) - (t60 + outer_ring_e2 * outer_ring_e2));
+        let t101 = k(2.0) * (t94 + t93);
+        let t102 = t101 * t37 - (t100 * t31 + t99 * t25);
+        let t103 = t101 * t71 + (t99 * t69 + t100 * t70);
+        let t104 = k(1.0) / (t68 * t103 - t78 * t102);
+        let t105 = k(1.0) / (t72 * t84 - t74 * t82);
         *lambda = [
-            t272,
-            -(k(0.1) + t274),
-            -t275,
-            t251 * t286 + t16 * t285,
-            t252 * t286 + t21 * t285,
-            t272,
-            -t274,
-            -t275,
-            t238 * t280 - t243 * t282,
-            t244 * t282 - t241 * t280,
-            t272,
-            -t273,
-            -t275,
-            t207 * t278 - t202 * t277,
-            t208 * t278 - t205 * t277,
+            -(k(0.01) * outer_ring_dsx + t1),
+            -(k(0.1) + k(0.01) * outer_ring_dsy + t3),
+            -(k(0.01) * outer_ring_dsz + t5),
+            t91 * t92 * t98 - t61 * t92 * t89,
+            t90 * t92 * t98 - t67 * t92 * t89,
+            -t1,
+            -t3,
+            -t5,
+            t102 * t104 * t59 - t103 * t104 * t77,
+            t78 * t104 * t77 - t68 * t104 * t59,
+            -t0,
+            -t2,
+            -t4,
+            t84 * t105 * t45 + t82 * t105 * t39,
+            t74 * t105 * t45 + t72 * t105 * t39,
         ];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::Ports for GyroscopeCombinedOffsets<T> {
+    type Outputs = [T; 0];
+    fn outputs_buffer(&self) -> Self::Outputs {
+        [T::constant(0.0); 0]
+    }
+    fn outputs(&self, _t: T, _y: &Self::State, _out: &mut Self::Outputs) {}
+    fn n_outputs(&self) -> usize {
+        0
+    }
+    fn output(&self, index: usize) -> gyro_sim::OutputInfo<'_> {
+        const OUTPUTS: [gyro_sim::OutputInfo<'static>; 0] = [];
+        OUTPUTS
+            .get(index)
+            .copied()
+            .unwrap_or(gyro_sim::OutputInfo {
+                name: "",
+                suffix: "",
+                unit: "",
+            })
+    }
+    fn n_inputs(&self) -> usize {
+        0
+    }
+    fn input_name(&self, index: usize) -> &str {
+        const INPUTS: [&str; 0] = [];
+        INPUTS.get(index).copied().unwrap_or_default()
+    }
+    fn set_input(&mut self, _index: usize, _value: T) -> bool {
+        false
     }
 }

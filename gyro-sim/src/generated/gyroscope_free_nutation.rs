@@ -20,7 +20,8 @@
 //! | gamma | γ | 115 | 181 | 0 | 296 | 9 of 15 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 84 | 119 | 0 | 203 | 0 of 15 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 12 of 18 |
-//! | accelerations | (s̈, ẇ') and λ, eq. (17) | 215 | 335 | 5 | 555 | 19 of 33 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 194 | 306 | 5 | 505 | 10 of 18 |
+//! | multipliers | λ, the accelerations being known | 105 | 175 | 3 | 283 | 0 of 15 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | energy | T and V | 17 | 31 | 0 | 48 | 1 of 2 |
 //! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 |
@@ -31,7 +32,7 @@
 /// The mechanism `gyroscope_free_nutation`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GyroscopeFreeNutation<T> {
-    /// The model has no parameters.
+    /// The model has neither parameters nor inputs.
     scalar: ::core::marker::PhantomData<T>,
 }
 impl<T: gyro_sim::Scalar> ::core::default::Default for GyroscopeFreeNutation<T> {
@@ -99,9 +100,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for GyroscopeFreeNutation<T> {
     }
     /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 72 operations (24 ±, 48 ×, 0 ÷).
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut v = gyro_sim::Equations::velocities(self);
-        let mut lambda = gyro_sim::Mechanism::rows(self);
-        gyro_sim::Equations::accelerations(self, t, y, &mut v, &mut lambda);
+        let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
+        gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -173,24 +173,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for GyroscopeFreeNutation<T> {
             k(0.5) * (rotor_e3 * rotor_wx + rotor_e0 * rotor_wy - rotor_e1 * rotor_wz),
             -(k(0.5)
                 * (rotor_e2 * rotor_wx - rotor_e1 * rotor_wy - rotor_e0 * rotor_wz)),
-            v[0],
-            v[1],
-            v[2],
-            v[3],
-            v[4],
-            v[5],
-            v[6],
-            v[7],
-            v[8],
-            v[9],
-            v[10],
-            v[11],
-            v[12],
-            v[13],
-            v[14],
-            v[15],
-            v[16],
-            v[17],
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            accelerations[6],
+            accelerations[7],
+            accelerations[8],
+            accelerations[9],
+            accelerations[10],
+            accelerations[11],
+            accelerations[12],
+            accelerations[13],
+            accelerations[14],
+            accelerations[15],
+            accelerations[16],
+            accelerations[17],
         ];
     }
 }
@@ -397,7 +397,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeFreeNutation<T> {
         ];
     }
     /// Kinetic and potential energy: 48 operations (17 ±, 31 ×, 0 ÷).
-    fn energy(&self, y: &Self::State) -> gyro_sim::Energy<T> {
+    fn energy(&self, _t: T, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let outer_ring_sx = y[21];
         let outer_ring_sy = y[22];
@@ -442,7 +442,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeFreeNutation<T> {
         }
     }
     /// Writes the joint readings: 114 operations (54 ±, 60 ×, 0 ÷).
-    fn read_joints(&self, y: &Self::State, out: &mut Self::Readings) {
+    fn read_joints(&self, _t: T, y: &Self::State, out: &mut Self::Readings) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -523,15 +523,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeFreeNutation<T> {
         const JOINTS: [gyro_sim::JointInfo<'static>; 3] = [
             gyro_sim::JointInfo {
                 name: "alpha",
-                coordinate: gyro_sim::Coordinate::Angle,
+                coordinates: &[gyro_sim::Coordinate::Angle],
             },
             gyro_sim::JointInfo {
                 name: "beta",
-                coordinate: gyro_sim::Coordinate::Angle,
+                coordinates: &[gyro_sim::Coordinate::Angle],
             },
             gyro_sim::JointInfo {
                 name: "phi",
-                coordinate: gyro_sim::Coordinate::Angle,
+                coordinates: &[gyro_sim::Coordinate::Angle],
             },
         ];
         JOINTS
@@ -539,8 +539,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeFreeNutation<T> {
             .copied()
             .unwrap_or(gyro_sim::JointInfo {
                 name: "",
-                coordinate: gyro_sim::Coordinate::None,
+                coordinates: &[],
             })
+    }
+    fn coupler_name(&self, coupler: usize) -> &str {
+        const COUPLERS: [&str; 0] = [];
+        COUPLERS.get(coupler).copied().unwrap_or_default()
+    }
+    fn driver_name(&self, driver: usize) -> &str {
+        const DRIVERS: [&str; 0] = [];
+        DRIVERS.get(driver).copied().unwrap_or_default()
     }
     fn row(&self, row: usize) -> gyro_sim::RowInfo {
         const ROWS: [gyro_sim::RowInfo; 15] = [
@@ -978,6 +986,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
     type Velocities = [T; 18];
     type PhiQ = [T; 67];
     type PhiPi = [T; 35];
+    /// (s̈, ẇ') of each body.
+    type Accelerations = [T; 18];
     fn velocities(&self) -> Self::Velocities {
         [T::constant(0.0); 18]
     }
@@ -986,6 +996,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
     }
     fn phi_pi_values(&self) -> Self::PhiPi {
         [T::constant(0.0); 35]
+    }
+    fn accelerations_buffer(&self) -> Self::Accelerations {
+        [T::constant(0.0); 18]
     }
     fn phi_q_pattern(&self) -> &[(u16, u16)] {
         &[
@@ -1528,14 +1541,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 555 operations (215 ±, 335 ×, 5 ÷).
-    fn accelerations(
-        &self,
-        _t: T,
-        y: &Self::State,
-        out: &mut Self::Velocities,
-        lambda: &mut Self::Rows,
-    ) {
+    /// Solves eq. (17): 505 operations (194 ±, 306 ×, 5 ÷).
+    fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -1574,193 +1581,335 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
         let t13 = k(2.0) * (k(0.5) - (t10 + outer_ring_e1 * outer_ring_e1));
         let t14 = k(2.0) * (t2 + t1);
         let t15 = k(1.0) / (t14 * t3 - t13 * t11);
-        let t16 = t13 * t15;
-        let t17 = outer_ring_e0 * outer_ring_e3;
-        let t18 = outer_ring_e1 * outer_ring_e2;
-        let t19 = k(2.0) * (t18 - t17);
-        let t20 = t14 * t9 - (t19 * t5 + t13 * t0);
-        let t21 = t3 * t15;
-        let t22 = t21 * t20 - t16 * t12;
-        let t23 = rotor_e0 * rotor_e3;
-        let t24 = rotor_e1 * rotor_e2;
-        let t25 = k(2.0) * (t24 - t23);
-        let t26 = inner_ring_e0 * inner_ring_e0;
-        let t27 = k(2.0) * (k(0.5) - (t26 + inner_ring_e1 * inner_ring_e1));
-        let t28 = rotor_e0 * rotor_e0;
-        let t29 = k(2.0) * (k(0.5) - (t28 + rotor_e2 * rotor_e2));
-        let t30 = inner_ring_e0 * inner_ring_e3;
-        let t31 = inner_ring_e1 * inner_ring_e2;
-        let t32 = k(2.0) * (t31 + t30);
-        let t33 = rotor_e0 * rotor_e1;
-        let t34 = rotor_e2 * rotor_e3;
-        let t35 = k(2.0) * (t34 + t33);
-        let t36 = inner_ring_e0 * inner_ring_e2;
-        let t37 = inner_ring_e1 * inner_ring_e3;
-        let t38 = k(2.0) * (t37 - t36);
-        let t39 = t38 * t35 - (t32 * t29 + t27 * t25);
-        let t40 = k(5e-6) * t39;
-        let t41 = rotor_e0 * rotor_e2;
-        let t42 = rotor_e1 * rotor_e3;
-        let t43 = k(2.0) * (t42 + t41);
-        let t44 = k(2.0) * (t34 - t33);
-        let t45 = k(2.0) * (k(0.5) - (t28 + rotor_e3 * rotor_e3));
-        let t46 = t38 * t45 - (t32 * t44 - t27 * t43);
-        let t47 = k(5e-6) * t46;
-        let t48 = inner_ring_e0 * inner_ring_e1;
-        let t49 = inner_ring_e2 * inner_ring_e3;
-        let t50 = k(2.0) * (t49 - t48);
-        let t51 = k(2.0) * (t37 + t36);
-        let t52 = k(2.0) * (k(0.5) - (t26 + inner_ring_e3 * inner_ring_e3));
-        let t53 = t52 * t35 - (t51 * t25 - t50 * t29);
-        let t54 = t51 * t43 + t50 * t44 + t52 * t45;
-        let t55 = t54 * t47 + t53 * t40;
-        let t56 = k(1e-6) + (t54 * (k(5e-6) * t54) + t53 * (k(5e-6) * t53));
-        let t57 = k(1.0) / t56;
-        let t58 = t57 * t55;
-        let t59 = t55 * t58 - (k(1e-6) + (t46 * t47 + t39 * t40));
-        let t60 = k(2.0) * (k(0.5) - (t10 + outer_ring_e2 * outer_ring_e2));
-        let t61 = t8 * t38 - (t60 * t32 + t19 * t27);
-        let t62 = k(2.0) * (k(0.5) - (t26 + inner_ring_e2 * inner_ring_e2));
-        let t63 = k(2.0) * (t31 - t30);
-        let t64 = k(2.0) * (t49 + t48);
-        let t65 = t64 * t35 + (t63 * t25 + t62 * t29);
-        let t66 = t64 * t45 - (t63 * t43 - t62 * t44);
-        let t67 = k(5e-6) * t65;
-        let t68 = k(5e-6) * t66;
-        let t69 = t54 * t68 + t53 * t67;
-        let t70 = t69 * t58 - (t66 * t47 + t65 * t40);
-        let t71 = t8 * t64 + (t19 * t63 + t60 * t62);
-        let t72 = t55 - t56 * t58;
-        let t73 = t8 * t52 - (t19 * t51 - t60 * t50);
-        let t74 = t73 * t72 - (t71 * t70 + t61 * t59);
-        let t75 = t57 * t69;
-        let t76 = t69 * t75 - (k(2e-6) + (t66 * t68 + t65 * t67));
-        let t77 = t69 - t56 * t75;
-        let t78 = t73 * t77 - (t71 * t76 + t61 * t70);
-        let t79 = t71 * t77 + t61 * t72;
-        let t80 = k(2.0) * (k(0.5) - (t28 + rotor_e1 * rotor_e1));
-        let t81 = k(2.0) * (t24 + t23);
-        let t82 = k(2.0) * (t42 - t41);
-        let t83 = t38 * t82 + (t32 * t81 + t27 * t80);
-        let t84 = inner_ring_wx * inner_ring_wy;
-        let t85 = t64 * t82 - (t62 * t81 + t63 * t80);
-        let t86 = inner_ring_wx * inner_ring_wx;
-        let t87 = t52 * t82 - (t50 * t81 - t51 * t80);
-        let t88 = inner_ring_wy * inner_ring_wz;
-        let t89 = t88 * t87 + ((inner_ring_wz * inner_ring_wz + t86) * t85 - t84 * t83);
-        let t90 = rotor_wy * t46 + rotor_wz * t39;
-        let t91 = k(2.0)
-            * (inner_ring_wx * (rotor_wy * t54 + rotor_wz * t53) + inner_ring_wz * t90);
-        let t92 = rotor_wz * rotor_wz + rotor_wy * rotor_wy;
-        let t93 = rotor_wx * rotor_wy;
-        let t94 = rotor_wx * rotor_wz;
-        let t95 = t94 * t66 - (t93 * t65 - t92 * t85) + t91 + t89;
-        let t96 = k(1.0) / (t65 * t54 - t66 * t53);
-        let t97 = t53 * t96;
-        let t98 = inner_ring_wx * inner_ring_wz;
-        let t99 = inner_ring_wy * inner_ring_wy + t86;
-        let t100 = k(2.0)
-            * (inner_ring_wx * (rotor_wy * t66 + rotor_wz * t65) - inner_ring_wy * t90);
-        let t101 = t94 * t54 - (t93 * t53 - t92 * t87) - t100
-            + (t99 * t87 + (t88 * t85 + t98 * t83));
-        let t102 = t65 * t96;
-        let t103 = t102 * t101 - t97 * t95;
-        let t104 = k(5e-6) * (t94 + t103);
-        let t105 = t54 * t96;
-        let t106 = t66 * t96;
-        let t107 = t106 * t101 - t105 * t95;
-        let t108 = k(5e-6) * (t93 + t107);
-        let t109 = k(1e-6) * t84 - (t54 * t108 + t53 * t104);
-        let t110 = t58 * t109 - (k(1e-6) * t88 - (t46 * t108 + t39 * t104));
-        let t111 = k(2.0) * (t18 + t17);
-        let t112 = t3 * t52 - (t111 * t50 - t13 * t51);
-        let t113 = k(2.0) * (t7 - t6);
-        let t114 = t14 * t51 + t113 * t50 + t11 * t52;
-        let t115 = outer_ring_wx * outer_ring_wz;
-        let t116 = t115 * t114
-            - (t0 * t73 - (t4 + outer_ring_wy * outer_ring_wy) * t112);
-        let t117 = t11 * t38 - (t113 * t32 - t14 * t27);
-        let t118 = t11 * t64 - (t14 * t63 - t113 * t62);
-        let t119 = inner_ring_wx * t118 - inner_ring_wy * t117;
+        let t16 = outer_ring_e0 * outer_ring_e3;
+        let t17 = outer_ring_e1 * outer_ring_e2;
+        let t18 = k(2.0) * (t17 - t16);
+        let t19 = t14 * t9 - (t18 * t5 + t13 * t0);
+        let t20 = t3 * t15 * t19 - t13 * t15 * t12;
+        let t21 = rotor_e0 * rotor_e3;
+        let t22 = rotor_e1 * rotor_e2;
+        let t23 = k(2.0) * (t22 - t21);
+        let t24 = inner_ring_e0 * inner_ring_e0;
+        let t25 = k(2.0) * (k(0.5) - (t24 + inner_ring_e1 * inner_ring_e1));
+        let t26 = rotor_e0 * rotor_e0;
+        let t27 = k(2.0) * (k(0.5) - (t26 + rotor_e2 * rotor_e2));
+        let t28 = inner_ring_e0 * inner_ring_e3;
+        let t29 = inner_ring_e1 * inner_ring_e2;
+        let t30 = k(2.0) * (t29 + t28);
+        let t31 = rotor_e0 * rotor_e1;
+        let t32 = rotor_e2 * rotor_e3;
+        let t33 = k(2.0) * (t32 + t31);
+        let t34 = inner_ring_e0 * inner_ring_e2;
+        let t35 = inner_ring_e1 * inner_ring_e3;
+        let t36 = k(2.0) * (t35 - t34);
+        let t37 = t36 * t33 - (t30 * t27 + t25 * t23);
+        let t38 = k(5e-6) * t37;
+        let t39 = rotor_e0 * rotor_e2;
+        let t40 = rotor_e1 * rotor_e3;
+        let t41 = k(2.0) * (t40 + t39);
+        let t42 = k(2.0) * (t32 - t31);
+        let t43 = k(2.0) * (k(0.5) - (t26 + rotor_e3 * rotor_e3));
+        let t44 = t36 * t43 - (t30 * t42 - t25 * t41);
+        let t45 = k(5e-6) * t44;
+        let t46 = inner_ring_e0 * inner_ring_e1;
+        let t47 = inner_ring_e2 * inner_ring_e3;
+        let t48 = k(2.0) * (t47 - t46);
+        let t49 = k(2.0) * (t35 + t34);
+        let t50 = k(2.0) * (k(0.5) - (t24 + inner_ring_e3 * inner_ring_e3));
+        let t51 = t50 * t33 - (t49 * t23 - t48 * t27);
+        let t52 = t49 * t41 + t48 * t42 + t50 * t43;
+        let t53 = t52 * t45 + t51 * t38;
+        let t54 = k(1e-6) + (t52 * (k(5e-6) * t52) + t51 * (k(5e-6) * t51));
+        let t55 = k(1.0) / t54;
+        let t56 = t55 * t53;
+        let t57 = t53 * t56 - (k(1e-6) + (t44 * t45 + t37 * t38));
+        let t58 = k(2.0) * (k(0.5) - (t10 + outer_ring_e2 * outer_ring_e2));
+        let t59 = t8 * t36 - (t58 * t30 + t18 * t25);
+        let t60 = k(2.0) * (k(0.5) - (t24 + inner_ring_e2 * inner_ring_e2));
+        let t61 = k(2.0) * (t29 - t28);
+        let t62 = k(2.0) * (t47 + t46);
+        let t63 = t62 * t33 + (t61 * t23 + t60 * t27);
+        let t64 = t62 * t43 - (t61 * t41 - t60 * t42);
+        let t65 = k(5e-6) * t63;
+        let t66 = k(5e-6) * t64;
+        let t67 = t52 * t66 + t51 * t65;
+        let t68 = t67 * t56 - (t64 * t45 + t63 * t38);
+        let t69 = t8 * t62 + (t18 * t61 + t58 * t60);
+        let t70 = t53 - t54 * t56;
+        let t71 = t8 * t50 - (t18 * t49 - t58 * t48);
+        let t72 = t71 * t70 - (t69 * t68 + t59 * t57);
+        let t73 = t55 * t67;
+        let t74 = t67 * t73 - (k(2e-6) + (t64 * t66 + t63 * t65));
+        let t75 = t67 - t54 * t73;
+        let t76 = t71 * t75 - (t69 * t74 + t59 * t68);
+        let t77 = t69 * t75 + t59 * t70;
+        let t78 = k(2.0) * (k(0.5) - (t26 + rotor_e1 * rotor_e1));
+        let t79 = k(2.0) * (t22 + t21);
+        let t80 = k(2.0) * (t40 - t39);
+        let t81 = t36 * t80 + (t30 * t79 + t25 * t78);
+        let t82 = inner_ring_wx * inner_ring_wy;
+        let t83 = t62 * t80 - (t60 * t79 + t61 * t78);
+        let t84 = inner_ring_wx * inner_ring_wx;
+        let t85 = t50 * t80 - (t48 * t79 - t49 * t78);
+        let t86 = inner_ring_wy * inner_ring_wz;
+        let t87 = t86 * t85 + ((inner_ring_wz * inner_ring_wz + t84) * t83 - t82 * t81);
+        let t88 = rotor_wy * t44 + rotor_wz * t37;
+        let t89 = k(2.0)
+            * (inner_ring_wx * (rotor_wy * t52 + rotor_wz * t51) + inner_ring_wz * t88);
+        let t90 = rotor_wz * rotor_wz + rotor_wy * rotor_wy;
+        let t91 = rotor_wx * rotor_wy;
+        let t92 = rotor_wx * rotor_wz;
+        let t93 = t92 * t64 - (t91 * t63 - t90 * t83) + t89 + t87;
+        let t94 = k(1.0) / (t63 * t52 - t64 * t51);
+        let t95 = inner_ring_wx * inner_ring_wz;
+        let t96 = inner_ring_wy * inner_ring_wy + t84;
+        let t97 = k(2.0)
+            * (inner_ring_wx * (rotor_wy * t64 + rotor_wz * t63) - inner_ring_wy * t88);
+        let t98 = t92 * t52 - (t91 * t51 - t90 * t85) - t97
+            + (t96 * t85 + (t86 * t83 + t95 * t81));
+        let t99 = t63 * t94 * t98 - t51 * t94 * t93;
+        let t100 = k(5e-6) * (t92 + t99);
+        let t101 = t64 * t94 * t98 - t52 * t94 * t93;
+        let t102 = k(5e-6) * (t91 + t101);
+        let t103 = k(1e-6) * t82 - (t52 * t102 + t51 * t100);
+        let t104 = t55 * t103;
+        let t105 = t53 * t104 - (k(1e-6) * t86 - (t44 * t102 + t37 * t100));
+        let t106 = k(2.0) * (t17 + t16);
+        let t107 = t3 * t50 - (t106 * t48 - t13 * t49);
+        let t108 = k(2.0) * (t7 - t6);
+        let t109 = t14 * t49 + t108 * t48 + t11 * t50;
+        let t110 = outer_ring_wx * outer_ring_wz;
+        let t111 = t110 * t109
+            - (t0 * t71 - (t4 + outer_ring_wy * outer_ring_wy) * t107);
+        let t112 = t11 * t36 - (t108 * t30 - t14 * t25);
+        let t113 = t11 * t62 - (t14 * t61 - t108 * t60);
+        let t114 = inner_ring_wx * t113 - inner_ring_wy * t112;
+        let t115 = k(2.0)
+            * (outer_ring_wy * t114
+                + outer_ring_wz * (inner_ring_wx * t69 - inner_ring_wy * t59));
+        let t116 = t3 * t36 + (t106 * t30 + t13 * t25);
+        let t117 = t3 * t62 - (t106 * t60 + t13 * t61);
+        let t118 = t96 * t107 + (t86 * t117 + t95 * t116) - t115 + t111;
+        let t119 = k(1.0) / (t116 * t69 - t117 * t59);
         let t120 = k(2.0)
-            * (outer_ring_wy * t119
-                + outer_ring_wz * (inner_ring_wx * t71 - inner_ring_wy * t61));
-        let t121 = t3 * t38 + (t111 * t32 + t13 * t27);
-        let t122 = t3 * t64 - (t111 * t62 + t13 * t63);
-        let t123 = t99 * t112 + (t88 * t122 + t98 * t121) - t120 + t116;
-        let t124 = k(1.0) / (t121 * t71 - t122 * t61);
-        let t125 = t61 * t124;
-        let t126 = k(2.0)
-            * (outer_ring_wx * t119
-                + outer_ring_wz * (inner_ring_wx * t122 - inner_ring_wy * t121));
-        let t127 = t99 * t73 + (t88 * t71 + t98 * t61) + t126
-            + (t9 * t114 + (t5 * t73 - t0 * t112));
-        let t128 = t121 * t124;
-        let t129 = t128 * t127 - t125 * t123;
-        let t130 = t71 * t124;
-        let t131 = t122 * t124;
-        let t132 = t131 * t127 - t130 * t123;
-        let t133 = t76 * t132 + t70 * t129 - (t75 * t109 + (t66 * t108 + t65 * t104));
-        let t134 = t71 * t133 + t61 * (t70 * t132 + t59 * t129 - t110);
-        let t135 = k(1e-6) * t115 + (t73 * (t77 * t132 + t72 * t129) - t134);
-        let t136 = t71 * (t112 * t77 - (t122 * t76 + t121 * t70))
-            + t61 * (t112 * t72 - (t122 * t70 + t121 * t59));
-        let t137 = t14 * t15;
-        let t138 = t11 * t15;
-        let t139 = t138 * t20 - t137 * t12;
-        let t140 = t139 * (t114 * t79 + (t118 * t78 + t117 * t74))
-            + t22 * (t73 * (t122 * t77 + t121 * t72) + t136);
-        let t141 = (t140 - t135) / (k(1e-6) + (t73 * t79 + (t71 * t78 + t61 * t74)));
-        let t142 = t129 - (t117 * t139 - (t61 * t141 - t121 * t22));
-        let t143 = t132 - (t118 * t139 - (t71 * t141 - t122 * t22));
-        let t144 = t114 * t139 - (t73 * t141 - t112 * t22);
-        let t145 = t57 * (t109 + (t56 * t144 - (t69 * t143 + t55 * t142)));
-        let t146 = t144 - t145;
-        let t147 = t103 - (t53 * t146 - (t65 * t143 + t39 * t142));
-        let t148 = t107 - (t54 * t146 - (t66 * t143 + t46 * t142));
-        let t149 = k(5e-6) * (t94 + t147);
-        let t150 = k(5e-6) * (t93 + t148);
-        let t151 = t46 * t150 + t39 * t149 - k(1e-6) * (t88 - t142);
-        let t152 = t66 * t150 + t65 * t149 + k(2e-6) * t143;
-        let t153 = t54 * t150 + t53 * t149 - k(1e-6) * (t84 + t146);
-        let t154 = t112 * t153 + (t122 * t152 + t121 * t151) - k(2e-6) * t22;
-        let t155 = t114 * t153 + (t118 * t152 + t117 * t151) + k(1e-6) * (t0 - t139);
+            * (outer_ring_wx * t114
+                + outer_ring_wz * (inner_ring_wx * t117 - inner_ring_wy * t116));
+        let t121 = t96 * t71 + (t86 * t69 + t95 * t59) + t120
+            + (t9 * t109 + (t5 * t71 - t0 * t107));
+        let t122 = t116 * t119 * t121 - t59 * t119 * t118;
+        let t123 = t117 * t119 * t121 - t69 * t119 * t118;
+        let t124 = t74 * t123 + t68 * t122 - (t67 * t104 + (t64 * t102 + t63 * t100));
+        let t125 = t69 * t124 + t59 * (t68 * t123 + t57 * t122 - t105);
+        let t126 = t71 * (t75 * t123 + t70 * t122 - (t103 - t54 * t104));
+        let t127 = t69 * (t107 * t75 - (t117 * t74 + t116 * t68))
+            + t59 * (t107 * t70 - (t117 * t68 + t116 * t57));
+        let t128 = t11 * t15 * t19 - t14 * t15 * t12;
+        let t129 = t128 * (t109 * t77 + (t113 * t76 + t112 * t72))
+            + t20 * (t71 * (t117 * t75 + t116 * t70) + t127);
+        let t130 = (t129 - (k(1e-6) * t110 + (t126 - t125)))
+            / (k(1e-6) + (t71 * t77 + (t69 * t76 + t59 * t72)));
+        let t131 = t122 - (t112 * t128 - (t59 * t130 - t116 * t20));
+        let t132 = t123 - (t113 * t128 - (t69 * t130 - t117 * t20));
+        let t133 = t109 * t128 - (t71 * t130 - t107 * t20);
+        let t134 = t55 * (t103 + (t54 * t133 - (t67 * t132 + t53 * t131)));
+        let t135 = t133 - t134;
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -t22,
-            t141,
-            t139,
+            -t20,
+            t130,
+            t128,
             k(0.0),
             k(0.0),
             k(0.0),
-            t142,
-            t143,
-            t146,
+            t131,
+            t132,
+            t135,
             k(0.0),
             k(0.0),
             k(0.0),
             k(0.0),
-            t147,
-            -t148,
+            t99 - (t51 * t135 - (t63 * t132 + t37 * t131)),
+            t52 * t135 - (t64 * t132 + t44 * t131) - t101,
         ];
+    }
+    /// Writes λ: 283 operations (105 ±, 175 ×, 3 ÷).
+    fn multipliers(
+        &self,
+        _t: T,
+        y: &Self::State,
+        accelerations: &Self::Accelerations,
+        lambda: &mut Self::Rows,
+    ) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        let outer_ring_dsx = accelerations[0];
+        let outer_ring_dsy = accelerations[1];
+        let outer_ring_dsz = accelerations[2];
+        let outer_ring_dwx = accelerations[3];
+        let outer_ring_dwz = accelerations[5];
+        let inner_ring_dsx = accelerations[6];
+        let inner_ring_dsy = accelerations[7];
+        let inner_ring_dsz = accelerations[8];
+        let inner_ring_dwx = accelerations[9];
+        let inner_ring_dwy = accelerations[10];
+        let inner_ring_dwz = accelerations[11];
+        let rotor_dsx = accelerations[12];
+        let rotor_dsy = accelerations[13];
+        let rotor_dsz = accelerations[14];
+        let rotor_dwx = accelerations[15];
+        let rotor_dwy = accelerations[16];
+        let rotor_dwz = accelerations[17];
+        let t0 = k(0.08) * rotor_dsx;
+        let t1 = k(0.01) * inner_ring_dsx + t0;
+        let t2 = k(0.08) * rotor_dsy;
+        let t3 = k(0.01) * inner_ring_dsy + t2;
+        let t4 = k(0.08) * rotor_dsz;
+        let t5 = k(0.01) * inner_ring_dsz + t4;
+        let t6 = rotor_e0 * rotor_e0;
+        let t7 = k(2.0) * (k(0.5) - (t6 + rotor_e1 * rotor_e1));
+        let t8 = inner_ring_e0 * inner_ring_e0;
+        let t9 = k(2.0) * (k(0.5) - (t8 + inner_ring_e1 * inner_ring_e1));
+        let t10 = rotor_e0 * rotor_e3;
+        let t11 = rotor_e1 * rotor_e2;
+        let t12 = k(2.0) * (t11 + t10);
+        let t13 = inner_ring_e0 * inner_ring_e3;
+        let t14 = inner_ring_e1 * inner_ring_e2;
+        let t15 = k(2.0) * (t14 + t13);
+        let t16 = rotor_e0 * rotor_e2;
+        let t17 = rotor_e1 * rotor_e3;
+        let t18 = k(2.0) * (t17 - t16);
+        let t19 = inner_ring_e0 * inner_ring_e2;
+        let t20 = inner_ring_e1 * inner_ring_e3;
+        let t21 = k(2.0) * (t20 - t19);
+        let t22 = k(1e-5) * rotor_dwx;
+        let t23 = k(2.0) * (t11 - t10);
+        let t24 = k(2.0) * (k(0.5) - (t6 + rotor_e2 * rotor_e2));
+        let t25 = rotor_e0 * rotor_e1;
+        let t26 = rotor_e2 * rotor_e3;
+        let t27 = k(2.0) * (t26 + t25);
+        let t28 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
+        let t29 = t28 * (t21 * t27 - (t15 * t24 + t9 * t23))
+            + t22 * (t21 * t18 + (t15 * t12 + t9 * t7));
+        let t30 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
+        let t31 = k(2.0) * (t17 + t16);
+        let t32 = k(2.0) * (t26 - t25);
+        let t33 = k(2.0) * (k(0.5) - (t6 + rotor_e3 * rotor_e3));
+        let t34 = (t21 * t33 - (t15 * t32 - t9 * t31)) * t30 + t29;
+        let t35 = t34 - k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx);
+        let t36 = outer_ring_e0 * outer_ring_e0;
+        let t37 = k(2.0) * (k(0.5) - (t36 + outer_ring_e1 * outer_ring_e1));
+        let t38 = outer_ring_e0 * outer_ring_e3;
+        let t39 = outer_ring_e1 * outer_ring_e2;
+        let t40 = k(2.0) * (t39 + t38);
+        let t41 = outer_ring_e0 * outer_ring_e2;
+        let t42 = outer_ring_e1 * outer_ring_e3;
+        let t43 = k(2.0) * (t42 - t41);
+        let t44 = t43 * t21 + (t40 * t15 + t37 * t9);
+        let t45 = k(2.0) * (t14 - t13);
+        let t46 = k(2.0) * (k(0.5) - (t8 + inner_ring_e2 * inner_ring_e2));
+        let t47 = inner_ring_e0 * inner_ring_e1;
+        let t48 = inner_ring_e2 * inner_ring_e3;
+        let t49 = k(2.0) * (t48 + t47);
+        let t50 = t49 * t27 + (t45 * t23 + t46 * t24);
+        let t51 = t28 * t50 + t22 * (t49 * t18 - (t46 * t12 + t45 * t7));
+        let t52 = t49 * t33 - (t45 * t31 - t46 * t32);
+        let t53 = k(2e-6) * inner_ring_dwy + (t52 * t30 + t51);
+        let t54 = t43 * t49 - (t40 * t46 + t37 * t45);
+        let t55 = k(2.0) * (t20 + t19);
+        let t56 = k(2.0) * (t48 - t47);
+        let t57 = k(2.0) * (k(0.5) - (t8 + inner_ring_e3 * inner_ring_e3));
+        let t58 = t57 * t27 - (t55 * t23 - t56 * t24);
+        let t59 = t28 * t58 + t22 * (t57 * t18 - (t56 * t12 - t55 * t7));
+        let t60 = t55 * t31 + t56 * t32 + t57 * t33;
+        let t61 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz)
+            - (t60 * t30 + t59);
+        let t62 = (t43 * t57 - (t40 * t56 - t37 * t55)) * t61 - (t54 * t53 + t44 * t35);
+        let t63 = k(2e-6) * outer_ring_dwx - t62;
+        let t64 = k(2.0) * (k(0.5) - (t36 + outer_ring_e3 * outer_ring_e3));
+        let t65 = k(2.0) * (t42 + t41);
+        let t66 = k(1.0) / (t65 * t43 - t37 * t64);
+        let t67 = outer_ring_e0 * outer_ring_e1;
+        let t68 = outer_ring_e2 * outer_ring_e3;
+        let t69 = k(2.0) * (t68 - t67);
+        let t70 = (t64 * t49 - (t65 * t45 - t69 * t46)) * t53
+            + (t64 * t21 - (t69 * t15 - t65 * t9)) * t35;
+        let t71 = (t65 * t55 + t69 * t56 + t64 * t57) * t61 - t70;
+        let t72 = t71 - k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz);
+        let t73 = k(2.0) * (t39 - t38);
+        let t74 = k(2.0) * (k(0.5) - (t36 + outer_ring_e2 * outer_ring_e2));
+        let t75 = k(2.0) * (t68 + t67);
+        let t76 = t75 * t21 - (t74 * t15 + t73 * t9);
+        let t77 = t75 * t49 + (t73 * t45 + t74 * t46);
+        let t78 = k(1.0) / (t44 * t77 - t54 * t76);
+        let t79 = k(1.0) / (t50 * t60 - t52 * t58);
         *lambda = [
-            k(0.0),
-            k(0.0),
-            k(0.0),
-            -(t137 * t155 + t16 * t154),
-            -(t138 * t155 + t21 * t154),
-            k(0.0),
-            k(0.0),
-            k(0.0),
-            -(t130 * t152 + t125 * t151),
-            t131 * t152 + t128 * t151,
-            k(0.0),
-            k(0.0),
-            k(0.0),
-            t105 * t150 + t97 * t149,
-            t106 * t150 + t102 * t149,
+            -(k(0.01) * outer_ring_dsx + t1),
+            -(k(0.01) * outer_ring_dsy + t3),
+            -(k(0.01) * outer_ring_dsz + t5),
+            t65 * t66 * t72 - t37 * t66 * t63,
+            t64 * t66 * t72 - t43 * t66 * t63,
+            -t1,
+            -t3,
+            -t5,
+            -(t77 * t78 * t53 + t76 * t78 * t35),
+            t54 * t78 * t53 + t44 * t78 * t35,
+            -t0,
+            -t2,
+            -t4,
+            t60 * t79 * t30 + t28 * (t58 * t79),
+            t52 * t79 * t30 + t28 * (t50 * t79),
         ];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::Ports for GyroscopeFreeNutation<T> {
+    type Outputs = [T; 0];
+    fn outputs_buffer(&self) -> Self::Outputs {
+        [T::constant(0.0); 0]
+    }
+    fn outputs(&self, _t: T, _y: &Self::State, _out: &mut Self::Outputs) {}
+    fn n_outputs(&self) -> usize {
+        0
+    }
+    fn output(&self, index: usize) -> gyro_sim::OutputInfo<'_> {
+        const OUTPUTS: [gyro_sim::OutputInfo<'static>; 0] = [];
+        OUTPUTS
+            .get(index)
+            .copied()
+            .unwrap_or(gyro_sim::OutputInfo {
+                name: "",
+                suffix: "",
+                unit: "",
+            })
+    }
+    fn n_inputs(&self) -> usize {
+        0
+    }
+    fn input_name(&self, index: usize) -> &str {
+        const INPUTS: [&str; 0] = [];
+        INPUTS.get(index).copied().unwrap_or_default()
+    }
+    fn set_input(&mut self, _index: usize, _value: T) -> bool {
+        false
     }
 }

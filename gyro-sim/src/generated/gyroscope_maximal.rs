@@ -18,7 +18,8 @@
 //! | gamma | γ | 181 | 291 | 0 | 472 | 9 of 21 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 129 | 184 | 0 | 313 | 0 of 21 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 14 of 24 |
-//! | accelerations | (s̈, ẇ') and λ, eq. (17) | 352 | 545 | 6 | 903 | 10 of 45 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 302 | 482 | 6 | 790 | 10 of 24 |
+//! | multipliers | λ, the accelerations being known | 180 | 291 | 4 | 475 | 0 of 21 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 32 | 64 | 0 | 96 | 0 of 28 |
 //! | energy | T and V | 26 | 45 | 0 | 71 | 0 of 2 |
 //! | read_joints | joint coordinates and rates | 73 | 83 | 0 | 156 | 0 of 9 |
@@ -29,7 +30,7 @@
 /// The mechanism `gyroscope_maximal`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GyroscopeMaximal<T> {
-    /// The model has no parameters.
+    /// The model has neither parameters nor inputs.
     scalar: ::core::marker::PhantomData<T>,
 }
 impl<T: gyro_sim::Scalar> ::core::default::Default for GyroscopeMaximal<T> {
@@ -110,9 +111,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for GyroscopeMaximal<T> {
     }
     /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 96 operations (32 ±, 64 ×, 0 ÷).
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut v = gyro_sim::Equations::velocities(self);
-        let mut lambda = gyro_sim::Mechanism::rows(self);
-        gyro_sim::Equations::accelerations(self, t, y, &mut v, &mut lambda);
+        let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
+        gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
         let k = T::constant;
         let base_e0 = y[3];
         let base_e1 = y[4];
@@ -201,30 +201,30 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for GyroscopeMaximal<T> {
             k(0.5) * (rotor_e3 * rotor_wx + rotor_e0 * rotor_wy - rotor_e1 * rotor_wz),
             -(k(0.5)
                 * (rotor_e2 * rotor_wx - rotor_e1 * rotor_wy - rotor_e0 * rotor_wz)),
-            v[0],
-            v[1],
-            v[2],
-            v[3],
-            v[4],
-            v[5],
-            v[6],
-            v[7],
-            v[8],
-            v[9],
-            v[10],
-            v[11],
-            v[12],
-            v[13],
-            v[14],
-            v[15],
-            v[16],
-            v[17],
-            v[18],
-            v[19],
-            v[20],
-            v[21],
-            v[22],
-            v[23],
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            accelerations[6],
+            accelerations[7],
+            accelerations[8],
+            accelerations[9],
+            accelerations[10],
+            accelerations[11],
+            accelerations[12],
+            accelerations[13],
+            accelerations[14],
+            accelerations[15],
+            accelerations[16],
+            accelerations[17],
+            accelerations[18],
+            accelerations[19],
+            accelerations[20],
+            accelerations[21],
+            accelerations[22],
+            accelerations[23],
         ];
     }
 }
@@ -501,7 +501,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMaximal<T> {
         ];
     }
     /// Kinetic and potential energy: 71 operations (26 ±, 45 ×, 0 ÷).
-    fn energy(&self, y: &Self::State) -> gyro_sim::Energy<T> {
+    fn energy(&self, _t: T, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let base_ry = y[1];
         let outer_ring_ry = y[8];
@@ -562,7 +562,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMaximal<T> {
         }
     }
     /// Writes the joint readings: 156 operations (73 ±, 83 ×, 0 ÷).
-    fn read_joints(&self, y: &Self::State, out: &mut Self::Readings) {
+    fn read_joints(&self, _t: T, y: &Self::State, out: &mut Self::Readings) {
         let k = T::constant;
         let base_e0 = y[3];
         let base_e1 = y[4];
@@ -662,15 +662,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMaximal<T> {
         const JOINTS: [gyro_sim::JointInfo<'static>; 3] = [
             gyro_sim::JointInfo {
                 name: "alpha",
-                coordinate: gyro_sim::Coordinate::Angle,
+                coordinates: &[gyro_sim::Coordinate::Angle],
             },
             gyro_sim::JointInfo {
                 name: "beta",
-                coordinate: gyro_sim::Coordinate::Angle,
+                coordinates: &[gyro_sim::Coordinate::Angle],
             },
             gyro_sim::JointInfo {
                 name: "phi",
-                coordinate: gyro_sim::Coordinate::Angle,
+                coordinates: &[gyro_sim::Coordinate::Angle],
             },
         ];
         JOINTS
@@ -678,8 +678,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMaximal<T> {
             .copied()
             .unwrap_or(gyro_sim::JointInfo {
                 name: "",
-                coordinate: gyro_sim::Coordinate::None,
+                coordinates: &[],
             })
+    }
+    fn coupler_name(&self, coupler: usize) -> &str {
+        const COUPLERS: [&str; 0] = [];
+        COUPLERS.get(coupler).copied().unwrap_or_default()
+    }
+    fn driver_name(&self, driver: usize) -> &str {
+        const DRIVERS: [&str; 0] = [];
+        DRIVERS.get(driver).copied().unwrap_or_default()
     }
     fn row(&self, row: usize) -> gyro_sim::RowInfo {
         const ROWS: [gyro_sim::RowInfo; 21] = [
@@ -1176,6 +1184,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
     type Velocities = [T; 24];
     type PhiQ = [T; 98];
     type PhiPi = [T; 60];
+    /// (s̈, ẇ') of each body.
+    type Accelerations = [T; 24];
     fn velocities(&self) -> Self::Velocities {
         [T::constant(0.0); 24]
     }
@@ -1184,6 +1194,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
     }
     fn phi_pi_values(&self) -> Self::PhiPi {
         [T::constant(0.0); 60]
+    }
+    fn accelerations_buffer(&self) -> Self::Accelerations {
+        [T::constant(0.0); 24]
     }
     fn phi_q_pattern(&self) -> &[(u16, u16)] {
         &[
@@ -1966,14 +1979,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 903 operations (352 ±, 545 ×, 6 ÷).
-    fn accelerations(
-        &self,
-        _t: T,
-        y: &Self::State,
-        out: &mut Self::Velocities,
-        lambda: &mut Self::Rows,
-    ) {
+    /// Solves eq. (17): 790 operations (302 ±, 482 ×, 6 ÷).
+    fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let base_e0 = y[3];
         let base_e1 = y[4];
@@ -2004,98 +2011,72 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
         let rotor_wy = y[50];
         let rotor_wz = y[51];
         let (
-            t13,
-            t20,
             t23,
             t25,
-            t26,
             t27,
-            t28,
-            t29,
-            t30,
-            t31,
-            t32,
-            t33,
-            t50,
-            t57,
-            t61,
-            t64,
-            t65,
-            t68,
+            t44,
+            t51,
+            t55,
+            t67,
             t69,
-            t70,
-            t71,
-            t72,
             t73,
-            t74,
             t75,
+            t76,
+            t77,
             t78,
             t79,
-            t80,
-            t81,
             t82,
             t83,
-            t84,
-            t85,
-            t86,
-            t89,
-            t90,
-            t91,
-            t96,
-            t101,
+            t100,
             t107,
-            t108,
+            t111,
+            t113,
             t115,
+            t117,
+            t118,
             t119,
+            t120,
             t121,
             t123,
-            t125,
-            t126,
-            t127,
-            t128,
-            t129,
+            t124,
             t131,
             t132,
-            t134,
+            t135,
             t136,
+            t137,
             t138,
             t139,
             t140,
+            t142,
             t143,
             t144,
             t145,
             t146,
-            t147,
-            t148,
-            t149,
-            t150,
-            t151,
-            t152,
-            t153,
-            t154,
-            t159,
+            t156,
             t164,
-            t168,
+            t166,
             t169,
+            t170,
+            t171,
             t172,
-            t173,
+            t174,
             t175,
+            t176,
+            t177,
             t178,
             t179,
             t180,
             t181,
             t182,
-            t183,
             t184,
+            t185,
             t186,
             t187,
             t188,
             t189,
-            t190,
             t191,
             t192,
-            t193,
-            t194,
+            t195,
             t196,
             t197,
             t198,
@@ -2114,497 +2095,601 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
             let t10 = t4 * t0;
             let t11 = t10 - t9;
             let t12 = k(1.0) / (t6 * t11 - t4 * t8 - t1 * t3);
-            let t13 = t11 * t12;
-            let t14 = k(0.5)
-                * (base_e3 * base_wx + base_e0 * base_wy - base_e1 * base_wz);
+            let t13 = t1 * t0;
+            let t14 = t4 * t6;
             let t15 = k(0.5)
-                * (base_e0 * base_wx - base_e3 * base_wy + base_e2 * base_wz);
+                * (base_e2 * base_wx - base_e1 * base_wy - base_e0 * base_wz);
             let t16 = k(0.5)
                 * (base_e1 * base_wx + base_e2 * base_wy + base_e3 * base_wz);
-            let t17 = k(0.5) * (base_wz * t16 - (base_wy * t15 - base_wx * t14));
-            let t18 = t1 * t0;
-            let t19 = t4 * t6;
-            let t20 = (t19 + t18) * t12;
-            let t21 = k(0.5)
-                * (base_e2 * base_wx - base_e1 * base_wy - base_e0 * base_wz);
-            let t22 = k(0.5) * (base_wz * t15 + (base_wy * t16 + base_wx * t21));
-            let t23 = (t2 + t4 * t4) * t12;
-            let t24 = k(0.5) * (base_wz * t14 + (base_wy * t21 - base_wx * t16));
-            let t25 = t24 * t23 - t22 * t20 - t17 * t13;
-            let t26 = t8 * t12;
-            let t27 = (t2 + t6 * t6) * t12;
-            let t28 = (t19 - t18) * t12;
-            let t29 = t24 * t28 - t22 * t27 - t17 * t26;
-            let t30 = t3 * t12;
-            let t31 = (t7 - t5) * t12;
-            let t32 = (t10 + t9) * t12;
-            let t33 = t24 * t32 - t22 * t31 - t17 * t30;
-            let t34 = outer_ring_e0 * outer_ring_e3;
-            let t35 = outer_ring_e1 * outer_ring_e2;
-            let t36 = k(2.0) * (t35 - t34);
-            let t37 = base_e0 * base_e0;
-            let t38 = k(2.0) * (k(0.5) - (t37 + base_e1 * base_e1));
-            let t39 = outer_ring_e0 * outer_ring_e0;
-            let t40 = k(2.0) * (k(0.5) - (t39 + outer_ring_e2 * outer_ring_e2));
-            let t41 = base_e0 * base_e3;
-            let t42 = base_e1 * base_e2;
-            let t43 = k(2.0) * (t42 + t41);
-            let t44 = outer_ring_e0 * outer_ring_e1;
-            let t45 = outer_ring_e2 * outer_ring_e3;
-            let t46 = k(2.0) * (t45 + t44);
-            let t47 = base_e0 * base_e2;
-            let t48 = base_e1 * base_e3;
-            let t49 = k(2.0) * (t48 - t47);
-            let t50 = t49 * t46 - (t43 * t40 + t38 * t36);
-            let t51 = base_wx * base_wz;
-            let t52 = k(2.0) * (k(0.5) - (t37 + base_e2 * base_e2));
-            let t53 = k(2.0) * (t42 - t41);
-            let t54 = base_e0 * base_e1;
-            let t55 = base_e2 * base_e3;
-            let t56 = k(2.0) * (t55 + t54);
-            let t57 = t56 * t46 + (t53 * t36 + t52 * t40);
-            let t58 = k(2.0) * (t55 - t54);
-            let t59 = k(2.0) * (t48 + t47);
-            let t60 = k(2.0) * (k(0.5) - (t37 + base_e3 * base_e3));
-            let t61 = t60 * t46 - (t59 * t36 - t58 * t40);
-            let t62 = base_wy * base_wy;
-            let t63 = (t62 + base_wx * base_wx) * t61
-                + (base_wy * base_wz * t57 + t51 * t50);
-            let t64 = k(2.0) * (k(0.5) - (t39 + outer_ring_e1 * outer_ring_e1));
-            let t65 = k(2.0) * (t35 + t34);
-            let t66 = outer_ring_e0 * outer_ring_e2;
-            let t67 = outer_ring_e1 * outer_ring_e3;
-            let t68 = k(2.0) * (t67 - t66);
-            let t69 = t49 * t68 + (t43 * t65 + t38 * t64);
-            let t70 = k(2.0) * (t67 + t66);
-            let t71 = k(2.0) * (t45 - t44);
-            let t72 = k(2.0) * (k(0.5) - (t39 + outer_ring_e3 * outer_ring_e3));
-            let t73 = t49 * t72 - (t43 * t71 - t38 * t70);
-            let t74 = t56 * t68 - (t52 * t65 + t53 * t64);
-            let t75 = t56 * t72 - (t53 * t70 - t52 * t71);
-            let t76 = outer_ring_wx * t75 + outer_ring_wz * t74;
-            let t77 = k(2.0)
-                * (base_wx * t76
-                    - base_wy * (outer_ring_wx * t73 + outer_ring_wz * t69));
-            let t78 = t60 * t68 - (t58 * t65 - t59 * t64);
-            let t79 = outer_ring_wx * outer_ring_wy;
-            let t80 = outer_ring_wz * outer_ring_wz;
-            let t81 = t80 + outer_ring_wx * outer_ring_wx;
-            let t82 = t59 * t70 + t58 * t71 + t60 * t72;
-            let t83 = outer_ring_wy * outer_ring_wz;
-            let t84 = t83 * t82 + (t81 * t61 - t79 * t78) + t77 + t63;
-            let t85 = k(1.0) / (t78 * t73 - t82 * t69);
-            let t86 = t69 * t85;
-            let t87 = t51 * t61
-                - (base_wx * base_wy * t57 - (base_wz * base_wz + t62) * t50);
-            let t88 = k(2.0)
-                * (base_wy * (outer_ring_wx * t82 + outer_ring_wz * t78)
-                    + base_wz * t76);
-            let t89 = t83 * t73 + (t81 * t50 - t79 * t69) + t88 + t87;
-            let t90 = t78 * t85;
-            let t91 = t33 * t78 - (t29 * t74 + t25 * t69) + (t90 * t89 - t86 * t84);
-            let t92 = rotor_e0 * rotor_e3;
-            let t93 = rotor_e1 * rotor_e2;
-            let t94 = k(2.0) * (t93 - t92);
-            let t95 = inner_ring_e0 * inner_ring_e0;
-            let t96 = k(2.0) * (k(0.5) - (t95 + inner_ring_e1 * inner_ring_e1));
-            let t97 = rotor_e0 * rotor_e0;
-            let t98 = k(2.0) * (k(0.5) - (t97 + rotor_e2 * rotor_e2));
-            let t99 = inner_ring_e0 * inner_ring_e3;
-            let t100 = inner_ring_e1 * inner_ring_e2;
-            let t101 = k(2.0) * (t100 + t99);
-            let t102 = rotor_e0 * rotor_e1;
-            let t103 = rotor_e2 * rotor_e3;
+            let t17 = k(0.5)
+                * (base_e0 * base_wx - base_e3 * base_wy + base_e2 * base_wz);
+            let t18 = k(0.5) * (base_wz * t17 + (base_wy * t16 + base_wx * t15));
+            let t19 = k(0.5)
+                * (base_e3 * base_wx + base_e0 * base_wy - base_e1 * base_wz);
+            let t20 = k(0.5) * (base_wz * t19 + (base_wy * t15 - base_wx * t16));
+            let t21 = t20 * ((t2 + t4 * t4) * t12) - t18 * ((t14 + t13) * t12);
+            let t22 = k(0.5) * (base_wz * t16 - (base_wy * t17 - base_wx * t19));
+            let t23 = t22 * (t11 * t12) - t21;
+            let t24 = t20 * ((t14 - t13) * t12) - t18 * ((t2 + t6 * t6) * t12);
+            let t25 = t22 * (t8 * t12) - t24;
+            let t26 = t20 * ((t10 + t9) * t12) - t18 * ((t7 - t5) * t12);
+            let t27 = t22 * (t3 * t12) - t26;
+            let t28 = outer_ring_e0 * outer_ring_e3;
+            let t29 = outer_ring_e1 * outer_ring_e2;
+            let t30 = k(2.0) * (t29 - t28);
+            let t31 = base_e0 * base_e0;
+            let t32 = k(2.0) * (k(0.5) - (t31 + base_e1 * base_e1));
+            let t33 = outer_ring_e0 * outer_ring_e0;
+            let t34 = k(2.0) * (k(0.5) - (t33 + outer_ring_e2 * outer_ring_e2));
+            let t35 = base_e0 * base_e3;
+            let t36 = base_e1 * base_e2;
+            let t37 = k(2.0) * (t36 + t35);
+            let t38 = outer_ring_e0 * outer_ring_e1;
+            let t39 = outer_ring_e2 * outer_ring_e3;
+            let t40 = k(2.0) * (t39 + t38);
+            let t41 = base_e0 * base_e2;
+            let t42 = base_e1 * base_e3;
+            let t43 = k(2.0) * (t42 - t41);
+            let t44 = t43 * t40 - (t37 * t34 + t32 * t30);
+            let t45 = base_wx * base_wz;
+            let t46 = k(2.0) * (k(0.5) - (t31 + base_e2 * base_e2));
+            let t47 = k(2.0) * (t36 - t35);
+            let t48 = base_e0 * base_e1;
+            let t49 = base_e2 * base_e3;
+            let t50 = k(2.0) * (t49 + t48);
+            let t51 = t50 * t40 + (t47 * t30 + t46 * t34);
+            let t52 = k(2.0) * (t49 - t48);
+            let t53 = k(2.0) * (t42 + t41);
+            let t54 = k(2.0) * (k(0.5) - (t31 + base_e3 * base_e3));
+            let t55 = t54 * t40 - (t53 * t30 - t52 * t34);
+            let t56 = base_wy * base_wy;
+            let t57 = (t56 + base_wx * base_wx) * t55
+                + (base_wy * base_wz * t51 + t45 * t44);
+            let t58 = k(2.0) * (k(0.5) - (t33 + outer_ring_e1 * outer_ring_e1));
+            let t59 = k(2.0) * (t29 + t28);
+            let t60 = outer_ring_e0 * outer_ring_e2;
+            let t61 = outer_ring_e1 * outer_ring_e3;
+            let t62 = k(2.0) * (t61 - t60);
+            let t63 = t43 * t62 + (t37 * t59 + t32 * t58);
+            let t64 = k(2.0) * (t61 + t60);
+            let t65 = k(2.0) * (t39 - t38);
+            let t66 = k(2.0) * (k(0.5) - (t33 + outer_ring_e3 * outer_ring_e3));
+            let t67 = t43 * t66 - (t37 * t65 - t32 * t64);
+            let t68 = t50 * t62 - (t46 * t59 + t47 * t58);
+            let t69 = t50 * t66 - (t47 * t64 - t46 * t65);
+            let t70 = outer_ring_wx * t69 + outer_ring_wz * t68;
+            let t71 = k(2.0)
+                * (base_wx * t70
+                    - base_wy * (outer_ring_wx * t67 + outer_ring_wz * t63));
+            let t72 = t54 * t62 - (t52 * t59 - t53 * t58);
+            let t73 = outer_ring_wx * outer_ring_wy;
+            let t74 = outer_ring_wz * outer_ring_wz;
+            let t75 = t74 + outer_ring_wx * outer_ring_wx;
+            let t76 = t53 * t64 + t52 * t65 + t54 * t66;
+            let t77 = outer_ring_wy * outer_ring_wz;
+            let t78 = t77 * t76 + (t75 * t55 - t73 * t72) + t71 + t57;
+            let t79 = k(1.0) / (t72 * t67 - t76 * t63);
+            let t80 = t45 * t55
+                - (base_wx * base_wy * t51 - (base_wz * base_wz + t56) * t44);
+            let t81 = k(2.0)
+                * (base_wy * (outer_ring_wx * t76 + outer_ring_wz * t72)
+                    + base_wz * t70);
+            let t82 = t77 * t67 + (t75 * t44 - t73 * t63) + t81 + t80;
+            let t83 = t27 * t72 - (t25 * t68 + t23 * t63)
+                - (t72 * t79 * t82 - t63 * t79 * t78);
+            let t84 = rotor_e0 * rotor_e3;
+            let t85 = rotor_e1 * rotor_e2;
+            let t86 = k(2.0) * (t85 - t84);
+            let t87 = inner_ring_e0 * inner_ring_e0;
+            let t88 = k(2.0) * (k(0.5) - (t87 + inner_ring_e1 * inner_ring_e1));
+            let t89 = rotor_e0 * rotor_e0;
+            let t90 = k(2.0) * (k(0.5) - (t89 + rotor_e2 * rotor_e2));
+            let t91 = inner_ring_e0 * inner_ring_e3;
+            let t92 = inner_ring_e1 * inner_ring_e2;
+            let t93 = k(2.0) * (t92 + t91);
+            let t94 = rotor_e0 * rotor_e1;
+            let t95 = rotor_e2 * rotor_e3;
+            let t96 = k(2.0) * (t95 + t94);
+            let t97 = inner_ring_e0 * inner_ring_e2;
+            let t98 = inner_ring_e1 * inner_ring_e3;
+            let t99 = k(2.0) * (t98 - t97);
+            let t100 = t99 * t96 - (t93 * t90 + t88 * t86);
+            let t101 = k(5e-6) * t100;
+            let t102 = rotor_e0 * rotor_e2;
+            let t103 = rotor_e1 * rotor_e3;
             let t104 = k(2.0) * (t103 + t102);
-            let t105 = inner_ring_e0 * inner_ring_e2;
-            let t106 = inner_ring_e1 * inner_ring_e3;
-            let t107 = k(2.0) * (t106 - t105);
-            let t108 = t107 * t104 - (t101 * t98 + t96 * t94);
-            let t109 = k(5e-6) * t108;
-            let t110 = rotor_e0 * rotor_e2;
-            let t111 = rotor_e1 * rotor_e3;
-            let t112 = k(2.0) * (t111 + t110);
-            let t113 = k(2.0) * (t103 - t102);
-            let t114 = k(2.0) * (k(0.5) - (t97 + rotor_e3 * rotor_e3));
-            let t115 = t107 * t114 - (t101 * t113 - t96 * t112);
-            let t116 = k(5e-6) * t115;
-            let t117 = inner_ring_e0 * inner_ring_e1;
-            let t118 = inner_ring_e2 * inner_ring_e3;
-            let t119 = t118 - t117;
-            let t120 = k(2.0) * t119;
-            let t121 = t106 + t105;
-            let t122 = k(2.0) * t121;
-            let t123 = k(0.5) - (t95 + inner_ring_e3 * inner_ring_e3);
-            let t124 = k(2.0) * t123;
-            let t125 = t124 * t104 - (t122 * t94 - t120 * t98);
-            let t126 = t122 * t112 + t120 * t113 + t124 * t114;
-            let t127 = t126 * t116 + t125 * t109;
-            let t128 = k(1e-6)
-                + (k(1.25e-9) + (t126 * (k(5e-6) * t126) + t125 * (k(5e-6) * t125)));
-            let t129 = k(1.0) / t128;
-            let t130 = t129 * t127;
-            let t131 = t127 * t130 - (k(1e-6) + (t115 * t116 + t108 * t109));
-            let t132 = t46 * t107 - (t40 * t101 + t36 * t96);
-            let t133 = k(0.5) - (t95 + inner_ring_e2 * inner_ring_e2);
-            let t134 = k(2.0) * t133;
-            let t135 = t100 - t99;
-            let t136 = k(2.0) * t135;
-            let t137 = t118 + t117;
-            let t138 = k(2.0) * t137;
-            let t139 = t138 * t104 + (t136 * t94 + t134 * t98);
-            let t140 = t138 * t114 - (t136 * t112 - t134 * t113);
-            let t141 = k(5e-6) * t139;
-            let t142 = k(5e-6) * t140;
-            let t143 = t126 * t142 + t125 * t141;
-            let t144 = t143 * t130 - (t140 * t116 + t139 * t109);
-            let t145 = t46 * t138 + (t36 * t136 + t40 * t134);
-            let t146 = t127 - t128 * t130;
-            let t147 = t46 * t124 - (t36 * t122 - t40 * t120);
-            let t148 = t147 * t146 - (t145 * t144 + t132 * t131);
-            let t149 = t129 * t143;
-            let t150 = t143 * t149
-                - (k(2e-6) + (k(1.25e-9) + (t140 * t142 + t139 * t141)));
-            let t151 = t143 - t128 * t149;
-            let t152 = t147 * t151 - (t145 * t150 + t132 * t144);
-            let t153 = t145 * t151 + t132 * t146;
-            let t154 = k(1e-6) + (t147 * t153 + (t145 * t152 + t132 * t148));
-            let t155 = k(2.0) * (k(0.5) - (t97 + rotor_e1 * rotor_e1));
-            let t156 = k(2.0) * (t93 + t92);
-            let t157 = k(2.0) * (t111 - t110);
-            let t158 = t107 * t157 + (t101 * t156 + t96 * t155);
-            let t159 = inner_ring_wx * inner_ring_wy;
-            let t160 = t138 * t157 - (t134 * t156 + t136 * t155);
-            let t161 = inner_ring_wx * inner_ring_wx;
-            let t162 = inner_ring_wz * inner_ring_wz;
-            let t163 = t124 * t157 - (t120 * t156 - t122 * t155);
-            let t164 = inner_ring_wy * inner_ring_wz;
-            let t165 = rotor_wy * t115 + rotor_wz * t108;
-            let t166 = k(2.0)
-                * (inner_ring_wx * (rotor_wy * t126 + rotor_wz * t125)
-                    + inner_ring_wz * t165);
-            let t167 = rotor_wz * rotor_wz + rotor_wy * rotor_wy;
-            let t168 = rotor_wx * rotor_wy;
-            let t169 = rotor_wx * rotor_wz;
-            let t170 = t169 * t140 - (t168 * t139 - t167 * t160) + t166
-                + (t164 * t163 + ((t162 + t161) * t160 - t159 * t158));
-            let t171 = k(1.0) / (t139 * t126 - t140 * t125);
-            let t172 = t125 * t171;
-            let t173 = inner_ring_wx * inner_ring_wz;
-            let t174 = inner_ring_wy * inner_ring_wy;
-            let t175 = t174 + t161;
-            let t176 = k(2.0)
-                * (inner_ring_wx * (rotor_wy * t140 + rotor_wz * t139)
-                    - inner_ring_wy * t165);
-            let t177 = t169 * t126 - (t168 * t125 - t167 * t163) - t176
-                + (t175 * t163 + (t164 * t160 + t173 * t158));
-            let t178 = t139 * t171;
-            let t179 = t178 * t177 - t172 * t170;
-            let t180 = k(5e-6) * (t169 + t179);
-            let t181 = t126 * t171;
-            let t182 = t140 * t171;
-            let t183 = t182 * t177 - t181 * t170;
-            let t184 = k(5e-6) * (t168 + t183);
-            let t185 = t162 + t174;
-            let t186 = t122 * t173 + (t136 * t159 + t96 * t185);
-            let t187 = k(1e-5) * t186;
-            let t188 = k(0.00025) * t135;
-            let t189 = t120 * t173 - (t134 * t159 + t101 * t185);
-            let t190 = k(0.8) + k(1e-5) * t189;
-            let t191 = k(0.00025) * t133;
-            let t192 = t124 * t173 - (t138 * t159 - t107 * t185);
-            let t193 = k(1e-5) * t192;
-            let t194 = k(0.00025) * t137;
-            let t195 = t194 * t193 + (t191 * t190 - t188 * t187)
-                + (t126 * t184 + t125 * t180);
-            let t196 = k(1e-6) * t159 - t195;
-            let t197 = t130 * t196 - (k(1e-6) * t164 - (t115 * t184 + t108 * t180));
-            let t198 = t68 * t124 - (t65 * t120 - t64 * t122);
-            let t199 = t70 * t122 + t71 * t120 + t72 * t124;
+            let t105 = k(2.0) * (t95 - t94);
+            let t106 = k(2.0) * (k(0.5) - (t89 + rotor_e3 * rotor_e3));
+            let t107 = t99 * t106 - (t93 * t105 - t88 * t104);
+            let t108 = k(5e-6) * t107;
+            let t109 = inner_ring_e0 * inner_ring_e1;
+            let t110 = inner_ring_e2 * inner_ring_e3;
+            let t111 = t110 - t109;
+            let t112 = k(2.0) * t111;
+            let t113 = t98 + t97;
+            let t114 = k(2.0) * t113;
+            let t115 = k(0.5) - (t87 + inner_ring_e3 * inner_ring_e3);
+            let t116 = k(2.0) * t115;
+            let t117 = t116 * t96 - (t114 * t86 - t112 * t90);
+            let t118 = t114 * t104 + t112 * t105 + t116 * t106;
+            let t119 = t118 * t108 + t117 * t101;
+            let t120 = k(1e-6)
+                + (k(1.25e-9) + (t118 * (k(5e-6) * t118) + t117 * (k(5e-6) * t117)));
+            let t121 = k(1.0) / t120;
+            let t122 = t121 * t119;
+            let t123 = t119 * t122 - (k(1e-6) + (t107 * t108 + t100 * t101));
+            let t124 = t40 * t99 - (t34 * t93 + t30 * t88);
+            let t125 = k(0.5) - (t87 + inner_ring_e2 * inner_ring_e2);
+            let t126 = k(2.0) * t125;
+            let t127 = t92 - t91;
+            let t128 = k(2.0) * t127;
+            let t129 = t110 + t109;
+            let t130 = k(2.0) * t129;
+            let t131 = t130 * t96 + (t128 * t86 + t126 * t90);
+            let t132 = t130 * t106 - (t128 * t104 - t126 * t105);
+            let t133 = k(5e-6) * t131;
+            let t134 = k(5e-6) * t132;
+            let t135 = t118 * t134 + t117 * t133;
+            let t136 = t135 * t122 - (t132 * t108 + t131 * t101);
+            let t137 = t40 * t130 + (t30 * t128 + t34 * t126);
+            let t138 = t119 - t120 * t122;
+            let t139 = t40 * t116 - (t30 * t114 - t34 * t112);
+            let t140 = t139 * t138 - (t137 * t136 + t124 * t123);
+            let t141 = t121 * t135;
+            let t142 = t135 * t141
+                - (k(2e-6) + (k(1.25e-9) + (t132 * t134 + t131 * t133)));
+            let t143 = t135 - t120 * t141;
+            let t144 = t139 * t143 - (t137 * t142 + t124 * t136);
+            let t145 = t137 * t143 + t124 * t138;
+            let t146 = k(1e-6) + (t139 * t145 + (t137 * t144 + t124 * t140));
+            let t147 = k(2.0) * (k(0.5) - (t89 + rotor_e1 * rotor_e1));
+            let t148 = k(2.0) * (t85 + t84);
+            let t149 = k(2.0) * (t103 - t102);
+            let t150 = t99 * t149 + (t93 * t148 + t88 * t147);
+            let t151 = inner_ring_wx * inner_ring_wy;
+            let t152 = t130 * t149 - (t126 * t148 + t128 * t147);
+            let t153 = inner_ring_wx * inner_ring_wx;
+            let t154 = inner_ring_wz * inner_ring_wz;
+            let t155 = t116 * t149 - (t112 * t148 - t114 * t147);
+            let t156 = inner_ring_wy * inner_ring_wz;
+            let t157 = rotor_wy * t107 + rotor_wz * t100;
+            let t158 = k(2.0)
+                * (inner_ring_wx * (rotor_wy * t118 + rotor_wz * t117)
+                    + inner_ring_wz * t157);
+            let t159 = rotor_wz * rotor_wz + rotor_wy * rotor_wy;
+            let t160 = rotor_wx * rotor_wy;
+            let t161 = rotor_wx * rotor_wz;
+            let t162 = t161 * t132 - (t160 * t131 - t159 * t152) + t158
+                + (t156 * t155 + ((t154 + t153) * t152 - t151 * t150));
+            let t163 = k(1.0) / (t131 * t118 - t132 * t117);
+            let t164 = inner_ring_wx * inner_ring_wz;
+            let t165 = inner_ring_wy * inner_ring_wy;
+            let t166 = t165 + t153;
+            let t167 = k(2.0)
+                * (inner_ring_wx * (rotor_wy * t132 + rotor_wz * t131)
+                    - inner_ring_wy * t157);
+            let t168 = t161 * t118 - (t160 * t117 - t159 * t155) - t167
+                + (t166 * t155 + (t156 * t152 + t164 * t150));
+            let t169 = t131 * t163 * t168 - t117 * t163 * t162;
+            let t170 = k(5e-6) * (t161 + t169);
+            let t171 = t132 * t163 * t168 - t118 * t163 * t162;
+            let t172 = k(5e-6) * (t160 + t171);
+            let t173 = t154 + t165;
+            let t174 = t114 * t164 + (t128 * t151 + t88 * t173);
+            let t175 = k(1e-5) * t174;
+            let t176 = k(0.00025) * t127;
+            let t177 = t112 * t164 - (t126 * t151 + t93 * t173);
+            let t178 = k(0.8) + k(1e-5) * t177;
+            let t179 = k(0.00025) * t125;
+            let t180 = t116 * t164 - (t130 * t151 - t99 * t173);
+            let t181 = k(1e-5) * t180;
+            let t182 = k(0.00025) * t129;
+            let t183 = t182 * t181 + (t179 * t178 - t176 * t175)
+                + (t118 * t172 + t117 * t170);
+            let t184 = k(1e-6) * t151 - t183;
+            let t185 = t121 * t184;
+            let t186 = t119 * t185 - (k(1e-6) * t156 - (t107 * t172 + t100 * t170));
+            let t187 = t62 * t116 - (t59 * t112 - t58 * t114);
+            let t188 = t64 * t114 + t65 * t112 + t66 * t116;
+            let t189 = outer_ring_wx * outer_ring_wz;
+            let t190 = t189 * t188
+                - (t73 * t139 - (t74 + outer_ring_wy * outer_ring_wy) * t187);
+            let t191 = t66 * t99 - (t65 * t93 - t64 * t88);
+            let t192 = t66 * t130 - (t64 * t128 - t65 * t126);
+            let t193 = inner_ring_wx * t192 - inner_ring_wy * t191;
+            let t194 = k(2.0)
+                * (outer_ring_wy * t193
+                    + outer_ring_wz * (inner_ring_wx * t137 - inner_ring_wy * t124));
+            let t195 = t62 * t99 + (t59 * t93 + t58 * t88);
+            let t196 = t62 * t130 - (t59 * t126 + t58 * t128);
+            let t197 = t166 * t187 + (t156 * t196 + t164 * t195) - t194 + t190;
+            let t198 = k(1.0) / (t195 * t137 - t196 * t124);
+            let t199 = k(2.0)
+                * (outer_ring_wx * t193
+                    + outer_ring_wz * (inner_ring_wx * t196 - inner_ring_wy * t195));
             (
-                t13,
-                t20,
                 t23,
                 t25,
-                t26,
                 t27,
-                t28,
-                t29,
-                t30,
-                t31,
-                t32,
-                t33,
-                t50,
-                t57,
-                t61,
-                t64,
-                t65,
-                t68,
+                t44,
+                t51,
+                t55,
+                t67,
                 t69,
-                t70,
-                t71,
-                t72,
                 t73,
-                t74,
                 t75,
+                t76,
+                t77,
                 t78,
                 t79,
-                t80,
-                t81,
                 t82,
                 t83,
-                t84,
-                t85,
-                t86,
-                t89,
-                t90,
-                t91,
-                t96,
-                t101,
+                t100,
                 t107,
-                t108,
+                t111,
+                t113,
                 t115,
+                t117,
+                t118,
                 t119,
+                t120,
                 t121,
                 t123,
-                t125,
-                t126,
-                t127,
-                t128,
-                t129,
+                t124,
                 t131,
                 t132,
-                t134,
+                t135,
                 t136,
+                t137,
                 t138,
                 t139,
                 t140,
+                t142,
                 t143,
                 t144,
                 t145,
                 t146,
-                t147,
-                t148,
-                t149,
-                t150,
-                t151,
-                t152,
-                t153,
-                t154,
-                t159,
+                t156,
                 t164,
-                t168,
+                t166,
                 t169,
+                t170,
+                t171,
                 t172,
-                t173,
+                t174,
                 t175,
+                t176,
+                t177,
                 t178,
                 t179,
                 t180,
                 t181,
                 t182,
-                t183,
                 t184,
+                t185,
                 t186,
                 t187,
                 t188,
                 t189,
-                t190,
                 t191,
                 t192,
-                t193,
-                t194,
+                t195,
                 t196,
                 t197,
                 t198,
                 t199,
             )
         };
-        let (
-            t210,
-            t213,
-            t215,
-            t216,
-            t227,
-            t228,
-            t229,
-            t231,
-            t232,
-            t233,
-            t236,
-            t237,
-            t238,
-            t239,
-            t240,
-            t241,
-            t242,
-            t243,
-            t244,
-            t245,
-            t246,
-            t247,
-            t248,
-            t249,
-            t251,
-            t254,
-            t256,
-            t257,
-            t258,
-            t259,
-        ) = {
-            let t200 = outer_ring_wx * outer_ring_wz;
-            let t201 = t200 * t199
-                - (t79 * t147 - (t80 + outer_ring_wy * outer_ring_wy) * t198);
-            let t202 = t72 * t107 - (t71 * t101 - t70 * t96);
-            let t203 = t72 * t138 - (t70 * t136 - t71 * t134);
-            let t204 = inner_ring_wx * t203 - inner_ring_wy * t202;
-            let t205 = k(2.0)
-                * (outer_ring_wy * t204
-                    + outer_ring_wz * (inner_ring_wx * t145 - inner_ring_wy * t132));
-            let t206 = t68 * t107 + (t65 * t101 + t64 * t96);
-            let t207 = t68 * t138 - (t65 * t134 + t64 * t136);
-            let t208 = t175 * t198 + (t164 * t207 + t173 * t206) - t205 + t201;
-            let t209 = k(1.0) / (t206 * t145 - t207 * t132);
-            let t210 = t132 * t209;
-            let t211 = k(2.0)
-                * (outer_ring_wx * t204
-                    + outer_ring_wz * (inner_ring_wx * t207 - inner_ring_wy * t206));
-            let t212 = t175 * t147 + (t164 * t145 + t173 * t132) + t211
-                + (t83 * t199 + (t81 * t147 - t79 * t198));
-            let t213 = t206 * t209;
-            let t214 = t213 * t212 - t210 * t208;
-            let t215 = t145 * t209;
-            let t216 = t207 * t209;
-            let t217 = t216 * t212 - t215 * t208;
-            let t218 = k(0.00025) * t121;
-            let t219 = k(0.00025) * t119;
-            let t220 = k(0.00025) * t123;
-            let t221 = t220 * t193 + (t219 * t190 + t218 * t187)
-                - (t140 * t184 + t139 * t180);
-            let t222 = t145 * (t150 * t217 + t144 * t214 - (t149 * t196 - t221));
-            let t223 = t147 * (t151 * t217 + t146 * t214)
-                - (t222 + t132 * (t144 * t217 + t131 * t214 - t197));
-            let t224 = t145 * (t198 * t151 - (t207 * t150 + t206 * t144))
-                + t132 * (t198 * t146 - (t207 * t144 + t206 * t131));
-            let t225 = t33 * t61 - (t29 * t57 + t25 * t50);
-            let t226 = t225 * t154 + t91 * (t147 * (t207 * t151 + t206 * t146) + t224);
-            let t227 = t73 * t85;
-            let t228 = t82 * t85;
-            let t229 = t33 * t82 - (t29 * t75 + t25 * t73) + (t228 * t89 - t227 * t84);
-            let t230 = t229 * (t199 * t153 + (t203 * t152 + t202 * t148)) + t226;
-            let t231 = t225 - (t230 - (k(1e-6) * t200 + t223)) / t154;
-            let t232 = t214 - (t202 * t229 + (t132 * t231 + t206 * t91));
-            let t233 = t217 - (t203 * t229 + (t145 * t231 + t207 * t91));
-            let t234 = t199 * t229 + (t147 * t231 + t198 * t91);
-            let t235 = t129 * (t196 + (t128 * t234 - (t143 * t233 + t127 * t232)));
-            let t236 = t234 - t235;
-            let t237 = k(0.000125) * t186 + (t188 * t236 - t218 * t233);
-            let t238 = k(0.000125) * t189 - (t191 * t236 + t219 * t233);
-            let t239 = k(0.000125) * t192 - (t194 * t236 + t220 * t233);
-            let t240 = t179 - (t125 * t236 - (t139 * t233 + t108 * t232));
-            let t241 = t183 - (t126 * t236 - (t140 * t233 + t115 * t232));
-            let t242 = k(0.08) * t237;
-            let t243 = k(0.8) + k(0.08) * t238;
-            let t244 = k(0.1) + t243;
-            let t245 = k(0.1) + t244;
-            let t246 = k(0.08) * t239;
-            let t247 = k(5e-6) * (t169 + t240);
-            let t248 = k(5e-6) * (t168 + t241);
-            let t249 = t115 * t248 + t108 * t247 - k(1e-6) * (t164 - t232);
-            let t250 = t220 * t246 + (t219 * t243 + t218 * t242)
-                - (t140 * t248 + t139 * t247);
-            let t251 = t250 - k(2e-6) * t233;
-            let t252 = t194 * t246 + (t191 * t243 - t188 * t242)
-                + (t126 * t248 + t125 * t247);
-            let t253 = t252 - k(1e-6) * (t159 + t236);
-            let t254 = t198 * t253 - (t207 * t251 - t206 * t249) - k(2e-6) * t91;
-            let t255 = t147 * t253 - (t145 * t251 - t132 * t249)
-                + k(1e-6) * (t200 - t231);
-            let t256 = t199 * t253 - (t203 * t251 - t202 * t249)
-                + k(1e-6) * (t79 - t229);
-            let t257 = k(1e-7) * t25 + (t73 * t256 + (t50 * t255 + t69 * t254));
-            let t258 = k(1e-7) * t29 + (t75 * t256 + (t57 * t255 + t74 * t254));
-            let t259 = k(1e-7) * t33 - (t82 * t256 + (t61 * t255 + t78 * t254));
-            (
-                t210,
-                t213,
-                t215,
-                t216,
-                t227,
-                t228,
-                t229,
-                t231,
-                t232,
-                t233,
-                t236,
-                t237,
-                t238,
-                t239,
-                t240,
-                t241,
-                t242,
-                t243,
-                t244,
-                t245,
-                t246,
-                t247,
-                t248,
-                t249,
-                t251,
-                t254,
-                t256,
-                t257,
-                t258,
-                t259,
-            )
+        let (t203, t204, t205, t213, t215, t216, t217, t220) = {
+            let t200 = t166 * t139 + (t156 * t137 + t164 * t124) + t199
+                + (t77 * t188 + (t75 * t139 - t73 * t187));
+            let t201 = t195 * t198 * t200 - t124 * t198 * t197;
+            let t202 = t196 * t198 * t200 - t137 * t198 * t197;
+            let t203 = k(0.00025) * t113;
+            let t204 = k(0.00025) * t111;
+            let t205 = k(0.00025) * t115;
+            let t206 = t205 * t181 + (t204 * t178 + t203 * t175)
+                - (t132 * t172 + t131 * t170);
+            let t207 = t137 * (t142 * t202 + t136 * t201 - (t135 * t185 - t206));
+            let t208 = t139 * (t143 * t202 + t138 * t201 - (t184 - t120 * t185));
+            let t209 = t208 - (t207 + t124 * (t136 * t202 + t123 * t201 - t186));
+            let t210 = t137 * (t187 * t143 - (t196 * t142 + t195 * t136))
+                + t124 * (t187 * t138 - (t196 * t136 + t195 * t123));
+            let t211 = t27 * t55 - (t25 * t51 + t23 * t44);
+            let t212 = t211 * t146 + t83 * (t139 * (t196 * t143 + t195 * t138) + t210);
+            let t213 = t27 * t76 - (t25 * t69 + t23 * t67)
+                - (t76 * t79 * t82 - t67 * t79 * t78);
+            let t214 = t213 * (t188 * t145 + (t192 * t144 + t191 * t140)) + t212;
+            let t215 = t211 - (t214 + (k(1e-6) * t189 + t209)) / t146;
+            let t216 = t201 + (t191 * t213 + (t124 * t215 + t195 * t83));
+            let t217 = t202 + (t192 * t213 + (t137 * t215 + t196 * t83));
+            let t218 = t188 * t213 + (t139 * t215 + t187 * t83);
+            let t219 = t121 * (t184 - (t120 * t218 + (t135 * t217 + t119 * t216)));
+            let t220 = t218 + t219;
+            (t203, t204, t205, t213, t215, t216, t217, t220)
         };
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            t25,
-            t29,
-            t33,
+            -t23,
+            -t25,
+            -t27,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t91,
-            -t231,
-            t229,
+            t83,
+            t215,
+            -t213,
             k(0.0),
             k(0.0),
             k(0.0),
-            t232,
-            t233,
-            t236,
-            t237,
-            t238,
-            -t239,
+            t216,
+            t217,
+            -t220,
+            k(0.000125) * t174 - (t176 * t220 + t203 * t217),
+            k(0.000125) * t177 + (t179 * t220 - t204 * t217),
+            -(k(0.000125) * t180 + (t182 * t220 - t205 * t217)),
             k(0.0),
-            t240,
-            -t241,
+            t169 + (t117 * t220 + (t131 * t217 + t100 * t216)),
+            -(t171 + (t118 * t220 + (t132 * t217 + t107 * t216))),
         ];
+    }
+    /// Writes λ: 475 operations (180 ±, 291 ×, 4 ÷).
+    fn multipliers(
+        &self,
+        _t: T,
+        y: &Self::State,
+        accelerations: &Self::Accelerations,
+        lambda: &mut Self::Rows,
+    ) {
+        let k = T::constant;
+        let base_e0 = y[3];
+        let base_e1 = y[4];
+        let base_e2 = y[5];
+        let base_e3 = y[6];
+        let outer_ring_e0 = y[10];
+        let outer_ring_e1 = y[11];
+        let outer_ring_e2 = y[12];
+        let outer_ring_e3 = y[13];
+        let inner_ring_e0 = y[17];
+        let inner_ring_e1 = y[18];
+        let inner_ring_e2 = y[19];
+        let inner_ring_e3 = y[20];
+        let rotor_e0 = y[24];
+        let rotor_e1 = y[25];
+        let rotor_e2 = y[26];
+        let rotor_e3 = y[27];
+        let outer_ring_wx = y[37];
+        let outer_ring_wy = y[38];
+        let outer_ring_wz = y[39];
+        let inner_ring_wx = y[43];
+        let inner_ring_wy = y[44];
+        let inner_ring_wz = y[45];
+        let rotor_wx = y[49];
+        let rotor_wy = y[50];
+        let rotor_wz = y[51];
+        let base_dsx = accelerations[0];
+        let base_dsy = accelerations[1];
+        let base_dsz = accelerations[2];
+        let base_dwx = accelerations[3];
+        let base_dwy = accelerations[4];
+        let base_dwz = accelerations[5];
+        let outer_ring_dsx = accelerations[6];
+        let outer_ring_dsy = accelerations[7];
+        let outer_ring_dsz = accelerations[8];
+        let outer_ring_dwx = accelerations[9];
+        let outer_ring_dwy = accelerations[10];
+        let outer_ring_dwz = accelerations[11];
+        let inner_ring_dsx = accelerations[12];
+        let inner_ring_dsy = accelerations[13];
+        let inner_ring_dsz = accelerations[14];
+        let inner_ring_dwx = accelerations[15];
+        let inner_ring_dwy = accelerations[16];
+        let inner_ring_dwz = accelerations[17];
+        let rotor_dsx = accelerations[18];
+        let rotor_dsy = accelerations[19];
+        let rotor_dsz = accelerations[20];
+        let rotor_dwx = accelerations[21];
+        let rotor_dwy = accelerations[22];
+        let rotor_dwz = accelerations[23];
+        let t0 = k(0.08) * rotor_dsx;
+        let t1 = k(0.01) * inner_ring_dsx + t0;
+        let t2 = k(0.01) * outer_ring_dsx + t1;
+        let t3 = k(0.8) + k(0.08) * rotor_dsy;
+        let t4 = k(0.1) + k(0.01) * inner_ring_dsy + t3;
+        let t5 = k(0.1) + k(0.01) * outer_ring_dsy + t4;
+        let t6 = k(0.08) * rotor_dsz;
+        let t7 = k(0.01) * inner_ring_dsz + t6;
+        let t8 = k(0.01) * outer_ring_dsz + t7;
+        let t9 = rotor_e0 * rotor_e0;
+        let t10 = k(2.0) * (k(0.5) - (t9 + rotor_e1 * rotor_e1));
+        let t11 = inner_ring_e0 * inner_ring_e0;
+        let t12 = k(2.0) * (k(0.5) - (t11 + inner_ring_e1 * inner_ring_e1));
+        let t13 = rotor_e0 * rotor_e3;
+        let t14 = rotor_e1 * rotor_e2;
+        let t15 = k(2.0) * (t14 + t13);
+        let t16 = inner_ring_e0 * inner_ring_e3;
+        let t17 = inner_ring_e1 * inner_ring_e2;
+        let t18 = k(2.0) * (t17 + t16);
+        let t19 = rotor_e0 * rotor_e2;
+        let t20 = rotor_e1 * rotor_e3;
+        let t21 = k(2.0) * (t20 - t19);
+        let t22 = inner_ring_e0 * inner_ring_e2;
+        let t23 = inner_ring_e1 * inner_ring_e3;
+        let t24 = k(2.0) * (t23 - t22);
+        let t25 = k(1e-5) * rotor_dwx;
+        let t26 = k(2.0) * (t14 - t13);
+        let t27 = k(2.0) * (k(0.5) - (t9 + rotor_e2 * rotor_e2));
+        let t28 = rotor_e0 * rotor_e1;
+        let t29 = rotor_e2 * rotor_e3;
+        let t30 = k(2.0) * (t29 + t28);
+        let t31 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
+        let t32 = t31 * (t24 * t30 - (t18 * t27 + t12 * t26))
+            + t25 * (t24 * t21 + (t18 * t15 + t12 * t10));
+        let t33 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
+        let t34 = k(2.0) * (t20 + t19);
+        let t35 = k(2.0) * (t29 - t28);
+        let t36 = k(2.0) * (k(0.5) - (t9 + rotor_e3 * rotor_e3));
+        let t37 = (t24 * t36 - (t18 * t35 - t12 * t34)) * t33 + t32;
+        let t38 = t37 - k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx);
+        let t39 = outer_ring_e0 * outer_ring_e0;
+        let t40 = k(2.0) * (k(0.5) - (t39 + outer_ring_e1 * outer_ring_e1));
+        let t41 = outer_ring_e0 * outer_ring_e3;
+        let t42 = outer_ring_e1 * outer_ring_e2;
+        let t43 = k(2.0) * (t42 + t41);
+        let t44 = outer_ring_e0 * outer_ring_e2;
+        let t45 = outer_ring_e1 * outer_ring_e3;
+        let t46 = k(2.0) * (t45 - t44);
+        let t47 = t46 * t24 + (t43 * t18 + t40 * t12);
+        let t48 = t17 - t16;
+        let t49 = k(2.0) * t48;
+        let t50 = k(0.5) - (t11 + inner_ring_e2 * inner_ring_e2);
+        let t51 = k(2.0) * t50;
+        let t52 = inner_ring_e0 * inner_ring_e1;
+        let t53 = inner_ring_e2 * inner_ring_e3;
+        let t54 = t53 + t52;
+        let t55 = k(2.0) * t54;
+        let t56 = t55 * t30 + (t49 * t26 + t51 * t27);
+        let t57 = t31 * t56 + t25 * (t55 * t21 - (t51 * t15 + t49 * t10));
+        let t58 = t55 * t36 - (t49 * t34 - t51 * t35);
+        let t59 = t23 + t22;
+        let t60 = t53 - t52;
+        let t61 = k(0.5) - (t11 + inner_ring_e3 * inner_ring_e3);
+        let t62 = t6 * (k(0.00025) * t61)
+            - (t3 * (k(0.00025) * t60) + t0 * (k(0.00025) * t59));
+        let t63 = k(2e-6) * inner_ring_dwy + (t62 + (t58 * t33 + t57));
+        let t64 = t46 * t55 - (t43 * t51 + t40 * t49);
+        let t65 = k(2.0) * t59;
+        let t66 = k(2.0) * t60;
+        let t67 = k(2.0) * t61;
+        let t68 = t67 * t30 - (t65 * t26 - t66 * t27);
+        let t69 = t31 * t68 + t25 * (t67 * t21 - (t66 * t15 - t65 * t10));
+        let t70 = t65 * t34 + t66 * t35 + t67 * t36;
+        let t71 = t6 * (k(0.00025) * t54)
+            - (t3 * (k(0.00025) * t50) - t0 * (k(0.00025) * t48));
+        let t72 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz)
+            + (t71 - (t70 * t33 + t69));
+        let t73 = (t46 * t67 - (t43 * t66 - t40 * t65)) * t72 - (t64 * t63 + t47 * t38);
+        let t74 = k(2e-6) * outer_ring_dwx - t73;
+        let t75 = base_e0 * base_e0;
+        let t76 = k(2.0) * (k(0.5) - (t75 + base_e1 * base_e1));
+        let t77 = base_e0 * base_e3;
+        let t78 = base_e1 * base_e2;
+        let t79 = k(2.0) * (t78 + t77);
+        let t80 = base_e0 * base_e2;
+        let t81 = base_e1 * base_e3;
+        let t82 = k(2.0) * (t81 - t80);
+        let t83 = t82 * t46 + (t79 * t43 + t76 * t40);
+        let t84 = k(2.0) * (t42 - t41);
+        let t85 = k(2.0) * (k(0.5) - (t39 + outer_ring_e2 * outer_ring_e2));
+        let t86 = outer_ring_e0 * outer_ring_e1;
+        let t87 = outer_ring_e2 * outer_ring_e3;
+        let t88 = k(2.0) * (t87 + t86);
+        let t89 = t88 * t24 - (t85 * t18 + t84 * t12);
+        let t90 = t88 * t55 + (t84 * t49 + t85 * t51);
+        let t91 = (t88 * t67 - (t84 * t65 - t85 * t66)) * t72 - (t90 * t63 + t89 * t38);
+        let t92 = k(1e-6) * (outer_ring_wx * outer_ring_wz + outer_ring_dwy) - t91;
+        let t93 = (t82 * t88 - (t79 * t85 + t76 * t84)) * t92 + t83 * t74;
+        let t94 = k(2.0) * (t45 + t44);
+        let t95 = k(2.0) * (t87 - t86);
+        let t96 = k(2.0) * (k(0.5) - (t39 + outer_ring_e3 * outer_ring_e3));
+        let t97 = (t96 * t55 - (t94 * t49 - t95 * t51)) * t63
+            + (t96 * t24 - (t95 * t18 - t94 * t12)) * t38;
+        let t98 = (t94 * t65 + t95 * t66 + t96 * t67) * t72 - t97;
+        let t99 = t98 - k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz);
+        let t100 = t82 * t96 - (t79 * t95 - t76 * t94);
+        let t101 = k(1e-7) * base_dwx - (t100 * t99 - t93);
+        let t102 = k(0.5) * base_e3;
+        let t103 = k(0.5) * base_e0;
+        let t104 = t103 * t103;
+        let t105 = t104 + t102 * t102;
+        let t106 = k(0.5) * base_e1;
+        let t107 = t106 * t103;
+        let t108 = k(0.5) * base_e2;
+        let t109 = t102 * t108;
+        let t110 = t109 + t107;
+        let t111 = t103 * t108;
+        let t112 = t106 * t102;
+        let t113 = t112 - t111;
+        let t114 = k(1.0) / (t108 * t113 - t106 * t110 - t103 * t105);
+        let t115 = k(2.0) * (t78 - t77);
+        let t116 = k(2.0) * (k(0.5) - (t75 + base_e2 * base_e2));
+        let t117 = base_e0 * base_e1;
+        let t118 = base_e2 * base_e3;
+        let t119 = k(2.0) * (t118 + t117);
+        let t120 = (t119 * t88 + (t115 * t84 + t116 * t85)) * t92
+            + (t119 * t46 - (t116 * t43 + t115 * t40)) * t74;
+        let t121 = (t119 * t96 - (t115 * t94 - t116 * t95)) * t99 - t120;
+        let t122 = k(1e-7) * base_dwy - t121;
+        let t123 = t103 * t102;
+        let t124 = t106 * t108;
+        let t125 = (t124 - t123) * t114 * t122 + (t104 + t106 * t106) * t114 * t101;
+        let t126 = k(2.0) * (t81 + t80);
+        let t127 = k(2.0) * (t118 - t117);
+        let t128 = k(2.0) * (k(0.5) - (t75 + base_e3 * base_e3));
+        let t129 = t128 * t46 - (t127 * t43 - t126 * t40);
+        let t130 = (t128 * t88 - (t126 * t84 - t127 * t85)) * t92 + t129 * t74;
+        let t131 = t126 * t94 + t127 * t95 + t128 * t96;
+        let t132 = k(1e-7) * base_dwz + (t131 * t99 - t130);
+        let t133 = (t104 + t108 * t108) * t114 * t122 + (t124 + t123) * t114 * t101;
+        let t134 = t105 * t114 * t132 + (t110 * t114 * t122 + t113 * t114 * t101);
+        let t135 = k(1.0) / (t129 * t100 - t131 * t83);
+        let t136 = k(1.0) / (t47 * t90 - t64 * t89);
+        let t137 = k(1.0) / (t56 * t70 - t58 * t68);
         *lambda = [
-            -t242,
-            -(k(0.01) + t245),
-            t246,
-            t32 * t259 + (t28 * t258 + t23 * t257),
-            t31 * t259 + (t27 * t258 + t20 * t257),
-            t30 * t259 + (t26 * t258 + t13 * t257),
-            -t242,
-            -t245,
-            t246,
-            t227 * t256 + t86 * t254,
-            t228 * t256 + t90 * t254,
-            -t242,
-            -t244,
-            t246,
-            t215 * t251 - t210 * t249,
-            t213 * t249 - t216 * t251,
-            -t242,
-            -t243,
-            t246,
-            t181 * t248 + t172 * t247,
-            t182 * t248 + t178 * t247,
+            -(k(0.001) * base_dsx + t2),
+            -(k(0.01) + k(0.001) * base_dsy + t5),
+            -(k(0.001) * base_dsz + t8),
+            (t112 + t111) * t114 * t132 + t125,
+            (t109 - t107) * t114 * t132 + t133,
+            t134,
+            -t2,
+            -t5,
+            -t8,
+            t83 * t135 * t74 - t100 * t135 * t99,
+            t129 * t135 * t74 - t131 * t135 * t99,
+            -t1,
+            -t4,
+            -t7,
+            -(t90 * t136 * t63 + t89 * t136 * t38),
+            t64 * t136 * t63 + t47 * t136 * t38,
+            -t0,
+            -t3,
+            -t6,
+            t70 * t137 * t33 + t31 * (t68 * t137),
+            t58 * t137 * t33 + t31 * (t56 * t137),
         ];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::Ports for GyroscopeMaximal<T> {
+    type Outputs = [T; 0];
+    fn outputs_buffer(&self) -> Self::Outputs {
+        [T::constant(0.0); 0]
+    }
+    fn outputs(&self, _t: T, _y: &Self::State, _out: &mut Self::Outputs) {}
+    fn n_outputs(&self) -> usize {
+        0
+    }
+    fn output(&self, index: usize) -> gyro_sim::OutputInfo<'_> {
+        const OUTPUTS: [gyro_sim::OutputInfo<'static>; 0] = [];
+        OUTPUTS
+            .get(index)
+            .copied()
+            .unwrap_or(gyro_sim::OutputInfo {
+                name: "",
+                suffix: "",
+                unit: "",
+            })
+    }
+    fn n_inputs(&self) -> usize {
+        0
+    }
+    fn input_name(&self, index: usize) -> &str {
+        const INPUTS: [&str; 0] = [];
+        INPUTS.get(index).copied().unwrap_or_default()
+    }
+    fn set_input(&mut self, _index: usize, _value: T) -> bool {
+        false
     }
 }

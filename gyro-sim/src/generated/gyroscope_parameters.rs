@@ -19,7 +19,8 @@
 //! | gamma | γ | 122 | 193 | 0 | 315 | 6 of 15 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 90 | 128 | 0 | 218 | 0 of 15 |
 //! | applied_force | (f, n' − w̃'J'w') | 1 | 14 | 0 | 15 | 9 of 18 |
-//! | accelerations | (s̈, ẇ') and λ, eq. (17) | 247 | 382 | 5 | 634 | 7 of 33 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 217 | 342 | 5 | 564 | 7 of 18 |
+//! | multipliers | λ, the accelerations being known | 115 | 191 | 3 | 309 | 0 of 15 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | energy | T and V | 19 | 36 | 0 | 55 | 0 of 2 |
 //! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 |
@@ -124,9 +125,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for GyroscopeParameters<T> {
     }
     /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 72 operations (24 ±, 48 ×, 0 ÷).
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut v = gyro_sim::Equations::velocities(self);
-        let mut lambda = gyro_sim::Mechanism::rows(self);
-        gyro_sim::Equations::accelerations(self, t, y, &mut v, &mut lambda);
+        let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
+        gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -198,24 +198,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for GyroscopeParameters<T> {
             k(0.5) * (rotor_e3 * rotor_wx + rotor_e0 * rotor_wy - rotor_e1 * rotor_wz),
             -(k(0.5)
                 * (rotor_e2 * rotor_wx - rotor_e1 * rotor_wy - rotor_e0 * rotor_wz)),
-            v[0],
-            v[1],
-            v[2],
-            v[3],
-            v[4],
-            v[5],
-            v[6],
-            v[7],
-            v[8],
-            v[9],
-            v[10],
-            v[11],
-            v[12],
-            v[13],
-            v[14],
-            v[15],
-            v[16],
-            v[17],
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            accelerations[6],
+            accelerations[7],
+            accelerations[8],
+            accelerations[9],
+            accelerations[10],
+            accelerations[11],
+            accelerations[12],
+            accelerations[13],
+            accelerations[14],
+            accelerations[15],
+            accelerations[16],
+            accelerations[17],
         ];
     }
 }
@@ -430,7 +430,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeParameters<T> {
         ];
     }
     /// Kinetic and potential energy: 55 operations (19 ±, 36 ×, 0 ÷).
-    fn energy(&self, y: &Self::State) -> gyro_sim::Energy<T> {
+    fn energy(&self, _t: T, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let outer_ring_ry = y[1];
         let inner_ring_ry = y[8];
@@ -480,7 +480,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeParameters<T> {
         }
     }
     /// Writes the joint readings: 114 operations (54 ±, 60 ×, 0 ÷).
-    fn read_joints(&self, y: &Self::State, out: &mut Self::Readings) {
+    fn read_joints(&self, _t: T, y: &Self::State, out: &mut Self::Readings) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -561,15 +561,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeParameters<T> {
         const JOINTS: [gyro_sim::JointInfo<'static>; 3] = [
             gyro_sim::JointInfo {
                 name: "alpha",
-                coordinate: gyro_sim::Coordinate::Angle,
+                coordinates: &[gyro_sim::Coordinate::Angle],
             },
             gyro_sim::JointInfo {
                 name: "beta",
-                coordinate: gyro_sim::Coordinate::Angle,
+                coordinates: &[gyro_sim::Coordinate::Angle],
             },
             gyro_sim::JointInfo {
                 name: "phi",
-                coordinate: gyro_sim::Coordinate::Angle,
+                coordinates: &[gyro_sim::Coordinate::Angle],
             },
         ];
         JOINTS
@@ -577,8 +577,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeParameters<T> {
             .copied()
             .unwrap_or(gyro_sim::JointInfo {
                 name: "",
-                coordinate: gyro_sim::Coordinate::None,
+                coordinates: &[],
             })
+    }
+    fn coupler_name(&self, coupler: usize) -> &str {
+        const COUPLERS: [&str; 0] = [];
+        COUPLERS.get(coupler).copied().unwrap_or_default()
+    }
+    fn driver_name(&self, driver: usize) -> &str {
+        const DRIVERS: [&str; 0] = [];
+        DRIVERS.get(driver).copied().unwrap_or_default()
     }
     fn row(&self, row: usize) -> gyro_sim::RowInfo {
         const ROWS: [gyro_sim::RowInfo; 15] = [
@@ -1020,6 +1028,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeParameters<T> {
     type Velocities = [T; 18];
     type PhiQ = [T; 77];
     type PhiPi = [T; 41];
+    /// (s̈, ẇ') of each body.
+    type Accelerations = [T; 18];
     fn velocities(&self) -> Self::Velocities {
         [T::constant(0.0); 18]
     }
@@ -1028,6 +1038,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeParameters<T> {
     }
     fn phi_pi_values(&self) -> Self::PhiPi {
         [T::constant(0.0); 41]
+    }
+    fn accelerations_buffer(&self) -> Self::Accelerations {
+        [T::constant(0.0); 18]
     }
     fn phi_q_pattern(&self) -> &[(u16, u16)] {
         &[
@@ -1610,14 +1623,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeParameters<T> {
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 634 operations (247 ±, 382 ×, 5 ÷).
-    fn accelerations(
-        &self,
-        _t: T,
-        y: &Self::State,
-        out: &mut Self::Velocities,
-        lambda: &mut Self::Rows,
-    ) {
+    /// Solves eq. (17): 564 operations (217 ±, 342 ×, 5 ÷).
+    fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -1656,230 +1663,363 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeParameters<T> {
         let t13 = k(2.0) * (k(0.5) - (t10 + outer_ring_e1 * outer_ring_e1));
         let t14 = k(2.0) * (t2 + t1);
         let t15 = k(1.0) / (t14 * t3 - t13 * t11);
-        let t16 = t13 * t15;
-        let t17 = outer_ring_e0 * outer_ring_e3;
-        let t18 = outer_ring_e1 * outer_ring_e2;
-        let t19 = k(2.0) * (t18 - t17);
-        let t20 = t14 * t9 - (t19 * t5 + t13 * t0);
-        let t21 = t3 * t15;
-        let t22 = t21 * t20 - t16 * t12;
-        let t23 = rotor_e0 * rotor_e3;
-        let t24 = rotor_e1 * rotor_e2;
-        let t25 = k(2.0) * (t24 - t23);
-        let t26 = inner_ring_e0 * inner_ring_e0;
-        let t27 = k(2.0) * (k(0.5) - (t26 + inner_ring_e1 * inner_ring_e1));
-        let t28 = rotor_e0 * rotor_e0;
-        let t29 = k(2.0) * (k(0.5) - (t28 + rotor_e2 * rotor_e2));
-        let t30 = inner_ring_e0 * inner_ring_e3;
-        let t31 = inner_ring_e1 * inner_ring_e2;
-        let t32 = k(2.0) * (t31 + t30);
-        let t33 = rotor_e0 * rotor_e1;
-        let t34 = rotor_e2 * rotor_e3;
-        let t35 = k(2.0) * (t34 + t33);
-        let t36 = inner_ring_e0 * inner_ring_e2;
-        let t37 = inner_ring_e1 * inner_ring_e3;
-        let t38 = k(2.0) * (t37 - t36);
-        let t39 = t38 * t35 - (t32 * t29 + t27 * t25);
-        let t40 = k(5e-6) * t39;
-        let t41 = rotor_e0 * rotor_e2;
-        let t42 = rotor_e1 * rotor_e3;
-        let t43 = k(2.0) * (t42 + t41);
-        let t44 = k(2.0) * (t34 - t33);
-        let t45 = k(2.0) * (k(0.5) - (t28 + rotor_e3 * rotor_e3));
-        let t46 = t38 * t45 - (t32 * t44 - t27 * t43);
-        let t47 = k(5e-6) * t46;
-        let t48 = inner_ring_e0 * inner_ring_e1;
-        let t49 = inner_ring_e2 * inner_ring_e3;
-        let t50 = k(2.0) * (t49 - t48);
-        let t51 = k(2.0) * (t37 + t36);
-        let t52 = k(2.0) * (k(0.5) - (t26 + inner_ring_e3 * inner_ring_e3));
-        let t53 = t52 * t35 - (t51 * t25 - t50 * t29);
-        let t54 = t51 * t43 + t50 * t44 + t52 * t45;
-        let t55 = t54 * t47 + t53 * t40;
-        let t56 = self.rotor_mass * (self.rotor_offset * self.rotor_offset);
-        let t57 = self.ring_diametral_inertia
-            + (t56 + (t54 * (k(5e-6) * t54) + t53 * (k(5e-6) * t53)));
-        let t58 = k(1.0) / t57;
-        let t59 = t58 * t55;
-        let t60 = t55 * t59 - (self.ring_diametral_inertia + (t46 * t47 + t39 * t40));
-        let t61 = k(2.0) * (k(0.5) - (t10 + outer_ring_e2 * outer_ring_e2));
-        let t62 = t8 * t38 - (t61 * t32 + t19 * t27);
-        let t63 = k(2.0) * (k(0.5) - (t26 + inner_ring_e2 * inner_ring_e2));
-        let t64 = k(2.0) * (t31 - t30);
-        let t65 = k(2.0) * (t49 + t48);
-        let t66 = t65 * t35 + (t64 * t25 + t63 * t29);
-        let t67 = t65 * t45 - (t64 * t43 - t63 * t44);
-        let t68 = k(5e-6) * t66;
-        let t69 = k(5e-6) * t67;
-        let t70 = t54 * t69 + t53 * t68;
-        let t71 = t70 * t59 - (t67 * t47 + t66 * t40);
-        let t72 = t8 * t65 + (t19 * t64 + t61 * t63);
-        let t73 = t55 - t57 * t59;
-        let t74 = t8 * t52 - (t19 * t51 - t61 * t50);
-        let t75 = t74 * t73 - (t72 * t71 + t62 * t60);
-        let t76 = t58 * t70;
-        let t77 = t70 * t76
-            - (self.ring_axial_inertia + (t56 + (t67 * t69 + t66 * t68)));
-        let t78 = t70 - t57 * t76;
-        let t79 = t74 * t78 - (t72 * t77 + t62 * t71);
-        let t80 = t72 * t78 + t62 * t73;
-        let t81 = k(2.0) * (k(0.5) - (t28 + rotor_e1 * rotor_e1));
-        let t82 = k(2.0) * (t24 + t23);
-        let t83 = k(2.0) * (t42 - t41);
-        let t84 = t38 * t83 + (t32 * t82 + t27 * t81);
-        let t85 = inner_ring_wx * inner_ring_wy;
-        let t86 = t65 * t83 - (t63 * t82 + t64 * t81);
-        let t87 = inner_ring_wx * inner_ring_wx;
-        let t88 = inner_ring_wz * inner_ring_wz;
-        let t89 = t52 * t83 - (t50 * t82 - t51 * t81);
-        let t90 = inner_ring_wy * inner_ring_wz;
-        let t91 = rotor_wy * t46 + rotor_wz * t39;
-        let t92 = k(2.0)
-            * (inner_ring_wx * (rotor_wy * t54 + rotor_wz * t53) + inner_ring_wz * t91);
-        let t93 = rotor_wz * rotor_wz + rotor_wy * rotor_wy;
-        let t94 = rotor_wx * rotor_wy;
-        let t95 = rotor_wx * rotor_wz;
-        let t96 = t95 * t67 - (t94 * t66 - t93 * t86) + t92
-            + (t90 * t89 + ((t88 + t87) * t86 - t85 * t84));
-        let t97 = k(1.0) / (t66 * t54 - t67 * t53);
-        let t98 = t53 * t97;
-        let t99 = inner_ring_wx * inner_ring_wz;
-        let t100 = inner_ring_wy * inner_ring_wy;
-        let t101 = t100 + t87;
-        let t102 = k(2.0)
-            * (inner_ring_wx * (rotor_wy * t67 + rotor_wz * t66) - inner_ring_wy * t91);
-        let t103 = t95 * t54 - (t94 * t53 - t93 * t89) - t102
-            + (t101 * t89 + (t90 * t86 + t99 * t84));
-        let t104 = t66 * t97;
-        let t105 = t104 * t103 - t98 * t96;
-        let t106 = k(5e-6) * (t95 + t105);
-        let t107 = t54 * t97;
-        let t108 = t67 * t97;
-        let t109 = t108 * t103 - t107 * t96;
-        let t110 = k(5e-6) * (t94 + t109);
-        let t111 = self.ring_axial_inertia - self.ring_diametral_inertia;
-        let t112 = t90 * t111;
-        let t113 = t88 + t100;
-        let t114 = self.rotor_offset * (t51 * t99 + (t64 * t85 + t27 * t113));
-        let t115 = self.rotor_mass * t114;
-        let t116 = t64 * self.rotor_offset;
-        let t117 = self.rotor_offset * (t50 * t99 - (t63 * t85 + t32 * t113));
-        let t118 = self.gravity * self.rotor_mass;
-        let t119 = t118 + self.rotor_mass * t117;
-        let t120 = t63 * self.rotor_offset;
-        let t121 = self.rotor_offset * (t52 * t99 - (t65 * t85 - t38 * t113));
-        let t122 = self.rotor_mass * t121;
-        let t123 = t65 * self.rotor_offset;
-        let t124 = t123 * t122 + (t120 * t119 - t116 * t115) + (t54 * t110 + t53 * t106);
-        let t125 = t85 * t111;
-        let t126 = t125 - t124;
-        let t127 = k(2.0) * (t18 + t17);
-        let t128 = t3 * t52 - (t127 * t50 - t13 * t51);
-        let t129 = k(2.0) * (t7 - t6);
-        let t130 = t14 * t51 + t129 * t50 + t11 * t52;
-        let t131 = outer_ring_wx * outer_ring_wz;
-        let t132 = t131 * t130
-            - (t0 * t74 - (t4 + outer_ring_wy * outer_ring_wy) * t128);
-        let t133 = t11 * t38 - (t129 * t32 - t14 * t27);
-        let t134 = t11 * t65 - (t14 * t64 - t129 * t63);
-        let t135 = inner_ring_wx * t134 - inner_ring_wy * t133;
-        let t136 = k(2.0)
-            * (outer_ring_wy * t135
-                + outer_ring_wz * (inner_ring_wx * t72 - inner_ring_wy * t62));
-        let t137 = t3 * t38 + (t127 * t32 + t13 * t27);
-        let t138 = t3 * t65 - (t127 * t63 + t13 * t64);
-        let t139 = t101 * t128 + (t90 * t138 + t99 * t137) - t136 + t132;
-        let t140 = k(1.0) / (t137 * t72 - t138 * t62);
-        let t141 = t62 * t140;
-        let t142 = k(2.0)
-            * (outer_ring_wx * t135
-                + outer_ring_wz * (inner_ring_wx * t138 - inner_ring_wy * t137));
-        let t143 = t101 * t74 + (t90 * t72 + t99 * t62) + t142
-            + (t9 * t130 + (t5 * t74 - t0 * t128));
-        let t144 = t137 * t140;
-        let t145 = t144 * t143 - t141 * t139;
-        let t146 = t72 * t140;
-        let t147 = t138 * t140;
-        let t148 = t147 * t143 - t146 * t139;
-        let t149 = t71 * t148 + t60 * t145
-            - (t59 * t126 - (t112 - (t46 * t110 + t39 * t106)));
-        let t150 = t51 * self.rotor_offset;
-        let t151 = t50 * self.rotor_offset;
-        let t152 = t52 * self.rotor_offset;
-        let t153 = t152 * t122 + (t151 * t119 + t150 * t115) - (t67 * t110 + t66 * t106);
-        let t154 = t72 * (t77 * t148 + t71 * t145 - (t76 * t126 - t153));
-        let t155 = t74 * (t78 * t148 + t73 * t145) - (t154 + t62 * t149);
-        let t156 = t72 * (t128 * t78 - (t138 * t77 + t137 * t71))
-            + t62 * (t128 * t73 - (t138 * t71 + t137 * t60));
-        let t157 = t14 * t15;
-        let t158 = t11 * t15;
-        let t159 = t158 * t20 - t157 * t12;
-        let t160 = t159 * (t130 * t80 + (t134 * t79 + t133 * t75))
-            + t22 * (t74 * (t138 * t78 + t137 * t73) + t156);
-        let t161 = (t160 - (t131 * t111 + t155))
-            / (self.ring_diametral_inertia + (t74 * t80 + (t72 * t79 + t62 * t75)));
-        let t162 = t145 - (t133 * t159 - (t62 * t161 - t137 * t22));
-        let t163 = t148 - (t134 * t159 - (t72 * t161 - t138 * t22));
-        let t164 = t130 * t159 - (t74 * t161 - t128 * t22);
-        let t165 = t58 * (t126 + (t57 * t164 - (t70 * t163 + t55 * t162)));
-        let t166 = t164 - t165;
-        let t167 = t114 + (t116 * t166 - t150 * t163);
-        let t168 = t117 - (t120 * t166 + t151 * t163);
-        let t169 = t121 - (t123 * t166 + t152 * t163);
-        let t170 = t105 - (t53 * t166 - (t66 * t163 + t39 * t162));
-        let t171 = t109 - (t54 * t166 - (t67 * t163 + t46 * t162));
-        let t172 = self.rotor_mass * t167;
-        let t173 = t118 + self.rotor_mass * t168;
-        let t174 = k(0.01) * self.gravity;
-        let t175 = t174 + t173;
-        let t176 = self.rotor_mass * t169;
-        let t177 = k(5e-6) * (t95 + t170);
-        let t178 = k(5e-6) * (t94 + t171);
-        let t179 = t46 * t178 + t39 * t177 - (t112 - self.ring_diametral_inertia * t162);
-        let t180 = t152 * t176 + (t151 * t173 + t150 * t172) - (t67 * t178 + t66 * t177);
-        let t181 = t180 - self.ring_axial_inertia * t163;
-        let t182 = t123 * t176 + (t120 * t173 - t116 * t172) + (t54 * t178 + t53 * t177);
-        let t183 = t182 - (t125 + self.ring_diametral_inertia * t166);
-        let t184 = t128 * t183 - (t138 * t181 - t137 * t179)
-            - self.ring_axial_inertia * t22;
-        let t185 = t130 * t183 - (t134 * t181 - t133 * t179)
-            + (t0 * t111 - self.ring_diametral_inertia * t159);
+        let t16 = outer_ring_e0 * outer_ring_e3;
+        let t17 = outer_ring_e1 * outer_ring_e2;
+        let t18 = k(2.0) * (t17 - t16);
+        let t19 = t14 * t9 - (t18 * t5 + t13 * t0);
+        let t20 = t3 * t15 * t19 - t13 * t15 * t12;
+        let t21 = rotor_e0 * rotor_e3;
+        let t22 = rotor_e1 * rotor_e2;
+        let t23 = k(2.0) * (t22 - t21);
+        let t24 = inner_ring_e0 * inner_ring_e0;
+        let t25 = k(2.0) * (k(0.5) - (t24 + inner_ring_e1 * inner_ring_e1));
+        let t26 = rotor_e0 * rotor_e0;
+        let t27 = k(2.0) * (k(0.5) - (t26 + rotor_e2 * rotor_e2));
+        let t28 = inner_ring_e0 * inner_ring_e3;
+        let t29 = inner_ring_e1 * inner_ring_e2;
+        let t30 = k(2.0) * (t29 + t28);
+        let t31 = rotor_e0 * rotor_e1;
+        let t32 = rotor_e2 * rotor_e3;
+        let t33 = k(2.0) * (t32 + t31);
+        let t34 = inner_ring_e0 * inner_ring_e2;
+        let t35 = inner_ring_e1 * inner_ring_e3;
+        let t36 = k(2.0) * (t35 - t34);
+        let t37 = t36 * t33 - (t30 * t27 + t25 * t23);
+        let t38 = k(5e-6) * t37;
+        let t39 = rotor_e0 * rotor_e2;
+        let t40 = rotor_e1 * rotor_e3;
+        let t41 = k(2.0) * (t40 + t39);
+        let t42 = k(2.0) * (t32 - t31);
+        let t43 = k(2.0) * (k(0.5) - (t26 + rotor_e3 * rotor_e3));
+        let t44 = t36 * t43 - (t30 * t42 - t25 * t41);
+        let t45 = k(5e-6) * t44;
+        let t46 = inner_ring_e0 * inner_ring_e1;
+        let t47 = inner_ring_e2 * inner_ring_e3;
+        let t48 = k(2.0) * (t47 - t46);
+        let t49 = k(2.0) * (t35 + t34);
+        let t50 = k(2.0) * (k(0.5) - (t24 + inner_ring_e3 * inner_ring_e3));
+        let t51 = t50 * t33 - (t49 * t23 - t48 * t27);
+        let t52 = t49 * t41 + t48 * t42 + t50 * t43;
+        let t53 = t52 * t45 + t51 * t38;
+        let t54 = self.rotor_mass * (self.rotor_offset * self.rotor_offset);
+        let t55 = self.ring_diametral_inertia
+            + (t54 + (t52 * (k(5e-6) * t52) + t51 * (k(5e-6) * t51)));
+        let t56 = k(1.0) / t55;
+        let t57 = t56 * t53;
+        let t58 = t53 * t57 - (self.ring_diametral_inertia + (t44 * t45 + t37 * t38));
+        let t59 = k(2.0) * (k(0.5) - (t10 + outer_ring_e2 * outer_ring_e2));
+        let t60 = t8 * t36 - (t59 * t30 + t18 * t25);
+        let t61 = k(2.0) * (k(0.5) - (t24 + inner_ring_e2 * inner_ring_e2));
+        let t62 = k(2.0) * (t29 - t28);
+        let t63 = k(2.0) * (t47 + t46);
+        let t64 = t63 * t33 + (t62 * t23 + t61 * t27);
+        let t65 = t63 * t43 - (t62 * t41 - t61 * t42);
+        let t66 = k(5e-6) * t64;
+        let t67 = k(5e-6) * t65;
+        let t68 = t52 * t67 + t51 * t66;
+        let t69 = t68 * t57 - (t65 * t45 + t64 * t38);
+        let t70 = t8 * t63 + (t18 * t62 + t59 * t61);
+        let t71 = t53 - t55 * t57;
+        let t72 = t8 * t50 - (t18 * t49 - t59 * t48);
+        let t73 = t72 * t71 - (t70 * t69 + t60 * t58);
+        let t74 = t56 * t68;
+        let t75 = t68 * t74
+            - (self.ring_axial_inertia + (t54 + (t65 * t67 + t64 * t66)));
+        let t76 = t68 - t55 * t74;
+        let t77 = t72 * t76 - (t70 * t75 + t60 * t69);
+        let t78 = t70 * t76 + t60 * t71;
+        let t79 = k(2.0) * (k(0.5) - (t26 + rotor_e1 * rotor_e1));
+        let t80 = k(2.0) * (t22 + t21);
+        let t81 = k(2.0) * (t40 - t39);
+        let t82 = t36 * t81 + (t30 * t80 + t25 * t79);
+        let t83 = inner_ring_wx * inner_ring_wy;
+        let t84 = t63 * t81 - (t61 * t80 + t62 * t79);
+        let t85 = inner_ring_wx * inner_ring_wx;
+        let t86 = inner_ring_wz * inner_ring_wz;
+        let t87 = t50 * t81 - (t48 * t80 - t49 * t79);
+        let t88 = inner_ring_wy * inner_ring_wz;
+        let t89 = rotor_wy * t44 + rotor_wz * t37;
+        let t90 = k(2.0)
+            * (inner_ring_wx * (rotor_wy * t52 + rotor_wz * t51) + inner_ring_wz * t89);
+        let t91 = rotor_wz * rotor_wz + rotor_wy * rotor_wy;
+        let t92 = rotor_wx * rotor_wy;
+        let t93 = rotor_wx * rotor_wz;
+        let t94 = t93 * t65 - (t92 * t64 - t91 * t84) + t90
+            + (t88 * t87 + ((t86 + t85) * t84 - t83 * t82));
+        let t95 = k(1.0) / (t64 * t52 - t65 * t51);
+        let t96 = inner_ring_wx * inner_ring_wz;
+        let t97 = inner_ring_wy * inner_ring_wy;
+        let t98 = t97 + t85;
+        let t99 = k(2.0)
+            * (inner_ring_wx * (rotor_wy * t65 + rotor_wz * t64) - inner_ring_wy * t89);
+        let t100 = t93 * t52 - (t92 * t51 - t91 * t87) - t99
+            + (t98 * t87 + (t88 * t84 + t96 * t82));
+        let t101 = t64 * t95 * t100 - t51 * t95 * t94;
+        let t102 = k(5e-6) * (t93 + t101);
+        let t103 = t65 * t95 * t100 - t52 * t95 * t94;
+        let t104 = k(5e-6) * (t92 + t103);
+        let t105 = self.ring_axial_inertia - self.ring_diametral_inertia;
+        let t106 = t86 + t97;
+        let t107 = self.rotor_offset * (t49 * t96 + (t62 * t83 + t25 * t106));
+        let t108 = self.rotor_mass * t107;
+        let t109 = t62 * self.rotor_offset;
+        let t110 = self.rotor_offset * (t48 * t96 - (t61 * t83 + t30 * t106));
+        let t111 = self.gravity * self.rotor_mass + self.rotor_mass * t110;
+        let t112 = t61 * self.rotor_offset;
+        let t113 = self.rotor_offset * (t50 * t96 - (t63 * t83 - t36 * t106));
+        let t114 = self.rotor_mass * t113;
+        let t115 = t63 * self.rotor_offset;
+        let t116 = t115 * t114 + (t112 * t111 - t109 * t108) + (t52 * t104 + t51 * t102);
+        let t117 = t83 * t105 - t116;
+        let t118 = t56 * t117;
+        let t119 = t53 * t118 - (t88 * t105 - (t44 * t104 + t37 * t102));
+        let t120 = k(2.0) * (t17 + t16);
+        let t121 = t3 * t50 - (t120 * t48 - t13 * t49);
+        let t122 = k(2.0) * (t7 - t6);
+        let t123 = t14 * t49 + t122 * t48 + t11 * t50;
+        let t124 = outer_ring_wx * outer_ring_wz;
+        let t125 = t124 * t123
+            - (t0 * t72 - (t4 + outer_ring_wy * outer_ring_wy) * t121);
+        let t126 = t11 * t36 - (t122 * t30 - t14 * t25);
+        let t127 = t11 * t63 - (t14 * t62 - t122 * t61);
+        let t128 = inner_ring_wx * t127 - inner_ring_wy * t126;
+        let t129 = k(2.0)
+            * (outer_ring_wy * t128
+                + outer_ring_wz * (inner_ring_wx * t70 - inner_ring_wy * t60));
+        let t130 = t3 * t36 + (t120 * t30 + t13 * t25);
+        let t131 = t3 * t63 - (t120 * t61 + t13 * t62);
+        let t132 = t98 * t121 + (t88 * t131 + t96 * t130) - t129 + t125;
+        let t133 = k(1.0) / (t130 * t70 - t131 * t60);
+        let t134 = k(2.0)
+            * (outer_ring_wx * t128
+                + outer_ring_wz * (inner_ring_wx * t131 - inner_ring_wy * t130));
+        let t135 = t98 * t72 + (t88 * t70 + t96 * t60) + t134
+            + (t9 * t123 + (t5 * t72 - t0 * t121));
+        let t136 = t130 * t133 * t135 - t60 * t133 * t132;
+        let t137 = t131 * t133 * t135 - t70 * t133 * t132;
+        let t138 = t49 * self.rotor_offset;
+        let t139 = t48 * self.rotor_offset;
+        let t140 = t50 * self.rotor_offset;
+        let t141 = t140 * t114 + (t139 * t111 + t138 * t108) - (t65 * t104 + t64 * t102);
+        let t142 = t70 * (t75 * t137 + t69 * t136 - (t68 * t118 - t141));
+        let t143 = t72 * (t76 * t137 + t71 * t136 - (t117 - t55 * t118));
+        let t144 = t143 - (t142 + t60 * (t69 * t137 + t58 * t136 - t119));
+        let t145 = t70 * (t121 * t76 - (t131 * t75 + t130 * t69))
+            + t60 * (t121 * t71 - (t131 * t69 + t130 * t58));
+        let t146 = t11 * t15 * t19 - t14 * t15 * t12;
+        let t147 = t146 * (t123 * t78 + (t127 * t77 + t126 * t73))
+            + t20 * (t72 * (t131 * t76 + t130 * t71) + t145);
+        let t148 = (t147 - (t124 * t105 + t144))
+            / (self.ring_diametral_inertia + (t72 * t78 + (t70 * t77 + t60 * t73)));
+        let t149 = t136 - (t126 * t146 - (t60 * t148 - t130 * t20));
+        let t150 = t137 - (t127 * t146 - (t70 * t148 - t131 * t20));
+        let t151 = t123 * t146 - (t72 * t148 - t121 * t20);
+        let t152 = t56 * (t117 + (t55 * t151 - (t68 * t150 + t53 * t149)));
+        let t153 = t151 - t152;
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -t22,
-            t161,
-            t159,
+            -t20,
+            t148,
+            t146,
             k(0.0),
             k(0.0),
             k(0.0),
-            t162,
-            t163,
-            t166,
-            t167,
-            t168,
-            -t169,
+            t149,
+            t150,
+            t153,
+            t107 + (t109 * t153 - t138 * t150),
+            t110 - (t112 * t153 + t139 * t150),
+            t115 * t153 + t140 * t150 - t113,
             k(0.0),
-            t170,
-            -t171,
+            t101 - (t51 * t153 - (t64 * t150 + t37 * t149)),
+            t52 * t153 - (t65 * t150 + t44 * t149) - t103,
         ];
+    }
+    /// Writes λ: 309 operations (115 ±, 191 ×, 3 ÷).
+    fn multipliers(
+        &self,
+        _t: T,
+        y: &Self::State,
+        accelerations: &Self::Accelerations,
+        lambda: &mut Self::Rows,
+    ) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        let outer_ring_dsx = accelerations[0];
+        let outer_ring_dsy = accelerations[1];
+        let outer_ring_dsz = accelerations[2];
+        let outer_ring_dwx = accelerations[3];
+        let outer_ring_dwz = accelerations[5];
+        let inner_ring_dsx = accelerations[6];
+        let inner_ring_dsy = accelerations[7];
+        let inner_ring_dsz = accelerations[8];
+        let inner_ring_dwx = accelerations[9];
+        let inner_ring_dwy = accelerations[10];
+        let inner_ring_dwz = accelerations[11];
+        let rotor_dsx = accelerations[12];
+        let rotor_dsy = accelerations[13];
+        let rotor_dsz = accelerations[14];
+        let rotor_dwx = accelerations[15];
+        let rotor_dwy = accelerations[16];
+        let rotor_dwz = accelerations[17];
+        let t0 = self.rotor_mass * rotor_dsx;
+        let t1 = k(0.01) * inner_ring_dsx + t0;
+        let t2 = self.gravity * self.rotor_mass + self.rotor_mass * rotor_dsy;
+        let t3 = k(0.01) * (self.gravity + inner_ring_dsy) + t2;
+        let t4 = self.rotor_mass * rotor_dsz;
+        let t5 = k(0.01) * inner_ring_dsz + t4;
+        let t6 = rotor_e0 * rotor_e0;
+        let t7 = k(2.0) * (k(0.5) - (t6 + rotor_e1 * rotor_e1));
+        let t8 = inner_ring_e0 * inner_ring_e0;
+        let t9 = k(2.0) * (k(0.5) - (t8 + inner_ring_e1 * inner_ring_e1));
+        let t10 = rotor_e0 * rotor_e3;
+        let t11 = rotor_e1 * rotor_e2;
+        let t12 = k(2.0) * (t11 + t10);
+        let t13 = inner_ring_e0 * inner_ring_e3;
+        let t14 = inner_ring_e1 * inner_ring_e2;
+        let t15 = k(2.0) * (t14 + t13);
+        let t16 = rotor_e0 * rotor_e2;
+        let t17 = rotor_e1 * rotor_e3;
+        let t18 = k(2.0) * (t17 - t16);
+        let t19 = inner_ring_e0 * inner_ring_e2;
+        let t20 = inner_ring_e1 * inner_ring_e3;
+        let t21 = k(2.0) * (t20 - t19);
+        let t22 = k(1e-5) * rotor_dwx;
+        let t23 = k(2.0) * (t11 - t10);
+        let t24 = k(2.0) * (k(0.5) - (t6 + rotor_e2 * rotor_e2));
+        let t25 = rotor_e0 * rotor_e1;
+        let t26 = rotor_e2 * rotor_e3;
+        let t27 = k(2.0) * (t26 + t25);
+        let t28 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
+        let t29 = t28 * (t21 * t27 - (t15 * t24 + t9 * t23))
+            + t22 * (t21 * t18 + (t15 * t12 + t9 * t7));
+        let t30 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
+        let t31 = k(2.0) * (t17 + t16);
+        let t32 = k(2.0) * (t26 - t25);
+        let t33 = k(2.0) * (k(0.5) - (t6 + rotor_e3 * rotor_e3));
+        let t34 = (t21 * t33 - (t15 * t32 - t9 * t31)) * t30 + t29;
+        let t35 = self.ring_axial_inertia - self.ring_diametral_inertia;
+        let t36 = inner_ring_wy * inner_ring_wz * t35
+            - self.ring_diametral_inertia * inner_ring_dwx - t34;
+        let t37 = outer_ring_e0 * outer_ring_e0;
+        let t38 = k(2.0) * (k(0.5) - (t37 + outer_ring_e1 * outer_ring_e1));
+        let t39 = outer_ring_e0 * outer_ring_e3;
+        let t40 = outer_ring_e1 * outer_ring_e2;
+        let t41 = k(2.0) * (t40 + t39);
+        let t42 = outer_ring_e0 * outer_ring_e2;
+        let t43 = outer_ring_e1 * outer_ring_e3;
+        let t44 = k(2.0) * (t43 - t42);
+        let t45 = t44 * t21 + (t41 * t15 + t38 * t9);
+        let t46 = k(2.0) * (t14 - t13);
+        let t47 = k(2.0) * (k(0.5) - (t8 + inner_ring_e2 * inner_ring_e2));
+        let t48 = inner_ring_e0 * inner_ring_e1;
+        let t49 = inner_ring_e2 * inner_ring_e3;
+        let t50 = k(2.0) * (t49 + t48);
+        let t51 = t50 * t27 + (t46 * t23 + t47 * t24);
+        let t52 = t28 * t51 + t22 * (t50 * t18 - (t47 * t12 + t46 * t7));
+        let t53 = t50 * t33 - (t46 * t31 - t47 * t32);
+        let t54 = k(2.0) * (t20 + t19);
+        let t55 = k(2.0) * (t49 - t48);
+        let t56 = k(2.0) * (k(0.5) - (t8 + inner_ring_e3 * inner_ring_e3));
+        let t57 = t4 * (t56 * self.rotor_offset)
+            - (t2 * (t55 * self.rotor_offset) + t0 * (t54 * self.rotor_offset));
+        let t58 = self.ring_axial_inertia * inner_ring_dwy + (t57 + (t53 * t30 + t52));
+        let t59 = t44 * t50 - (t41 * t47 + t38 * t46);
+        let t60 = t56 * t27 - (t54 * t23 - t55 * t24);
+        let t61 = t28 * t60 + t22 * (t56 * t18 - (t55 * t12 - t54 * t7));
+        let t62 = t54 * t31 + t55 * t32 + t56 * t33;
+        let t63 = t4 * (t50 * self.rotor_offset)
+            - (t2 * (t47 * self.rotor_offset) - t0 * (t46 * self.rotor_offset));
+        let t64 = inner_ring_wx * inner_ring_wy * t35
+            + self.ring_diametral_inertia * inner_ring_dwz + (t63 - (t62 * t30 + t61));
+        let t65 = (t44 * t56 - (t41 * t55 - t38 * t54)) * t64 - (t59 * t58 - t45 * t36);
+        let t66 = self.ring_axial_inertia * outer_ring_dwx - t65;
+        let t67 = k(2.0) * (k(0.5) - (t37 + outer_ring_e3 * outer_ring_e3));
+        let t68 = k(2.0) * (t43 + t42);
+        let t69 = k(1.0) / (t68 * t44 - t38 * t67);
+        let t70 = outer_ring_e0 * outer_ring_e1;
+        let t71 = outer_ring_e2 * outer_ring_e3;
+        let t72 = k(2.0) * (t71 - t70);
+        let t73 = (t67 * t50 - (t68 * t46 - t72 * t47)) * t58
+            - (t67 * t21 - (t72 * t15 - t68 * t9)) * t36;
+        let t74 = (t68 * t54 + t72 * t55 + t67 * t56) * t64 - t73;
+        let t75 = outer_ring_wx * outer_ring_wy * t35
+            - self.ring_diametral_inertia * outer_ring_dwz - t74;
+        let t76 = k(2.0) * (t40 - t39);
+        let t77 = k(2.0) * (k(0.5) - (t37 + outer_ring_e2 * outer_ring_e2));
+        let t78 = k(2.0) * (t71 + t70);
+        let t79 = t78 * t21 - (t77 * t15 + t76 * t9);
+        let t80 = t78 * t50 + (t76 * t46 + t77 * t47);
+        let t81 = k(1.0) / (t45 * t80 - t59 * t79);
+        let t82 = k(1.0) / (t51 * t62 - t53 * t60);
         *lambda = [
-            -t172,
-            -(t174 + t175),
-            t176,
-            -(t157 * t185 + t16 * t184),
-            -(t158 * t185 + t21 * t184),
-            -t172,
-            -t175,
-            t176,
-            t146 * t181 - t141 * t179,
-            t144 * t179 - t147 * t181,
-            -t172,
-            -t173,
-            t176,
-            t107 * t178 + t98 * t177,
-            t108 * t178 + t104 * t177,
+            -(k(0.01) * outer_ring_dsx + t1),
+            -(k(0.01) * (self.gravity + outer_ring_dsy) + t3),
+            -(k(0.01) * outer_ring_dsz + t5),
+            -(t68 * t69 * t75 + t38 * t69 * t66),
+            -(t67 * t69 * t75 + t44 * t69 * t66),
+            -t1,
+            -t3,
+            -t5,
+            t79 * t81 * t36 - t80 * t81 * t58,
+            t59 * t81 * t58 - t45 * t81 * t36,
+            -t0,
+            -t2,
+            -t4,
+            t62 * t82 * t30 + t28 * (t60 * t82),
+            t53 * t82 * t30 + t28 * (t51 * t82),
         ];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::Ports for GyroscopeParameters<T> {
+    type Outputs = [T; 0];
+    fn outputs_buffer(&self) -> Self::Outputs {
+        [T::constant(0.0); 0]
+    }
+    fn outputs(&self, _t: T, _y: &Self::State, _out: &mut Self::Outputs) {}
+    fn n_outputs(&self) -> usize {
+        0
+    }
+    fn output(&self, index: usize) -> gyro_sim::OutputInfo<'_> {
+        const OUTPUTS: [gyro_sim::OutputInfo<'static>; 0] = [];
+        OUTPUTS
+            .get(index)
+            .copied()
+            .unwrap_or(gyro_sim::OutputInfo {
+                name: "",
+                suffix: "",
+                unit: "",
+            })
+    }
+    fn n_inputs(&self) -> usize {
+        0
+    }
+    fn input_name(&self, index: usize) -> &str {
+        const INPUTS: [&str; 0] = [];
+        INPUTS.get(index).copied().unwrap_or_default()
+    }
+    fn set_input(&mut self, _index: usize, _value: T) -> bool {
+        false
     }
 }

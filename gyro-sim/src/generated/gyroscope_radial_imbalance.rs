@@ -19,7 +19,8 @@
 //! | gamma | γ | 122 | 195 | 0 | 317 | 6 of 15 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 90 | 128 | 0 | 218 | 0 of 15 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 |
-//! | accelerations | (s̈, ẇ') and λ, eq. (17) | 251 | 394 | 5 | 650 | 6 of 33 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 218 | 352 | 5 | 575 | 6 of 18 |
+//! | multipliers | λ, the accelerations being known | 114 | 187 | 3 | 304 | 0 of 15 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
 //! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 |
@@ -30,7 +31,7 @@
 /// The mechanism `gyroscope_radial_imbalance`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GyroscopeRadialImbalance<T> {
-    /// The model has no parameters.
+    /// The model has neither parameters nor inputs.
     scalar: ::core::marker::PhantomData<T>,
 }
 impl<T: gyro_sim::Scalar> ::core::default::Default for GyroscopeRadialImbalance<T> {
@@ -98,9 +99,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for GyroscopeRadialImbalance<T> {
     }
     /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 72 operations (24 ±, 48 ×, 0 ÷).
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut v = gyro_sim::Equations::velocities(self);
-        let mut lambda = gyro_sim::Mechanism::rows(self);
-        gyro_sim::Equations::accelerations(self, t, y, &mut v, &mut lambda);
+        let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
+        gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -172,24 +172,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for GyroscopeRadialImbalance<T> {
             k(0.5) * (rotor_e3 * rotor_wx + rotor_e0 * rotor_wy - rotor_e1 * rotor_wz),
             -(k(0.5)
                 * (rotor_e2 * rotor_wx - rotor_e1 * rotor_wy - rotor_e0 * rotor_wz)),
-            v[0],
-            v[1],
-            v[2],
-            v[3],
-            v[4],
-            v[5],
-            v[6],
-            v[7],
-            v[8],
-            v[9],
-            v[10],
-            v[11],
-            v[12],
-            v[13],
-            v[14],
-            v[15],
-            v[16],
-            v[17],
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            accelerations[6],
+            accelerations[7],
+            accelerations[8],
+            accelerations[9],
+            accelerations[10],
+            accelerations[11],
+            accelerations[12],
+            accelerations[13],
+            accelerations[14],
+            accelerations[15],
+            accelerations[16],
+            accelerations[17],
         ];
     }
 }
@@ -402,7 +402,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeRadialImbalance<T> {
         ];
     }
     /// Kinetic and potential energy: 52 operations (19 ±, 33 ×, 0 ÷).
-    fn energy(&self, y: &Self::State) -> gyro_sim::Energy<T> {
+    fn energy(&self, _t: T, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let outer_ring_ry = y[1];
         let inner_ring_ry = y[8];
@@ -450,7 +450,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeRadialImbalance<T> {
         }
     }
     /// Writes the joint readings: 114 operations (54 ±, 60 ×, 0 ÷).
-    fn read_joints(&self, y: &Self::State, out: &mut Self::Readings) {
+    fn read_joints(&self, _t: T, y: &Self::State, out: &mut Self::Readings) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -531,15 +531,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeRadialImbalance<T> {
         const JOINTS: [gyro_sim::JointInfo<'static>; 3] = [
             gyro_sim::JointInfo {
                 name: "alpha",
-                coordinate: gyro_sim::Coordinate::Angle,
+                coordinates: &[gyro_sim::Coordinate::Angle],
             },
             gyro_sim::JointInfo {
                 name: "beta",
-                coordinate: gyro_sim::Coordinate::Angle,
+                coordinates: &[gyro_sim::Coordinate::Angle],
             },
             gyro_sim::JointInfo {
                 name: "phi",
-                coordinate: gyro_sim::Coordinate::Angle,
+                coordinates: &[gyro_sim::Coordinate::Angle],
             },
         ];
         JOINTS
@@ -547,8 +547,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeRadialImbalance<T> {
             .copied()
             .unwrap_or(gyro_sim::JointInfo {
                 name: "",
-                coordinate: gyro_sim::Coordinate::None,
+                coordinates: &[],
             })
+    }
+    fn coupler_name(&self, coupler: usize) -> &str {
+        const COUPLERS: [&str; 0] = [];
+        COUPLERS.get(coupler).copied().unwrap_or_default()
+    }
+    fn driver_name(&self, driver: usize) -> &str {
+        const DRIVERS: [&str; 0] = [];
+        DRIVERS.get(driver).copied().unwrap_or_default()
     }
     fn row(&self, row: usize) -> gyro_sim::RowInfo {
         const ROWS: [gyro_sim::RowInfo; 15] = [
@@ -988,6 +996,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
     type Velocities = [T; 18];
     type PhiQ = [T; 77];
     type PhiPi = [T; 41];
+    /// (s̈, ẇ') of each body.
+    type Accelerations = [T; 18];
     fn velocities(&self) -> Self::Velocities {
         [T::constant(0.0); 18]
     }
@@ -996,6 +1006,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
     }
     fn phi_pi_values(&self) -> Self::PhiPi {
         [T::constant(0.0); 41]
+    }
+    fn accelerations_buffer(&self) -> Self::Accelerations {
+        [T::constant(0.0); 18]
     }
     fn phi_q_pattern(&self) -> &[(u16, u16)] {
         &[
@@ -1583,14 +1596,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 650 operations (251 ±, 394 ×, 5 ÷).
-    fn accelerations(
-        &self,
-        _t: T,
-        y: &Self::State,
-        out: &mut Self::Velocities,
-        lambda: &mut Self::Rows,
-    ) {
+    /// Solves eq. (17): 575 operations (218 ±, 352 ×, 5 ÷).
+    fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -1629,226 +1636,365 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
         let t13 = k(2.0) * (k(0.5) - (t10 + outer_ring_e1 * outer_ring_e1));
         let t14 = k(2.0) * (t2 + t1);
         let t15 = k(1.0) / (t14 * t3 - t13 * t11);
-        let t16 = t13 * t15;
-        let t17 = outer_ring_e0 * outer_ring_e3;
-        let t18 = outer_ring_e1 * outer_ring_e2;
-        let t19 = k(2.0) * (t18 - t17);
-        let t20 = t14 * t9 - (t19 * t5 + t13 * t0);
-        let t21 = t3 * t15;
-        let t22 = t21 * t20 - t16 * t12;
-        let t23 = rotor_e0 * rotor_e3;
-        let t24 = rotor_e1 * rotor_e2;
-        let t25 = k(2.0) * (t24 - t23);
-        let t26 = inner_ring_e0 * inner_ring_e0;
-        let t27 = k(2.0) * (k(0.5) - (t26 + inner_ring_e1 * inner_ring_e1));
-        let t28 = rotor_e0 * rotor_e0;
-        let t29 = k(2.0) * (k(0.5) - (t28 + rotor_e2 * rotor_e2));
-        let t30 = inner_ring_e0 * inner_ring_e3;
-        let t31 = inner_ring_e1 * inner_ring_e2;
-        let t32 = k(2.0) * (t31 + t30);
-        let t33 = rotor_e0 * rotor_e1;
-        let t34 = rotor_e2 * rotor_e3;
-        let t35 = k(2.0) * (t34 + t33);
-        let t36 = inner_ring_e0 * inner_ring_e2;
-        let t37 = inner_ring_e1 * inner_ring_e3;
-        let t38 = k(2.0) * (t37 - t36);
-        let t39 = t38 * t35 - (t32 * t29 + t27 * t25);
-        let t40 = k(5e-6) * t39;
-        let t41 = rotor_e0 * rotor_e2;
-        let t42 = rotor_e1 * rotor_e3;
-        let t43 = t42 + t41;
+        let t16 = outer_ring_e0 * outer_ring_e3;
+        let t17 = outer_ring_e1 * outer_ring_e2;
+        let t18 = k(2.0) * (t17 - t16);
+        let t19 = t14 * t9 - (t18 * t5 + t13 * t0);
+        let t20 = t3 * t15 * t19 - t13 * t15 * t12;
+        let t21 = rotor_e0 * rotor_e3;
+        let t22 = rotor_e1 * rotor_e2;
+        let t23 = k(2.0) * (t22 - t21);
+        let t24 = inner_ring_e0 * inner_ring_e0;
+        let t25 = k(2.0) * (k(0.5) - (t24 + inner_ring_e1 * inner_ring_e1));
+        let t26 = rotor_e0 * rotor_e0;
+        let t27 = k(2.0) * (k(0.5) - (t26 + rotor_e2 * rotor_e2));
+        let t28 = inner_ring_e0 * inner_ring_e3;
+        let t29 = inner_ring_e1 * inner_ring_e2;
+        let t30 = k(2.0) * (t29 + t28);
+        let t31 = rotor_e0 * rotor_e1;
+        let t32 = rotor_e2 * rotor_e3;
+        let t33 = k(2.0) * (t32 + t31);
+        let t34 = inner_ring_e0 * inner_ring_e2;
+        let t35 = inner_ring_e1 * inner_ring_e3;
+        let t36 = k(2.0) * (t35 - t34);
+        let t37 = t36 * t33 - (t30 * t27 + t25 * t23);
+        let t38 = k(5e-6) * t37;
+        let t39 = rotor_e0 * rotor_e2;
+        let t40 = rotor_e1 * rotor_e3;
+        let t41 = t40 + t39;
+        let t42 = k(2.0) * t41;
+        let t43 = t32 - t31;
         let t44 = k(2.0) * t43;
-        let t45 = t34 - t33;
+        let t45 = k(0.5) - (t26 + rotor_e3 * rotor_e3);
         let t46 = k(2.0) * t45;
-        let t47 = k(0.5) - (t28 + rotor_e3 * rotor_e3);
-        let t48 = k(2.0) * t47;
-        let t49 = t38 * t48 - (t32 * t46 - t27 * t44);
-        let t50 = k(5.0032e-6) * t49;
-        let t51 = inner_ring_e0 * inner_ring_e1;
-        let t52 = inner_ring_e2 * inner_ring_e3;
-        let t53 = k(2.0) * (t52 - t51);
-        let t54 = k(2.0) * (t37 + t36);
-        let t55 = k(2.0) * (k(0.5) - (t26 + inner_ring_e3 * inner_ring_e3));
-        let t56 = t55 * t35 - (t54 * t25 - t53 * t29);
-        let t57 = t54 * t44 + t53 * t46 + t55 * t48;
-        let t58 = t57 * t50 + t56 * t40;
-        let t59 = k(1e-6) + (t57 * (k(5.0032e-6) * t57) + t56 * (k(5e-6) * t56));
-        let t60 = k(1.0) / t59;
-        let t61 = t60 * t58;
-        let t62 = t58 * t61 - (k(1e-6) + (t49 * t50 + t39 * t40));
-        let t63 = k(2.0) * (k(0.5) - (t10 + outer_ring_e2 * outer_ring_e2));
-        let t64 = t8 * t38 - (t63 * t32 + t19 * t27);
-        let t65 = k(2.0) * (k(0.5) - (t26 + inner_ring_e2 * inner_ring_e2));
-        let t66 = k(2.0) * (t31 - t30);
-        let t67 = k(2.0) * (t52 + t51);
-        let t68 = t67 * t35 + (t66 * t25 + t65 * t29);
-        let t69 = t67 * t48 - (t66 * t44 - t65 * t46);
-        let t70 = k(5e-6) * t68;
-        let t71 = k(5.0032e-6) * t69;
-        let t72 = t57 * t71 + t56 * t70;
-        let t73 = t72 * t61 - (t69 * t50 + t68 * t40);
-        let t74 = t8 * t67 + (t19 * t66 + t63 * t65);
-        let t75 = t58 - t59 * t61;
-        let t76 = t8 * t55 - (t19 * t54 - t63 * t53);
-        let t77 = t76 * t75 - (t74 * t73 + t64 * t62);
-        let t78 = t60 * t72;
-        let t79 = t72 * t78 - (k(2e-6) + (t69 * t71 + t68 * t70));
-        let t80 = t72 - t59 * t78;
-        let t81 = t76 * t80 - (t74 * t79 + t64 * t73);
-        let t82 = t74 * t80 + t64 * t75;
-        let t83 = k(0.5) - (t28 + rotor_e1 * rotor_e1);
+        let t47 = t36 * t46 - (t30 * t44 - t25 * t42);
+        let t48 = k(5.0032e-6) * t47;
+        let t49 = inner_ring_e0 * inner_ring_e1;
+        let t50 = inner_ring_e2 * inner_ring_e3;
+        let t51 = k(2.0) * (t50 - t49);
+        let t52 = k(2.0) * (t35 + t34);
+        let t53 = k(2.0) * (k(0.5) - (t24 + inner_ring_e3 * inner_ring_e3));
+        let t54 = t53 * t33 - (t52 * t23 - t51 * t27);
+        let t55 = t52 * t42 + t51 * t44 + t53 * t46;
+        let t56 = t55 * t48 + t54 * t38;
+        let t57 = k(1e-6) + (t55 * (k(5.0032e-6) * t55) + t54 * (k(5e-6) * t54));
+        let t58 = k(1.0) / t57;
+        let t59 = t58 * t56;
+        let t60 = t56 * t59 - (k(1e-6) + (t47 * t48 + t37 * t38));
+        let t61 = k(2.0) * (k(0.5) - (t10 + outer_ring_e2 * outer_ring_e2));
+        let t62 = t8 * t36 - (t61 * t30 + t18 * t25);
+        let t63 = k(2.0) * (k(0.5) - (t24 + inner_ring_e2 * inner_ring_e2));
+        let t64 = k(2.0) * (t29 - t28);
+        let t65 = k(2.0) * (t50 + t49);
+        let t66 = t65 * t33 + (t64 * t23 + t63 * t27);
+        let t67 = t65 * t46 - (t64 * t42 - t63 * t44);
+        let t68 = k(5e-6) * t66;
+        let t69 = k(5.0032e-6) * t67;
+        let t70 = t55 * t69 + t54 * t68;
+        let t71 = t70 * t59 - (t67 * t48 + t66 * t38);
+        let t72 = t8 * t65 + (t18 * t64 + t61 * t63);
+        let t73 = t56 - t57 * t59;
+        let t74 = t8 * t53 - (t18 * t52 - t61 * t51);
+        let t75 = t74 * t73 - (t72 * t71 + t62 * t60);
+        let t76 = t58 * t70;
+        let t77 = t70 * t76 - (k(2e-6) + (t67 * t69 + t66 * t68));
+        let t78 = t70 - t57 * t76;
+        let t79 = t74 * t78 - (t72 * t77 + t62 * t71);
+        let t80 = t72 * t78 + t62 * t73;
+        let t81 = k(0.5) - (t26 + rotor_e1 * rotor_e1);
+        let t82 = k(2.0) * t81;
+        let t83 = t22 + t21;
         let t84 = k(2.0) * t83;
-        let t85 = t24 + t23;
+        let t85 = t40 - t39;
         let t86 = k(2.0) * t85;
-        let t87 = t42 - t41;
-        let t88 = k(2.0) * t87;
-        let t89 = t38 * t88 + (t32 * t86 + t27 * t84);
-        let t90 = inner_ring_wx * inner_ring_wy;
-        let t91 = t67 * t88 - (t65 * t86 + t66 * t84);
-        let t92 = inner_ring_wx * inner_ring_wx;
-        let t93 = t55 * t88 - (t53 * t86 - t54 * t84);
-        let t94 = inner_ring_wy * inner_ring_wz;
-        let t95 = t94 * t93 + ((inner_ring_wz * inner_ring_wz + t92) * t91 - t90 * t89);
-        let t96 = rotor_wy * t49 + rotor_wz * t39;
-        let t97 = k(2.0)
-            * (inner_ring_wx * (rotor_wy * t57 + rotor_wz * t56) + inner_ring_wz * t96);
-        let t98 = rotor_wz * rotor_wz;
-        let t99 = t98 + rotor_wy * rotor_wy;
-        let t100 = rotor_wx * rotor_wy;
-        let t101 = rotor_wx * rotor_wz;
-        let t102 = t101 * t69 - (t100 * t68 - t99 * t91) + t97 + t95;
-        let t103 = k(1.0) / (t68 * t57 - t69 * t56);
-        let t104 = t56 * t103;
-        let t105 = inner_ring_wx * inner_ring_wz;
-        let t106 = inner_ring_wy * inner_ring_wy + t92;
-        let t107 = k(2.0)
-            * (inner_ring_wx * (rotor_wy * t69 + rotor_wz * t68) - inner_ring_wy * t96);
-        let t108 = t101 * t57 - (t100 * t56 - t99 * t93) - t107
-            + (t106 * t93 + (t94 * t91 + t105 * t89));
-        let t109 = t68 * t103;
-        let t110 = t109 * t108 - t104 * t102;
-        let t111 = k(5e-6) * (t101 + t110);
-        let t112 = t98 + rotor_wx * rotor_wx;
-        let t113 = rotor_wy * rotor_wz;
-        let t114 = k(0.0002) * (t44 * t113 - (t25 * t112 + t84 * t100));
-        let t115 = k(0.0002) * (t46 * t113 + (t29 * t112 + t86 * t100));
-        let t116 = k(0.0002) * (t48 * t113 + (t35 * t112 - t88 * t100));
-        let t117 = t116 * (k(3.2e-5) * t87)
-            - (t115 * (k(3.2e-5) * t85) - t114 * (k(3.2e-5) * t83));
-        let t118 = t57 * t103;
-        let t119 = t69 * t103;
-        let t120 = t119 * t108 - t118 * t102;
-        let t121 = k(5.0032e-6) * t120 - t117 + (k(5e-6) * t100 - k(0.00032) * t85);
-        let t122 = k(1e-6) * t90 - (t57 * t121 + t56 * t111);
-        let t123 = t61 * t122 - (k(1e-6) * t94 - (t49 * t121 + t39 * t111));
-        let t124 = k(2.0) * (t18 + t17);
-        let t125 = t3 * t55 - (t124 * t53 - t13 * t54);
-        let t126 = k(2.0) * (t7 - t6);
-        let t127 = t14 * t54 + t126 * t53 + t11 * t55;
-        let t128 = outer_ring_wx * outer_ring_wz;
-        let t129 = t128 * t127
-            - (t0 * t76 - (t4 + outer_ring_wy * outer_ring_wy) * t125);
-        let t130 = t11 * t38 - (t126 * t32 - t14 * t27);
-        let t131 = t11 * t67 - (t14 * t66 - t126 * t65);
-        let t132 = inner_ring_wx * t131 - inner_ring_wy * t130;
+        let t87 = t36 * t86 + (t30 * t84 + t25 * t82);
+        let t88 = inner_ring_wx * inner_ring_wy;
+        let t89 = t65 * t86 - (t63 * t84 + t64 * t82);
+        let t90 = inner_ring_wx * inner_ring_wx;
+        let t91 = t53 * t86 - (t51 * t84 - t52 * t82);
+        let t92 = inner_ring_wy * inner_ring_wz;
+        let t93 = t92 * t91 + ((inner_ring_wz * inner_ring_wz + t90) * t89 - t88 * t87);
+        let t94 = rotor_wy * t47 + rotor_wz * t37;
+        let t95 = k(2.0)
+            * (inner_ring_wx * (rotor_wy * t55 + rotor_wz * t54) + inner_ring_wz * t94);
+        let t96 = rotor_wz * rotor_wz;
+        let t97 = t96 + rotor_wy * rotor_wy;
+        let t98 = rotor_wx * rotor_wy;
+        let t99 = rotor_wx * rotor_wz;
+        let t100 = t99 * t67 - (t98 * t66 - t97 * t89) + t95 + t93;
+        let t101 = k(1.0) / (t66 * t55 - t67 * t54);
+        let t102 = inner_ring_wx * inner_ring_wz;
+        let t103 = inner_ring_wy * inner_ring_wy + t90;
+        let t104 = k(2.0)
+            * (inner_ring_wx * (rotor_wy * t67 + rotor_wz * t66) - inner_ring_wy * t94);
+        let t105 = t99 * t55 - (t98 * t54 - t97 * t91) - t104
+            + (t103 * t91 + (t92 * t89 + t102 * t87));
+        let t106 = t66 * t101 * t105 - t54 * t101 * t100;
+        let t107 = k(5e-6) * (t99 + t106);
+        let t108 = t96 + rotor_wx * rotor_wx;
+        let t109 = rotor_wy * rotor_wz;
+        let t110 = k(0.0002) * (t42 * t109 - (t23 * t108 + t82 * t98));
+        let t111 = k(0.0002) * (t44 * t109 + (t27 * t108 + t84 * t98));
+        let t112 = k(0.0002) * (t46 * t109 + (t33 * t108 - t86 * t98));
+        let t113 = t112 * (k(3.2e-5) * t85)
+            - (t111 * (k(3.2e-5) * t83) - t110 * (k(3.2e-5) * t81));
+        let t114 = t67 * t101 * t105 - t55 * t101 * t100;
+        let t115 = k(5.0032e-6) * t114 - t113 + (k(5e-6) * t98 - k(0.00032) * t83);
+        let t116 = k(1e-6) * t88 - (t55 * t115 + t54 * t107);
+        let t117 = t58 * t116;
+        let t118 = t56 * t117 - (k(1e-6) * t92 - (t47 * t115 + t37 * t107));
+        let t119 = k(2.0) * (t17 + t16);
+        let t120 = t3 * t53 - (t119 * t51 - t13 * t52);
+        let t121 = k(2.0) * (t7 - t6);
+        let t122 = t14 * t52 + t121 * t51 + t11 * t53;
+        let t123 = outer_ring_wx * outer_ring_wz;
+        let t124 = t123 * t122
+            - (t0 * t74 - (t4 + outer_ring_wy * outer_ring_wy) * t120);
+        let t125 = t11 * t36 - (t121 * t30 - t14 * t25);
+        let t126 = t11 * t65 - (t14 * t64 - t121 * t63);
+        let t127 = inner_ring_wx * t126 - inner_ring_wy * t125;
+        let t128 = k(2.0)
+            * (outer_ring_wy * t127
+                + outer_ring_wz * (inner_ring_wx * t72 - inner_ring_wy * t62));
+        let t129 = t3 * t36 + (t119 * t30 + t13 * t25);
+        let t130 = t3 * t65 - (t119 * t63 + t13 * t64);
+        let t131 = t103 * t120 + (t92 * t130 + t102 * t129) - t128 + t124;
+        let t132 = k(1.0) / (t129 * t72 - t130 * t62);
         let t133 = k(2.0)
-            * (outer_ring_wy * t132
-                + outer_ring_wz * (inner_ring_wx * t74 - inner_ring_wy * t64));
-        let t134 = t3 * t38 + (t124 * t32 + t13 * t27);
-        let t135 = t3 * t67 - (t124 * t65 + t13 * t66);
-        let t136 = t106 * t125 + (t94 * t135 + t105 * t134) - t133 + t129;
-        let t137 = k(1.0) / (t134 * t74 - t135 * t64);
-        let t138 = t64 * t137;
-        let t139 = k(2.0)
-            * (outer_ring_wx * t132
-                + outer_ring_wz * (inner_ring_wx * t135 - inner_ring_wy * t134));
-        let t140 = t106 * t76 + (t94 * t74 + t105 * t64) + t139
-            + (t9 * t127 + (t5 * t76 - t0 * t125));
-        let t141 = t134 * t137;
-        let t142 = t141 * t140 - t138 * t136;
-        let t143 = t74 * t137;
-        let t144 = t135 * t137;
-        let t145 = t144 * t140 - t143 * t136;
-        let t146 = t79 * t145 + t73 * t142 - (t78 * t122 + (t69 * t121 + t68 * t111));
-        let t147 = t74 * t146 + t64 * (t73 * t145 + t62 * t142 - t123);
-        let t148 = k(1e-6) * t128 + (t76 * (t80 * t145 + t75 * t142) - t147);
-        let t149 = t74 * (t125 * t80 - (t135 * t79 + t134 * t73))
-            + t64 * (t125 * t75 - (t135 * t73 + t134 * t62));
-        let t150 = t14 * t15;
-        let t151 = t11 * t15;
-        let t152 = t151 * t20 - t150 * t12;
-        let t153 = t152 * (t127 * t82 + (t131 * t81 + t130 * t77))
-            + t22 * (t76 * (t135 * t80 + t134 * t75) + t149);
-        let t154 = (t153 - t148) / (k(1e-6) + (t76 * t82 + (t74 * t81 + t64 * t77)));
-        let t155 = t142 - (t130 * t152 - (t64 * t154 - t134 * t22));
-        let t156 = t145 - (t131 * t152 - (t74 * t154 - t135 * t22));
-        let t157 = t127 * t152 - (t76 * t154 - t125 * t22);
-        let t158 = t60 * (t122 + (t59 * t157 - (t72 * t156 + t58 * t155)));
-        let t159 = t157 - t158;
-        let t160 = t116 * (k(3.2e-5) * t47)
-            + (t115 * (k(3.2e-5) * t45) + t114 * (k(3.2e-5) * t43));
-        let t161 = t93 * t159 - (t91 * t156 + t89 * t155);
-        let t162 = t161
-            - k(99968.01023672425) * (k(1.00032e-5) * t161 - t160 + k(0.00032) * t45);
-        let t163 = k(0.0004) * t43;
-        let t164 = t120 - (t57 * t159 - (t69 * t156 + t49 * t155));
-        let t165 = k(0.0004) * t83;
-        let t166 = t114 - (t165 * t164 + t163 * t162);
-        let t167 = k(0.0004) * t45;
-        let t168 = k(0.0004) * t85;
-        let t169 = t115 + (t168 * t164 - t167 * t162);
-        let t170 = k(0.0004) * t47;
-        let t171 = k(0.0004) * t87;
-        let t172 = t116 - (t171 * t164 + t170 * t162);
-        let t173 = t110 - (t56 * t159 - (t68 * t156 + t39 * t155));
-        let t174 = k(0.08) * t166;
-        let t175 = k(0.8) - k(0.08) * t169;
-        let t176 = k(0.1) + t175;
-        let t177 = k(0.08) * t172;
-        let t178 = t170 * t177 - (t167 * t175 - t163 * t174) - k(1e-5) * t162;
-        let t179 = k(5e-6) * (t101 + t173);
-        let t180 = t171 * t177 + (t168 * t175 + t165 * t174) - k(5e-6) * (t100 + t164);
-        let t181 = t49 * t180 - (t39 * t179 + t89 * t178) + k(1e-6) * (t94 - t155);
-        let t182 = t69 * t180 - (t68 * t179 + t91 * t178) - k(2e-6) * t156;
-        let t183 = t57 * t180 - (t56 * t179 + t93 * t178) + k(1e-6) * (t90 + t159);
-        let t184 = t125 * t183 + (t135 * t182 + t134 * t181) + k(2e-6) * t22;
-        let t185 = t127 * t183 + (t131 * t182 + t130 * t181) - k(1e-6) * (t0 - t152);
+            * (outer_ring_wx * t127
+                + outer_ring_wz * (inner_ring_wx * t130 - inner_ring_wy * t129));
+        let t134 = t103 * t74 + (t92 * t72 + t102 * t62) + t133
+            + (t9 * t122 + (t5 * t74 - t0 * t120));
+        let t135 = t129 * t132 * t134 - t62 * t132 * t131;
+        let t136 = t130 * t132 * t134 - t72 * t132 * t131;
+        let t137 = t77 * t136 + t71 * t135 - (t70 * t117 + (t67 * t115 + t66 * t107));
+        let t138 = t72 * t137 + t62 * (t71 * t136 + t60 * t135 - t118);
+        let t139 = t74 * (t78 * t136 + t73 * t135 - (t116 - t57 * t117));
+        let t140 = t72 * (t120 * t78 - (t130 * t77 + t129 * t71))
+            + t62 * (t120 * t73 - (t130 * t71 + t129 * t60));
+        let t141 = t11 * t15 * t19 - t14 * t15 * t12;
+        let t142 = t141 * (t122 * t80 + (t126 * t79 + t125 * t75))
+            + t20 * (t74 * (t130 * t78 + t129 * t73) + t140);
+        let t143 = (t142 - (k(1e-6) * t123 + (t139 - t138)))
+            / (k(1e-6) + (t74 * t80 + (t72 * t79 + t62 * t75)));
+        let t144 = t135 - (t125 * t141 - (t62 * t143 - t129 * t20));
+        let t145 = t136 - (t126 * t141 - (t72 * t143 - t130 * t20));
+        let t146 = t122 * t141 - (t74 * t143 - t120 * t20);
+        let t147 = t58 * (t116 + (t57 * t146 - (t70 * t145 + t56 * t144)));
+        let t148 = t146 - t147;
+        let t149 = t112 * (k(3.2e-5) * t45)
+            + (t111 * (k(3.2e-5) * t43) + t110 * (k(3.2e-5) * t41));
+        let t150 = t91 * t148 - (t89 * t145 + t87 * t144);
+        let t151 = t150
+            - k(99968.01023672425) * (k(1.00032e-5) * t150 - t149 + k(0.00032) * t43);
+        let t152 = t114 - (t55 * t148 - (t67 * t145 + t47 * t144));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -t22,
-            t154,
-            t152,
+            -t20,
+            t143,
+            t141,
             k(0.0),
             k(0.0),
             k(0.0),
-            t155,
-            t156,
-            t159,
-            -t166,
-            -t169,
-            t172,
-            -t162,
-            t173,
-            -t164,
+            t144,
+            t145,
+            t148,
+            k(0.0004) * t81 * t152 + k(0.0004) * t41 * t151 - t110,
+            -(t111 + (k(0.0004) * t83 * t152 - k(0.0004) * t43 * t151)),
+            t112 - (k(0.0004) * t85 * t152 + k(0.0004) * t45 * t151),
+            -t151,
+            t106 - (t54 * t148 - (t66 * t145 + t37 * t144)),
+            -t152,
         ];
+    }
+    /// Writes λ: 304 operations (114 ±, 187 ×, 3 ÷).
+    fn multipliers(
+        &self,
+        _t: T,
+        y: &Self::State,
+        accelerations: &Self::Accelerations,
+        lambda: &mut Self::Rows,
+    ) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        let outer_ring_dsx = accelerations[0];
+        let outer_ring_dsy = accelerations[1];
+        let outer_ring_dsz = accelerations[2];
+        let outer_ring_dwx = accelerations[3];
+        let outer_ring_dwz = accelerations[5];
+        let inner_ring_dsx = accelerations[6];
+        let inner_ring_dsy = accelerations[7];
+        let inner_ring_dsz = accelerations[8];
+        let inner_ring_dwx = accelerations[9];
+        let inner_ring_dwy = accelerations[10];
+        let inner_ring_dwz = accelerations[11];
+        let rotor_dsx = accelerations[12];
+        let rotor_dsy = accelerations[13];
+        let rotor_dsz = accelerations[14];
+        let rotor_dwx = accelerations[15];
+        let rotor_dwy = accelerations[16];
+        let rotor_dwz = accelerations[17];
+        let t0 = k(0.08) * rotor_dsx;
+        let t1 = k(0.01) * inner_ring_dsx + t0;
+        let t2 = k(0.8) + k(0.08) * rotor_dsy;
+        let t3 = k(0.1) + k(0.01) * inner_ring_dsy + t2;
+        let t4 = k(0.08) * rotor_dsz;
+        let t5 = k(0.01) * inner_ring_dsz + t4;
+        let t6 = rotor_e0 * rotor_e2;
+        let t7 = rotor_e1 * rotor_e3;
+        let t8 = t7 + t6;
+        let t9 = rotor_e0 * rotor_e1;
+        let t10 = rotor_e2 * rotor_e3;
+        let t11 = t10 - t9;
+        let t12 = rotor_e0 * rotor_e0;
+        let t13 = k(0.5) - (t12 + rotor_e3 * rotor_e3);
+        let t14 = t4 * (k(0.0004) * t13)
+            - (t2 * (k(0.0004) * t11) + t0 * (k(0.0004) * t8));
+        let t15 = k(1e-5) * rotor_dwx + t14;
+        let t16 = k(0.5) - (t12 + rotor_e1 * rotor_e1);
+        let t17 = k(2.0) * t16;
+        let t18 = inner_ring_e0 * inner_ring_e0;
+        let t19 = k(2.0) * (k(0.5) - (t18 + inner_ring_e1 * inner_ring_e1));
+        let t20 = rotor_e0 * rotor_e3;
+        let t21 = rotor_e1 * rotor_e2;
+        let t22 = t21 + t20;
+        let t23 = k(2.0) * t22;
+        let t24 = inner_ring_e0 * inner_ring_e3;
+        let t25 = inner_ring_e1 * inner_ring_e2;
+        let t26 = k(2.0) * (t25 + t24);
+        let t27 = t7 - t6;
+        let t28 = k(2.0) * t27;
+        let t29 = inner_ring_e0 * inner_ring_e2;
+        let t30 = inner_ring_e1 * inner_ring_e3;
+        let t31 = k(2.0) * (t30 - t29);
+        let t32 = k(2.0) * (t21 - t20);
+        let t33 = k(2.0) * (k(0.5) - (t12 + rotor_e2 * rotor_e2));
+        let t34 = k(2.0) * (t10 + t9);
+        let t35 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
+        let t36 = t35 * (t31 * t34 - (t26 * t33 + t19 * t32))
+            + (t31 * t28 + (t26 * t23 + t19 * t17)) * t15;
+        let t37 = t4 * (k(0.0004) * t27)
+            + (t2 * (k(0.0004) * t22) - t0 * (k(0.0004) * t16));
+        let t38 = t37 - k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
+        let t39 = k(2.0) * t8;
+        let t40 = k(2.0) * t11;
+        let t41 = k(2.0) * t13;
+        let t42 = (t31 * t41 - (t26 * t40 - t19 * t39)) * t38 - t36;
+        let t43 = t42 + k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx);
+        let t44 = outer_ring_e0 * outer_ring_e0;
+        let t45 = k(2.0) * (k(0.5) - (t44 + outer_ring_e1 * outer_ring_e1));
+        let t46 = outer_ring_e0 * outer_ring_e3;
+        let t47 = outer_ring_e1 * outer_ring_e2;
+        let t48 = k(2.0) * (t47 + t46);
+        let t49 = outer_ring_e0 * outer_ring_e2;
+        let t50 = outer_ring_e1 * outer_ring_e3;
+        let t51 = k(2.0) * (t50 - t49);
+        let t52 = t51 * t31 + (t48 * t26 + t45 * t19);
+        let t53 = k(2.0) * (t25 - t24);
+        let t54 = k(2.0) * (k(0.5) - (t18 + inner_ring_e2 * inner_ring_e2));
+        let t55 = inner_ring_e0 * inner_ring_e1;
+        let t56 = inner_ring_e2 * inner_ring_e3;
+        let t57 = k(2.0) * (t56 + t55);
+        let t58 = t57 * t34 + (t53 * t32 + t54 * t33);
+        let t59 = t35 * t58 + (t57 * t28 - (t54 * t23 + t53 * t17)) * t15;
+        let t60 = t57 * t41 - (t53 * t39 - t54 * t40);
+        let t61 = k(2e-6) * inner_ring_dwy - (t60 * t38 - t59);
+        let t62 = t51 * t57 - (t48 * t54 + t45 * t53);
+        let t63 = k(2.0) * (t30 + t29);
+        let t64 = k(2.0) * (t56 - t55);
+        let t65 = k(2.0) * (k(0.5) - (t18 + inner_ring_e3 * inner_ring_e3));
+        let t66 = t65 * t34 - (t63 * t32 - t64 * t33);
+        let t67 = t35 * t66 + (t65 * t28 - (t64 * t23 - t63 * t17)) * t15;
+        let t68 = t63 * t39 + t64 * t40 + t65 * t41;
+        let t69 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz)
+            + (t68 * t38 - t67);
+        let t70 = (t51 * t65 - (t48 * t64 - t45 * t63)) * t69 - (t62 * t61 - t52 * t43);
+        let t71 = k(2e-6) * outer_ring_dwx - t70;
+        let t72 = k(2.0) * (k(0.5) - (t44 + outer_ring_e3 * outer_ring_e3));
+        let t73 = k(2.0) * (t50 + t49);
+        let t74 = k(1.0) / (t73 * t51 - t45 * t72);
+        let t75 = outer_ring_e0 * outer_ring_e1;
+        let t76 = outer_ring_e2 * outer_ring_e3;
+        let t77 = k(2.0) * (t76 - t75);
+        let t78 = (t72 * t57 - (t73 * t53 - t77 * t54)) * t61
+            - (t72 * t31 - (t77 * t26 - t73 * t19)) * t43;
+        let t79 = (t73 * t63 + t77 * t64 + t72 * t65) * t69 - t78;
+        let t80 = t79 - k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz);
+        let t81 = k(2.0) * (t47 - t46);
+        let t82 = k(2.0) * (k(0.5) - (t44 + outer_ring_e2 * outer_ring_e2));
+        let t83 = k(2.0) * (t76 + t75);
+        let t84 = t83 * t31 - (t82 * t26 + t81 * t19);
+        let t85 = t83 * t57 + (t81 * t53 + t82 * t54);
+        let t86 = k(1.0) / (t52 * t85 - t62 * t84);
+        let t87 = k(1.0) / (t58 * t68 - t60 * t66);
         *lambda = [
-            t174,
-            -(k(0.1) + t176),
-            -t177,
-            t150 * t185 + t16 * t184,
-            t151 * t185 + t21 * t184,
-            t174,
-            -t176,
-            -t177,
-            t143 * t182 + t138 * t181,
-            -(t144 * t182 + t141 * t181),
-            t174,
-            -t175,
-            -t177,
-            t104 * t179 - t118 * t180,
-            t109 * t179 - t119 * t180,
+            -(k(0.01) * outer_ring_dsx + t1),
+            -(k(0.1) + k(0.01) * outer_ring_dsy + t3),
+            -(k(0.01) * outer_ring_dsz + t5),
+            t73 * t74 * t80 - t45 * t74 * t71,
+            t72 * t74 * t80 - t51 * t74 * t71,
+            -t1,
+            -t3,
+            -t5,
+            t84 * t86 * t43 - t85 * t86 * t61,
+            t62 * t86 * t61 - t52 * t86 * t43,
+            -t0,
+            -t2,
+            -t4,
+            t35 * (t66 * t87) - t68 * t87 * t38,
+            t35 * (t58 * t87) - t60 * t87 * t38,
         ];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::Ports for GyroscopeRadialImbalance<T> {
+    type Outputs = [T; 0];
+    fn outputs_buffer(&self) -> Self::Outputs {
+        [T::constant(0.0); 0]
+    }
+    fn outputs(&self, _t: T, _y: &Self::State, _out: &mut Self::Outputs) {}
+    fn n_outputs(&self) -> usize {
+        0
+    }
+    fn output(&self, index: usize) -> gyro_sim::OutputInfo<'_> {
+        const OUTPUTS: [gyro_sim::OutputInfo<'static>; 0] = [];
+        OUTPUTS
+            .get(index)
+            .copied()
+            .unwrap_or(gyro_sim::OutputInfo {
+                name: "",
+                suffix: "",
+                unit: "",
+            })
+    }
+    fn n_inputs(&self) -> usize {
+        0
+    }
+    fn input_name(&self, index: usize) -> &str {
+        const INPUTS: [&str; 0] = [];
+        INPUTS.get(index).copied().unwrap_or_default()
+    }
+    fn set_input(&mut self, _index: usize, _value: T) -> bool {
+        false
     }
 }

@@ -18,8 +18,9 @@
 //! | gamma | γ | 122 | 193 | 0 | 315 | 6 of 15 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 90 | 128 | 0 | 218 | 0 of 15 |
 //! | applied_force | (f, n' − w̃'J'w') | 6 | 13 | 0 | 19 | 8 of 18 |
-//! | accelerations | (s̈, ẇ') and λ, eq. (17) | 260 | 387 | 5 | 652 | 6 of 33 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 28 | 52 | 0 | 80 | 0 of 22 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 225 | 345 | 5 | 575 | 6 of 18 |
+//! | multipliers | λ, the accelerations being known | 120 | 188 | 3 | 311 | 0 of 15 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 28 | 54 | 0 | 82 | 0 of 22 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
 //! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 |
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
@@ -29,7 +30,7 @@
 /// The mechanism `gyroscope_viscous`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GyroscopeViscous<T> {
-    /// The model has no parameters.
+    /// The model has neither parameters nor inputs.
     scalar: ::core::marker::PhantomData<T>,
 }
 impl<T: gyro_sim::Scalar> ::core::default::Default for GyroscopeViscous<T> {
@@ -96,11 +97,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for GyroscopeViscous<T> {
             k(0.0),
         ]
     }
-    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 80 operations (28 ±, 52 ×, 0 ÷).
+    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 82 operations (28 ±, 54 ×, 0 ÷).
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut v = gyro_sim::Equations::velocities(self);
-        let mut lambda = gyro_sim::Mechanism::rows(self);
-        gyro_sim::Equations::accelerations(self, t, y, &mut v, &mut lambda);
+        let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
+        gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -134,6 +134,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for GyroscopeViscous<T> {
         let rotor_wz = y[38];
         let t0 = inner_ring_wx - rotor_wx;
         let t1 = outer_ring_wz - inner_ring_wz;
+        let t2 = outer_ring_wy * (k(1e-6) * outer_ring_wy) + t1 * (k(1e-6) * t1)
+            + t0 * (k(1e-6) * t0);
         *dy = [
             outer_ring_sx,
             outer_ring_sy,
@@ -174,25 +176,25 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for GyroscopeViscous<T> {
             k(0.5) * (rotor_e3 * rotor_wx + rotor_e0 * rotor_wy - rotor_e1 * rotor_wz),
             -(k(0.5)
                 * (rotor_e2 * rotor_wx - rotor_e1 * rotor_wy - rotor_e0 * rotor_wz)),
-            v[0],
-            v[1],
-            v[2],
-            v[3],
-            v[4],
-            v[5],
-            v[6],
-            v[7],
-            v[8],
-            v[9],
-            v[10],
-            v[11],
-            v[12],
-            v[13],
-            v[14],
-            v[15],
-            v[16],
-            v[17],
-            -(k(1e-6) * (outer_ring_wy * outer_ring_wy + t1 * t1 + t0 * t0)),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            accelerations[6],
+            accelerations[7],
+            accelerations[8],
+            accelerations[9],
+            accelerations[10],
+            accelerations[11],
+            accelerations[12],
+            accelerations[13],
+            accelerations[14],
+            accelerations[15],
+            accelerations[16],
+            accelerations[17],
+            -t2,
         ];
     }
 }
@@ -407,7 +409,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeViscous<T> {
         ];
     }
     /// Kinetic and potential energy: 52 operations (19 ±, 33 ×, 0 ÷).
-    fn energy(&self, y: &Self::State) -> gyro_sim::Energy<T> {
+    fn energy(&self, _t: T, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let outer_ring_ry = y[1];
         let inner_ring_ry = y[8];
@@ -442,8 +444,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeViscous<T> {
             + k(0.01)
                 * (inner_ring_sx * inner_ring_sx + inner_ring_sy * inner_ring_sy
                     + inner_ring_sz * inner_ring_sz);
-        let t4 = outer_ring_wx * (k(2e-6) * outer_ring_wx)
-            + outer_ring_wy * (k(1e-6) * outer_ring_wy)
+        let t4 = outer_ring_wy * (k(1e-6) * outer_ring_wy)
+            + outer_ring_wx * (k(2e-6) * outer_ring_wx)
             + outer_ring_wz * (k(1e-6) * outer_ring_wz);
         let t5 = t4
             + k(0.01)
@@ -455,7 +457,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeViscous<T> {
         }
     }
     /// Writes the joint readings: 114 operations (54 ±, 60 ×, 0 ÷).
-    fn read_joints(&self, y: &Self::State, out: &mut Self::Readings) {
+    fn read_joints(&self, _t: T, y: &Self::State, out: &mut Self::Readings) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -536,15 +538,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeViscous<T> {
         const JOINTS: [gyro_sim::JointInfo<'static>; 3] = [
             gyro_sim::JointInfo {
                 name: "alpha",
-                coordinate: gyro_sim::Coordinate::Angle,
+                coordinates: &[gyro_sim::Coordinate::Angle],
             },
             gyro_sim::JointInfo {
                 name: "beta",
-                coordinate: gyro_sim::Coordinate::Angle,
+                coordinates: &[gyro_sim::Coordinate::Angle],
             },
             gyro_sim::JointInfo {
                 name: "phi",
-                coordinate: gyro_sim::Coordinate::Angle,
+                coordinates: &[gyro_sim::Coordinate::Angle],
             },
         ];
         JOINTS
@@ -552,8 +554,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeViscous<T> {
             .copied()
             .unwrap_or(gyro_sim::JointInfo {
                 name: "",
-                coordinate: gyro_sim::Coordinate::None,
+                coordinates: &[],
             })
+    }
+    fn coupler_name(&self, coupler: usize) -> &str {
+        const COUPLERS: [&str; 0] = [];
+        COUPLERS.get(coupler).copied().unwrap_or_default()
+    }
+    fn driver_name(&self, driver: usize) -> &str {
+        const DRIVERS: [&str; 0] = [];
+        DRIVERS.get(driver).copied().unwrap_or_default()
     }
     fn row(&self, row: usize) -> gyro_sim::RowInfo {
         const ROWS: [gyro_sim::RowInfo; 15] = [
@@ -995,6 +1005,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeViscous<T> {
     type Velocities = [T; 18];
     type PhiQ = [T; 77];
     type PhiPi = [T; 41];
+    /// (s̈, ẇ') of each body.
+    type Accelerations = [T; 18];
     fn velocities(&self) -> Self::Velocities {
         [T::constant(0.0); 18]
     }
@@ -1003,6 +1015,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeViscous<T> {
     }
     fn phi_pi_values(&self) -> Self::PhiPi {
         [T::constant(0.0); 41]
+    }
+    fn accelerations_buffer(&self) -> Self::Accelerations {
+        [T::constant(0.0); 18]
     }
     fn phi_q_pattern(&self) -> &[(u16, u16)] {
         &[
@@ -1591,14 +1606,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeViscous<T> {
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 652 operations (260 ±, 387 ×, 5 ÷).
-    fn accelerations(
-        &self,
-        _t: T,
-        y: &Self::State,
-        out: &mut Self::Velocities,
-        lambda: &mut Self::Rows,
-    ) {
+    /// Solves eq. (17): 575 operations (225 ±, 345 ×, 5 ÷).
+    fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -1637,238 +1646,374 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeViscous<T> {
         let t13 = k(2.0) * (k(0.5) - (t10 + outer_ring_e1 * outer_ring_e1));
         let t14 = k(2.0) * (t2 + t1);
         let t15 = k(1.0) / (t14 * t3 - t13 * t11);
-        let t16 = t13 * t15;
-        let t17 = outer_ring_e0 * outer_ring_e3;
-        let t18 = outer_ring_e1 * outer_ring_e2;
-        let t19 = k(2.0) * (t18 - t17);
-        let t20 = t14 * t9 - (t19 * t5 + t13 * t0);
-        let t21 = t3 * t15;
-        let t22 = t21 * t20 - t16 * t12;
-        let t23 = rotor_e0 * rotor_e3;
-        let t24 = rotor_e1 * rotor_e2;
-        let t25 = k(2.0) * (t24 - t23);
-        let t26 = inner_ring_e0 * inner_ring_e0;
-        let t27 = k(2.0) * (k(0.5) - (t26 + inner_ring_e1 * inner_ring_e1));
-        let t28 = rotor_e0 * rotor_e0;
-        let t29 = k(2.0) * (k(0.5) - (t28 + rotor_e2 * rotor_e2));
-        let t30 = inner_ring_e0 * inner_ring_e3;
-        let t31 = inner_ring_e1 * inner_ring_e2;
-        let t32 = k(2.0) * (t31 + t30);
-        let t33 = rotor_e0 * rotor_e1;
-        let t34 = rotor_e2 * rotor_e3;
-        let t35 = k(2.0) * (t34 + t33);
-        let t36 = inner_ring_e0 * inner_ring_e2;
-        let t37 = inner_ring_e1 * inner_ring_e3;
-        let t38 = k(2.0) * (t37 - t36);
-        let t39 = t38 * t35 - (t32 * t29 + t27 * t25);
-        let t40 = k(5e-6) * t39;
-        let t41 = rotor_e0 * rotor_e2;
-        let t42 = rotor_e1 * rotor_e3;
-        let t43 = k(2.0) * (t42 + t41);
-        let t44 = k(2.0) * (t34 - t33);
-        let t45 = k(2.0) * (k(0.5) - (t28 + rotor_e3 * rotor_e3));
-        let t46 = t38 * t45 - (t32 * t44 - t27 * t43);
-        let t47 = k(5e-6) * t46;
-        let t48 = inner_ring_e0 * inner_ring_e1;
-        let t49 = inner_ring_e2 * inner_ring_e3;
-        let t50 = t49 - t48;
+        let t16 = outer_ring_e0 * outer_ring_e3;
+        let t17 = outer_ring_e1 * outer_ring_e2;
+        let t18 = k(2.0) * (t17 - t16);
+        let t19 = t14 * t9 - (t18 * t5 + t13 * t0);
+        let t20 = t3 * t15 * t19 - t13 * t15 * t12;
+        let t21 = rotor_e0 * rotor_e3;
+        let t22 = rotor_e1 * rotor_e2;
+        let t23 = k(2.0) * (t22 - t21);
+        let t24 = inner_ring_e0 * inner_ring_e0;
+        let t25 = k(2.0) * (k(0.5) - (t24 + inner_ring_e1 * inner_ring_e1));
+        let t26 = rotor_e0 * rotor_e0;
+        let t27 = k(2.0) * (k(0.5) - (t26 + rotor_e2 * rotor_e2));
+        let t28 = inner_ring_e0 * inner_ring_e3;
+        let t29 = inner_ring_e1 * inner_ring_e2;
+        let t30 = k(2.0) * (t29 + t28);
+        let t31 = rotor_e0 * rotor_e1;
+        let t32 = rotor_e2 * rotor_e3;
+        let t33 = k(2.0) * (t32 + t31);
+        let t34 = inner_ring_e0 * inner_ring_e2;
+        let t35 = inner_ring_e1 * inner_ring_e3;
+        let t36 = k(2.0) * (t35 - t34);
+        let t37 = t36 * t33 - (t30 * t27 + t25 * t23);
+        let t38 = k(5e-6) * t37;
+        let t39 = rotor_e0 * rotor_e2;
+        let t40 = rotor_e1 * rotor_e3;
+        let t41 = k(2.0) * (t40 + t39);
+        let t42 = k(2.0) * (t32 - t31);
+        let t43 = k(2.0) * (k(0.5) - (t26 + rotor_e3 * rotor_e3));
+        let t44 = t36 * t43 - (t30 * t42 - t25 * t41);
+        let t45 = k(5e-6) * t44;
+        let t46 = inner_ring_e0 * inner_ring_e1;
+        let t47 = inner_ring_e2 * inner_ring_e3;
+        let t48 = t47 - t46;
+        let t49 = k(2.0) * t48;
+        let t50 = t35 + t34;
         let t51 = k(2.0) * t50;
-        let t52 = t37 + t36;
+        let t52 = k(0.5) - (t24 + inner_ring_e3 * inner_ring_e3);
         let t53 = k(2.0) * t52;
-        let t54 = k(0.5) - (t26 + inner_ring_e3 * inner_ring_e3);
-        let t55 = k(2.0) * t54;
-        let t56 = t55 * t35 - (t53 * t25 - t51 * t29);
-        let t57 = t53 * t43 + t51 * t44 + t55 * t45;
-        let t58 = t57 * t47 + t56 * t40;
-        let t59 = k(1e-6)
-            + (k(1.25e-9) + (t57 * (k(5e-6) * t57) + t56 * (k(5e-6) * t56)));
-        let t60 = k(1.0) / t59;
-        let t61 = t60 * t58;
-        let t62 = t58 * t61 - (k(1e-6) + (t46 * t47 + t39 * t40));
-        let t63 = k(2.0) * (k(0.5) - (t10 + outer_ring_e2 * outer_ring_e2));
-        let t64 = t8 * t38 - (t63 * t32 + t19 * t27);
-        let t65 = k(0.5) - (t26 + inner_ring_e2 * inner_ring_e2);
+        let t54 = t53 * t33 - (t51 * t23 - t49 * t27);
+        let t55 = t51 * t41 + t49 * t42 + t53 * t43;
+        let t56 = t55 * t45 + t54 * t38;
+        let t57 = k(1e-6)
+            + (k(1.25e-9) + (t55 * (k(5e-6) * t55) + t54 * (k(5e-6) * t54)));
+        let t58 = k(1.0) / t57;
+        let t59 = t58 * t56;
+        let t60 = t56 * t59 - (k(1e-6) + (t44 * t45 + t37 * t38));
+        let t61 = k(2.0) * (k(0.5) - (t10 + outer_ring_e2 * outer_ring_e2));
+        let t62 = t8 * t36 - (t61 * t30 + t18 * t25);
+        let t63 = k(0.5) - (t24 + inner_ring_e2 * inner_ring_e2);
+        let t64 = k(2.0) * t63;
+        let t65 = t29 - t28;
         let t66 = k(2.0) * t65;
-        let t67 = t31 - t30;
+        let t67 = t47 + t46;
         let t68 = k(2.0) * t67;
-        let t69 = t49 + t48;
-        let t70 = k(2.0) * t69;
-        let t71 = t70 * t35 + (t68 * t25 + t66 * t29);
-        let t72 = t70 * t45 - (t68 * t43 - t66 * t44);
-        let t73 = k(5e-6) * t71;
-        let t74 = k(5e-6) * t72;
-        let t75 = t57 * t74 + t56 * t73;
-        let t76 = t75 * t61 - (t72 * t47 + t71 * t40);
-        let t77 = t8 * t70 + (t19 * t68 + t63 * t66);
-        let t78 = t58 - t59 * t61;
-        let t79 = t8 * t55 - (t19 * t53 - t63 * t51);
-        let t80 = t79 * t78 - (t77 * t76 + t64 * t62);
-        let t81 = t60 * t75;
-        let t82 = t75 * t81 - (k(2e-6) + (k(1.25e-9) + (t72 * t74 + t71 * t73)));
-        let t83 = t75 - t59 * t81;
-        let t84 = t79 * t83 - (t77 * t82 + t64 * t76);
-        let t85 = t77 * t83 + t64 * t78;
-        let t86 = k(2.0) * (k(0.5) - (t28 + rotor_e1 * rotor_e1));
-        let t87 = k(2.0) * (t24 + t23);
-        let t88 = k(2.0) * (t42 - t41);
-        let t89 = t38 * t88 + (t32 * t87 + t27 * t86);
-        let t90 = inner_ring_wx * inner_ring_wy;
-        let t91 = t70 * t88 - (t66 * t87 + t68 * t86);
-        let t92 = inner_ring_wx * inner_ring_wx;
-        let t93 = inner_ring_wz * inner_ring_wz;
-        let t94 = t55 * t88 - (t51 * t87 - t53 * t86);
-        let t95 = inner_ring_wy * inner_ring_wz;
-        let t96 = rotor_wy * t46 + rotor_wz * t39;
-        let t97 = k(2.0)
-            * (inner_ring_wx * (rotor_wy * t57 + rotor_wz * t56) + inner_ring_wz * t96);
-        let t98 = rotor_wz * rotor_wz + rotor_wy * rotor_wy;
-        let t99 = rotor_wx * rotor_wy;
-        let t100 = rotor_wx * rotor_wz;
-        let t101 = t100 * t72 - (t99 * t71 - t98 * t91) + t97
-            + (t95 * t94 + ((t93 + t92) * t91 - t90 * t89));
-        let t102 = k(1.0) / (t71 * t57 - t72 * t56);
-        let t103 = t56 * t102;
-        let t104 = inner_ring_wx * inner_ring_wz;
-        let t105 = inner_ring_wy * inner_ring_wy;
-        let t106 = t105 + t92;
-        let t107 = k(2.0)
-            * (inner_ring_wx * (rotor_wy * t72 + rotor_wz * t71) - inner_ring_wy * t96);
-        let t108 = t100 * t57 - (t99 * t56 - t98 * t94) - t107
-            + (t106 * t94 + (t95 * t91 + t104 * t89));
-        let t109 = t71 * t102;
-        let t110 = t109 * t108 - t103 * t101;
-        let t111 = k(5e-6) * (t100 + t110);
-        let t112 = t57 * t102;
-        let t113 = t72 * t102;
-        let t114 = t113 * t108 - t112 * t101;
-        let t115 = k(5e-6) * (t99 + t114);
-        let t116 = inner_ring_wx - rotor_wx;
-        let t117 = t95 - t116;
-        let t118 = t93 + t105;
-        let t119 = t53 * t104 + (t68 * t90 + t27 * t118);
-        let t120 = k(1e-5) * t119;
-        let t121 = k(0.00025) * t67;
-        let t122 = t51 * t104 - (t66 * t90 + t32 * t118);
-        let t123 = k(0.8) + k(1e-5) * t122;
-        let t124 = k(0.00025) * t65;
-        let t125 = t55 * t104 - (t70 * t90 - t38 * t118);
-        let t126 = k(1e-5) * t125;
-        let t127 = k(0.00025) * t69;
-        let t128 = t127 * t126 + (t124 * t123 - t121 * t120) + (t57 * t115 + t56 * t111);
-        let t129 = outer_ring_wz - inner_ring_wz;
-        let t130 = t90 - t129;
-        let t131 = k(1e-6) * t130 - t128;
-        let t132 = t61 * t131 - (k(1e-6) * t117 - (t46 * t115 + t39 * t111));
-        let t133 = k(2.0) * (t18 + t17);
-        let t134 = t3 * t55 - (t133 * t51 - t13 * t53);
-        let t135 = k(2.0) * (t7 - t6);
-        let t136 = t14 * t53 + t135 * t51 + t11 * t55;
-        let t137 = outer_ring_wx * outer_ring_wz;
-        let t138 = t137 * t136
-            - (t0 * t79 - (t4 + outer_ring_wy * outer_ring_wy) * t134);
-        let t139 = t11 * t38 - (t135 * t32 - t14 * t27);
-        let t140 = t11 * t70 - (t14 * t68 - t135 * t66);
-        let t141 = inner_ring_wx * t140 - inner_ring_wy * t139;
-        let t142 = k(2.0)
-            * (outer_ring_wy * t141
-                + outer_ring_wz * (inner_ring_wx * t77 - inner_ring_wy * t64));
-        let t143 = t3 * t38 + (t133 * t32 + t13 * t27);
-        let t144 = t3 * t70 - (t133 * t66 + t13 * t68);
-        let t145 = t106 * t134 + (t95 * t144 + t104 * t143) - t142 + t138;
-        let t146 = k(1.0) / (t143 * t77 - t144 * t64);
-        let t147 = t64 * t146;
-        let t148 = k(2.0)
-            * (outer_ring_wx * t141
-                + outer_ring_wz * (inner_ring_wx * t144 - inner_ring_wy * t143));
-        let t149 = t106 * t79 + (t95 * t77 + t104 * t64) + t148
-            + (t9 * t136 + (t5 * t79 - t0 * t134));
-        let t150 = t143 * t146;
-        let t151 = t150 * t149 - t147 * t145;
-        let t152 = t77 * t146;
-        let t153 = t144 * t146;
-        let t154 = t153 * t149 - t152 * t145;
-        let t155 = k(0.00025) * t52;
-        let t156 = k(0.00025) * t50;
-        let t157 = k(0.00025) * t54;
-        let t158 = t157 * t126 + (t156 * t123 + t155 * t120) - (t72 * t115 + t71 * t111);
-        let t159 = t77 * (t82 * t154 + t76 * t151 - (t81 * t131 - t158));
-        let t160 = t79 * (t83 * t154 + t78 * t151)
-            - (t159 + t64 * (t76 * t154 + t62 * t151 - t132));
-        let t161 = t77 * (t134 * t83 - (t144 * t82 + t143 * t76))
-            + t64 * (t134 * t78 - (t144 * t76 + t143 * t62));
-        let t162 = t14 * t15;
-        let t163 = t11 * t15;
-        let t164 = t163 * t20 - t162 * t12;
-        let t165 = t164 * (t136 * t85 + (t140 * t84 + t139 * t80))
-            + t22 * (t79 * (t144 * t83 + t143 * t78) + t161);
-        let t166 = (t165 - (k(1e-6) * (outer_ring_wy + t137) + t160))
-            / (k(1e-6) + (t79 * t85 + (t77 * t84 + t64 * t80)));
-        let t167 = t151 - (t139 * t164 - (t64 * t166 - t143 * t22));
-        let t168 = t154 - (t140 * t164 - (t77 * t166 - t144 * t22));
-        let t169 = t136 * t164 - (t79 * t166 - t134 * t22);
-        let t170 = t60 * (t131 + (t59 * t169 - (t75 * t168 + t58 * t167)));
-        let t171 = t169 - t170;
-        let t172 = k(0.000125) * t119 + (t121 * t171 - t155 * t168);
-        let t173 = k(0.000125) * t122 - (t124 * t171 + t156 * t168);
-        let t174 = k(0.000125) * t125 - (t127 * t171 + t157 * t168);
-        let t175 = t94 * t171 - (t91 * t168 + t89 * t167);
-        let t176 = k(1e-6) * t116;
-        let t177 = t175 - k(100000.0) * (t176 + k(1e-5) * t175);
-        let t178 = t110 - (t56 * t171 - (t71 * t168 + t39 * t167));
-        let t179 = t114 - (t57 * t171 - (t72 * t168 + t46 * t167));
-        let t180 = k(0.08) * t172;
-        let t181 = k(0.8) + k(0.08) * t173;
-        let t182 = k(0.1) + t181;
-        let t183 = k(0.08) * t174;
-        let t184 = t176 + k(1e-5) * t177;
-        let t185 = k(5e-6) * (t100 + t178);
-        let t186 = k(5e-6) * (t99 + t179);
-        let t187 = t46 * t186 + (t39 * t185 - t89 * t184) - k(1e-6) * (t117 - t167);
-        let t188 = t157 * t183 + (t156 * t181 + t155 * t180)
-            - (t72 * t186 + (t71 * t185 - t91 * t184));
-        let t189 = t188 - k(2e-6) * t168;
-        let t190 = t127 * t183 + (t124 * t181 - t121 * t180)
-            + (t57 * t186 + (t56 * t185 - t94 * t184));
-        let t191 = t190 - k(1e-6) * (t130 + t171);
-        let t192 = t134 * t191 - (t144 * t189 - t143 * t187) - k(2e-6) * t22;
-        let t193 = t136 * t191 - (t140 * t189 - t139 * t187)
-            + k(1e-6) * (t0 - t129 - t164);
+        let t69 = t68 * t33 + (t66 * t23 + t64 * t27);
+        let t70 = t68 * t43 - (t66 * t41 - t64 * t42);
+        let t71 = k(5e-6) * t69;
+        let t72 = k(5e-6) * t70;
+        let t73 = t55 * t72 + t54 * t71;
+        let t74 = t73 * t59 - (t70 * t45 + t69 * t38);
+        let t75 = t8 * t68 + (t18 * t66 + t61 * t64);
+        let t76 = t56 - t57 * t59;
+        let t77 = t8 * t53 - (t18 * t51 - t61 * t49);
+        let t78 = t77 * t76 - (t75 * t74 + t62 * t60);
+        let t79 = t58 * t73;
+        let t80 = t73 * t79 - (k(2e-6) + (k(1.25e-9) + (t70 * t72 + t69 * t71)));
+        let t81 = t73 - t57 * t79;
+        let t82 = t77 * t81 - (t75 * t80 + t62 * t74);
+        let t83 = t75 * t81 + t62 * t76;
+        let t84 = k(2.0) * (k(0.5) - (t26 + rotor_e1 * rotor_e1));
+        let t85 = k(2.0) * (t22 + t21);
+        let t86 = k(2.0) * (t40 - t39);
+        let t87 = t36 * t86 + (t30 * t85 + t25 * t84);
+        let t88 = inner_ring_wx * inner_ring_wy;
+        let t89 = t68 * t86 - (t64 * t85 + t66 * t84);
+        let t90 = inner_ring_wx * inner_ring_wx;
+        let t91 = inner_ring_wz * inner_ring_wz;
+        let t92 = t53 * t86 - (t49 * t85 - t51 * t84);
+        let t93 = inner_ring_wy * inner_ring_wz;
+        let t94 = rotor_wy * t44 + rotor_wz * t37;
+        let t95 = k(2.0)
+            * (inner_ring_wx * (rotor_wy * t55 + rotor_wz * t54) + inner_ring_wz * t94);
+        let t96 = rotor_wz * rotor_wz + rotor_wy * rotor_wy;
+        let t97 = rotor_wx * rotor_wy;
+        let t98 = rotor_wx * rotor_wz;
+        let t99 = t98 * t70 - (t97 * t69 - t96 * t89) + t95
+            + (t93 * t92 + ((t91 + t90) * t89 - t88 * t87));
+        let t100 = k(1.0) / (t69 * t55 - t70 * t54);
+        let t101 = inner_ring_wx * inner_ring_wz;
+        let t102 = inner_ring_wy * inner_ring_wy;
+        let t103 = t102 + t90;
+        let t104 = k(2.0)
+            * (inner_ring_wx * (rotor_wy * t70 + rotor_wz * t69) - inner_ring_wy * t94);
+        let t105 = t98 * t55 - (t97 * t54 - t96 * t92) - t104
+            + (t103 * t92 + (t93 * t89 + t101 * t87));
+        let t106 = t69 * t100 * t105 - t54 * t100 * t99;
+        let t107 = k(5e-6) * (t98 + t106);
+        let t108 = t70 * t100 * t105 - t55 * t100 * t99;
+        let t109 = k(5e-6) * (t97 + t108);
+        let t110 = inner_ring_wx - rotor_wx;
+        let t111 = t91 + t102;
+        let t112 = t51 * t101 + (t66 * t88 + t25 * t111);
+        let t113 = k(1e-5) * t112;
+        let t114 = k(0.00025) * t65;
+        let t115 = t49 * t101 - (t64 * t88 + t30 * t111);
+        let t116 = k(0.8) + k(1e-5) * t115;
+        let t117 = k(0.00025) * t63;
+        let t118 = t53 * t101 - (t68 * t88 - t36 * t111);
+        let t119 = k(1e-5) * t118;
+        let t120 = k(0.00025) * t67;
+        let t121 = t120 * t119 + (t117 * t116 - t114 * t113) + (t55 * t109 + t54 * t107);
+        let t122 = k(1e-6) * (t88 - (outer_ring_wz - inner_ring_wz)) - t121;
+        let t123 = t58 * t122;
+        let t124 = t56 * t123 - (k(1e-6) * (t93 - t110) - (t44 * t109 + t37 * t107));
+        let t125 = k(2.0) * (t17 + t16);
+        let t126 = t3 * t53 - (t125 * t49 - t13 * t51);
+        let t127 = k(2.0) * (t7 - t6);
+        let t128 = t14 * t51 + t127 * t49 + t11 * t53;
+        let t129 = outer_ring_wx * outer_ring_wz;
+        let t130 = t129 * t128
+            - (t0 * t77 - (t4 + outer_ring_wy * outer_ring_wy) * t126);
+        let t131 = t11 * t36 - (t127 * t30 - t14 * t25);
+        let t132 = t11 * t68 - (t14 * t66 - t127 * t64);
+        let t133 = inner_ring_wx * t132 - inner_ring_wy * t131;
+        let t134 = k(2.0)
+            * (outer_ring_wy * t133
+                + outer_ring_wz * (inner_ring_wx * t75 - inner_ring_wy * t62));
+        let t135 = t3 * t36 + (t125 * t30 + t13 * t25);
+        let t136 = t3 * t68 - (t125 * t64 + t13 * t66);
+        let t137 = t103 * t126 + (t93 * t136 + t101 * t135) - t134 + t130;
+        let t138 = k(1.0) / (t135 * t75 - t136 * t62);
+        let t139 = k(2.0)
+            * (outer_ring_wx * t133
+                + outer_ring_wz * (inner_ring_wx * t136 - inner_ring_wy * t135));
+        let t140 = t103 * t77 + (t93 * t75 + t101 * t62) + t139
+            + (t9 * t128 + (t5 * t77 - t0 * t126));
+        let t141 = t135 * t138 * t140 - t62 * t138 * t137;
+        let t142 = t136 * t138 * t140 - t75 * t138 * t137;
+        let t143 = k(0.00025) * t50;
+        let t144 = k(0.00025) * t48;
+        let t145 = k(0.00025) * t52;
+        let t146 = t145 * t119 + (t144 * t116 + t143 * t113) - (t70 * t109 + t69 * t107);
+        let t147 = t75 * (t80 * t142 + t74 * t141 - (t73 * t123 - t146));
+        let t148 = t77 * (t81 * t142 + t76 * t141 - (t122 - t57 * t123));
+        let t149 = t148 - (t147 + t62 * (t74 * t142 + t60 * t141 - t124));
+        let t150 = t75 * (t126 * t81 - (t136 * t80 + t135 * t74))
+            + t62 * (t126 * t76 - (t136 * t74 + t135 * t60));
+        let t151 = t11 * t15 * t19 - t14 * t15 * t12;
+        let t152 = t151 * (t128 * t83 + (t132 * t82 + t131 * t78))
+            + t20 * (t77 * (t136 * t81 + t135 * t76) + t150);
+        let t153 = (t152 - (k(1e-6) * (outer_ring_wy + t129) + t149))
+            / (k(1e-6) + (t77 * t83 + (t75 * t82 + t62 * t78)));
+        let t154 = t141 - (t131 * t151 - (t62 * t153 - t135 * t20));
+        let t155 = t142 - (t132 * t151 - (t75 * t153 - t136 * t20));
+        let t156 = t128 * t151 - (t77 * t153 - t126 * t20);
+        let t157 = t58 * (t122 + (t57 * t156 - (t73 * t155 + t56 * t154)));
+        let t158 = t156 - t157;
+        let t159 = t92 * t158 - (t89 * t155 + t87 * t154);
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -t22,
-            t166,
-            t164,
+            -t20,
+            t153,
+            t151,
             k(0.0),
             k(0.0),
             k(0.0),
-            t167,
-            t168,
-            t171,
-            t172,
-            t173,
-            -t174,
-            -t177,
-            t178,
-            -t179,
+            t154,
+            t155,
+            t158,
+            k(0.000125) * t112 + (t114 * t158 - t143 * t155),
+            k(0.000125) * t115 - (t117 * t158 + t144 * t155),
+            t120 * t158 + t145 * t155 - k(0.000125) * t118,
+            k(100000.0) * (k(1e-6) * t110 + k(1e-5) * t159) - t159,
+            t106 - (t54 * t158 - (t69 * t155 + t37 * t154)),
+            t55 * t158 - (t70 * t155 + t44 * t154) - t108,
         ];
+    }
+    /// Writes λ: 311 operations (120 ±, 188 ×, 3 ÷).
+    fn multipliers(
+        &self,
+        _t: T,
+        y: &Self::State,
+        accelerations: &Self::Accelerations,
+        lambda: &mut Self::Rows,
+    ) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        let outer_ring_dsx = accelerations[0];
+        let outer_ring_dsy = accelerations[1];
+        let outer_ring_dsz = accelerations[2];
+        let outer_ring_dwx = accelerations[3];
+        let outer_ring_dwz = accelerations[5];
+        let inner_ring_dsx = accelerations[6];
+        let inner_ring_dsy = accelerations[7];
+        let inner_ring_dsz = accelerations[8];
+        let inner_ring_dwx = accelerations[9];
+        let inner_ring_dwy = accelerations[10];
+        let inner_ring_dwz = accelerations[11];
+        let rotor_dsx = accelerations[12];
+        let rotor_dsy = accelerations[13];
+        let rotor_dsz = accelerations[14];
+        let rotor_dwx = accelerations[15];
+        let rotor_dwy = accelerations[16];
+        let rotor_dwz = accelerations[17];
+        let t0 = k(0.08) * rotor_dsx;
+        let t1 = k(0.01) * inner_ring_dsx + t0;
+        let t2 = k(0.8) + k(0.08) * rotor_dsy;
+        let t3 = k(0.1) + k(0.01) * inner_ring_dsy + t2;
+        let t4 = k(0.08) * rotor_dsz;
+        let t5 = k(0.01) * inner_ring_dsz + t4;
+        let t6 = inner_ring_wx - rotor_wx;
+        let t7 = rotor_e0 * rotor_e0;
+        let t8 = k(2.0) * (k(0.5) - (t7 + rotor_e1 * rotor_e1));
+        let t9 = inner_ring_e0 * inner_ring_e0;
+        let t10 = k(2.0) * (k(0.5) - (t9 + inner_ring_e1 * inner_ring_e1));
+        let t11 = rotor_e0 * rotor_e3;
+        let t12 = rotor_e1 * rotor_e2;
+        let t13 = k(2.0) * (t12 + t11);
+        let t14 = inner_ring_e0 * inner_ring_e3;
+        let t15 = inner_ring_e1 * inner_ring_e2;
+        let t16 = k(2.0) * (t15 + t14);
+        let t17 = rotor_e0 * rotor_e2;
+        let t18 = rotor_e1 * rotor_e3;
+        let t19 = k(2.0) * (t18 - t17);
+        let t20 = inner_ring_e0 * inner_ring_e2;
+        let t21 = inner_ring_e1 * inner_ring_e3;
+        let t22 = k(2.0) * (t21 - t20);
+        let t23 = k(1e-6) * t6 - k(1e-5) * rotor_dwx;
+        let t24 = k(2.0) * (t12 - t11);
+        let t25 = k(2.0) * (k(0.5) - (t7 + rotor_e2 * rotor_e2));
+        let t26 = rotor_e0 * rotor_e1;
+        let t27 = rotor_e2 * rotor_e3;
+        let t28 = k(2.0) * (t27 + t26);
+        let t29 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
+        let t30 = t29 * (t22 * t28 - (t16 * t25 + t10 * t24))
+            - t23 * (t22 * t19 + (t16 * t13 + t10 * t8));
+        let t31 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
+        let t32 = k(2.0) * (t18 + t17);
+        let t33 = k(2.0) * (t27 - t26);
+        let t34 = k(2.0) * (k(0.5) - (t7 + rotor_e3 * rotor_e3));
+        let t35 = (t22 * t34 - (t16 * t33 - t10 * t32)) * t31 + t30;
+        let t36 = t35 - k(1e-6) * (inner_ring_wy * inner_ring_wz - t6 - inner_ring_dwx);
+        let t37 = outer_ring_e0 * outer_ring_e0;
+        let t38 = k(2.0) * (k(0.5) - (t37 + outer_ring_e1 * outer_ring_e1));
+        let t39 = outer_ring_e0 * outer_ring_e3;
+        let t40 = outer_ring_e1 * outer_ring_e2;
+        let t41 = k(2.0) * (t40 + t39);
+        let t42 = outer_ring_e0 * outer_ring_e2;
+        let t43 = outer_ring_e1 * outer_ring_e3;
+        let t44 = k(2.0) * (t43 - t42);
+        let t45 = t44 * t22 + (t41 * t16 + t38 * t10);
+        let t46 = t15 - t14;
+        let t47 = k(2.0) * t46;
+        let t48 = k(0.5) - (t9 + inner_ring_e2 * inner_ring_e2);
+        let t49 = k(2.0) * t48;
+        let t50 = inner_ring_e0 * inner_ring_e1;
+        let t51 = inner_ring_e2 * inner_ring_e3;
+        let t52 = t51 + t50;
+        let t53 = k(2.0) * t52;
+        let t54 = t53 * t28 + (t47 * t24 + t49 * t25);
+        let t55 = t29 * t54 - t23 * (t53 * t19 - (t49 * t13 + t47 * t8));
+        let t56 = t53 * t34 - (t47 * t32 - t49 * t33);
+        let t57 = t21 + t20;
+        let t58 = t51 - t50;
+        let t59 = k(0.5) - (t9 + inner_ring_e3 * inner_ring_e3);
+        let t60 = t4 * (k(0.00025) * t59)
+            - (t2 * (k(0.00025) * t58) + t0 * (k(0.00025) * t57));
+        let t61 = k(2e-6) * inner_ring_dwy + (t60 + (t56 * t31 + t55));
+        let t62 = t44 * t53 - (t41 * t49 + t38 * t47);
+        let t63 = k(2.0) * t57;
+        let t64 = k(2.0) * t58;
+        let t65 = k(2.0) * t59;
+        let t66 = t65 * t28 - (t63 * t24 - t64 * t25);
+        let t67 = t29 * t66 - t23 * (t65 * t19 - (t64 * t13 - t63 * t8));
+        let t68 = t63 * t32 + t64 * t33 + t65 * t34;
+        let t69 = t4 * (k(0.00025) * t52)
+            - (t2 * (k(0.00025) * t48) - t0 * (k(0.00025) * t46));
+        let t70 = outer_ring_wz - inner_ring_wz;
+        let t71 = k(1e-6) * (inner_ring_wx * inner_ring_wy - t70 + inner_ring_dwz)
+            + (t69 - (t68 * t31 + t67));
+        let t72 = (t44 * t65 - (t41 * t64 - t38 * t63)) * t71 - (t62 * t61 + t45 * t36);
+        let t73 = k(2e-6) * outer_ring_dwx - t72;
+        let t74 = k(2.0) * (k(0.5) - (t37 + outer_ring_e3 * outer_ring_e3));
+        let t75 = k(2.0) * (t43 + t42);
+        let t76 = k(1.0) / (t75 * t44 - t38 * t74);
+        let t77 = outer_ring_e0 * outer_ring_e1;
+        let t78 = outer_ring_e2 * outer_ring_e3;
+        let t79 = k(2.0) * (t78 - t77);
+        let t80 = (t74 * t53 - (t75 * t47 - t79 * t49)) * t61
+            + (t74 * t22 - (t79 * t16 - t75 * t10)) * t36;
+        let t81 = (t75 * t63 + t79 * t64 + t74 * t65) * t71 - t80;
+        let t82 = t81 - k(1e-6) * (outer_ring_wx * outer_ring_wy - t70 - outer_ring_dwz);
+        let t83 = k(2.0) * (t40 - t39);
+        let t84 = k(2.0) * (k(0.5) - (t37 + outer_ring_e2 * outer_ring_e2));
+        let t85 = k(2.0) * (t78 + t77);
+        let t86 = t85 * t22 - (t84 * t16 + t83 * t10);
+        let t87 = t85 * t53 + (t83 * t47 + t84 * t49);
+        let t88 = k(1.0) / (t45 * t87 - t62 * t86);
+        let t89 = k(1.0) / (t54 * t68 - t56 * t66);
         *lambda = [
-            -t180,
-            -(k(0.1) + t182),
-            t183,
-            -(t162 * t193 + t16 * t192),
-            -(t163 * t193 + t21 * t192),
-            -t180,
-            -t182,
-            t183,
-            t152 * t189 - t147 * t187,
-            t150 * t187 - t153 * t189,
-            -t180,
-            -t181,
-            t183,
-            t112 * t186 + t103 * t185,
-            t113 * t186 + t109 * t185,
+            -(k(0.01) * outer_ring_dsx + t1),
+            -(k(0.1) + k(0.01) * outer_ring_dsy + t3),
+            -(k(0.01) * outer_ring_dsz + t5),
+            t75 * t76 * t82 - t38 * t76 * t73,
+            t74 * t76 * t82 - t44 * t76 * t73,
+            -t1,
+            -t3,
+            -t5,
+            -(t87 * t88 * t61 + t86 * t88 * t36),
+            t62 * t88 * t61 + t45 * t88 * t36,
+            -t0,
+            -t2,
+            -t4,
+            t68 * t89 * t31 + t29 * (t66 * t89),
+            t56 * t89 * t31 + t29 * (t54 * t89),
         ];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::Ports for GyroscopeViscous<T> {
+    type Outputs = [T; 0];
+    fn outputs_buffer(&self) -> Self::Outputs {
+        [T::constant(0.0); 0]
+    }
+    fn outputs(&self, _t: T, _y: &Self::State, _out: &mut Self::Outputs) {}
+    fn n_outputs(&self) -> usize {
+        0
+    }
+    fn output(&self, index: usize) -> gyro_sim::OutputInfo<'_> {
+        const OUTPUTS: [gyro_sim::OutputInfo<'static>; 0] = [];
+        OUTPUTS
+            .get(index)
+            .copied()
+            .unwrap_or(gyro_sim::OutputInfo {
+                name: "",
+                suffix: "",
+                unit: "",
+            })
+    }
+    fn n_inputs(&self) -> usize {
+        0
+    }
+    fn input_name(&self, index: usize) -> &str {
+        const INPUTS: [&str; 0] = [];
+        INPUTS.get(index).copied().unwrap_or_default()
+    }
+    fn set_input(&mut self, _index: usize, _value: T) -> bool {
+        false
     }
 }

@@ -19,7 +19,8 @@
 //! | gamma | γ | 19 | 35 | 0 | 54 | 0 of 3 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 14 | 24 | 0 | 38 | 0 of 3 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 4 | 0 | 4 | 3 of 6 |
-//! | accelerations | (s̈, ẇ') and λ, eq. (17) | 34 | 68 | 0 | 102 | 1 of 9 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 33 | 65 | 0 | 98 | 1 of 6 |
+//! | multipliers | λ, the accelerations being known | 1 | 3 | 0 | 4 | 0 of 3 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 |
 //! | energy | T and V | 5 | 12 | 0 | 17 | 0 of 2 |
 //! | read_joints | joint coordinates and rates | 0 | 0 | 0 | 0 | 0 of 7 |
@@ -30,7 +31,7 @@
 /// The mechanism `heavy_top`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeavyTop<T> {
-    /// The model has no parameters.
+    /// The model has neither parameters nor inputs.
     scalar: ::core::marker::PhantomData<T>,
 }
 impl<T: gyro_sim::Scalar> ::core::default::Default for HeavyTop<T> {
@@ -72,9 +73,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for HeavyTop<T> {
     }
     /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut v = gyro_sim::Equations::velocities(self);
-        let mut lambda = gyro_sim::Mechanism::rows(self);
-        gyro_sim::Equations::accelerations(self, t, y, &mut v, &mut lambda);
+        let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
+        gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
         let k = T::constant;
         let top_e0 = y[3];
         let top_e1 = y[4];
@@ -94,12 +94,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for HeavyTop<T> {
             k(0.5) * (top_e0 * top_wx - top_e3 * top_wy + top_e2 * top_wz),
             k(0.5) * (top_e3 * top_wx + top_e0 * top_wy - top_e1 * top_wz),
             -(k(0.5) * (top_e2 * top_wx - top_e1 * top_wy - top_e0 * top_wz)),
-            v[0],
-            v[1],
-            v[2],
-            v[3],
-            v[4],
-            v[5],
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
         ];
     }
 }
@@ -159,7 +159,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for HeavyTop<T> {
         *out = [top_sx + k(0.04) * t3, top_sy - k(0.04) * t4, top_sz + k(0.04) * t5];
     }
     /// Kinetic and potential energy: 17 operations (5 ±, 12 ×, 0 ÷).
-    fn energy(&self, y: &Self::State) -> gyro_sim::Energy<T> {
+    fn energy(&self, _t: T, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let top_rz = y[2];
         let top_sx = y[7];
@@ -177,7 +177,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for HeavyTop<T> {
         }
     }
     /// Writes the joint readings: 0 operations (0 ±, 0 ×, 0 ÷).
-    fn read_joints(&self, y: &Self::State, out: &mut Self::Readings) {
+    fn read_joints(&self, _t: T, y: &Self::State, out: &mut Self::Readings) {
         let top_e0 = y[3];
         let top_e1 = y[4];
         let top_e2 = y[5];
@@ -201,7 +201,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for HeavyTop<T> {
         const JOINTS: [gyro_sim::JointInfo<'static>; 1] = [
             gyro_sim::JointInfo {
                 name: "tip",
-                coordinate: gyro_sim::Coordinate::Orientation,
+                coordinates: &[gyro_sim::Coordinate::Orientation],
             },
         ];
         JOINTS
@@ -209,8 +209,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for HeavyTop<T> {
             .copied()
             .unwrap_or(gyro_sim::JointInfo {
                 name: "",
-                coordinate: gyro_sim::Coordinate::None,
+                coordinates: &[],
             })
+    }
+    fn coupler_name(&self, coupler: usize) -> &str {
+        const COUPLERS: [&str; 0] = [];
+        COUPLERS.get(coupler).copied().unwrap_or_default()
+    }
+    fn driver_name(&self, driver: usize) -> &str {
+        const DRIVERS: [&str; 0] = [];
+        DRIVERS.get(driver).copied().unwrap_or_default()
     }
     fn row(&self, row: usize) -> gyro_sim::RowInfo {
         const ROWS: [gyro_sim::RowInfo; 3] = [
@@ -326,6 +334,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for HeavyTop<T> {
     type Velocities = [T; 6];
     type PhiQ = [T; 17];
     type PhiPi = [T; 9];
+    /// (s̈, ẇ') of each body.
+    type Accelerations = [T; 6];
     fn velocities(&self) -> Self::Velocities {
         [T::constant(0.0); 6]
     }
@@ -334,6 +344,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for HeavyTop<T> {
     }
     fn phi_pi_values(&self) -> Self::PhiPi {
         [T::constant(0.0); 9]
+    }
+    fn accelerations_buffer(&self) -> Self::Accelerations {
+        [T::constant(0.0); 6]
     }
     fn phi_q_pattern(&self) -> &[(u16, u16)] {
         &[
@@ -464,14 +477,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for HeavyTop<T> {
             k(0.0),
         ];
     }
-    /// Solves eq. (17): 102 operations (34 ±, 68 ×, 0 ÷).
-    fn accelerations(
-        &self,
-        _t: T,
-        y: &Self::State,
-        out: &mut Self::Velocities,
-        lambda: &mut Self::Rows,
-    ) {
+    /// Solves eq. (17): 98 operations (33 ±, 65 ×, 0 ÷).
+    fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let top_e0 = y[3];
         let top_e1 = y[4];
@@ -507,10 +514,62 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for HeavyTop<T> {
         let t23 = k(909.0909090909091) * (t22 - (k(0.0002) * t3 - k(0.3924) * t2));
         let t24 = t21 * (k(0.04) * t19) - (t18 * (k(0.04) * t16) - t14 * (k(0.04) * t9));
         let t25 = k(909.0909090909091) * (t24 - (k(0.0002) * t7 - k(0.3924) * t19));
-        let t26 = t14 - (k(0.08) * t9 * t25 - k(0.08) * t6 * t23);
-        let t27 = t18 + (k(0.08) * t16 * t25 - k(0.08) * t15 * t23);
-        let t28 = t21 - (k(0.08) * t19 * t25 + k(0.08) * t2 * t23);
-        *out = [-t26, -t27, t28, t23, -t25, k(0.0)];
-        *lambda = [k(0.5) * t26, k(0.5) * t27, -(k(4.905) + k(0.5) * t28)];
+        *out = [
+            k(0.08) * t9 * t25 - k(0.08) * t6 * t23 - t14,
+            -(t18 + (k(0.08) * t16 * t25 - k(0.08) * t15 * t23)),
+            t21 - (k(0.08) * t19 * t25 + k(0.08) * t2 * t23),
+            t23,
+            -t25,
+            k(0.0),
+        ];
+    }
+    /// Writes λ: 4 operations (1 ±, 3 ×, 0 ÷).
+    fn multipliers(
+        &self,
+        _t: T,
+        _y: &Self::State,
+        accelerations: &Self::Accelerations,
+        lambda: &mut Self::Rows,
+    ) {
+        let k = T::constant;
+        let top_dsx = accelerations[0];
+        let top_dsy = accelerations[1];
+        let top_dsz = accelerations[2];
+        *lambda = [
+            -(k(0.5) * top_dsx),
+            -(k(0.5) * top_dsy),
+            -(k(4.905) + k(0.5) * top_dsz),
+        ];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::Ports for HeavyTop<T> {
+    type Outputs = [T; 0];
+    fn outputs_buffer(&self) -> Self::Outputs {
+        [T::constant(0.0); 0]
+    }
+    fn outputs(&self, _t: T, _y: &Self::State, _out: &mut Self::Outputs) {}
+    fn n_outputs(&self) -> usize {
+        0
+    }
+    fn output(&self, index: usize) -> gyro_sim::OutputInfo<'_> {
+        const OUTPUTS: [gyro_sim::OutputInfo<'static>; 0] = [];
+        OUTPUTS
+            .get(index)
+            .copied()
+            .unwrap_or(gyro_sim::OutputInfo {
+                name: "",
+                suffix: "",
+                unit: "",
+            })
+    }
+    fn n_inputs(&self) -> usize {
+        0
+    }
+    fn input_name(&self, index: usize) -> &str {
+        const INPUTS: [&str; 0] = [];
+        INPUTS.get(index).copied().unwrap_or_default()
+    }
+    fn set_input(&mut self, _index: usize, _value: T) -> bool {
+        false
     }
 }

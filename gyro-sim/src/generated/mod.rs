@@ -26,3 +26,15 @@ pub mod gyroscope_viscous;
 pub mod gyroscope;
 #[rustfmt::skip]
 pub mod heavy_top;
+#[rustfmt::skip]
+pub mod driven_gyroscope;
+#[rustfmt::skip]
+pub mod four_bar;
+#[rustfmt::skip]
+pub mod four_bar_revolute;
+#[rustfmt::skip]
+pub mod pitching_gyroscope;
+#[rustfmt::skip]
+pub mod spinning_top;
+#[rustfmt::skip]
+pub mod torsion;

@@ -2,15 +2,27 @@
 
 use toml::de::{DeTable, DeValue};
 
-use super::numbers::{number, tensor, vector};
-use super::page;
+use super::numbers::{number, plain_number, vector};
 use super::reader::Reader;
 use super::section::{Item, Section};
+use super::tensor::tensor;
+use super::{driven, page};
 use crate::validate::Owner;
 use crate::{Body, Number, Support};
 
-const KEYS: [&str; 9] =
-    ["name", "fixed", "free", "mass", "inertia", "position", "orientation", "velocity", "angular_velocity"];
+const KEYS: [&str; 11] = [
+    "name",
+    "fixed",
+    "free",
+    "driven",
+    "mass",
+    "inertia",
+    "position",
+    "orientation",
+    "velocity",
+    "angular_velocity",
+    "assembly_weight",
+];
 
 /// Reads all bodies. Their names are with the reader before any joint refers to them.
 pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>) -> Vec<Body> {
@@ -36,9 +48,11 @@ fn body(reader: &mut Reader<'_>, index: usize, table: &DeTable<'_>, name: String
     if let Some(support) = support {
         refuse_misplaced(reader, &section, &name, support);
     }
+    let motion = section.get("driven").map(|item| driven::read(reader, index, &title, item));
     // Of a body that is held in an unknown way nothing is asked.
     let support = support.unwrap_or(Support::Fixed);
     let (mass, inertia) = inertial(reader, &section, &title, support);
+    let weight = section.get("assembly_weight").and_then(|item| plain_number(reader, item));
     Body {
         name,
         support,
@@ -48,26 +62,26 @@ fn body(reader: &mut Reader<'_>, index: usize, table: &DeTable<'_>, name: String
         orientation: section.vector_or(reader, "orientation", [1, 0, 0, 0]),
         velocity: section.vector_or(reader, "velocity", [0; 3]),
         angular_velocity: section.get("angular_velocity").and_then(|item| vector(reader, item)),
+        motion: motion.filter(|_| support == Support::Driven),
+        assembly_weight: weight.map_or_else(|| Number::integer(1), Number::Exact),
     }
 }
 
-/// How the body is held: `fixed` and `free` exclude each other.
+/// How the body is held: `fixed`, `free` and `driven` exclude each other.
 fn support(reader: &mut Reader<'_>, section: &Section<'_>) -> Option<Support> {
     let fixed = section.get("fixed").map_or(Some(Support::Moving), |item| fixed(reader, item));
-    let free = section.get("free").map_or(Some(false), |item| flag(reader, item));
-    match (fixed?, free?) {
-        (support, false) => Some(support),
-        (Support::Moving, true) => Some(Support::Free),
-        _ => {
-            section.refuse(
-                reader,
-                "free",
-                "a body cannot be both fixed and free",
-                "remove `fixed` or `free`",
-            );
-            None
-        }
+    let free = section.get("free").map_or(Some(false), |item| item.flag(reader));
+    let fixed = ("fixed", fixed?);
+    let free = ("free", if free? { Support::Free } else { Support::Moving });
+    let driven = ("driven", if section.has("driven") { Support::Driven } else { Support::Moving });
+    let mut held = [fixed, free, driven].into_iter().filter(|(_, support)| *support != Support::Moving);
+    let first = held.next();
+    if let (Some((first, _)), Some((second, _))) = (first, held.next()) {
+        let message = format!("a body cannot be both {first} and {second}");
+        section.refuse(reader, second, &message, &format!("remove `{first}` or `{second}`"));
+        return None;
     }
+    Some(first.map_or(Support::Moving, |(_, support)| support))
 }
 
 fn fixed(reader: &mut Reader<'_>, item: Item<'_>) -> Option<Support> {
@@ -84,34 +98,16 @@ fn fixed(reader: &mut Reader<'_>, item: Item<'_>) -> Option<Support> {
     }
 }
 
-fn flag(reader: &mut Reader<'_>, item: Item<'_>) -> Option<bool> {
-    let flag = item.value.get_ref().as_bool();
-    if flag.is_none() {
-        item.wrong_type(reader, "true or false", &format!("{} = true", item.key()));
-    }
-    flag
-}
-
-/// A start belongs to the bodies that stand for themselves; the others are placed by their joints.
+/// A start belongs to bodies that move; of those that are placed by joints, see [`super::start`].
 fn refuse_misplaced(reader: &mut Reader<'_>, section: &Section<'_>, name: &str, support: Support) {
-    match support {
-        Support::Free => {}
-        Support::Moving => {
-            for key in ["position", "orientation"] {
-                let message = format!("the {key} of body `{name}` follows from its joints");
-                let help = "start the joint instead (`angle`, `orientation`), or write free = true";
-                section.refuse(reader, key, &message, help);
-            }
-            let message = format!("the velocity of body `{name}` follows from its joints");
-            let help = "give its joint a `rate` or the body an `angular_velocity`, or write free = true";
-            section.refuse(reader, "velocity", &message, help);
-        }
-        Support::Fixed | Support::Constrained => {
-            for key in ["velocity", "angular_velocity"] {
-                let message = format!("body `{name}` is fixed and has no {}", key.replace('_', " "));
-                section.refuse(reader, key, &message, "remove the line, or the line with `fixed`");
-            }
-        }
+    let (is, help) = match support {
+        Support::Free | Support::Moving => return,
+        Support::Fixed | Support::Constrained => ("fixed", "remove the line, or the line with `fixed`"),
+        Support::Driven => ("driven", "remove the line: its motion is prescribed by `driven`"),
+    };
+    for key in ["velocity", "angular_velocity", "assembly_weight"] {
+        let message = format!("body `{name}` is {is} and has no {}", key.replace('_', " "));
+        section.refuse(reader, key, &message, help);
     }
 }
 
@@ -122,12 +118,13 @@ fn inertial(
     title: &str,
     support: Support,
 ) -> (Number, [Number; 6]) {
-    let mass = if support == Support::Fixed {
+    let may_lack = matches!(support, Support::Fixed | Support::Driven);
+    let mass = if may_lack {
         section.get("mass")
     } else {
         section.require(reader, "mass", title, "mass = ..., in kg")
     };
-    let inertia = if support == Support::Fixed {
+    let inertia = if may_lack {
         section.get("inertia")
     } else {
         let example = "inertia = [xx, yy, zz], in kg.m2, about the mass centre";

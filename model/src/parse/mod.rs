@@ -1,19 +1,31 @@
 //! The reader: from the text of a page to a checked [`Model`], or to every mistake in it at once.
 
 mod bodies;
+mod couplings;
+mod driven;
+mod forces;
+mod joint_start;
 mod joints;
+mod kinds;
+mod motion;
 mod names;
 mod numbers;
+mod outputs;
 mod page;
+mod parameters;
 mod reader;
+mod references;
 mod section;
 mod start;
+mod table;
+mod tensor;
+mod units;
 
 use toml::de::DeTable;
 
+use crate::Model;
 use crate::diagnostics::{Diagnostic, Diagnostics};
-use crate::validate::{number_problems, topology_problems};
-use crate::{Model, Tree};
+use crate::validate::{coordinate_problems, number_problems, topology_problems};
 use reader::Reader;
 
 /// Reads a page. The file's name is used in messages only.
@@ -41,10 +53,50 @@ use reader::Reader;
 /// Every mistake of the page: syntax, unknown and missing keys, wrong types, unknown names, unphysical numbers, bodies
 /// that hang together wrongly, and a start that the joints do not allow.
 pub fn read(file_name: &str, text: &str) -> Result<Model, Diagnostics> {
+    read_with(file_name, text, &mut |_| {
+        Err("this page is read without its folder: see `read_with`".to_owned())
+    })
+}
+
+/// Reads a page whose motions may be tables in files beside it.
+///
+/// `load` gets the path of a table as the page writes it and returns the text of the CSV file, or why it cannot be read.
+///
+/// ```
+/// let page = r#"
+/// format = 1
+/// name = "shaken_plate"
+/// [[body]]
+/// name = "table"
+/// driven = { translation = [{ table = "shake.csv" }, 0, 0] }
+/// [[body]]
+/// name = "plate"
+/// mass = 0.1
+/// inertia = [1e-4, 1e-4, 2e-4]
+/// [[joint]]
+/// name = "slide"
+/// kind = "prismatic"
+/// axis = [1, 0, 0]
+/// zero = [0, 1, 0]
+/// first = { body = "table" }
+/// second = { body = "plate" }
+/// "#;
+/// let mut load = |_: &str| Ok("t,x\n0,0\n1,0.01\n2,0".to_owned());
+/// let model = gyro_model::read_with("shaken.toml", page, &mut load).expect("a good page");
+/// assert!(model.bodies[0].motion.is_some());
+/// ```
+///
+/// # Errors
+/// As [`read`], and tables that are missing or no tables.
+pub fn read_with(
+    file_name: &str,
+    text: &str,
+    load: &mut dyn FnMut(&str) -> Result<String, String>,
+) -> Result<Model, Diagnostics> {
     let (document, syntax) = DeTable::parse_recoverable(text);
-    let mut reader = Reader::new(text);
-    let model = page::read(&mut reader, document.get_ref());
-    check(&mut reader, &model);
+    let mut reader = Reader::new(text, load);
+    let mut model = page::read(&mut reader, document.get_ref());
+    check(&mut reader, &mut model);
     let mistakes = if syntax.is_empty() {
         reader.into_mistakes()
     } else {
@@ -62,15 +114,17 @@ pub(crate) fn unknown_parameter(model: &Model, name: &str) -> String {
     format!("unknown parameter `{name}`: {}", names::instead(name, &known))
 }
 
-/// What goes beyond the syntax. Places with a mistake of their own are not judged again.
-fn check(reader: &mut Reader<'_>, model: &Model) {
+/// What goes beyond the syntax. Places with a mistake of their own are not judged again. What can only be said of a good
+/// model, its start and its redundant rows, comes last.
+fn check(reader: &mut Reader<'_>, model: &mut Model) {
     reader.add_problems(number_problems(model));
     if reader.names_are_broken() {
         return;
     }
     reader.add_problems(topology_problems(model));
-    let tree = Tree::of(model);
-    if tree.loop_joints.is_empty() && tree.unreached.is_empty() && reader.is_clean() {
+    reader.add_problems(coordinate_problems(model));
+    start::misplaced(reader, model);
+    if reader.is_clean() {
         start::check(reader, model);
     }
 }
@@ -91,6 +145,10 @@ fn syntax_help(message: &str, written: &str) -> &'static str {
         match written.split_once(']') {
             Some(("body", _)) => "write [[body]] above each body",
             Some(("joint", _)) => "write [[joint]] above each joint",
+            Some(("coupler", _)) => "write [[coupler]] above each coupler",
+            Some(("driver", _)) => "write [[driver]] above each driver",
+            Some(("force", _)) => "write [[force]] above each force",
+            Some(("output", _)) => "write [[output]] above each output",
             _ => "a key may be written once: remove one of the two",
         }
     } else if written.starts_with(',') {

@@ -1,15 +1,27 @@
 //! Numbers, vectors and tensors of a page.
 
 use num_bigint::BigInt;
-use toml::Spanned;
 use toml::de::DeValue;
 
-use super::names;
 use super::reader::Reader;
 use super::section::{Item, Section, found};
+use super::{names, units};
 use crate::number::{SIZE_EXPONENT, in_range};
-use crate::validate::Owner;
+use crate::validate::{Owner, Place};
 use crate::{Number, Rational, parse_decimal};
+
+/// π to more digits than any `f64` distinguishes, so that what is computed with it is rounded once.
+const PI: &str = "3.14159265358979323846264338327950288419717";
+
+/// Keys of forces that may be inputs.
+const STRENGTHS: [&str; 5] = ["value", "force", "torque", "level", "damping"];
+
+/// What the name in place of a number may be.
+#[derive(Clone, Copy)]
+enum Names {
+    Parameters,
+    ParametersAndInputs,
+}
 
 /// Longest text of a number: longer ones only cost time.
 const MAX_DIGITS: usize = 400;
@@ -35,8 +47,17 @@ impl Section<'_> {
 
 /// A number: a decimal, or a text that names a parameter.
 pub(super) fn number(reader: &mut Reader<'_>, item: Item<'_>) -> Option<Number> {
+    referring(reader, item, Names::Parameters)
+}
+
+/// The strength of a force: a number that may be an input, too.
+pub(super) fn strength(reader: &mut Reader<'_>, item: Item<'_>) -> Option<Number> {
+    referring(reader, item, Names::ParametersAndInputs)
+}
+
+fn referring(reader: &mut Reader<'_>, item: Item<'_>, allowed: Names) -> Option<Number> {
     match item.value.get_ref() {
-        DeValue::String(text) => reference(reader, item, text),
+        DeValue::String(text) => reference(reader, item, text, allowed),
         _ => plain_number(reader, item).map(Number::Exact),
     }
 }
@@ -46,14 +67,9 @@ pub(super) fn plain_number(reader: &mut Reader<'_>, item: Item<'_>) -> Option<Ra
     let value = match item.value.get_ref() {
         DeValue::Float(float) => decimal(float.as_str()),
         DeValue::Integer(integer) => whole(integer.as_str(), integer.radix()),
-        DeValue::String(text)
-            if reader.parameters.iter().any(|name| *name == text.trim_start_matches('-')) =>
-        {
-            let help = format!("write the number itself in place of {text:?}");
-            item.wrong(
-                reader,
-                [format!("`{}` cannot be a parameter", item.key()), "a parameter".to_owned(), help],
-            );
+        DeValue::String(text) => {
+            let words = not_plain(reader, item.place, text);
+            item.wrong(reader, words);
             return None;
         }
         other => {
@@ -69,21 +85,81 @@ pub(super) fn plain_number(reader: &mut Reader<'_>, item: Item<'_>) -> Option<Ra
     value.map_err(|words| item.wrong(reader, words)).ok()
 }
 
+/// The words for a text in place of a number that must be written out.
+fn not_plain(reader: &Reader<'_>, place: Place, text: &str) -> [String; 3] {
+    let key = place.key;
+    let name = text.trim_start_matches('-');
+    let is = |names: &[String]| names.iter().any(|known| known == name);
+    let what = match (is(&reader.parameters), is(&reader.inputs)) {
+        (true, _) => "a parameter",
+        (false, true) => "an input",
+        _ => {
+            return units::with_unit(place, text).unwrap_or_else(|| {
+                [
+                    format!("expected a number for `{key}`"),
+                    format!("found the text {text:?}"),
+                    "write a number such as 0.5 or 100e-7".to_owned(),
+                ]
+            });
+        }
+    };
+    let help = format!("write the number itself in place of {text:?}");
+    [format!("`{key}` cannot be {what}"), what.to_owned(), help]
+}
+
 /// An array of `N` numbers.
 pub(super) fn vector<const N: usize>(reader: &mut Reader<'_>, item: Item<'_>) -> Option<[Number; N]> {
-    let what = format!("an array of {N} numbers");
-    let example = format!("{} = [{}]", item.key(), example(item.key(), N).join(", "));
+    numbers(reader, item, N).and_then(|numbers| numbers.try_into().ok())
+}
+
+/// An array of some numbers.
+pub(super) fn numbers(reader: &mut Reader<'_>, item: Item<'_>, length: usize) -> Option<Vec<Number>> {
+    elements(reader, item, length, number)
+}
+
+/// A vector of a force's strength, whose elements may be inputs.
+pub(super) fn strengths(reader: &mut Reader<'_>, item: Item<'_>) -> Option<[Number; 3]> {
+    elements(reader, item, 3, strength).and_then(|numbers| numbers.try_into().ok())
+}
+
+fn elements(
+    reader: &mut Reader<'_>,
+    item: Item<'_>,
+    length: usize,
+    element: fn(&mut Reader<'_>, Item<'_>) -> Option<Number>,
+) -> Option<Vec<Number>> {
+    let what = format!("an array of {length} numbers");
+    let example = format!("{} = [{}]", item.key(), example(item.key(), length).join(", "));
     let Some(elements) = item.value.get_ref().as_array() else {
         item.wrong_type(reader, &what, &example);
         return None;
     };
-    if elements.len() != N {
+    if elements.len() != length {
         item.wrong_type(reader, &what, &example);
     }
     let numbers: Vec<Option<Number>> =
-        elements.iter().map(|value| number(reader, Item { place: item.place, value })).collect();
+        elements.iter().map(|value| element(reader, Item { place: item.place, value })).collect();
     let numbers: Option<Vec<Number>> = numbers.into_iter().collect();
-    numbers.and_then(|numbers| numbers.try_into().ok())
+    numbers.filter(|numbers| numbers.len() == length)
+}
+
+/// Degrees in rad.
+pub(super) fn radians(degrees: Rational) -> Number {
+    Number::Exact(degrees * pi() / Rational::from_integer(180.into()))
+}
+
+/// Something a turn as the same a radian.
+pub(super) fn per_turn(value: Rational) -> Number {
+    Number::Exact(value / (pi() * Rational::from_integer(2.into())))
+}
+
+/// Turns a second in rad/s.
+pub(super) fn turns(value: Rational) -> Number {
+    Number::Exact(value * pi() * Rational::from_integer(2.into()))
+}
+
+pub(super) fn pi() -> Rational {
+    parse_decimal(PI).expect("π is a decimal")
 }
 
 /// Elements of a vector that would be right.
@@ -96,117 +172,55 @@ fn example(key: &str, length: usize) -> Vec<&'static str> {
     (0..length).map(|k| if Some(k) == one { "1" } else { "0" }).collect()
 }
 
-/// An inertia tensor: `[xx, yy, zz]`, a table of its elements or a symmetric matrix.
-pub(super) fn tensor(reader: &mut Reader<'_>, item: Item<'_>) -> Option<[Number; 6]> {
-    match item.value.get_ref() {
-        DeValue::Table(_) => tensor_of_elements(reader, item),
-        DeValue::Array(rows) if !rows.is_empty() && rows.iter().all(|row| row.get_ref().is_array()) => {
-            tensor_of_rows(reader, item, rows)
-        }
-        DeValue::Array(elements) if elements.len() == 3 => {
-            let [xx, yy, zz] = vector(reader, item)?;
-            Some([xx, yy, zz, Number::integer(0), Number::integer(0), Number::integer(0)])
-        }
-        _ => {
-            item.wrong_type(
-                reader,
-                "three moments of inertia, a table of elements or a symmetric matrix",
-                "inertia = [xx, yy, zz], { xx = .., yy = .., zz = .., xy = .., xz = .., yz = .. } or three rows of three",
-            );
-            None
-        }
-    }
-}
-
-const ELEMENTS: [&str; 6] = ["xx", "yy", "zz", "xy", "xz", "yz"];
-
-fn tensor_of_elements(reader: &mut Reader<'_>, item: Item<'_>) -> Option<[Number; 6]> {
-    let table = item.value.get_ref().as_table()?;
-    // The elements are marked under the body's own place: they are judged together, as its inertia.
-    let section = Section::open(reader, item.place.owner, "an inertia", table, &ELEMENTS);
-    let mut whole = true;
-    let elements = ELEMENTS.map(|key| match section.get(key) {
-        Some(element) => {
-            let number = number(reader, Item { place: element.place, value: element.value });
-            whole &= number.is_some();
-            number.unwrap_or_else(|| Number::integer(0))
-        }
-        None => {
-            if key.as_bytes()[0] == key.as_bytes()[1] {
-                whole = false;
-                let words = [
-                    format!("the inertia has no `{key}`"),
-                    format!("needs `{key}`"),
-                    format!("write {key} = ..."),
-                ];
-                reader.missing(item.place, words);
-            }
-            Number::integer(0)
-        }
-    });
-    if !whole {
-        reader.doubt(item.place);
-    }
-    whole.then_some(elements)
-}
-
-fn tensor_of_rows(
-    reader: &mut Reader<'_>,
-    item: Item<'_>,
-    rows: &[Spanned<DeValue<'_>>],
-) -> Option<[Number; 6]> {
-    if rows.len() != 3 {
-        item.wrong_type(
-            reader,
-            "a matrix of three rows of three numbers",
-            "[[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]",
-        );
-        return None;
-    }
-    let rows: Vec<Option<[Number; 3]>> =
-        rows.iter().map(|value| vector(reader, Item { place: item.place, value })).collect();
-    let rows: Vec<[Number; 3]> = rows.into_iter().collect::<Option<_>>()?;
-    for (i, j) in [(0, 1), (0, 2), (1, 2)] {
-        if rows[i][j] != rows[j][i] {
-            let axes = ["x", "y", "z"];
-            let words = [
-                "an inertia tensor is symmetric".to_owned(),
-                format!("{0}{1} differs from {1}{0}", axes[i], axes[j]),
-                format!(
-                    "write the same number in row {}, column {} and in row {1}, column {0}",
-                    i + 1,
-                    j + 1
-                ),
-            ];
-            item.wrong(reader, words);
-            return None;
-        }
-    }
-    let [[xx, xy, xz], [_, yy, yz], [_, _, zz]] = <[[Number; 3]; 3]>::try_from(rows).ok()?;
-    Some([xx, yy, zz, xy, xz, yz])
-}
-
-/// A reference to a parameter, `"name"` or `"-name"`.
-fn reference(reader: &mut Reader<'_>, item: Item<'_>, text: &str) -> Option<Number> {
+/// A reference to a parameter or an input, `"name"` or `"-name"`.
+fn reference(reader: &mut Reader<'_>, item: Item<'_>, text: &str, allowed: Names) -> Option<Number> {
     let (name, negated) = text.strip_prefix('-').map_or((text, false), |name| (name, true));
     if let Some(index) = reader.parameters.iter().position(|p| p == name) {
         return Some(Number::Parameter { index, negated });
     }
+    match (reader.inputs.iter().position(|input| input == name), allowed) {
+        (Some(index), Names::ParametersAndInputs) => return Some(Number::Input { index, negated }),
+        (Some(_), Names::Parameters) => item.wrong(reader, not_an_input(item.key(), name)),
+        (None, _) => {
+            let words = units::with_unit(item.place, text)
+                .unwrap_or_else(|| unknown_name(reader, item.key(), text, allowed));
+            item.wrong(reader, words);
+        }
+    }
+    None
+}
+
+fn not_an_input(key: &str, name: &str) -> [String; 3] {
+    [
+        format!("`{key}` cannot be an input"),
+        "an input".to_owned(),
+        format!(
+            "inputs are for forces only, for their strength ({}): write the number, or declare `{name}` under \
+             [parameters]",
+            names::list(&STRENGTHS)
+        ),
+    ]
+}
+
+/// A text that neither names a number nor is one with a unit.
+fn unknown_name(reader: &Reader<'_>, key: &str, text: &str, allowed: Names) -> [String; 3] {
+    let name = text.strip_prefix('-').unwrap_or(text);
+    let mut known: Vec<&str> = reader.parameters.iter().map(String::as_str).collect();
+    let (what, tables) = match allowed {
+        Names::Parameters => ("parameter", "[parameters]"),
+        Names::ParametersAndInputs => {
+            known.extend(reader.inputs.iter().map(String::as_str));
+            ("parameter or input", "[parameters] or [inputs]")
+        }
+    };
     let help = if parse_decimal(text).is_some() {
         format!("write {text} without quotes")
-    } else if reader.parameters.is_empty() {
-        format!("write a number, or declare {name} under [parameters]")
+    } else if known.is_empty() {
+        format!("write a number, or declare {name} under {tables}")
     } else {
-        let known: Vec<&str> = reader.parameters.iter().map(String::as_str).collect();
-        format!("{}, or declare `{name}` under [parameters]", names::instead(name, &known))
+        format!("{}, or declare `{name}` under {tables}", names::instead(name, &known))
     };
-    let words = [
-        format!("unknown parameter `{name}`"),
-        format!("text in place of the number `{}`", item.key()),
-        help,
-    ];
-    item.wrong(reader, words);
-    None
+    [format!("unknown {what} `{name}`"), format!("text in place of the number `{key}`"), help]
 }
 
 /// A decimal with point or exponent.

@@ -1,21 +1,34 @@
-//! The page as a whole: format, name, gravity, parameters and simulation.
+//! The page as a whole: format, name, gravity and simulation; and what all arrays of tables share.
 
 use std::ops::Range;
 
 use num_traits::One;
 use toml::Spanned;
-use toml::de::{DeString, DeTable, DeValue};
+use toml::de::DeTable;
 
 use super::names;
 use super::numbers::{plain_number, positive};
 use super::reader::Reader;
-use super::section::{Item, Section, not_a_name};
-use super::{bodies, joints};
+use super::section::{Item, Section, keyword};
+use super::{bodies, couplings, forces, joints, outputs, parameters};
 use crate::diagnostics::Related;
 use crate::validate::{Owner, Place};
-use crate::{Method, Model, Parameter, Rational, Simulation, to_f64};
+use crate::{Method, Model, Rational, Simulation, to_f64};
 
-const KEYS: [&str; 7] = ["format", "name", "gravity", "simulation", "parameters", "body", "joint"];
+const KEYS: [&str; 12] = [
+    "format",
+    "name",
+    "gravity",
+    "simulation",
+    "parameters",
+    "inputs",
+    "body",
+    "joint",
+    "coupler",
+    "driver",
+    "force",
+    "output",
+];
 const SIMULATION_KEYS: [&str; 5] = ["t_end", "step", "correct_every", "sample_every", "method"];
 const METHODS: [(&str, Method); 2] = [("partitioned", Method::Partitioned), ("direct", Method::Direct)];
 
@@ -25,12 +38,30 @@ pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
     let page = Section::open(reader, Owner::Page, "the page", table, &KEYS);
     format(reader, &page);
     let name = name(reader, &page);
-    let parameters = page.get("parameters").map(|item| parameters(reader, item)).unwrap_or_default();
+    let (parameters, inputs) = parameters::read(reader, &page);
     let gravity = page.vector_or(reader, "gravity", [0; 3]);
     let simulation = simulation(reader, &page);
     let bodies = bodies::read(reader, &page);
     let joints = joints::read(reader, &page);
-    Model { name, gravity, parameters, bodies, joints, simulation }
+    let couplers = couplings::couplers(reader, &page);
+    let drivers = couplings::drivers(reader, &page);
+    let forces = forces::read(reader, &page);
+    let outputs = outputs::read(reader, &page);
+    let redundant = Vec::new();
+    Model {
+        name,
+        gravity,
+        parameters,
+        inputs,
+        bodies,
+        joints,
+        couplers,
+        drivers,
+        forces,
+        outputs,
+        redundant,
+        simulation,
+    }
 }
 
 fn format(reader: &mut Reader<'_>, page: &Section<'_>) {
@@ -50,48 +81,6 @@ fn name(reader: &mut Reader<'_>, page: &Section<'_>) -> String {
         item.wrong(reader, keyword(name));
     }
     name.to_owned()
-}
-
-fn keyword(name: &str) -> [String; 3] {
-    [
-        format!("`{name}` is a word of the Rust language"),
-        "cannot name a module or a field".to_owned(),
-        format!("write another name, such as `{name}_0`"),
-    ]
-}
-
-/// The parameters in the order of the page. All names are known before any number refers to one.
-fn parameters(reader: &mut Reader<'_>, item: Item<'_>) -> Vec<Parameter> {
-    let Some(table) = item.table(reader, "[parameters] on a line of its own, then name = number") else {
-        return Vec::new();
-    };
-    let mut entries: Vec<_> = table.iter().collect();
-    entries.sort_by_key(|(key, _)| key.span().start);
-    let parameters: Vec<Parameter> = entries
-        .iter()
-        .enumerate()
-        .map(|(index, (key, value))| parameter(reader, index, key, value))
-        .collect();
-    reader.parameters = parameters.iter().map(|p| p.name.clone()).collect();
-    parameters
-}
-
-fn parameter(
-    reader: &mut Reader<'_>,
-    index: usize,
-    key: &Spanned<DeString<'_>>,
-    value: &Spanned<DeValue<'_>>,
-) -> Parameter {
-    let place = Place { owner: Owner::Parameter(index), key: "" };
-    let name = key.get_ref().as_ref();
-    reader.mark(place, value.span());
-    if !names::is_snake_case(name) {
-        reader.wrong(place, key.span(), not_a_name(name));
-    } else if names::is_keyword(name) {
-        reader.wrong(place, key.span(), keyword(name));
-    }
-    let value = plain_number(reader, Item { place: Place { key: "value", ..place }, value });
-    Parameter { name: name.to_owned(), value: value.unwrap_or_else(Rational::one) }
 }
 
 /// The simulation settings with their defaults: one second in steps of a millisecond, a correction every five steps.
@@ -116,16 +105,11 @@ fn simulation(reader: &mut Reader<'_>, page: &Section<'_>) -> Simulation {
 
 fn method(reader: &mut Reader<'_>, section: &Section<'_>) -> Method {
     let Some(item) = section.get("method") else { return Method::Partitioned };
-    let Some(written) = item.text(reader, "method = \"partitioned\"") else { return Method::Partitioned };
-    let method = METHODS.iter().find(|(name, _)| *name == written);
-    if method.is_none() {
-        let help = names::instead(written, &METHODS.map(|(name, _)| name));
-        item.wrong(reader, [format!("unknown method `{written}`"), "not a method".to_owned(), help]);
-    }
-    method.map_or(Method::Partitioned, |(_, method)| *method)
+    let method = item.choice(reader, ("method", &METHODS));
+    method.unwrap_or(Method::Partitioned)
 }
 
-/// The tables of `[[body]]` or `[[joint]]`, with the span of each.
+/// The tables of `[[body]]`, `[[joint]]` and the like, with the span of each.
 pub(super) fn tables<'t>(
     reader: &mut Reader<'_>,
     page: &Section<'t>,
@@ -146,12 +130,12 @@ pub(super) fn tables<'t>(
     tables
 }
 
-/// Reads the names of all bodies or joints and reports those that are missing, repeated or no names.
+/// Reads the names of all things of a kind and reports those that are missing, repeated or no names.
 pub(super) fn names(
     reader: &mut Reader<'_>,
     tables: &[(Range<usize>, &DeTable<'_>)],
     owner: fn(usize) -> Owner,
-    what: &str,
+    what: &'static str,
 ) -> Vec<Option<String>> {
     let mut seen: Vec<(Option<String>, Range<usize>)> = Vec::new();
     for (index, (header, table)) in tables.iter().enumerate() {
@@ -169,6 +153,8 @@ pub(super) fn names(
             let help = "write another name".to_owned();
             let words = [format!("{what} `{name}` is written twice"), "used again".to_owned(), help];
             reader.clash(place, span.clone(), related, words);
+        } else if let Some(name) = name {
+            reader.take(place, &span, name, what);
         }
         seen.push((name.map(str::to_owned), span));
     }

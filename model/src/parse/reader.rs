@@ -3,19 +3,39 @@
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
+use crate::JointKind;
 use crate::diagnostics::{Diagnostic, Related};
 use crate::validate::{Owner, Place, Problem};
+
+/// Gets the text of a table by the path that the page gives.
+pub(super) type Load<'t> = dyn FnMut(&str) -> Result<String, String> + 't;
 
 /// The state of a walk.
 pub(super) struct Reader<'t> {
     text: &'t str,
+    load: &'t mut Load<'t>,
     mistakes: Vec<Mistake>,
     spans: HashMap<Place, Range<usize>>,
     broken: HashSet<Place>,
     /// Names of the page's parameters; numbers may refer to them.
     pub(super) parameters: Vec<String>,
+    /// Names of the page's inputs; forces may refer to them.
+    pub(super) inputs: Vec<String>,
     /// Names of the page's bodies; joints refer to them.
     pub(super) bodies: Vec<Option<String>>,
+    /// Names and kinds of the page's joints; couplers, drivers, forces and outputs refer to them.
+    pub(super) joints: Vec<NamedJoint>,
+    /// Names of the page's drivers; outputs refer to them.
+    pub(super) drivers: Vec<Option<String>>,
+    /// Names of joints, couplers, drivers and outputs so far, with their places and what they are.
+    taken: Vec<(String, Range<usize>, &'static str)>,
+}
+
+/// What others need to know of a joint to refer to it, as far as the page says it well.
+#[derive(Clone, Debug)]
+pub(super) struct NamedJoint {
+    pub(super) name: Option<String>,
+    pub(super) kind: Option<JointKind>,
 }
 
 struct Mistake {
@@ -33,15 +53,45 @@ enum Nature {
 }
 
 impl<'t> Reader<'t> {
-    pub(super) fn new(text: &'t str) -> Self {
+    pub(super) fn new(text: &'t str, load: &'t mut Load<'t>) -> Self {
         Self {
             text,
+            load,
             mistakes: Vec::new(),
             spans: HashMap::new(),
             broken: HashSet::new(),
             parameters: Vec::new(),
+            inputs: Vec::new(),
             bodies: Vec::new(),
+            joints: Vec::new(),
+            drivers: Vec::new(),
+            taken: Vec::new(),
         }
+    }
+
+    /// Takes a name of something that stands in results and messages by its name alone: joints, couplers, drivers and
+    /// outputs share their names.
+    pub(super) fn take(&mut self, place: Place, span: &Range<usize>, name: &str, what: &'static str) {
+        if matches!(what, "body" | "force") {
+            return;
+        }
+        let earlier = self.taken.iter().find(|(other, _, kind)| other == name && *kind != what).cloned();
+        if let Some((_, first, kind)) = earlier {
+            let related = Related { span: first, label: format!("a {kind} here") };
+            let words = [
+                format!("`{name}` names a {kind} and a {what}").replace("a output", "an output"),
+                "used again".to_owned(),
+                "write another name: joints, couplers, drivers and outputs share theirs in results and messages"
+                    .to_owned(),
+            ];
+            self.clash(place, span.clone(), related, words);
+        }
+        self.taken.push((name.to_owned(), span.clone(), what));
+    }
+
+    /// The text of a table.
+    pub(super) fn load(&mut self, path: &str) -> Result<String, String> {
+        (self.load)(path)
     }
 
     /// Notes where a place is.
@@ -74,9 +124,18 @@ impl<'t> Reader<'t> {
     }
 
     /// Reports that something is missing, at the place that should have it.
-    pub(super) fn missing(&mut self, place: Place, [message, label, help]: [String; 3]) {
+    pub(super) fn missing(&mut self, place: Place, words: [String; 3]) {
+        self.missing_at(place, self.span(place), words);
+    }
+
+    /// The same at a part of the place.
+    pub(super) fn missing_at(
+        &mut self,
+        place: Place,
+        span: Range<usize>,
+        [message, label, help]: [String; 3],
+    ) {
         self.broken.insert(place);
-        let span = self.span(place);
         self.push(Nature::Absent, Diagnostic { span, message, label, help, related: Vec::new() });
     }
 
@@ -98,12 +157,17 @@ impl<'t> Reader<'t> {
     pub(super) fn names_are_broken(&self) -> bool {
         let names_bodies = |place: &Place| match place.owner {
             Owner::Page => matches!(place.key, "body" | "joint"),
-            Owner::Body(_) => matches!(place.key, "name" | "fixed" | "free"),
+            Owner::Body(_) => matches!(place.key, "name" | "fixed" | "free" | "driven"),
             Owner::Joint(_) => matches!(place.key, "first" | "second" | "kind"),
             Owner::End(..) => place.key == "body",
-            Owner::Simulation | Owner::Parameter(_) => false,
+            _ => false,
         };
         self.broken.iter().any(names_bodies)
+    }
+
+    /// Whether the page has a place.
+    pub(super) fn is_written(&self, place: Place) -> bool {
+        self.spans.contains_key(&place)
     }
 
     /// Whether a place had a mistake of its own.

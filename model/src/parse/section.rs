@@ -16,6 +16,9 @@ pub(super) struct Section<'t> {
     table: &'t DeTable<'t>,
 }
 
+/// What the words are, and the words with their meanings, the commonest first.
+pub(super) type Choice<'c, T> = (&'c str, &'c [(&'static str, T)]);
+
 /// The value of a key.
 #[derive(Clone, Copy)]
 pub(super) struct Item<'t> {
@@ -39,6 +42,15 @@ impl<'t> Section<'t> {
             }
         }
         Self { owner, table }
+    }
+
+    /// What the section is, with its article.
+    fn noun(&self) -> &'static str {
+        match self.owner {
+            Owner::Force(_) => "a force",
+            Owner::Output(_) => "an output",
+            _ => "something",
+        }
     }
 
     pub(super) fn place(&self, key: &'static str) -> Place {
@@ -68,6 +80,35 @@ impl<'t> Section<'t> {
             reader.missing(self.place(key), words);
         }
         item
+    }
+
+    /// The same of a table inside a value, such as one of several motions: what is missing is reported there.
+    pub(super) fn require_within(
+        &self,
+        reader: &mut Reader<'_>,
+        whole: Item<'_>,
+        key: &'static str,
+        (title, example): (&str, &str),
+    ) -> Option<Item<'t>> {
+        let item = self.get(key);
+        if item.is_none() && !reader.is_doubted(self.place(key)) {
+            let words =
+                [format!("{title} has no `{key}`"), format!("needs `{key}`"), format!("write {example}")];
+            reader.missing_at(whole.place, whole.span(), words);
+        }
+        item
+    }
+
+    /// One of some words under a key that must be there; see [`Item::choice`].
+    pub(super) fn require_choice<T: Copy>(
+        &self,
+        reader: &mut Reader<'_>,
+        key: &'static str,
+        title: &str,
+        choice: Choice<'_, T>,
+    ) -> Option<T> {
+        let item = self.require(reader, key, title, &choice_example(key, choice.1))?;
+        item.choice(reader, choice)
     }
 
     /// Refuses a key that is known but out of place here.
@@ -117,6 +158,32 @@ impl<'t> Item<'t> {
         table
     }
 
+    /// One of some words.
+    pub(super) fn choice<T: Copy>(&self, reader: &mut Reader<'_>, (what, known): Choice<'_, T>) -> Option<T> {
+        let written = self.text(reader, &choice_example(self.key(), known))?;
+        let found = known.iter().find(|(name, _)| *name == written).map(|(_, value)| *value);
+        if found.is_none() {
+            let known: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
+            let list = names::list(&known);
+            let key = self.key();
+            let help = match names::nearest(written, &known) {
+                Some(name) => format!("write `{name}`; the {key}s are {list}"),
+                None => format!("the {key}s are {list}"),
+            };
+            self.wrong(reader, [format!("unknown {what} `{written}`"), format!("not a {key}"), help]);
+        }
+        found
+    }
+
+    /// A truth value.
+    pub(super) fn flag(&self, reader: &mut Reader<'_>) -> Option<bool> {
+        let flag = self.value.get_ref().as_bool();
+        if flag.is_none() {
+            self.wrong_type(reader, "true or false", &format!("{} = true", self.key()));
+        }
+        flag
+    }
+
     /// A name in `snake_case`.
     pub(super) fn name(&self, reader: &mut Reader<'_>) -> Option<&'t str> {
         let name = self.text(reader, &format!("{} = \"some_name\"", self.key()))?;
@@ -136,6 +203,26 @@ pub(super) fn not_a_name(name: &str) -> [String; 3] {
     ]
 }
 
+/// The words for a name that Rust keeps for itself.
+pub(super) fn keyword(name: &str) -> [String; 3] {
+    [
+        format!("`{name}` is a word of the Rust language"),
+        "cannot name a module or a field".to_owned(),
+        format!("write another name, such as `{name}_0`"),
+    ]
+}
+
+/// A key with the first of some words, and the others.
+fn choice_example<T>(key: &str, known: &[(&'static str, T)]) -> String {
+    let names: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
+    match names.as_slice() {
+        [] => format!("{key} = \"...\""),
+        [one] => format!("{key} = {one:?}"),
+        [one, other] => format!("{key} = {one:?} (or `{other}`)"),
+        [one, others @ ..] => format!("{key} = {one:?} (or one of {})", names::list(others)),
+    }
+}
+
 /// What a value is, with its article.
 pub(super) fn found(value: &DeValue<'_>) -> String {
     match value {
@@ -146,6 +233,22 @@ pub(super) fn found(value: &DeValue<'_>) -> String {
         DeValue::Datetime(_) => "a date or time".to_owned(),
         DeValue::Array(elements) => format!("an array of {}", elements.len()),
         DeValue::Table(_) => "a table".to_owned(),
+    }
+}
+
+/// Refuses the keys that belong to other kinds of the same section. `name` and `kind` belong to all.
+pub(super) fn refuse_others(
+    reader: &mut Reader<'_>,
+    section: &Section<'_>,
+    all: &[&'static str],
+    (kind, own): (&str, &[&str]),
+) {
+    for key in all.iter().filter(|key| !own.contains(key) && !matches!(**key, "name" | "kind")) {
+        let help = match own {
+            [] => "remove it: it has no keys of its own".to_owned(),
+            own => format!("its keys are {}", names::list(own)),
+        };
+        section.refuse(reader, key, &format!("{} of kind \"{kind}\" has no `{key}`", section.noun()), &help);
     }
 }
 

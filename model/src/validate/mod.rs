@@ -1,8 +1,13 @@
 //! What must hold of a model beyond its syntax. Problems name places of the page; only the parser knows their spans.
 
+mod coordinates;
+mod directions;
+mod forces;
+mod inertia;
 mod numbers;
 mod topology;
 
+pub(crate) use coordinates::problems as coordinate_problems;
 pub(crate) use numbers::problems as number_problems;
 pub(crate) use topology::problems as topology_problems;
 
@@ -21,12 +26,21 @@ pub(crate) enum Owner {
     Page,
     Simulation,
     Parameter(usize),
+    Input(usize),
     Body(usize),
+    /// The `driven` table of a body.
+    Driven(usize),
     Joint(usize),
     End(usize, Side),
+    Coupler(usize),
+    CouplerEnd(usize, Side),
+    Driver(usize),
+    Force(usize),
+    ForceEnd(usize, Side),
+    Output(usize),
 }
 
-/// One of the two ends of a joint.
+/// One of the two ends of a joint, a coupler or a link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Side {
     First,
@@ -53,6 +67,10 @@ impl Place {
         Self { owner: Owner::Joint(index), key }
     }
 
+    pub(crate) fn force(index: usize, key: &'static str) -> Self {
+        Self { owner: Owner::Force(index), key }
+    }
+
     pub(crate) fn end(joint: usize, side: Side, key: &'static str) -> Self {
         Self { owner: Owner::End(joint, side), key }
     }
@@ -63,6 +81,9 @@ impl Place {
             (Owner::Page, "") => None,
             (Owner::End(joint, _), "axis" | "zero" | "point") => Some(Self::joint(joint, self.key)),
             (Owner::End(joint, _), "") => Some(Self::joint(joint, "")),
+            (Owner::CouplerEnd(index, _), "") => Some(Self { owner: Owner::Coupler(index), key: "" }),
+            (Owner::ForceEnd(index, _), "") => Some(Self { owner: Owner::Force(index), key: "" }),
+            (Owner::Driven(body), "") => Some(Self::body(body, "driven")),
             (_, "") => Some(Self { owner: Owner::Page, key: "" }),
             (owner, _) => Some(Self { owner, key: "" }),
         }

@@ -1,7 +1,8 @@
-//! How bodies and joints hang together: trees rooted in fixed and free bodies, and starts that do not contradict.
+//! How bodies and joints hang together: everything that moves is connected, free bodies are roots, and starts do not
+//! contradict.
 
 use super::{Place, Problem, Side};
-use crate::{Attachment, Joint, JointKind, Link, Model, Support, Tree};
+use crate::{Attachment, Body, Joint, JointKind, Link, Model, Support, Tree};
 
 /// Everything that is wrong, in the order of the page within each kind.
 pub(crate) fn problems(model: &Model) -> Vec<Problem> {
@@ -11,13 +12,13 @@ pub(crate) fn problems(model: &Model) -> Vec<Problem> {
         found.push(nothing_moves());
     }
     for (index, joint) in model.joints.iter().enumerate() {
-        let both_fixed = [&joint.first, &joint.second].iter().all(|end| is_fixed(model, end.body));
+        let both_held = [&joint.first, &joint.second].iter().all(|end| is_held(model, end.body));
         if joint.first.body == joint.second.body {
             found.push(to_itself(model, index));
-        } else if both_fixed {
-            found.push(between_fixed(model, index));
+        } else if both_held {
+            found.push(between_held(model, index));
         } else if tree.loop_joints.contains(&index) && is_reached(&tree, joint) {
-            found.push(closing(model, &tree, index));
+            found.extend(ties_free_root(model, &tree, index));
         }
     }
     found.extend(tree.unreached.iter().map(|&body| unconnected(model, body)));
@@ -25,8 +26,9 @@ pub(crate) fn problems(model: &Model) -> Vec<Problem> {
     found
 }
 
-fn is_fixed(model: &Model, body: usize) -> bool {
-    matches!(model.bodies[body].support, Support::Fixed | Support::Constrained)
+/// Whether something else than joints decides where a body is.
+fn is_held(model: &Model, body: usize) -> bool {
+    matches!(model.bodies[body].support, Support::Fixed | Support::Constrained | Support::Driven)
 }
 
 /// A joint among bodies that nothing leads to is no loop yet.
@@ -58,47 +60,45 @@ fn to_itself(model: &Model, index: usize) -> Problem {
     }
 }
 
-fn between_fixed(model: &Model, index: usize) -> Problem {
+fn between_held(model: &Model, index: usize) -> Problem {
     let joint = &model.joints[index];
-    let [first, second] = [&joint.first, &joint.second].map(|end| &model.bodies[end.body].name);
+    let [first, second] = [&joint.first, &joint.second].map(|end| &model.bodies[end.body]);
+    let word = |body: &Body| if body.support == Support::Driven { "driven" } else { "fixed" };
+    let (are, help) = match (word(first), word(second)) {
+        ("fixed", "fixed") => ("two fixed bodies", "the `fixed` of the body that should move"),
+        ("driven", "driven") => {
+            ("two driven bodies", "the `driven` of the body that should follow the joint")
+        }
+        _ => {
+            ("a fixed and a driven body", "the `fixed` or `driven` of the body that should follow the joint")
+        }
+    };
+    let alike = word(first) == word(second);
     Problem {
         place: Place::end(index, Side::Second, "body"),
-        also: Some((Place::end(index, Side::First, "body"), "fixed".to_owned())),
-        message: format!("joint `{}` joins two fixed bodies, `{first}` and `{second}`", joint.name),
-        label: "fixed, too".to_owned(),
-        help: "remove the joint, or the `fixed` of the body that should move".to_owned(),
+        also: Some((Place::end(index, Side::First, "body"), word(first).to_owned())),
+        message: format!("joint `{}` joins {are}, `{}` and `{}`", joint.name, first.name, second.name),
+        label: format!("{}{}", word(second), if alike { ", too" } else { "" }),
+        help: format!("remove the joint, or {help}"),
     }
 }
 
-/// A joint whose bodies are both held without it.
-fn closing(model: &Model, tree: &Tree, index: usize) -> Problem {
+/// A joint between the tree of a free body and another root. Bodies that only rods hold are no roots that could hold it.
+fn ties_free_root(model: &Model, tree: &Tree, index: usize) -> Option<Problem> {
     let joint = &model.joints[index];
     let roots = [&joint.first, &joint.second].map(|end| root(tree, end.body));
-    let free = roots.into_iter().find(|&root| model.bodies[root].support == Support::Free);
-    match free {
-        Some(free) if roots[0] != roots[1] => ties_free_root(model, index, free),
-        _ => Problem {
-            place: Place::joint(index, ""),
-            also: None,
-            message: format!(
-                "joint `{}` closes a loop: mechanisms with closed loops are not supported yet",
-                joint.name
-            ),
-            label: "both of its bodies are held without it".to_owned(),
-            help: "remove a joint of the loop, so that one path of joints leads to every body".to_owned(),
-        },
+    let free = roots.into_iter().find(|&root| model.bodies[root].support == Support::Free)?;
+    if roots[0] == roots[1] || roots.iter().any(|root| tree.floating.contains(root)) {
+        return None;
     }
-}
-
-fn ties_free_root(model: &Model, index: usize, free: usize) -> Problem {
     let name = &model.bodies[free].name;
-    Problem {
+    Some(Problem {
         place: Place::joint(index, ""),
         also: Some((Place::body(free, "free"), "the free body".to_owned())),
-        message: format!("joint `{}` ties the free body `{name}` to another root", model.joints[index].name),
+        message: format!("joint `{}` ties the free body `{name}` to another root", joint.name),
         label: "leads to a body that is held otherwise".to_owned(),
-        help: format!("remove `free` and the start of body `{name}`: its joint places it"),
-    }
+        help: format!("remove `free` of body `{name}`: its joints place it"),
+    })
 }
 
 /// The fixed or free body that a body hangs from.

@@ -7,8 +7,8 @@ use core::fmt;
 
 use crate::DoubleDouble;
 
-/// A state of the integration: three angles (rad) and their rates (rad/s).
-pub(crate) type State = [DoubleDouble; 6];
+/// A state of the integration, such as three angles (rad) and their rates (rad/s).
+pub(crate) type State<const N: usize> = [DoubleDouble; N];
 
 /// How to integrate: the largest step, how far to extrapolate, and when a step is good enough.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,21 +46,23 @@ impl fmt::Display for NotConverged {
 
 impl core::error::Error for NotConverged {}
 
-/// The state at `to`, from `state` at `from`, for the derivative `rhs`.
-pub(crate) fn advance(
-    rhs: impl Fn(&State) -> State,
+/// The state at `to`, from `state` at `from`, for the derivative `rhs` of time and state.
+pub(crate) fn advance<const N: usize>(
+    rhs: impl Fn(DoubleDouble, &State<N>) -> State<N>,
     scheme: &Scheme,
-    mut state: State,
+    mut state: State<N>,
     from: DoubleDouble,
     to: DoubleDouble,
-) -> Result<State, NotConverged> {
+) -> Result<State<N>, NotConverged> {
     /// From the default step this leads to 40 µs; where that is too long, waiting will not help either.
     const HALVINGS: u32 = 8;
     let span = to - from;
     let mut count = (span.to_f64() / scheme.step).ceil().max(1.0);
     let (mut done, mut halvings) = (0.0, 0);
     while done < count {
-        match extrapolated(&rhs, scheme, &state, span.divided_by(count)) {
+        let step = span.divided_by(count);
+        let start = from + step.times(done);
+        match extrapolated(&rhs, scheme, (start, &state), step) {
             Ok(next) => {
                 state = next;
                 done += 1.0;
@@ -69,8 +71,7 @@ pub(crate) fn advance(
                 (done, count, halvings) = (2.0 * done, 2.0 * count, halvings + 1);
             }
             Err(difference) => {
-                let time = (from + span.divided_by(count).times(done)).to_f64();
-                return Err(NotConverged { time, difference });
+                return Err(NotConverged { time: start.to_f64(), difference });
             }
         }
     }
@@ -78,14 +79,14 @@ pub(crate) fn advance(
 }
 
 /// One basic step by Aitken–Neville extrapolation in h²; where that does not converge, the last difference.
-fn extrapolated(
-    rhs: &impl Fn(&State) -> State,
+fn extrapolated<const N: usize>(
+    rhs: &impl Fn(DoubleDouble, &State<N>) -> State<N>,
     scheme: &Scheme,
-    start: &State,
+    start: (DoubleDouble, &State<N>),
     step: DoubleDouble,
-) -> Result<State, f64> {
-    let slope = rhs(start);
-    let mut row: Vec<State> = Vec::with_capacity(scheme.columns);
+) -> Result<State<N>, f64> {
+    let slope = rhs(start.0, start.1);
+    let mut row: Vec<State<N>> = Vec::with_capacity(scheme.columns);
     let mut difference = f64::NAN;
     for j in 1..=scheme.columns {
         let mut value = midpoint(rhs, start, &slope, step, 2 * j);
@@ -105,36 +106,37 @@ fn extrapolated(
 }
 
 /// T(j, k+1) = T(j, k) + (T(j, k) − T(j−1, k)) / ((j / (j−k))² − 1). Hairer et al., eq. (II.9.10).
-fn improved(value: &State, previous: &State, j: usize, k: usize) -> State {
+fn improved<const N: usize>(value: &State<N>, previous: &State<N>, j: usize, k: usize) -> State<N> {
     let (whole, part) = ((j * j) as f64, ((j - k) * (j - k)) as f64);
     core::array::from_fn(|i| value[i] + (value[i] - previous[i]).times(part).divided_by(whole - part))
 }
 
 /// Gragg's modified midpoint rule over `step` in `count` substeps. Hairer et al., eq. (II.9.13), unsmoothed.
-fn midpoint(
-    rhs: &impl Fn(&State) -> State,
-    start: &State,
-    slope: &State,
+fn midpoint<const N: usize>(
+    rhs: &impl Fn(DoubleDouble, &State<N>) -> State<N>,
+    (time, start): (DoubleDouble, &State<N>),
+    slope: &State<N>,
     step: DoubleDouble,
     count: usize,
-) -> State {
+) -> State<N> {
     let substep = step.divided_by(count as f64);
     let mut before = *start;
     let mut here = moved(start, slope, substep);
-    for _ in 1..count {
-        let next = moved(&before, &rhs(&here), substep.times(2.0));
+    for done in 1..count {
+        let now = time + substep.times(done as f64);
+        let next = moved(&before, &rhs(now, &here), substep.times(2.0));
         before = core::mem::replace(&mut here, next);
     }
     here
 }
 
 /// `state` + `step` · `slope`.
-fn moved(state: &State, slope: &State, step: DoubleDouble) -> State {
+fn moved<const N: usize>(state: &State<N>, slope: &State<N>, step: DoubleDouble) -> State<N> {
     core::array::from_fn(|i| state[i] + step * slope[i])
 }
 
 /// The largest component of a − b, each relative to 1 + |a|; NaN if any component is.
-fn distance(a: &State, b: &State) -> f64 {
+fn distance<const N: usize>(a: &State<N>, b: &State<N>) -> f64 {
     let relative =
         |(&a, &b): (&DoubleDouble, &DoubleDouble)| (a - b).to_f64().abs() / (1.0 + a.to_f64().abs());
     a.iter()
@@ -153,12 +155,12 @@ mod tests {
     const OSCILLATION: f64 = 1e-25;
 
     /// Three oscillators of angular frequency 100, 10 and 1 rad/s.
-    fn oscillators(state: &State) -> State {
+    fn oscillators(_: DoubleDouble, state: &State<6>) -> State<6> {
         let [x, y, z, u, v, w] = *state;
         [u, v, w, x.times(-1e4), y.times(-1e2), -z]
     }
 
-    fn at_rest() -> State {
+    fn at_rest() -> State<6> {
         let one = DoubleDouble::new(1.0);
         [one, one, one, ZERO, ZERO, ZERO]
     }
@@ -173,6 +175,16 @@ mod tests {
     }
 
     #[test]
+    fn time_enters_at_every_substep() {
+        let start = DoubleDouble::new(-3.0);
+        let slope = |t: DoubleDouble, _: &State<1>| [t.sin_cos().1];
+        let end =
+            advance(slope, &Scheme { step: 0.3, ..Scheme::default() }, [ZERO], start, DoubleDouble::new(2.0));
+        let area = DoubleDouble::new(2.0).sin_cos().0 - start.sin_cos().0;
+        assert!((end.unwrap()[0] - area).to_f64().abs() < OSCILLATION);
+    }
+
+    #[test]
     fn a_step_too_long_is_shortened() {
         let hopeful = Scheme { step: 1.0, ..Scheme::default() };
         let end = advance(oscillators, &hopeful, at_rest(), ZERO, DoubleDouble::new(1.0)).unwrap();
@@ -183,8 +195,8 @@ mod tests {
     #[test]
     fn what_does_not_converge_is_an_error_with_its_time() {
         // ẋ = x² from 1 has its pole at t = 1.
-        let pole = |state: &State| state.map(|x| x * x);
-        let start = [DoubleDouble::new(1.0); 6];
+        let pole = |_, state: &State<1>| state.map(|x| x * x);
+        let start = [DoubleDouble::new(1.0)];
         let failure = advance(pole, &Scheme::default(), start, ZERO, DoubleDouble::new(2.0)).unwrap_err();
         assert!((failure.time - 1.0).abs() < 1e-3, "{failure}");
     }

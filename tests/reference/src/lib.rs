@@ -1,10 +1,26 @@
-//! The gimballed gyroscope in minimal coordinates and double-double arithmetic: the answer the rest of the
-//! workspace is judged by.
+//! Reference solutions: motions in minimal coordinates and double-double arithmetic, or in closed form, that
+//! the rest of the workspace is judged by.
 //!
-//! Nothing here is shared with the other crates: the equations are Kane's, written by hand for the three joint
-//! angles, the arithmetic carries 106 bits, and the integrator extrapolates to order 28.
+//! Nothing here is shared with the other crates: the equations are written by hand, the arithmetic carries
+//! 106 bits, and the integrator extrapolates to order 28. Results are rounded to `f64` once, at the end. A
+//! number that a caller gives as `f64` stands for the decimal it prints as, as on a page of decimals: 0.1 is
+//! one tenth. SI units, angles in radians that count whole turns.
 //!
-//! Three angles describe the motion, all zero where every frame coincides with the global one:
+//! | solution | of |
+//! |---|---|
+//! | [`Gyroscope`] | the gimballed gyroscope on a fixed base, by Kane's equations, in 31 digits |
+//! | [`moving_base`] | the same on a base that rolls and pitches, with the base's work and the bearings' reactions |
+//! | [`Chain`] | any chain of up to four turning or sliding freedoms, on a base that moves |
+//! | [`HeavyTop`] | a body on a spherical joint |
+//! | [`HookePendulum`] | a body on a universal joint |
+//! | [`FourBar`] | a planar four-bar linkage, reduced to its crank |
+//! | [`OneAxis`] | a rotor or slider with springs, friction, stops and a sampled input |
+//! | [`Pendulum`] | a compound pendulum, its bearing's force, and the parallelogram linkage |
+//! | [`Slider`], [`PlanarBlock`], [`FallingSpindle`], [`FallingScrew`], [`GearedDiscs`] | prismatic, planar, cylindrical and screw joint and a gear, in closed form |
+//! | [`Bead`], [`RodPendulum`] | a body that turns freely on a line or a rod |
+//! | [`Tether`] | a body on a spring-damper between two points |
+//!
+//! The [`Gyroscope`] has three angles, all zero where every frame coincides with the global one:
 //!
 //! | angle | turns | about | orientation |
 //! |---|---|---|---|
@@ -12,8 +28,7 @@
 //! | β | inner ring | z of the outer ring | A2 = A1 Rz(β) |
 //! | φ | rotor | x of the inner ring | A3 = A2 Rx(φ) |
 //!
-//! Both rings have their mass centre at the origin; the rotor's is r3 = A2 s2' − A3 s3'. The base is fixed. SI units,
-//! angles in radians, φ counts whole turns.
+//! Both rings have their mass centre at the origin; the rotor's is r3 = A2 s2' − A3 s3'. The base is fixed.
 //!
 //! ```
 //! use gyro_reference::Gyroscope;
@@ -24,21 +39,49 @@
 
 #![deny(missing_docs)]
 
+mod base_motion;
+mod body;
+mod carried;
+mod chain;
+mod closed_forms;
 mod decimal;
 mod double_double;
 mod dynamics;
+mod elementary;
 mod extrapolation;
+mod four_bar;
 mod gyroscope;
+mod heavy_top;
+mod hooke;
+pub mod moving_base;
+mod newton_euler;
+mod one_axis;
+mod pendulum;
 mod real;
+mod rotation;
 mod solution;
 mod tabulated;
+mod tether;
+mod trajectory;
 mod trigonometry;
 mod vector;
 
+pub use base_motion::{BaseMotion, Sinusoid};
+pub use body::BodyState;
+pub use carried::{Bead, BeadSample, FreeBody, RodPendulum, RodSample};
+pub use chain::{Chain, ChainSample, Freedom, InertialReading, Link, Wrench};
+pub use closed_forms::{Derivatives, FallingScrew, FallingSpindle, GearedDiscs, PlanarBlock, Slider};
 pub use decimal::ParseDecimalError;
 pub use double_double::DoubleDouble;
 pub use extrapolation::{NotConverged, Scheme};
+pub use four_bar::{Bar, Branch, FourBar, FourBarSample};
 pub use gyroscope::{Gyroscope, Start};
+pub use heavy_top::{HeavyTop, TopSample};
+pub use hooke::{HookePendulum, HookeSample};
+pub use one_axis::{AxisForce, AxisSample, OneAxis, SampledInput, Side};
+pub use pendulum::{Pendulum, PendulumSample};
 pub use real::Real;
-pub use solution::{Sample, SolveError};
+pub use solution::Sample;
 pub use tabulated::{Scene, tabulated};
+pub use tether::{Tether, TetherSample};
+pub use trajectory::SolveError;

@@ -1,8 +1,7 @@
 //! The motion at the times asked for.
 
-use core::fmt;
-
-use crate::extrapolation::{NotConverged, Scheme, State, advance};
+use crate::extrapolation::{Scheme, State};
+use crate::trajectory::{SolveError, trajectory};
 use crate::{DoubleDouble, Gyroscope};
 
 /// The motion at one time: angles and rates of the joints, and the energy.
@@ -45,26 +44,6 @@ impl<T: Copy> Sample<T> {
     }
 }
 
-/// Why there is no solution.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum SolveError {
-    /// The time is negative, not finite, or earlier than the one before it.
-    Time(f64),
-    /// The integration stopped.
-    NotConverged(NotConverged),
-}
-
-impl fmt::Display for SolveError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            SolveError::Time(t) => write!(f, "times must be finite and ascend from zero: found {t}"),
-            SolveError::NotConverged(failure) => failure.fmt(f),
-        }
-    }
-}
-
-impl core::error::Error for SolveError {}
-
 impl Gyroscope {
     /// The motion at `times` (s, ascending from zero; repetitions allowed), correctly rounded to `f64`.
     ///
@@ -93,25 +72,17 @@ impl Gyroscope {
         times: &[f64],
         scheme: &Scheme,
     ) -> Result<Vec<Sample<DoubleDouble>>, SolveError> {
-        let mut state = joined(self.start.angles, self.start.rates());
-        let mut now = DoubleDouble::ZERO;
-        let mut samples = Vec::with_capacity(times.len());
-        for &t in times {
-            let next = printed_decimal(t).filter(|next| *next >= now).ok_or(SolveError::Time(t))?;
-            state = advance(|state| self.derivative(state), scheme, state, now, next)
-                .map_err(SolveError::NotConverged)?;
-            now = next;
-            samples.push(self.sample(now, &state));
-        }
-        Ok(samples)
+        let start = joined(self.start.angles, self.start.rates());
+        let motion = trajectory(|_, state| self.derivative(state), scheme, start, times)?;
+        Ok(motion.iter().map(|(t, state)| self.sample(*t, state)).collect())
     }
 
-    fn derivative(&self, state: &State) -> State {
+    fn derivative(&self, state: &State<6>) -> State<6> {
         let (angles, rates) = parted(state);
         joined(rates, self.accelerations(angles, rates))
     }
 
-    fn sample(&self, t: DoubleDouble, state: &State) -> Sample<DoubleDouble> {
+    fn sample(&self, t: DoubleDouble, state: &State<6>) -> Sample<DoubleDouble> {
         let (angles, rates) = parted(state);
         let energy = self.energy(angles, rates);
         let ([alpha, beta, phi], [alpha_rate, beta_rate, phi_rate]) = (angles, rates);
@@ -119,17 +90,12 @@ impl Gyroscope {
     }
 }
 
-/// The decimal that `t` prints as.
-fn printed_decimal(t: f64) -> Option<DoubleDouble> {
-    t.to_string().parse().ok()
-}
-
-fn joined(angles: [DoubleDouble; 3], rates: [DoubleDouble; 3]) -> State {
+fn joined(angles: [DoubleDouble; 3], rates: [DoubleDouble; 3]) -> State<6> {
     let ([alpha, beta, phi], [alpha_rate, beta_rate, phi_rate]) = (angles, rates);
     [alpha, beta, phi, alpha_rate, beta_rate, phi_rate]
 }
 
-fn parted(state: &State) -> ([DoubleDouble; 3], [DoubleDouble; 3]) {
+fn parted(state: &State<6>) -> ([DoubleDouble; 3], [DoubleDouble; 3]) {
     let [alpha, beta, phi, alpha_rate, beta_rate, phi_rate] = *state;
     ([alpha, beta, phi], [alpha_rate, beta_rate, phi_rate])
 }

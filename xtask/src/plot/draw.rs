@@ -125,15 +125,19 @@ fn draw_panel(panel: &Panel, area: &Area<'_>) -> Outcome {
             points.map(|k| (time.coordinate(panel.times[k]), axis.coordinate(series.values[k]))).collect();
         chart.draw_series([PathElement::new(points, colour.stroke_width(FINE * 5 / 4))])?;
     }
-    draw_title(&format!("{} {}", panel.title, axis.unit), area)?;
+    draw_title(&format!("{} {}", panel.title, axis.unit), panel, area)?;
     draw_legend(panel, area)
 }
 
-/// The title in the middle above the panel.
-fn draw_title(title: &str, area: &Area<'_>) -> Outcome {
-    let middle = (area.dim_in_pixel().0 / 2) as i32 + pixels(20);
-    let style = TextStyle::from(font(15)).pos(Pos::new(HPos::Center, VPos::Top));
-    area.draw(&Text::new(title.to_owned(), (middle, pixels(11)), style)).map_err(|e| e.to_string().into())
+/// The title in the middle above the panel; where a legend needs the room, at its left end.
+fn draw_title(title: &str, panel: &Panel, area: &Area<'_>) -> Outcome {
+    let (x, anchor) = if panel.series.iter().all(|series| series.name.is_empty()) {
+        ((area.dim_in_pixel().0 / 2) as i32 + pixels(20), HPos::Center)
+    } else {
+        (pixels(72), HPos::Left)
+    };
+    let style = TextStyle::from(font(15)).pos(Pos::new(anchor, VPos::Top));
+    area.draw(&Text::new(title.to_owned(), (x, pixels(11)), style)).map_err(|e| e.to_string().into())
 }
 
 /// The names of several series, each in its colour, from the right end of the title's line.

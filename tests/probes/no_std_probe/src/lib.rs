@@ -19,16 +19,17 @@ pub extern "C" fn gyroscope_alpha(intervals: u32) -> f64 {
     let gyroscope = Gyroscope::<f64>::default();
     let mut state = gyroscope.start();
     let mut solver = Partitioned::new(&gyroscope, &state);
-    let mut turns = Turns::new(&gyroscope, &state, &[]);
+    let mut turns = Turns::new(&gyroscope, 0.0, &state, &[]);
     for interval in 0..intervals {
-        if solver.advance(&gyroscope, f64::from(interval) * 5e-4, 1e-4, 5, &mut state).is_err() {
+        let t = f64::from(interval) * 5e-4;
+        if solver.advance(&gyroscope, t, 1e-4, 5, &mut state).is_err() {
             return f64::NAN;
         }
-        turns.update(&gyroscope, 5e-4, &state);
+        turns.update(&gyroscope, t + 5e-4, 5e-4, &state);
     }
-    match turns.joint(&gyroscope, 0) {
-        JointCoordinate::Angle { position, .. } => kept(position),
-        JointCoordinate::Orientation { .. } | JointCoordinate::None => f64::NAN,
+    match turns.coordinate(&gyroscope, 0, 0) {
+        Some(JointCoordinate::Angle { position, .. }) => kept(position),
+        _ => f64::NAN,
     }
 }
 

@@ -1,0 +1,56 @@
+//! Why a model cannot be assembled.
+
+use gyro_model::AssemblyError;
+use std::fmt;
+
+/// Why there is no mechanism of a model.
+#[derive(Clone, Debug, PartialEq)]
+pub enum BuildError {
+    /// The model has no consistent start.
+    Start(AssemblyError),
+    /// The chosen form of the twin is not made for the model.
+    Unsupported(Unsupported),
+}
+
+/// What keeps a model from the careful form, which does trees of revolute, spherical and fixed joints.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Unsupported {
+    /// A joint of another kind, by its name.
+    JointKind(String),
+    /// A joint that closes a loop, by its name.
+    Loop(String),
+    /// A body that no joint connects to a root, by its name.
+    Unconnected(String),
+    /// A coupler, by its name.
+    Coupler(String),
+    /// A driver of a joint coordinate, by its name.
+    Driver(String),
+    /// Constraint rows that depend on others.
+    RedundantRows,
+}
+
+impl fmt::Display for BuildError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Start(error) => error.fmt(f),
+            Self::Unsupported(what) => what.fmt(f),
+        }
+    }
+}
+
+impl fmt::Display for Unsupported {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "elimination along trees of revolute, spherical and fixed joints cannot do ")?;
+        match self {
+            Self::JointKind(name) => write!(f, "joint `{name}`"),
+            Self::Loop(name) => write!(f, "joint `{name}`, which closes a loop"),
+            Self::Unconnected(name) => write!(f, "body `{name}`, which hangs on nothing"),
+            Self::Coupler(name) => write!(f, "coupler `{name}`"),
+            Self::Driver(name) => write!(f, "driver `{name}`"),
+            Self::RedundantRows => write!(f, "redundant constraint rows"),
+        }
+    }
+}
+
+impl std::error::Error for BuildError {}
+impl std::error::Error for Unsupported {}

@@ -1,0 +1,118 @@
+//! Laws of force along a coordinate: [`gyro_model::ForceKind`].
+
+use crate::number::{Number, number, sqrt, tanh};
+use gyro_model::{Model, Number as PageNumber, StopSide};
+
+/// A number of a force: folded, or an input that the caller sets.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Amount<T> {
+    Constant(T),
+    /// Index into [`crate::Lowered::inputs`], and a factor of 1 or −1.
+    Input(usize, T),
+}
+
+/// A force as a function of a coordinate x and its rate.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Law<T> {
+    /// `−stiffness (x − free)`, with the potential `½ stiffness (x − free)²`.
+    Spring { stiffness: Amount<T>, free: Amount<T> },
+    /// `−damping ẋ`.
+    Damper { damping: Amount<T> },
+    /// `−level tanh(ẋ / rate)`.
+    Coulomb { level: Amount<T>, rate: Amount<T> },
+    /// With z the depth beyond the limit: `∓stiffness ρ(z) − damping σ(z) ẋ`, where `ρ(z) = ½ (z + √(z² + softness²))` and
+    /// `σ(z) = ½ (1 + z / √(z² + softness²))`.
+    Stop { limit: Amount<T>, side: StopSide, stiffness: Amount<T>, damping: Amount<T>, softness: Amount<T> },
+    /// Given.
+    Motor { value: Amount<T> },
+}
+
+impl<T: Number> Amount<T> {
+    pub(crate) fn new(model: &Model, value: &PageNumber) -> Self {
+        match value {
+            PageNumber::Input { index, negated } => {
+                Self::Input(*index, if *negated { -T::one() } else { T::one() })
+            }
+            PageNumber::Exact(_) | PageNumber::Parameter { .. } => Self::Constant(number(model.value(value))),
+        }
+    }
+
+    pub(crate) fn value(&self, inputs: &[(String, T)]) -> T {
+        match self {
+            Self::Constant(value) => *value,
+            Self::Input(index, sign) => inputs[*index].1 * *sign,
+        }
+    }
+}
+
+impl<T: Number> Law<T> {
+    /// Whether the force is minus the slope of [`Law::potential`].
+    pub(crate) fn is_conservative(&self) -> bool {
+        matches!(self, Self::Spring { .. })
+    }
+
+    /// The force at a coordinate, which only some laws ask for, and a rate.
+    pub(crate) fn force(&self, inputs: &[(String, T)], x: impl FnOnce() -> T, rate: T) -> T {
+        let value = |amount: &Amount<T>| amount.value(inputs);
+        match self {
+            Self::Spring { stiffness, free } => -value(stiffness) * (x() - value(free)),
+            Self::Damper { damping } => -value(damping) * rate,
+            Self::Coulomb { level, rate: width } => -value(level) * tanh(rate / value(width)),
+            Self::Stop { limit, side, stiffness, damping, softness } => {
+                let outward = if *side == StopSide::Upper { T::one() } else { -T::one() };
+                let (z, half) = ((x() - value(limit)) * outward, number::<T>(0.5));
+                let root = sqrt(z * z + value(softness) * value(softness));
+                let (ramp, slope) = (half * (z + root), half * (T::one() + z / root));
+                -outward * value(stiffness) * ramp - value(damping) * slope * rate
+            }
+            Self::Motor { value: amount } => value(amount),
+        }
+    }
+
+    /// The energy that a conservative force holds; zero of all others.
+    pub(crate) fn potential(&self, inputs: &[(String, T)], x: impl FnOnce() -> T) -> T {
+        match self {
+            Self::Spring { stiffness, free } => {
+                let stretch = x() - free.value(inputs);
+                stiffness.value(inputs) * stretch * stretch * number(0.5)
+            }
+            _ => T::zero(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By hand from [`gyro_model::ForceKind`], at a coordinate and a rate; a depth of 4 and a softness of 3 have a root of 5.
+    #[test]
+    fn laws_are_as_the_page_means_them() {
+        let of = Amount::Constant;
+        let inputs = [(String::new(), 7.0_f64)];
+        let stop = |side, limit| Law::Stop {
+            limit: of(limit),
+            side,
+            stiffness: of(10.0),
+            damping: of(2.0),
+            softness: of(3.0),
+        };
+        let (spring, coulomb) = (
+            Law::Spring { stiffness: of(2.0), free: of(0.5) },
+            Law::Coulomb { level: of(0.5), rate: of(2.0) },
+        );
+        for (law, x, rate, force, potential) in [
+            (spring, 1.5, 9.0, -2.0, 1.0),
+            (Law::Damper { damping: of(3.0) }, 9.0, -2.0, 6.0, 0.0),
+            (coulomb, 9.0, 2.0, -0.5 * 0.761_594_155_955_764_9, 0.0),
+            (stop(StopSide::Upper, 1.0), 5.0, 10.0, -45.0 - 18.0, 0.0),
+            (stop(StopSide::Upper, 9.0), 5.0, 10.0, -5.0 - 2.0, 0.0),
+            (stop(StopSide::Lower, 1.0), -3.0, 10.0, 45.0 - 18.0, 0.0),
+            (Law::Motor { value: Amount::Input(0, -1.0) }, 9.0, 9.0, -7.0, 0.0),
+        ] {
+            assert!((law.force(&inputs, || x, rate) - force).abs() < 1e-14, "{law:?}");
+            assert!((law.potential(&inputs, || x) - potential).abs() < 1e-14, "{law:?}");
+            assert_eq!(law.is_conservative(), potential != 0.0, "{law:?}");
+        }
+    }
+}

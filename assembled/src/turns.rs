@@ -1,0 +1,19 @@
+//! Turn references: the elements of the state that tell on which turn an angle is.
+
+use crate::lowered::{Lowered, Moment};
+use crate::number::Number;
+
+impl<T: Number> Lowered<T> {
+    /// Where the turn references begin in the state.
+    pub(crate) fn first_turn(&self) -> usize {
+        self.n_q() + self.n_v() + usize::from(self.work.is_some())
+    }
+
+    /// Writes the rates of the turn references: those of their angles.
+    pub(crate) fn turn_rates(&self, at: Moment<'_, T>, out: &mut [T]) {
+        for (out, turn) in out.iter_mut().zip(&self.turns) {
+            let joint = &self.joints[turn.joint];
+            *out = joint.coordinates[turn.coordinate].grip(joint, &self.motions(at, joint)).rate;
+        }
+    }
+}

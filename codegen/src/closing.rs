@@ -1,0 +1,79 @@
+//! The rows that no joint of the tree owns: joints that close a loop, couplers, drivers. They are met by forces on the tree:
+//! with R_l the tree's response to a unit multiplier of row l, `Φ_k R_l λ_l = Φ_k v̇ − γ_k`, a small symmetric positive
+//! definite system.
+
+use crate::freedom::Twist;
+use crate::graph::{ExprId, Graph};
+use crate::kinematics::Kinematics;
+use crate::ldl::Elimination;
+use crate::null_space::EliminatedTree;
+use crate::system::System;
+use gyro_model::{Attachment, RowOwner};
+use std::collections::BTreeMap;
+
+/// The rows that close something, by their place among all rows.
+pub fn closing_rows(system: &System) -> Vec<usize> {
+    let carries = |joint: usize| {
+        let carried =
+            |attachment: &Attachment| matches!(attachment, Attachment::Joint { joint: j, .. } if *j == joint);
+        system.tree.links.iter().any(|link| carried(&link.attachment))
+    };
+    let closes = |owner: RowOwner| match owner {
+        RowOwner::Body(_) => false,
+        RowOwner::Joint(joint) => !carries(joint),
+        RowOwner::Coupler(_) | RowOwner::Driver(_) => true,
+    };
+    let rows = system.model.rows();
+    (0..rows.len()).filter(|&row| closes(rows[row].owner)).collect()
+}
+
+/// What a row's unit multiplier takes from each slot: its row of (Φ_r, Φ_π').
+pub fn gradient(kinematics: &Kinematics, row: usize) -> Vec<Twist> {
+    let columns = kinematics.phi_pi[row].chunks_exact(6);
+    columns.map(|c| Twist { t: [c[0], c[1], c[2]], rho: [c[3], c[4], c[5]] }).collect()
+}
+
+/// Corrects the accelerations of the free tree; returns the multipliers too.
+pub fn close(
+    system: &mut System,
+    kinematics: &Kinematics,
+    tree: &EliminatedTree,
+    mut motions: Vec<Twist>,
+) -> (Vec<Twist>, Vec<ExprId>) {
+    let rows = closing_rows(system);
+    let gradients: Vec<_> = rows.iter().map(|&row| gradient(kinematics, row)).collect();
+    let at_rest = vec![Twist::ZERO; tree.joints.len()];
+    let respond = |gradient: &Vec<Twist>| {
+        let bias = gradient.iter().map(|twist| twist.negated(&mut system.graph)).collect();
+        tree.respond(system, bias, &at_rest)
+    };
+    let responses: Vec<_> = gradients.iter().map(respond).collect();
+    let graph = &mut system.graph;
+    let mut matrix = BTreeMap::new();
+    for (k, gradient) in gradients.iter().enumerate() {
+        for (l, response) in responses.iter().enumerate().take(k + 1) {
+            matrix.insert((k, l), dot(graph, gradient, response));
+        }
+    }
+    matrix.retain(|_, entry| *entry != Graph::ZERO);
+    let excess = rows.iter().zip(&gradients).map(|(&row, gradient)| {
+        let rate = dot(graph, gradient, &motions);
+        graph.sub(rate, kinematics.gamma[row])
+    });
+    let excess = excess.collect();
+    let multipliers = Elimination::new(matrix, excess).solve_in_order(graph);
+    for (response, &multiplier) in responses.iter().zip(&multipliers) {
+        for (motion, response) in motions.iter_mut().zip(response) {
+            let correction = response.scaled(graph, multiplier).negated(graph);
+            *motion = motion.plus(graph, &correction);
+        }
+    }
+    (motions, multipliers)
+}
+
+fn dot(graph: &mut Graph, gradient: &[Twist], motions: &[Twist]) -> ExprId {
+    gradient.iter().zip(motions).fold(Graph::ZERO, |sum, (wrench, motion)| {
+        let product = wrench.dot(graph, motion);
+        graph.add(sum, product)
+    })
+}

@@ -1,0 +1,83 @@
+//! LDLᵀ of a sparse symmetric system of expressions, without pivoting: whoever uses it answers for the order.
+
+use crate::graph::{ExprId, Graph};
+use std::collections::BTreeMap;
+
+/// One column of L with its pivot.
+#[derive(Debug)]
+struct Column {
+    pivot: usize,
+    inverse: ExprId,
+    below: Vec<(usize, ExprId)>,
+}
+
+/// A sparse symmetric system on the way to its solution.
+#[derive(Debug)]
+pub struct Elimination {
+    entries: BTreeMap<(usize, usize), ExprId>,
+    rhs: Vec<ExprId>,
+    columns: Vec<Column>,
+}
+
+impl Elimination {
+    /// The lower triangle of a symmetric matrix, without zeros, and a right-hand side.
+    pub fn new(entries: BTreeMap<(usize, usize), ExprId>, rhs: Vec<ExprId>) -> Self {
+        Self { entries, rhs, columns: Vec::new() }
+    }
+
+    /// The solution, unknowns eliminated in their order.
+    pub fn solve_in_order(mut self, graph: &mut Graph) -> Vec<ExprId> {
+        (0..self.rhs.len()).for_each(|unknown| self.pivot(graph, unknown));
+        self.substitute_back(graph)
+    }
+
+    /// The unknowns that share an entry with one, and the entries.
+    pub fn neighbours(&self, unknown: usize) -> Vec<(usize, ExprId)> {
+        let row = self.entries.range((unknown, 0)..(unknown, unknown)).map(|(&(_, column), &v)| (column, v));
+        let column = self.entries.iter().filter(|((r, c), _)| *c == unknown && *r > unknown);
+        row.chain(column.map(|(&(row, _), &v)| (row, v))).collect()
+    }
+
+    /// K_ij −= l_i K_jp, b_i −= l_i b_p with l_i = K_ip / d.
+    pub fn pivot(&mut self, graph: &mut Graph, pivot: usize) {
+        let diagonal = self.entries.remove(&(pivot, pivot)).unwrap_or(Graph::ZERO);
+        let inverse = graph.recip(diagonal);
+        let column = self.neighbours(pivot);
+        self.entries.retain(|&(row, column), _| row != pivot && column != pivot);
+        let mut below = Vec::new();
+        for (position, &(i, value)) in column.iter().enumerate() {
+            let factor = graph.mul(value, inverse);
+            for &(j, other) in &column[..=position] {
+                self.subtract(graph, i.max(j), i.min(j), factor, other);
+            }
+            let moved = graph.mul(factor, self.rhs[pivot]);
+            self.rhs[i] = graph.sub(self.rhs[i], moved);
+            below.push((i, factor));
+        }
+        self.columns.push(Column { pivot, inverse, below });
+    }
+
+    fn subtract(&mut self, graph: &mut Graph, row: usize, column: usize, factor: ExprId, value: ExprId) {
+        let product = graph.mul(factor, value);
+        let old = self.entries.get(&(row, column)).copied().unwrap_or(Graph::ZERO);
+        let new = graph.sub(old, product);
+        if new == Graph::ZERO {
+            self.entries.remove(&(row, column));
+        } else {
+            self.entries.insert((row, column), new);
+        }
+    }
+
+    /// x_p = b_p / d − Σ l_i x_i, last pivot first.
+    pub fn substitute_back(mut self, graph: &mut Graph) -> Vec<ExprId> {
+        for Column { pivot, inverse, below } in self.columns.iter().rev() {
+            let mut x = graph.mul(self.rhs[*pivot], *inverse);
+            for &(i, factor) in below {
+                let product = graph.mul(factor, self.rhs[i]);
+                x = graph.sub(x, product);
+            }
+            self.rhs[*pivot] = x;
+        }
+        self.rhs
+    }
+}

@@ -1,0 +1,56 @@
+//! λ from the balance of forces, leaf to root: what a body and all that hangs on it lack, its joint supplies.
+
+use crate::closing::{closing_rows, gradient};
+use crate::dynamics::Dynamics;
+use crate::freedom::Twist;
+use crate::graph::{ExprId, Graph};
+use crate::kinematics::Kinematics;
+use crate::null_space::{Arm, EliminatedTree, Inertia, Outwards, minus_applied_force};
+use crate::symbol::Symbol;
+use crate::system::System;
+use std::array::from_fn;
+
+/// The multiplier of each row, in terms of known accelerations and closing multipliers.
+pub fn of(
+    system: &mut System,
+    kinematics: &Kinematics,
+    dynamics: &Dynamics,
+    tree: &EliminatedTree,
+) -> Vec<ExprId> {
+    let mut lambda = vec![Graph::ZERO; kinematics.phi.len()];
+    let mut lacking: Vec<_> = (0..system.slots.len()).map(|slot| imbalance(system, dynamics, slot)).collect();
+    for (place, row) in closing_rows(system).into_iter().enumerate() {
+        lambda[row] = system.graph.symbol(Symbol::Closing(place));
+        for (lacking, taken) in lacking.iter_mut().zip(gradient(kinematics, row)) {
+            let taken = taken.scaled(&mut system.graph, lambda[row]);
+            *lacking = lacking.plus(&mut system.graph, &taken);
+        }
+    }
+    for joint in tree.joints.iter().rev() {
+        let freedom = &joint.freedom;
+        let arm = Arm::new(system, freedom.slot, &freedom.point, Outwards::No);
+        let graph = &mut system.graph;
+        let at_joint = arm.wrench(graph, &lacking[freedom.slot]);
+        for (row, forced) in freedom.rows.clone().zip(&freedom.forced) {
+            // M v̇ + Φᵀλ = f.
+            let supplied = forced.dot(graph, &at_joint);
+            lambda[row] = graph.neg(supplied);
+        }
+        if let Some(parent) = freedom.parent {
+            let turned = Twist { t: at_joint.t, rho: graph.mat_vec(&parent.relative, &at_joint.rho) };
+            let arm = Arm::new(system, parent.slot, &parent.point, Outwards::Yes);
+            let carried = arm.wrench(&mut system.graph, &turned);
+            lacking[parent.slot] = lacking[parent.slot].plus(&mut system.graph, &carried);
+        }
+    }
+    lambda
+}
+
+/// `M v̇ − f` of one body, v̇ known.
+fn imbalance(system: &mut System, dynamics: &Dynamics, slot: usize) -> Twist {
+    let mut component = |k| system.graph.symbol(Symbol::Acceleration { slot, k });
+    let motion = Twist { t: from_fn(&mut component), rho: from_fn(|k| component(3 + k)) };
+    let (inertia, bias) = (Inertia::rigid(system, slot), minus_applied_force(system, dynamics, slot));
+    let inertial = inertia.times(&mut system.graph, &motion);
+    inertial.plus(&mut system.graph, &bias)
+}

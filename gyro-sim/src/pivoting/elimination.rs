@@ -1,0 +1,153 @@
+//! Gaussian elimination with full pivoting in arrays of fixed size.
+
+use super::Pivot;
+use crate::{Equations, Mechanism, Real};
+
+/// The scaled Jacobian with a right side, on its way to an upper triangle.
+///
+/// Normalisations are its first rows and give the first pivots: they depend on nothing, so that the row that is left over in a
+/// singular pose belongs to a joint.
+pub(super) struct Elimination<T, const NC: usize, const NQ: usize> {
+    jacobian: [[T; NQ]; NC],
+    right: [T; NC],
+    /// Which constraint each row was.
+    rows: [u16; NC],
+    n_normalisations: usize,
+    /// The columns in the order in which they are eliminated: pivots first.
+    pub(super) columns: [u16; NQ],
+}
+
+impl<T: Real, const NC: usize, const NQ: usize> Elimination<T, NC, NQ> {
+    /// The Jacobian of a mechanism, with columns in the given order and zero on the right.
+    pub(super) fn of<M>(mechanism: &M, t: T, y: &M::State, columns: [u16; NQ]) -> Self
+    where
+        M: Equations<Scalar = T>,
+    {
+        const { assert!(NC <= NQ, "a mechanism has at least as many coordinates as constraints") };
+        let mut values = mechanism.phi_q_values();
+        mechanism.phi_q(t, y, &mut values);
+        let (zero, size) = (T::constant(0.0), mechanism.size());
+        let mut jacobian = [[zero; NQ]; NC];
+        for (&(row, column), &value) in mechanism.phi_q_pattern().iter().zip(values.as_ref()) {
+            let (row, column) = (usize::from(row), usize::from(column));
+            let value = if column % 7 < 3 { value * size } else { value };
+            let place = (row + mechanism.n_bodies()) % NC;
+            if let Some(entry) = jacobian.get_mut(place).and_then(|row| row.get_mut(column)) {
+                *entry = scaled(mechanism, row, value);
+            }
+        }
+        let n_normalisations = mechanism.n_bodies();
+        let rows = core::array::from_fn(|place| ((place + NC - n_normalisations % NC) % NC) as u16);
+        Self { jacobian, right: [zero; NC], rows, n_normalisations, columns }
+    }
+
+    /// Sets the right side; rows that `values` does not reach stay zero.
+    pub(super) fn set_right<M: Mechanism<Scalar = T>>(&mut self, mechanism: &M, values: &[T]) {
+        for (right, row) in self.right.iter_mut().zip(&self.rows) {
+            let row = usize::from(*row);
+            if let Some(value) = values.get(row) {
+                *right = scaled(mechanism, row, *value);
+            }
+        }
+    }
+
+    /// Takes the pivots from the first `n_candidates` columns; returns the smallest.
+    pub(super) fn reduce(&mut self, n_candidates: usize) -> Pivot<T> {
+        let mut least = Pivot { value: T::constant(1.0), row: 0 };
+        for k in 0..NC {
+            let (row, column) = self.largest(k, n_candidates);
+            self.jacobian.swap(k, row);
+            self.right.swap(k, row);
+            self.rows.swap(k, row);
+            self.columns.swap(k, column);
+            let value = self.entry(k, k).abs();
+            if value < least.value || !value.is_finite() {
+                least = Pivot { value, row: usize::from(self.rows[k]) };
+            }
+            if value > T::constant(0.0) {
+                self.eliminate(k);
+            }
+        }
+        least
+    }
+
+    /// Row and place of the column of the largest entry that is left.
+    fn largest(&self, k: usize, n_candidates: usize) -> (usize, usize) {
+        let (mut at, mut largest) = ((k, k), T::constant(0.0));
+        let end = if k < self.n_normalisations { k + 1 } else { NC };
+        for row in k..end {
+            for place in k..n_candidates {
+                let value = self.entry(row, place).abs();
+                if value > largest {
+                    (at, largest) = ((row, place), value);
+                }
+            }
+        }
+        at
+    }
+
+    /// Clears the pivot's column below it.
+    fn eliminate(&mut self, k: usize) {
+        let pivot = self.entry(k, k);
+        let (above, below) = self.jacobian.split_at_mut(k + 1);
+        let (upper, column) = (&above[k], usize::from(self.columns[k]));
+        let (solved, rest) = self.right.split_at_mut(k + 1);
+        for (row, right) in below.iter_mut().zip(rest) {
+            let factor = row[column] / pivot;
+            // Most entries are zero; what is not a number is carried on.
+            if factor != T::constant(0.0) {
+                for &column in &self.columns[k + 1..] {
+                    let column = usize::from(column);
+                    row[column] = row[column] - factor * upper[column];
+                }
+                *right = *right - factor * solved[k];
+            }
+        }
+    }
+
+    /// The dependent coordinates in the order of the solution.
+    pub(super) fn dependent(&self) -> impl Iterator<Item = usize> {
+        self.columns.into_iter().take(NC).map(usize::from)
+    }
+
+    /// `Φ_u⁻¹` times the right side.
+    pub(super) fn solution(&self) -> [T; NC] {
+        self.substitute(self.right)
+    }
+
+    /// The places of a dependent and an independent coordinate where the former changes fastest with the latter, if faster than
+    /// `limit` times.
+    pub(super) fn steepest(&self, limit: T) -> Option<(usize, usize)> {
+        let (mut at, mut steepest) = (None, limit);
+        for independent in NC..NQ {
+            let column = core::array::from_fn(|row| self.entry(row, independent));
+            for (dependent, slope) in self.substitute(column).into_iter().enumerate() {
+                if slope.abs() > steepest {
+                    (at, steepest) = (Some((dependent, independent)), slope.abs());
+                }
+            }
+        }
+        at
+    }
+
+    /// Back substitution through the triangle.
+    fn substitute(&self, mut x: [T; NC]) -> [T; NC] {
+        for k in (0..NC).rev() {
+            x[k] = x[k] / self.entry(k, k);
+            for row in 0..k {
+                x[row] = x[row] - self.entry(row, k) * x[k];
+            }
+        }
+        x
+    }
+
+    fn entry(&self, row: usize, place: usize) -> T {
+        self.jacobian[row][usize::from(self.columns[place])]
+    }
+}
+
+/// A value of a constraint row, lengths in units of the mechanism's size.
+fn scaled<M: Mechanism>(mechanism: &M, row: usize, value: M::Scalar) -> M::Scalar {
+    let is_length = row < mechanism.rows().as_ref().len() && mechanism.row(row).is_length;
+    if is_length { value / mechanism.size() } else { value }
+}

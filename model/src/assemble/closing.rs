@@ -1,0 +1,245 @@
+//! Mechanisms with loops, rods or couplers: the guess is projected onto the constraints.
+
+use super::error::AssemblyError;
+use super::guess::{Guess, Source, guesses};
+use super::projection::{Configuration, Scales, System, rotation_vector, scattered};
+use super::velocity::velocities;
+use super::walk::{State, Walk, check_finite, relative, roots};
+use super::{JointStart, Move, Start, branch};
+use crate::kinematics::{Equation, Kinematics};
+use crate::{JointCoordinate, JointKind, Model, Quaternion, RowOwner, Tree, Vector};
+
+/// Starts that are tried around a guess from which the mechanism does not close: a guess may be so symmetric that no step
+/// leads away from it.
+const ATTEMPTS: usize = 6;
+
+/// How far the first of them is from the guess, rad or parts of the size; the next ones are farther by as much.
+const SCATTER: f64 = 0.05;
+
+/// Moves below this (rad or parts of the size) are not worth telling.
+const MOVED: f64 = 1e-9;
+
+/// The start of a mechanism whose trees alone do not place it.
+pub(super) fn assemble(model: &Model) -> Result<Start, AssemblyError> {
+    let (kinematics, scales) = (Kinematics::at(model, 0.0), Scales::of(model));
+    let guesses = guesses(model);
+    // What the page says of joints is heeded as far as it can be: joints that it tells nothing of close the loops.
+    let tree = &Tree::along(model, |joint| guesses[joint].is_told());
+    let guessed = Walk::of(model, tree, kinematics.joints(), &guesses, roots(model, tree));
+    check_finite(model, &tree.links, &guessed.states)?;
+    let guess = configuration(&kinematics, tree, &guesses, &guessed);
+    let closed = Closing { model, kinematics: &kinematics, scales: &scales }.positions(&guesses, &guess)?;
+    branch::check(model, &kinematics, &guess, &closed)?;
+
+    let (placed, states) = settled(model, tree, &guesses, &guessed.states, &closed);
+    let walk = Walk::of(model, tree, kinematics.joints(), &placed, states);
+    let (q, from) = walk.layout();
+    let at = Configuration { near: kinematics.coordinates(&q, &closed.near), q };
+    let v = velocities(model, &kinematics, &scales, &placed, &at, &from)?;
+    let states = states_of(model, &walk.states, &at.q, &v);
+    check_finite(model, &tree.links, &states)?;
+    let joints = joint_starts(&kinematics, &states, &at, &v);
+    let moved = moves(model, tree, &scales, [&guessed.states, &states], [&guess, &at]);
+    Ok(Start { q: at.q, v, joints, moved })
+}
+
+/// The guessed pose, with the turns of angles as they are guessed; a screw of which nothing is known is on the turn that
+/// its displacement tells.
+fn configuration(kinematics: &Kinematics, tree: &Tree, guesses: &[Guess], walk: &Walk<'_>) -> Configuration {
+    let q = walk.layout().0;
+    let mut near: Vec<Vec<f64>> = guesses.iter().map(|guess| guess.position.clone()).collect();
+    let poses: Vec<_> = kinematics.poses(&q).iter().map(crate::kinematics::value_of).collect();
+    for &joint in &tree.loop_joints {
+        let geometry = &kinematics.joints()[joint];
+        let is_unknown = guesses[joint].source.first() == Some(&Source::Unknown);
+        if geometry.kind == JointKind::Screw && geometry.lead != 0.0 && is_unknown {
+            let advance =
+                kinematics.posed(joint, &poses).coordinate(crate::CoordinateKind::Displacement, 0.0);
+            near[joint][0] = advance / geometry.lead;
+        }
+    }
+    Configuration { near: kinematics.coordinates(&q, &near), q }
+}
+
+/// What is to be closed.
+struct Closing<'a> {
+    model: &'a Model,
+    kinematics: &'a Kinematics,
+    scales: &'a Scales,
+}
+
+impl Closing<'_> {
+    /// The closed configuration nearest to the guess, with the coordinates held that the page holds.
+    fn positions(&self, guesses: &[Guess], guess: &Configuration) -> Result<Configuration, AssemblyError> {
+        let rows = self.kinematics.equations();
+        let held = held(guesses);
+        let all = System::new(self.kinematics, [&rows[..], &held].concat(), self.scales);
+        let free = System::new(self.kinematics, rows, self.scales);
+        match self.close(&all, guess) {
+            Ok(closed) => Ok(all.approach(closed, guess)),
+            Err(_) => match self.close(&free, guess) {
+                Ok(closed) => Err(self.cannot_hold(&held, &free.approach(closed, guess))),
+                Err(best) => Err(self.impossible(&free, &best)),
+            },
+        }
+    }
+
+    /// Meets the equations from the guess or from near it; else how near one comes.
+    fn close(&self, system: &System<'_>, guess: &Configuration) -> Result<Configuration, Configuration> {
+        let mut best: Option<(f64, Configuration)> = None;
+        for attempt in 0..=ATTEMPTS {
+            let away = scattered(self.scales.columns.len(), attempt) * (SCATTER * attempt as f64);
+            let closed = system.project(&system.moved(guess, &away));
+            if system.is_met(&closed) {
+                return Ok(closed);
+            }
+            let left = system.residual(&closed).norm();
+            if best.as_ref().is_none_or(|(least, _)| left < *least) {
+                best = Some((left, closed));
+            }
+        }
+        Err(best.map_or_else(|| guess.clone(), |(_, closed)| closed))
+    }
+
+    /// Names the row that stays violated most.
+    fn impossible(&self, system: &System<'_>, at: &Configuration) -> AssemblyError {
+        let (scaled, phi) = (system.residual(at), self.kinematics.phi(&at.q, &at.near));
+        let worst = scaled.iamax();
+        let row = self.kinematics.rows()[worst];
+        AssemblyError::Impossible {
+            owner: row.owner,
+            name: self.model.named(row.owner),
+            residual: phi[worst],
+            unit: row.unit,
+        }
+    }
+
+    /// Names the coordinate that would have to change most.
+    fn cannot_hold(&self, held: &[Equation], closed: &Configuration) -> AssemblyError {
+        let left = |equation: &Equation| {
+            let system = System::new(self.kinematics, vec![*equation], self.scales);
+            let left = system.residual(closed).amax();
+            // The vector part of Euler parameters is half the angle.
+            if matches!(equation, Equation::Orientation { .. }) { 2.0 * left } else { left }
+        };
+        let worst = held.iter().max_by(|a, b| left(a).total_cmp(&left(b)));
+        let worst = worst.expect("holding them made the difference");
+        let (joint, coordinate, nearest, unit) = match *worst {
+            Equation::Coordinate { of, .. } => {
+                let kind = self.model.coordinate_kind(of);
+                let nearest = closed.near[of.joint][of.coordinate];
+                (of.joint, kind.name(), Some(nearest), if kind.is_angle() { "rad" } else { "m" })
+            }
+            Equation::Orientation { joint, .. } => (joint, "orientation", None, "rad"),
+            Equation::Rows(_) => unreachable!("only coordinates are held"),
+        };
+        let size = if unit == "m" { self.scales.size } else { 1.0 };
+        let name = self.model.joints[joint].name.clone();
+        AssemblyError::Held { joint, name, coordinate, off_by: left(worst) * size, nearest, unit }
+    }
+}
+
+/// Equations of the coordinates that the page gives and does not call rough.
+fn held(guesses: &[Guess]) -> Vec<Equation> {
+    let mut held = Vec::new();
+    for (joint, guess) in guesses.iter().enumerate() {
+        for (coordinate, &value) in guess.position.iter().enumerate() {
+            if guess.source[coordinate] == Source::Held {
+                held.push(Equation::Coordinate { of: JointCoordinate { joint, coordinate }, value });
+            }
+        }
+        if let (Some(value), false) = (guess.orientation, guess.is_rough) {
+            held.push(Equation::Orientation { joint, value });
+        }
+    }
+    held
+}
+
+/// The joints' starts as the closed configuration has them, and the bodies there, to walk the trees once more: that meets
+/// the rows of their joints to rounding and gives velocities to begin with.
+fn settled(
+    model: &Model,
+    tree: &Tree,
+    guesses: &[Guess],
+    guessed: &[State],
+    closed: &Configuration,
+) -> (Vec<Guess>, Vec<State>) {
+    let still = vec![0.0; 6 * model.coordinate_bodies().len()];
+    let mut states = states_of(model, guessed, &closed.q, &still);
+    for link in &tree.links {
+        (states[link.body].s, states[link.body].w) = (guessed[link.body].s, guessed[link.body].w);
+    }
+    let settled = guesses.iter().enumerate().map(|(joint, guess)| {
+        let [i, j] = [&model.joints[joint].first, &model.joints[joint].second].map(|end| states[end.body].p);
+        let orientation = Some((i.conjugate() * j).normalised());
+        Guess { position: closed.near[joint].clone(), orientation, ..guess.clone() }
+    });
+    (settled.collect(), states)
+}
+
+/// The states of all bodies, of which those with coordinates are given.
+fn states_of(model: &Model, all: &[State], q: &[f64], v: &[f64]) -> Vec<State> {
+    let mut states = all.to_vec();
+    for (slot, body) in model.coordinate_bodies().into_iter().enumerate() {
+        let [x, y, z, a, b, c, d] = std::array::from_fn(|k| q[7 * slot + k]);
+        let [s, w] = [0, 3].map(|at| Vector(std::array::from_fn(|k| v[6 * slot + at + k])));
+        states[body] = State { r: Vector([x, y, z]), p: Quaternion([a, b, c, d]), s, w };
+    }
+    states
+}
+
+fn joint_starts(kinematics: &Kinematics, states: &[State], at: &Configuration, v: &[f64]) -> Vec<JointStart> {
+    let rates = kinematics.rates(&at.q, v, &at.near);
+    let starts = kinematics.joints().iter().zip(at.near.iter().zip(rates));
+    let start = |(joint, (position, rate)): (&crate::kinematics::JointGeometry, (&Vec<f64>, Vec<f64>))| {
+        if joint.kind != JointKind::Spherical {
+            return JointStart { position: position.clone(), rate };
+        }
+        let turn = relative(states, joint);
+        let [first, second] = [&joint.first, &joint.second].map(|end| states[end.body].w);
+        JointStart { position: turn.0.to_vec(), rate: (second - turn.rotate_back(first)).0.to_vec() }
+    };
+    starts.map(start).collect()
+}
+
+/// How far joints of the trees, and bodies that no joint holds, have been moved; the farthest first.
+fn moves(
+    model: &Model,
+    tree: &Tree,
+    scales: &Scales,
+    states: [&[State]; 2],
+    [guess, closed]: [&Configuration; 2],
+) -> Vec<Move> {
+    let mut moves = Vec::new();
+    let mut add = |owner, name: &str, coordinate, amount: f64, is_angle: bool| {
+        let unit = if is_angle { "rad" } else { "m" };
+        moves.push(Move { owner, name: name.to_owned(), coordinate, amount, unit });
+    };
+    for (index, joint) in model.joints.iter().enumerate().filter(|(k, _)| !tree.loop_joints.contains(k)) {
+        let owner = RowOwner::Joint(index);
+        for (k, kind) in joint.kind.coordinates().iter().enumerate() {
+            let amount = closed.near[index][k] - guess.near[index][k];
+            add(owner, &joint.name, kind.name(), amount, kind.is_angle());
+        }
+        if matches!(joint.kind, JointKind::Spherical | JointKind::PointOnLine) {
+            let turn =
+                |states: &[State]| states[joint.first.body].p.conjugate() * states[joint.second.body].p;
+            let [before, after] = states.map(turn);
+            add(owner, &joint.name, "orientation", angle_between(before, after), true);
+        }
+    }
+    for link in tree.links.iter().filter(|link| link.attachment == crate::Attachment::Free) {
+        let (owner, name) = (RowOwner::Body(link.body), &model.bodies[link.body].name);
+        let [before, after] = states.map(|states| states[link.body]);
+        add(owner, name, "position", (after.r - before.r).norm(), false);
+        add(owner, name, "orientation", angle_between(before.p, after.p), true);
+    }
+    let far = |m: &Move| m.amount.abs() / if m.unit == "m" { scales.size } else { 1.0 };
+    moves.retain(|m| far(m) > MOVED);
+    moves.sort_by(|a, b| far(b).total_cmp(&far(a)));
+    moves
+}
+
+fn angle_between(a: Quaternion, b: Quaternion) -> f64 {
+    Vector(rotation_vector(a.conjugate() * b)).norm()
+}

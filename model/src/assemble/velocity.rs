@@ -1,0 +1,162 @@
+//! Velocities of least change that satisfy Φ_q q̇ = ν and the rates that the page gives.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::error::AssemblyError;
+use super::guess::Guess;
+use super::projection::{Configuration, Scales, nearest_solution, scale_rows_and_columns};
+use crate::kinematics::{Equation, Kinematics};
+use crate::{JointCoordinate, JointKind, Model, Quaternion, RowOwner, RowUnit, Support};
+
+/// Largest part of the velocities that a row may miss: far above rounding, far below what one writes on purpose.
+const TOLERANCE: f64 = 1e-9;
+
+/// Linear equations among the velocities.
+struct Rates {
+    matrix: DMatrix<f64>,
+    right: DVector<f64>,
+    /// For each row whose it is.
+    owners: Vec<(RowOwner, RowUnit)>,
+}
+
+/// The velocities nearest to others.
+pub(super) fn velocities(
+    model: &Model,
+    kinematics: &Kinematics,
+    scales: &Scales,
+    guesses: &[Guess],
+    at: &Configuration,
+    from: &[f64],
+) -> Result<Vec<f64>, AssemblyError> {
+    let rows = rows(kinematics, at);
+    let n_rows = rows.owners.len();
+    let all = rows.and(given(model, kinematics, guesses, at)).scaled(scales);
+    let from = DVector::from_column_slice(from).component_div(&scales.columns);
+    let found = nearest_solution(&all.matrix, &all.right, &from);
+    if all.missed(&found).is_none() {
+        return Ok(found.component_mul(&scales.columns).as_slice().to_vec());
+    }
+    // Whether the rows themselves are at fault, or what the page wants besides.
+    let rows = all.first(n_rows);
+    let alone = nearest_solution(&rows.matrix, &rows.right, &from);
+    let (missed, is_given) = match rows.missed(&alone) {
+        Some(missed) => (missed, false),
+        None => (all.after(n_rows).farthest(&alone), true),
+    };
+    let ((owner, unit), residual) = missed;
+    let residual = if unit == RowUnit::Length { residual * scales.size } else { residual };
+    Err(AssemblyError::Rate { owner, name: model.named(owner), residual, unit, is_given })
+}
+
+/// The derivatives of all rows of Φ.
+fn rows(kinematics: &Kinematics, at: &Configuration) -> Rates {
+    Rates {
+        matrix: kinematics.jacobian(&at.q, &at.near),
+        right: kinematics.nu(&at.q, &at.near),
+        owners: kinematics.rows().iter().map(|row| (row.owner, row.unit)).collect(),
+    }
+}
+
+/// The rates of joints and the angular velocities of bodies that the page gives.
+fn given(model: &Model, kinematics: &Kinematics, guesses: &[Guess], at: &Configuration) -> Rates {
+    let (mut equations, mut right, mut owners) = (Vec::new(), Vec::new(), Vec::new());
+    for (joint, guess) in guesses.iter().enumerate() {
+        let owner = RowOwner::Joint(joint);
+        if model.joints[joint].kind == JointKind::Spherical {
+            let rates: Option<Vec<f64>> = guess.rate.iter().copied().collect();
+            let Some(rates) = rates else { continue };
+            let value = guess.orientation.unwrap_or(Quaternion::IDENTITY);
+            equations.push(Equation::Orientation { joint, value });
+            // The vector part of Euler parameters grows with half the angular velocity.
+            right.extend(rates.iter().map(|rate| 0.5 * rate));
+            owners.extend([(owner, RowUnit::Pure); 3]);
+            continue;
+        }
+        for (coordinate, rate) in guess.rate.iter().enumerate() {
+            let Some(rate) = *rate else { continue };
+            let of = JointCoordinate { joint, coordinate };
+            let is_angle = model.coordinate_kind(of).is_angle();
+            equations.push(Equation::Coordinate { of, value: at.near[joint][coordinate] });
+            right.push(rate);
+            owners.push((owner, if is_angle { RowUnit::Pure } else { RowUnit::Length }));
+        }
+    }
+    let drift = kinematics.drift(&equations, &at.q, &at.near);
+    let matrix = kinematics.gradients(&equations, &at.q, &at.near);
+    let joints = Rates { matrix, right: DVector::from_vec(right) - drift, owners };
+    joints.and(spins(model))
+}
+
+/// The angular velocities that the page gives bodies which are not free to have any.
+fn spins(model: &Model) -> Rates {
+    let slots = model.coordinate_bodies();
+    let wanted = slots.iter().enumerate().filter(|(_, body)| model.bodies[**body].support == Support::Moving);
+    let wanted: Vec<(usize, usize, [f64; 3])> = wanted
+        .filter_map(|(slot, &body)| {
+            let w = model.bodies[body].angular_velocity.as_ref()?;
+            Some((slot, body, model.values(w)))
+        })
+        .collect();
+    let mut matrix = DMatrix::zeros(3 * wanted.len(), 6 * slots.len());
+    for (k, (slot, ..)) in wanted.iter().enumerate() {
+        matrix.view_mut((3 * k, 6 * slot + 3), (3, 3)).fill_with_identity();
+    }
+    let right = DVector::from_vec(wanted.iter().flat_map(|(.., w)| *w).collect());
+    let owners = wanted.iter().flat_map(|(_, body, _)| [(RowOwner::Body(*body), RowUnit::Pure); 3]).collect();
+    Rates { matrix, right, owners }
+}
+
+impl Rates {
+    /// Both sets of equations, one after the other.
+    fn and(self, other: Self) -> Self {
+        let (above, below) = (self.owners.len(), other.owners.len());
+        let mut matrix = DMatrix::zeros(above + below, self.matrix.ncols());
+        matrix.rows_mut(0, above).copy_from(&self.matrix);
+        matrix.rows_mut(above, below).copy_from(&other.matrix);
+        let right = DVector::from_iterator(above + below, self.right.iter().chain(&other.right).copied());
+        Self { matrix, right, owners: [self.owners, other.owners].concat() }
+    }
+
+    /// Rows of lengths by the size, unknowns by their scale.
+    fn scaled(mut self, scales: &Scales) -> Self {
+        let scale = |(_, unit): &(RowOwner, RowUnit)| match unit {
+            RowUnit::Length => 1.0 / scales.size,
+            RowUnit::Pure => 1.0,
+        };
+        let rows = DVector::from_iterator(self.owners.len(), self.owners.iter().map(scale));
+        scale_rows_and_columns(&mut self.matrix, &rows, &scales.columns);
+        self.right.component_mul_assign(&rows);
+        self
+    }
+
+    fn first(&self, count: usize) -> Self {
+        self.part(0, count)
+    }
+
+    fn after(&self, count: usize) -> Self {
+        self.part(count, self.owners.len() - count)
+    }
+
+    fn part(&self, from: usize, count: usize) -> Self {
+        Self {
+            matrix: self.matrix.rows(from, count).into_owned(),
+            right: self.right.rows(from, count).into_owned(),
+            owners: self.owners[from..from + count].to_vec(),
+        }
+    }
+
+    /// The row that is violated most if that is more than rounding, and by how much.
+    fn missed(&self, x: &DVector<f64>) -> Option<((RowOwner, RowUnit), f64)> {
+        if self.owners.is_empty() {
+            return None;
+        }
+        let scale = self.right.amax().max(x.amax());
+        Some(self.farthest(x)).filter(|(_, residual)| residual.abs() > TOLERANCE * scale)
+    }
+
+    fn farthest(&self, x: &DVector<f64>) -> ((RowOwner, RowUnit), f64) {
+        let left = &self.matrix * x - &self.right;
+        let worst = left.iamax();
+        (self.owners[worst], left[worst])
+    }
+}

@@ -1,0 +1,291 @@
+//! What acts between and on bodies besides joints: couplers, drivers, forces; and what is asked for as output.
+
+use crate::{Motion, Number};
+
+/// One scalar coordinate of a joint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct JointCoordinate {
+    /// Index into [`crate::Model::joints`].
+    pub joint: usize,
+    /// Index into the joint's [`crate::JointKind::coordinates`].
+    pub coordinate: usize,
+}
+
+/// What a scalar coordinate of a joint is. With (f, g, h) the joint frames and d from the first joint point to the second:
+/// every angle is continuous over turns where something acts on it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum CoordinateKind {
+    /// From the first body's f to the second's about h: `atan2(g_i·f_j, f_i·f_j)`, rad.
+    Angle,
+    /// Universal: from the first body's f to the second's h about the first's h: `atan2(g_i·h_j, f_i·h_j)`, rad.
+    FirstAngle,
+    /// Universal: from the first body's h to the second's f about the second's h: `atan2(−h_i·g_j, h_i·f_j)`, rad.
+    SecondAngle,
+    /// `h_i·d`, m.
+    Displacement,
+    /// `f_i·d`, m.
+    X,
+    /// `g_i·d`, m.
+    Y,
+}
+
+impl CoordinateKind {
+    /// Whether the coordinate is an angle, rad; a length, m, otherwise.
+    pub fn is_angle(self) -> bool {
+        matches!(self, Self::Angle | Self::FirstAngle | Self::SecondAngle)
+    }
+
+    /// The coordinate's name on the page and in outputs.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Angle => "angle",
+            Self::FirstAngle => "first_angle",
+            Self::SecondAngle => "second_angle",
+            Self::Displacement => "displacement",
+            Self::X => "x",
+            Self::Y => "y",
+        }
+    }
+}
+
+/// A gear, a belt, a rack: `second = ratio · first + offset` between two joint coordinates, one row
+/// `second − ratio · first − offset`.
+#[derive(Clone, Debug)]
+pub struct Coupler {
+    /// Name, an identifier.
+    pub name: String,
+    /// The driving coordinate.
+    pub first: JointCoordinate,
+    /// The coordinate that follows.
+    pub second: JointCoordinate,
+    /// Ratio; of the units of the two coordinates.
+    pub ratio: Number,
+    /// Offset, in the unit of the second coordinate.
+    pub offset: Number,
+}
+
+/// A joint coordinate prescribed in time: one row `coordinate − motion(t)`.
+#[derive(Clone, Debug)]
+pub struct Driver {
+    /// Name, an identifier.
+    pub name: String,
+    /// What is driven.
+    pub coordinate: JointCoordinate,
+    /// How.
+    pub motion: Motion,
+}
+
+/// A force besides gravity and the joints' own viscous friction.
+#[derive(Clone, Debug)]
+pub struct Force {
+    /// Name, an identifier.
+    pub name: String,
+    /// What it is.
+    pub kind: ForceKind,
+}
+
+/// The kinds of force. A force `F(x, ẋ)` *along a joint coordinate* x acts on the second body and as `−F` on the first: of an
+/// angle it is the torque `F h_j` on the second body and `−F h_i` on the first, each body's own joint axis (universal: both
+/// about `h_i` for the first angle and about `h_j` for the second); of a displacement along u (h_i, f_i or g_i) the force `F u` at the
+/// second body's joint point, and `−F u` on the first body *at the same point of space*.
+#[derive(Clone, Debug)]
+pub enum ForceKind {
+    /// `F = −stiffness (x − free)`: linear spring, conservative. Acts on the continuous angle.
+    Spring {
+        /// Where it acts.
+        on: JointCoordinate,
+        /// N·m/rad or N/m.
+        stiffness: Number,
+        /// Coordinate at which it is free, rad or m.
+        free: Number,
+    },
+    /// `F = −damping ẋ`.
+    Damper {
+        /// Where it acts.
+        on: JointCoordinate,
+        /// N·m·s/rad or N·s/m.
+        damping: Number,
+    },
+    /// `F = −level tanh(ẋ / rate)`: Coulomb friction, regularised.
+    Coulomb {
+        /// Where it acts.
+        on: JointCoordinate,
+        /// Torque or force of sliding, N·m or N.
+        level: Number,
+        /// Rate at which friction reaches tanh(1) of its level, rad/s or m/s.
+        rate: Number,
+    },
+    /// An end stop: `F = −stiffness ρ(x − limit) − damping σ(x − limit) ẋ` for an upper limit, and mirrored for a lower one, with
+    /// the smooth ramp `ρ(z) = ½ (z + √(z² + softness²))` and its slope `σ(z) = ½ (1 + z / √(z² + softness²))`. A lower limit
+    /// has `F = stiffness ρ(limit − x) − damping σ(limit − x) ẋ`. Counted as non-conservative.
+    Stop {
+        /// Where it acts.
+        on: JointCoordinate,
+        /// The limit, rad or m.
+        limit: Number,
+        /// Which side is blocked.
+        side: StopSide,
+        /// N·m/rad or N/m.
+        stiffness: Number,
+        /// N·m·s/rad or N·s/m.
+        damping: Number,
+        /// Width over which the stop sets in, rad or m; greater than zero.
+        softness: Number,
+    },
+    /// `F = value`: a motor. Usually an input.
+    Motor {
+        /// Where it acts.
+        on: JointCoordinate,
+        /// N·m or N.
+        value: Number,
+    },
+    /// Between two points of two bodies: the force `−stiffness (l − free_length) − damping l̇` along the line from the first point to
+    /// the second, on the second body; l the distance, which must not vanish. The spring is conservative.
+    Link {
+        /// Index of the first body, and the point in its frame, m.
+        first: (usize, [Number; 3]),
+        /// Index of the second body, and the point in its frame, m.
+        second: (usize, [Number; 3]),
+        /// N/m.
+        stiffness: Number,
+        /// N·s/m.
+        damping: Number,
+        /// m.
+        free_length: Number,
+    },
+    /// A force at a point of a body and a torque on it. Counted as non-conservative.
+    Load {
+        /// Index of the body.
+        body: usize,
+        /// Point in the body's frame, m.
+        point: [Number; 3],
+        /// N, in the given frame.
+        force: [Number; 3],
+        /// N·m, in the given frame.
+        torque: [Number; 3],
+        /// Frame of force and torque.
+        frame: LoadFrame,
+    },
+}
+
+/// Which side of a limit is blocked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StopSide {
+    /// The coordinate cannot fall below the limit.
+    Lower,
+    /// The coordinate cannot rise above the limit.
+    Upper,
+}
+
+/// The frame in which a load is constant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LoadFrame {
+    /// The global frame.
+    Global,
+    /// The body's own frame.
+    Body,
+}
+
+/// Something that a generated module computes only because the page asks for it.
+#[derive(Clone, Debug)]
+pub struct Output {
+    /// Name, an identifier.
+    pub name: String,
+    /// What it is.
+    pub kind: OutputKind,
+}
+
+/// The kinds of output.
+#[derive(Clone, Debug)]
+pub enum OutputKind {
+    /// Position r of a point of a body (m, global) and the body's Euler parameters.
+    Pose {
+        /// Index of the body.
+        body: usize,
+        /// Point in its frame, m.
+        point: [Number; 3],
+    },
+    /// Velocity of a point of a body (m/s, global) and its angular velocity (rad/s, body frame).
+    Velocity {
+        /// Index of the body.
+        body: usize,
+        /// Point in its frame, m.
+        point: [Number; 3],
+    },
+    /// Acceleration of a point of a body (m/s², global) and its angular acceleration (rad/s², body frame).
+    Acceleration {
+        /// Index of the body.
+        body: usize,
+        /// Point in its frame, m.
+        point: [Number; 3],
+    },
+    /// What an inertial sensor reads: specific force `Aᵀ(r̈ − g)` (m/s²) at a point and angular rate w' (rad/s), both in the
+    /// body's frame.
+    Inertial {
+        /// Index of the body.
+        body: usize,
+        /// Point in its frame, m.
+        point: [Number; 3],
+    },
+    /// Constraint force (N) and torque about the second body's joint point (N·m) that a joint exerts on its second body, both
+    /// in the first body's joint frame (f, g, h). Friction, springs, motors and drivers in the joint are not part of it.
+    Reaction {
+        /// Index of the joint.
+        joint: usize,
+    },
+    /// Torque or force `−λ` with which a driver acts along its coordinate, N·m or N.
+    Driver {
+        /// Index into [`crate::Model::drivers`].
+        driver: usize,
+    },
+    /// Kinetic and potential energy, J.
+    Energy,
+    /// Power of all non-conservative forces, and of drivers and driven bodies, W.
+    Power,
+}
+
+impl OutputKind {
+    /// Suffix and unit of each of the output's numbers, in order. An output of one number has no suffix.
+    pub fn columns(&self) -> &'static [(&'static str, &'static str)] {
+        match self {
+            Self::Pose { .. } => {
+                &[("rx", "m"), ("ry", "m"), ("rz", "m"), ("e0", ""), ("e1", ""), ("e2", ""), ("e3", "")]
+            }
+            Self::Velocity { .. } => &[
+                ("vx", "m/s"),
+                ("vy", "m/s"),
+                ("vz", "m/s"),
+                ("wx", "rad/s"),
+                ("wy", "rad/s"),
+                ("wz", "rad/s"),
+            ],
+            Self::Acceleration { .. } => &[
+                ("ax", "m/s2"),
+                ("ay", "m/s2"),
+                ("az", "m/s2"),
+                ("dwx", "rad/s2"),
+                ("dwy", "rad/s2"),
+                ("dwz", "rad/s2"),
+            ],
+            Self::Inertial { .. } => &[
+                ("fx", "m/s2"),
+                ("fy", "m/s2"),
+                ("fz", "m/s2"),
+                ("wx", "rad/s"),
+                ("wy", "rad/s"),
+                ("wz", "rad/s"),
+            ],
+            Self::Reaction { .. } => &[
+                ("force_f", "N"),
+                ("force_g", "N"),
+                ("force_h", "N"),
+                ("torque_f", "N*m"),
+                ("torque_g", "N*m"),
+                ("torque_h", "N*m"),
+            ],
+            Self::Driver { .. } => &[("", "N*m or N")],
+            Self::Energy => &[("kinetic", "J"), ("potential", "J")],
+            Self::Power => &[("non_conservative", "W"), ("drivers", "W")],
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! Motions prescribed in time.
+
+use num_dual::Dual2_64;
+
+use crate::kinematics::{Scalar, product};
+use crate::{Body, Model, Number, Quaternion, Spline, Vector};
+
+/// A function of time with values in rad or m.
+#[derive(Clone, Debug)]
+pub enum Motion {
+    /// `c0 + c1 t + c2 t² + …`; a constant has one coefficient.
+    Polynomial(Vec<Number>),
+    /// `amplitude · sin(angular_frequency · t + phase)`.
+    Sinusoid {
+        /// Amplitude, rad or m.
+        amplitude: Number,
+        /// Angular frequency, rad/s.
+        angular_frequency: Number,
+        /// Phase, rad.
+        phase: Number,
+    },
+    /// The sum of some motions.
+    Sum(Vec<Motion>),
+    /// The product of some motions.
+    Product(Vec<Motion>),
+    /// A smooth curve through the rows of a table.
+    Table(Spline),
+}
+
+/// A body's whole motion, prescribed: it has no coordinates, its pose is folded into the formulas as a function of time.
+///
+/// With the body's own `position` and `orientation` as `r0` and `A0`: `r(t) = r0 + translation(t)` in the global frame and
+/// `A(t) = A0 · R(axis_1, angle_1(t)) · R(axis_2, angle_2(t)) ⋯`, each rotation about an axis of the frame that the ones
+/// before it have turned (intrinsic).
+#[derive(Clone, Debug)]
+pub struct BodyMotion {
+    /// Displacement of the mass centre, m, global frame.
+    pub translation: [Motion; 3],
+    /// Successive rotations: direction of the axis, of any length but zero, and angle, rad.
+    pub rotations: Vec<([Number; 3], Motion)>,
+}
+
+/// Pose, velocity and acceleration of a driven body at one time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Prescribed {
+    /// Position of the mass centre, m, global.
+    pub r: Vector,
+    /// Euler parameters.
+    pub p: Quaternion,
+    /// Velocity of the mass centre, m/s, global.
+    pub s: Vector,
+    /// Angular velocity w', rad/s, body frame.
+    pub w: Vector,
+    /// Acceleration of the mass centre, m/s², global.
+    pub ds: Vector,
+    /// Derivative of w', rad/s², body frame.
+    pub dw: Vector,
+}
+
+impl Motion {
+    /// Value, first and second derivative at a time, with the model's parameters as they are.
+    pub fn value(&self, model: &Model, t: f64) -> [f64; 3] {
+        let x = self.at(model, Dual2_64::from_re(t).derivative());
+        [x.re, x.v1, x.v2]
+    }
+
+    /// The motion over any scalar.
+    pub(crate) fn at<D: Scalar>(&self, model: &Model, t: D) -> D {
+        match self {
+            Self::Polynomial(coefficients) => {
+                coefficients.iter().rev().fold(D::zero(), |sum, c| sum * t + model.value(c))
+            }
+            Self::Sinusoid { amplitude, angular_frequency, phase } => {
+                (t * model.value(angular_frequency) + model.value(phase)).sin() * model.value(amplitude)
+            }
+            Self::Sum(terms) => terms.iter().fold(D::zero(), |sum, term| sum + term.at(model, t)),
+            Self::Product(factors) => {
+                factors.iter().fold(D::one(), |product, factor| product * factor.at(model, t))
+            }
+            Self::Table(spline) => spline.at(t),
+        }
+    }
+}
+
+impl BodyMotion {
+    /// Pose of a body that moves so, and its first two derivatives, with the model's parameters as they are.
+    ///
+    /// By `w' = 2 G ṗ` and `ẇ' = 2 G p̈`, paper eq. (14) solved for w' and differentiated: `Ġ ṗ = 0`.
+    pub fn state(&self, model: &Model, body: &Body, t: f64) -> Prescribed {
+        let (r, p) = self.pose(model, body, Dual2_64::from_re(t).derivative());
+        let unit = Quaternion(p.map(|e| e.re));
+        let turning = |rate: [f64; 4]| {
+            let [_, x, y, z] = (unit.conjugate() * Quaternion(rate)).0;
+            Vector([2.0 * x, 2.0 * y, 2.0 * z])
+        };
+        Prescribed {
+            r: Vector(r.map(|x| x.re)),
+            p: unit,
+            s: Vector(r.map(|x| x.v1)),
+            w: turning(p.map(|e| e.v1)),
+            ds: Vector(r.map(|x| x.v2)),
+            dw: turning(p.map(|e| e.v2)),
+        }
+    }
+
+    /// Position and unit Euler parameters over any scalar.
+    pub(crate) fn pose<D: Scalar>(&self, model: &Model, body: &Body, t: D) -> ([D; 3], [D; 4]) {
+        let r0 = model.values(&body.position);
+        let r = std::array::from_fn(|k| self.translation[k].at(model, t) + r0[k]);
+        let p0 = body.unit_orientation(model).0.map(D::from);
+        let p = self.rotations.iter().fold(p0, |p, (axis, angle)| {
+            let exact = axis.each_ref().map(|x| model.exact(x));
+            let axis = Vector::unit(&exact).unwrap_or(Vector([0.0, 0.0, 1.0]));
+            let half = angle.at(model, t) * 0.5;
+            let [x, y, z] = axis.0.map(|x| half.sin() * x);
+            product(p, [half.cos(), x, y, z])
+        });
+        (r, p)
+    }
+}
+
+impl Body {
+    /// The page's orientation at unit length, the identity where it has none.
+    pub(crate) fn given_orientation(&self, model: &Model) -> Quaternion {
+        let exact = self.orientation.each_ref().map(|e| model.exact(e));
+        Quaternion::unit(&exact).unwrap_or(Quaternion::IDENTITY)
+    }
+
+    /// The same with the sign of the two that is nearer to the identity.
+    pub(crate) fn unit_orientation(&self, model: &Model) -> Quaternion {
+        self.given_orientation(model).nearest(Quaternion::IDENTITY)
+    }
+}

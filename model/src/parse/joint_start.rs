@@ -1,0 +1,48 @@
+//! The start of a joint: values of its coordinates, its rates, and whether they are guesses.
+
+use super::kinds::start_keys;
+use super::numbers::{number, numbers, plain_number, radians, vector};
+use super::reader::Reader;
+use super::section::Section;
+use crate::{CoordinateKind, JointKind, JointStartSpec, Number};
+
+/// Reads the start; of a joint of unknown kind nothing.
+pub(super) fn read(
+    reader: &mut Reader<'_>,
+    section: &Section<'_>,
+    kind: Option<JointKind>,
+) -> JointStartSpec {
+    let Some(kind) = kind else { return JointStartSpec::default() };
+    let position = kind.coordinates().iter().map(|&coordinate| value(reader, section, coordinate)).collect();
+    let is_rough = section.get("rough").and_then(|item| item.flag(reader));
+    JointStartSpec {
+        position,
+        rate: rate(reader, section, kind),
+        orientation: section.get("orientation").and_then(|item| vector(reader, item)),
+        is_rough: is_rough.unwrap_or(false),
+    }
+}
+
+/// The value at which a coordinate starts; an angle may be in degrees.
+fn value(reader: &mut Reader<'_>, section: &Section<'_>, coordinate: CoordinateKind) -> Option<Number> {
+    let (plain, degrees) = start_keys(coordinate);
+    let given = section.get(plain).and_then(|item| number(reader, item));
+    let Some(degrees) = degrees else { return given };
+    if section.has(plain) {
+        let help = format!("remove `{plain}` or `{degrees}`");
+        section.refuse(reader, degrees, &format!("the {} is given twice", plain.replace('_', " ")), &help);
+    }
+    let in_degrees = section.get(degrees).and_then(|item| plain_number(reader, item));
+    given.or(in_degrees.map(radians))
+}
+
+/// One number of a joint with one coordinate, a list of the others'; three of a spherical joint.
+fn rate(reader: &mut Reader<'_>, section: &Section<'_>, kind: JointKind) -> Option<Vec<Number>> {
+    let item = section.get("rate")?;
+    match kind.coordinates().len() {
+        0 if kind == JointKind::Spherical => numbers(reader, item, 3),
+        0 => None,
+        1 => number(reader, item).map(|rate| vec![rate]),
+        n => numbers(reader, item, n),
+    }
+}

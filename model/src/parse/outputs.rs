@@ -1,0 +1,92 @@
+//! Outputs: what is to be computed besides the motion.
+
+use toml::de::DeTable;
+
+use super::reader::Reader;
+use super::section::{self, Section};
+use super::{page, references};
+use crate::validate::Owner;
+use crate::{Number, Output, OutputKind};
+
+const KEYS: [&str; 6] = ["name", "kind", "body", "point", "joint", "driver"];
+
+/// The kinds on the page.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Pose,
+    Velocity,
+    Acceleration,
+    Inertial,
+    Reaction,
+    Driver,
+    Energy,
+    Power,
+}
+
+const KINDS: [(&str, Kind); 8] = [
+    ("pose", Kind::Pose),
+    ("velocity", Kind::Velocity),
+    ("acceleration", Kind::Acceleration),
+    ("inertial", Kind::Inertial),
+    ("reaction", Kind::Reaction),
+    ("driver", Kind::Driver),
+    ("energy", Kind::Energy),
+    ("power", Kind::Power),
+];
+
+impl Kind {
+    /// The kind's own keys, after its name and kind.
+    fn keys(self) -> &'static [&'static str] {
+        match self {
+            Self::Pose | Self::Velocity | Self::Acceleration | Self::Inertial => &["body", "point"],
+            Self::Reaction => &["joint"],
+            Self::Driver => &["driver"],
+            Self::Energy | Self::Power => &[],
+        }
+    }
+}
+
+/// Reads all outputs.
+pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>) -> Vec<Output> {
+    let tables = page::tables(reader, page, "output");
+    let names = page::names(reader, &tables, Owner::Output, "output");
+    let named = tables.iter().zip(names).enumerate();
+    named
+        .map(|(index, ((_, table), name))| {
+            output(reader, index, table, name.unwrap_or_else(|| format!("output {}", index + 1)))
+        })
+        .collect()
+}
+
+fn output(reader: &mut Reader<'_>, index: usize, table: &DeTable<'_>, name: String) -> Output {
+    let title = format!("output `{name}`");
+    let section = Section::open(reader, Owner::Output(index), &title, table, &KEYS);
+    let kind = section.require_choice(reader, "kind", &title, ("kind of output", &KINDS));
+    if let Some(kind) = kind {
+        let word = KINDS.iter().find(|(_, other)| *other == kind).map_or("", |(word, _)| word);
+        section::refuse_others(reader, &section, &KEYS, (word, kind.keys()));
+    }
+    let kind = match kind {
+        Some(Kind::Reaction) => OutputKind::Reaction {
+            joint: references::joint(reader, &section, &title).unwrap_or(references::NOTHING),
+        },
+        Some(Kind::Driver) => OutputKind::Driver {
+            driver: references::driver(reader, &section, &title).unwrap_or(references::NOTHING),
+        },
+        Some(Kind::Power) => OutputKind::Power,
+        Some(Kind::Energy) | None => OutputKind::Energy,
+        Some(kind) => of_body(reader, &section, &title, kind),
+    };
+    Output { name, kind }
+}
+
+fn of_body(reader: &mut Reader<'_>, section: &Section<'_>, title: &str, kind: Kind) -> OutputKind {
+    let body = references::body(reader, section, title).unwrap_or(references::NOTHING);
+    let point: [Number; 3] = section.vector_or(reader, "point", [0; 3]);
+    match kind {
+        Kind::Velocity => OutputKind::Velocity { body, point },
+        Kind::Acceleration => OutputKind::Acceleration { body, point },
+        Kind::Inertial => OutputKind::Inertial { body, point },
+        _ => OutputKind::Pose { body, point },
+    }
+}

@@ -1,0 +1,79 @@
+//! Parameters and inputs: names with their default numbers. Both become fields of the generated mechanism.
+
+use std::ops::Range;
+
+use num_traits::One;
+use toml::Spanned;
+use toml::de::{DeString, DeValue};
+
+use super::names;
+use super::numbers::plain_number;
+use super::reader::Reader;
+use super::section::{Item, Section, keyword, not_a_name};
+use crate::diagnostics::Related;
+use crate::validate::{Owner, Place};
+use crate::{Parameter, Rational};
+
+/// Names that were met, with where they stand and in which table.
+type Seen = Vec<(String, Range<usize>, &'static str)>;
+
+/// Reads both tables, in the order of the page. All names are known before any number refers to one.
+pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>) -> (Vec<Parameter>, Vec<Parameter>) {
+    let mut seen = Seen::new();
+    let parameters = table(reader, page, &mut seen, ("parameters", Owner::Parameter));
+    let inputs = table(reader, page, &mut seen, ("inputs", Owner::Input));
+    reader.parameters = parameters.iter().map(|p| p.name.clone()).collect();
+    reader.inputs = inputs.iter().map(|p| p.name.clone()).collect();
+    (parameters, inputs)
+}
+
+fn table(
+    reader: &mut Reader<'_>,
+    page: &Section<'_>,
+    seen: &mut Seen,
+    (title, owner): (&'static str, fn(usize) -> Owner),
+) -> Vec<Parameter> {
+    let Some(item) = page.get(title) else { return Vec::new() };
+    let example = format!("[{title}] on a line of its own, then name = number");
+    let Some(table) = item.table(reader, &example) else { return Vec::new() };
+    let mut entries: Vec<_> = table.iter().collect();
+    entries.sort_by_key(|(key, _)| key.span().start);
+    let mut parameters = Vec::new();
+    for (index, (key, value)) in entries.into_iter().enumerate() {
+        let place = Place { owner: owner(index), key: "" };
+        clash(reader, place, seen, key);
+        seen.push((key.get_ref().to_string(), key.span(), title));
+        parameters.push(parameter(reader, place, key, value));
+    }
+    parameters
+}
+
+/// A field has one meaning.
+fn clash(reader: &mut Reader<'_>, place: Place, seen: &Seen, key: &Spanned<DeString<'_>>) {
+    let name = key.get_ref().as_ref();
+    let Some((_, first, table)) = seen.iter().find(|(other, ..)| other == name) else { return };
+    let related = Related { span: first.clone(), label: format!("under [{table}] here") };
+    let words = [
+        format!("`{name}` is both a parameter and an input"),
+        "used again".to_owned(),
+        "write another name: both become fields of the generated mechanism".to_owned(),
+    ];
+    reader.clash(place, key.span(), related, words);
+}
+
+fn parameter(
+    reader: &mut Reader<'_>,
+    place: Place,
+    key: &Spanned<DeString<'_>>,
+    value: &Spanned<DeValue<'_>>,
+) -> Parameter {
+    let name = key.get_ref().as_ref();
+    reader.mark(place, value.span());
+    if !names::is_snake_case(name) {
+        reader.wrong(place, key.span(), not_a_name(name));
+    } else if names::is_keyword(name) {
+        reader.wrong(place, key.span(), keyword(name));
+    }
+    let value = plain_number(reader, Item { place: Place { key: "value", ..place }, value });
+    Parameter { name: name.to_owned(), value: value.unwrap_or_else(Rational::one) }
+}

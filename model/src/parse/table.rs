@@ -1,0 +1,136 @@
+//! Tables of a motion: two columns of a CSV file, joined by a smooth curve.
+
+use super::names;
+use super::reader::Reader;
+use super::section::{Item, Section};
+use crate::Spline;
+
+/// A table that cannot be used: what is wrong, a few words for the place in the page, and what to do.
+type Refusal = [String; 3];
+
+/// Reads the table that a motion names, through the caller's `load`.
+pub(super) fn read(reader: &mut Reader<'_>, section: &Section<'_>, item: Item<'_>) -> Option<Spline> {
+    let columns = section.get("columns").map(|item| columns(reader, item));
+    let path = item.text(reader, "table = \"file.csv\"")?;
+    let columns = match columns {
+        Some(columns) => Some(columns?),
+        None => None,
+    };
+    let spline = reader.load(path).map_err(|reason| not_loaded(path, &reason)).and_then(|text| {
+        let points = points(path, &text, columns)?;
+        let help = "write times that ascend, with values of moderate size";
+        Spline::natural(path.to_owned(), &points).map_err(|reason| refusal(path, &reason, help))
+    });
+    spline.map_err(|words| item.wrong(reader, words)).ok()
+}
+
+fn columns<'t>(reader: &mut Reader<'_>, item: Item<'t>) -> Option<[&'t str; 2]> {
+    let elements = item.value.get_ref().as_array();
+    let names: Option<Vec<&str>> =
+        elements.and_then(|elements| elements.iter().map(|e| e.get_ref().as_str()).collect());
+    let names = names.and_then(|names| <[&str; 2]>::try_from(names).ok());
+    if names.is_none() {
+        item.wrong_type(reader, "an array of two names", "columns = [\"t\", \"angle\"]: time and value");
+    }
+    names
+}
+
+/// The rows of a table as times and values.
+fn points(path: &str, text: &str, columns: Option<[&str; 2]>) -> Result<Vec<(f64, f64)>, Refusal> {
+    let mut table = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
+    let broken = |error: csv::Error| {
+        refusal(path, &reason(&error), "write a header and rows of the same length, separated by commas")
+    };
+    let header = table.headers().map_err(broken)?.clone();
+    let [time, value] = find_columns(path, &header, columns)?;
+    let mut points: Vec<(f64, f64)> = Vec::new();
+    for record in table.records() {
+        let record = record.map_err(broken)?;
+        let line = record.position().map_or(0, csv::Position::line);
+        let point = (field(path, &record, time, line)?, field(path, &record, value, line)?);
+        if points.last().is_some_and(|last| last.0 >= point.0) {
+            let reason = format!(
+                "line {line}: the time {:?} does not follow {:?}",
+                point.0,
+                points[points.len() - 1].0
+            );
+            return Err(refusal(path, &reason, "sort the rows by time and keep one row for each time"));
+        }
+        points.push(point);
+    }
+    match points.len() {
+        0 | 1 => {
+            let reason = format!("found {} row{}", points.len(), if points.is_empty() { "s" } else { "" });
+            let help = "write a header and at least two rows; a constant needs no table";
+            Err(refusal(path, &reason, help))
+        }
+        _ => Ok(points),
+    }
+}
+
+fn reason(error: &csv::Error) -> String {
+    match error.kind() {
+        csv::ErrorKind::UnequalLengths { pos, expected_len, len } => {
+            let line = pos.as_ref().map_or(0, csv::Position::line);
+            format!("line {line}: the row has length {len}, the header {expected_len}")
+        }
+        _ => error.to_string(),
+    }
+}
+
+/// Indices of the two columns; without names there must be two.
+fn find_columns(
+    path: &str,
+    header: &csv::StringRecord,
+    columns: Option<[&str; 2]>,
+) -> Result<[usize; 2], Refusal> {
+    let known: Vec<&str> = header.iter().collect();
+    if known.is_empty() {
+        return Err(refusal(path, "it is empty", "write a header and at least two rows, such as `t,angle`"));
+    }
+    if known.iter().all(|name| name.parse::<f64>().is_ok()) {
+        let help = "write the names of the columns on the first line, such as `t,angle`";
+        return Err(refusal(path, "its first line has numbers in place of names", help));
+    }
+    let Some(columns) = columns else {
+        let help = format!(
+            "name the time and the value: columns = [\"t\", \"angle\"]; it has {}",
+            names::list(&known)
+        );
+        let reason = format!("it has {} column{}", known.len(), if known.len() == 1 { "" } else { "s" });
+        return if known.len() == 2 { Ok([0, 1]) } else { Err(refusal(path, &reason, &help)) };
+    };
+    let find = |name: &str| {
+        let help = || names::instead(name, &known);
+        known
+            .iter()
+            .position(|other| *other == name)
+            .ok_or_else(|| refusal(path, &format!("it has no column `{name}`"), &help()))
+    };
+    Ok([find(columns[0])?, find(columns[1])?])
+}
+
+fn field(path: &str, record: &csv::StringRecord, column: usize, line: u64) -> Result<f64, Refusal> {
+    let text = record.get(column).unwrap_or_default();
+    match text.parse::<f64>() {
+        Ok(value) if in_range(value) => Ok(value),
+        _ => {
+            let reason = format!("line {line}: found `{text}` in place of a number");
+            Err(refusal(path, &reason, "write finite decimals of moderate size"))
+        }
+    }
+}
+
+/// The sizes that numbers of a page may have.
+fn in_range(value: f64) -> bool {
+    value == 0.0 || (1e-100..=1e100).contains(&value.abs())
+}
+
+fn refusal(path: &str, reason: &str, help: &str) -> Refusal {
+    [format!("table `{path}` cannot be used"), reason.to_owned(), help.to_owned()]
+}
+
+fn not_loaded(path: &str, reason: &str) -> Refusal {
+    let help = "write the path of a CSV file, from the folder of the page";
+    [format!("table `{path}` cannot be read"), reason.to_owned(), help.to_owned()]
+}

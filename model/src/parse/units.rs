@@ -1,0 +1,147 @@
+//! Numbers written with a unit: which unit is meant by a key, and what the number is in it.
+
+use num_traits::ToPrimitive;
+
+use super::numbers::pi;
+use crate::validate::{Owner, Place};
+use crate::{Rational, parse_decimal};
+
+/// The words for a number that is written as a text with its unit; `None` for other texts.
+pub(super) fn with_unit(place: Place, text: &str) -> Option<[String; 3]> {
+    let key = place.key;
+    let (number, unit) = split(text)?;
+    let expected = of_key(key);
+    let message = match expected {
+        Some(expected) => format!("`{key}` is a number in {expected}, written without a unit"),
+        None => format!("`{key}` is a number, written without a unit"),
+    };
+    let in_base = known(unit).map(|(base, factor)| (base, &number * factor));
+    let label = match &in_base {
+        Some(_) => format!("text with the unit `{unit}`"),
+        None => format!("text with the unknown unit `{unit}`"),
+    };
+    let help = match (in_base, expected) {
+        (Some((base, value)), Some(expected)) if expected.split(" or ").any(|unit| unit == base) => {
+            let in_degrees = if is_degrees(unit) && has_degrees(place) {
+                format!(", or {key}_deg = {}", plain(&number))
+            } else {
+                String::new()
+            };
+            format!("write {} in place of {text:?}{in_degrees}", plain(&value))
+        }
+        (_, Some(expected)) => format!("write the number alone, in {expected}"),
+        (_, None) => "write the number alone; all units are SI".to_owned(),
+    };
+    Some([message, label, help])
+}
+
+/// A number and what follows it.
+fn split(text: &str) -> Option<(Rational, &str)> {
+    let text = text.trim();
+    if parse_decimal(text).is_some() {
+        return None;
+    }
+    let ends = text.char_indices().map(|(at, _)| at).filter(|&at| at > 0 && at <= 40);
+    let longest = ends.rev().find_map(|at| Some((parse_decimal(&text[..at])?, text[at..].trim())));
+    longest.filter(|(_, unit)| !unit.is_empty())
+}
+
+fn is_degrees(unit: &str) -> bool {
+    matches!(unit, "deg" | "°" | "degree" | "degrees")
+}
+
+fn has_degrees(Place { owner, key }: Place) -> bool {
+    match key {
+        "angle" | "first_angle" | "second_angle" => matches!(owner, Owner::Joint(_)),
+        _ => key == "phase",
+    }
+}
+
+/// The unit of a key's number, or of the elements of its vector.
+fn of_key(key: &str) -> Option<&'static str> {
+    let unit = match key {
+        "gravity" => "m/s2",
+        "t_end" | "step" | "correct_every" | "sample_every" => "s",
+        "mass" => "kg",
+        "inertia" | "xx" | "yy" | "zz" | "xy" | "xz" | "yz" => "kg.m2",
+        "position" | "point" | "displacement" | "x" | "y" | "length" | "free_length" | "translation" => "m",
+        "velocity" => "m/s",
+        "angular_velocity" | "angular_frequency" => "rad/s",
+        "angle" | "first_angle" | "second_angle" | "phase" => "rad",
+        "angle_deg" | "first_angle_deg" | "second_angle_deg" | "phase_deg" => "degrees",
+        "frequency_hz" => "Hz",
+        "rate" => "rad/s or m/s",
+        "lead" => "m/rad",
+        "pitch" => "m a turn",
+        "friction" | "damping" => "N.m.s/rad or N.s/m",
+        "stiffness" => "N.m/rad or N/m",
+        "free" | "limit" | "softness" | "amplitude" | "motion" | "offset" => "rad or m",
+        "level" | "value" => "N.m or N",
+        "force" => "N",
+        "torque" => "N.m",
+        _ => return None,
+    };
+    Some(unit)
+}
+
+/// The SI unit of a known unit, and its size in it.
+fn known(unit: &str) -> Option<(&'static str, Rational)> {
+    let decimal = |text: &str| parse_decimal(text).expect("a decimal");
+    let degree = || pi() / decimal("180");
+    let (base, size) = match unit {
+        "rad" => ("rad", decimal("1")),
+        "rad/s" => ("rad/s", decimal("1")),
+        unit if is_degrees(unit) => ("rad", degree()),
+        "deg/s" | "°/s" => ("rad/s", degree()),
+        "rpm" | "1/min" => ("rad/s", pi() / decimal("30")),
+        "Hz" => ("Hz", decimal("1")),
+        "m" => ("m", decimal("1")),
+        "mm" => ("m", decimal("1e-3")),
+        "cm" => ("m", decimal("1e-2")),
+        "um" | "µm" => ("m", decimal("1e-6")),
+        "km" => ("m", decimal("1e3")),
+        "in" | "inch" => ("m", decimal("0.0254")),
+        "m/s" => ("m/s", decimal("1")),
+        "mm/s" => ("m/s", decimal("1e-3")),
+        "m/s2" | "m/s^2" | "m/s²" => ("m/s2", decimal("1")),
+        "kg" => ("kg", decimal("1")),
+        "g" => ("kg", decimal("1e-3")),
+        "s" => ("s", decimal("1")),
+        "ms" => ("s", decimal("1e-3")),
+        "us" | "µs" => ("s", decimal("1e-6")),
+        "min" => ("s", decimal("60")),
+        "N" => ("N", decimal("1")),
+        "kN" => ("N", decimal("1e3")),
+        "Nm" | "N.m" | "N*m" => ("N.m", decimal("1")),
+        "mNm" => ("N.m", decimal("1e-3")),
+        _ => return None,
+    };
+    Some((base, size))
+}
+
+/// A number as one would write it.
+fn plain(value: &Rational) -> String {
+    value.to_f64().map_or_else(String::new, |value| format!("{value:?}").trim_end_matches(".0").to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn units_are_told_and_converted() {
+        let place = |key| Place { owner: Owner::Joint(0), key };
+        let check = |key: &'static str, text: &str, expected: &str| {
+            let [_, _, help] = with_unit(place(key), text).unwrap_or_default();
+            assert_eq!(help, expected, "{key} = {text:?}");
+        };
+        check("angle", "30 deg", "write 0.5235987755982989 in place of \"30 deg\", or angle_deg = 30");
+        check("rate", "60rpm", "write 6.283185307179586 in place of \"60rpm\"");
+        check("mass", "80 g", "write 0.08 in place of \"80 g\"");
+        check("mass", "3 lb", "write the number alone, in kg");
+        check("length", "2e3 mm", "write 2 in place of \"2e3 mm\"");
+        assert_eq!(with_unit(place("mass"), "rod_mass"), None);
+        assert_eq!(with_unit(place("mass"), "3"), None);
+        assert_eq!(with_unit(place("mass"), "é"), None);
+    }
+}

@@ -1,0 +1,171 @@
+//! Rows of Φ that say what others say already: found by rank, at several poses of the mechanism.
+
+mod sample;
+mod select;
+
+use crate::assemble::projection::{Configuration, Scales, System};
+use crate::kinematics::{Equation, Kinematics};
+use crate::{AssemblyError, Model, RedundantRow, Row, RowOwner, Start, Support, Tree};
+use sample::{Samples, samples};
+use select::{dependencies, select};
+
+/// What the rank of the constraint rows says about a mechanism.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Analysis {
+    /// Rows that depend on the others, in the order of [`Model::all_rows`]: what [`Model::redundant`] is to hold.
+    pub redundant: Vec<RedundantRow>,
+    /// Number of independent rows.
+    pub rank: usize,
+    /// Number of velocities that the independent rows, drivers' rows among them, leave free.
+    pub degrees_of_freedom: usize,
+    /// Whether the rank at the start itself is less: the mechanism starts in a dead point or where branches meet, and its
+    /// velocities and accelerations there are not determined.
+    pub singular_start: bool,
+}
+
+impl Model {
+    /// Number of velocities that the rows leave free: six for each body with coordinates less [`Model::rows`].
+    ///
+    /// Driven coordinates are not free. It is right once redundant rows are known, see [`analyse`].
+    pub fn degrees_of_freedom(&self) -> usize {
+        (6 * self.coordinate_bodies().len()).saturating_sub(self.rows().len())
+    }
+}
+
+/// Finds redundant rows. What [`Model::redundant`] holds already is not looked at.
+///
+/// The rank of all rows, with lengths by [`Model::size`], is taken at the assembled start and at poses around it that satisfy the
+/// joints and couplers (drivers released), and the largest counts: a singular start does not fool it. Rows are
+/// kept in this order as long as they are independent: constrained bodies, joints of the trees, couplers, joints that
+/// close loops, drivers; so loop-closing joints lose rows first, later joints before earlier ones. Of one joint the rows that are
+/// most independent stay. Open trees have no redundant rows by construction and cost no more than
+/// their start.
+///
+/// # Errors
+/// Those of [`Model::assemble`], whose rows all have to be met, redundant ones too; a driver of a coordinate that is fixed
+/// without it; a mechanism that can neither move nor is driven; driven bodies whose motions contradict redundant rows later.
+pub fn analyse(model: &Model) -> Result<Analysis, AssemblyError> {
+    let (start, tree) = (model.assemble()?, Tree::of(model));
+    if model.is_open(&tree) {
+        let rank = model.all_rows().len();
+        let degrees_of_freedom = (6 * model.coordinate_bodies().len()).saturating_sub(rank);
+        return Ok(Analysis { redundant: Vec::new(), rank, degrees_of_freedom, singular_start: false });
+    }
+    let (kinematics, scales) = (Kinematics::at(model, 0.0), Scales::of(model));
+    let start = configuration(&kinematics, &start);
+    let (released, driven) = (undriven(&kinematics), kinematics.equations());
+    let around = samples(&System::new(&kinematics, released, &scales), &start);
+    if let Samples::Stuck = around {
+        return Err(over_constrained(model, &tree));
+    }
+    let all = System::new(&kinematics, driven, &scales);
+    let jacobians: Vec<_> = around.with(start.clone()).iter().map(|at| all.jacobian(at)).collect();
+    let selection = select(&jacobians, &groups(&kinematics, &tree));
+    let shared = dependencies(&selection, kinematics.rows());
+    let redundant: Vec<RedundantRow> = selection
+        .dropped
+        .iter()
+        .zip(shared)
+        .map(|(&row, shared_with)| RedundantRow { row: kinematics.rows()[row], shared_with })
+        .collect();
+    check_drivers(model, &redundant)?;
+    check_later(model, &scales, &selection.dropped, &start)?;
+    let rank = selection.kept.len();
+    let degrees_of_freedom = 6 * model.coordinate_bodies().len() - rank;
+    if degrees_of_freedom == 0 && !model.is_driven() {
+        return Err(over_constrained(model, &tree));
+    }
+    let singular_start = selection.first_rank < rank;
+    Ok(Analysis { redundant, rank, degrees_of_freedom, singular_start })
+}
+
+fn configuration(kinematics: &Kinematics, start: &Start) -> Configuration {
+    // Spherical joints have Euler parameters there and no scalar coordinates.
+    let near: Vec<Vec<f64>> = start.joints.iter().map(|joint| joint.position.clone()).collect();
+    Configuration { near: kinematics.coordinates(&start.q, &near), q: start.q.clone() }
+}
+
+/// All rows but the drivers'.
+fn undriven(kinematics: &Kinematics) -> Vec<Equation> {
+    let is_driver = |equation: &Equation| matches!(equation, Equation::Rows(RowOwner::Driver(_)));
+    kinematics.equations().into_iter().filter(|equation| !is_driver(equation)).collect()
+}
+
+/// The rows of each owner, in the order in which they are preferred.
+fn groups(kinematics: &Kinematics, tree: &Tree) -> Vec<Vec<usize>> {
+    let rank = |owner: RowOwner| match owner {
+        RowOwner::Body(_) => 0,
+        RowOwner::Joint(joint) if !tree.loop_joints.contains(&joint) => 1,
+        RowOwner::Coupler(_) => 2,
+        RowOwner::Joint(_) => 3,
+        RowOwner::Driver(_) => 4,
+    };
+    let rows: Vec<(usize, &Row)> = kinematics.rows().iter().enumerate().collect();
+    let groups = rows.chunk_by(|a, b| a.1.owner == b.1.owner);
+    let mut groups: Vec<(usize, Vec<usize>)> =
+        groups.map(|group| (rank(group[0].1.owner), group.iter().map(|(row, _)| *row).collect())).collect();
+    groups.sort_by_key(|(rank, _)| *rank);
+    groups.into_iter().map(|(_, group)| group).collect()
+}
+
+/// A driver's row is never dropped: its motion in time would be ignored.
+fn check_drivers(model: &Model, redundant: &[RedundantRow]) -> Result<(), AssemblyError> {
+    for RedundantRow { row, shared_with } in redundant {
+        if let RowOwner::Driver(driver) = row.owner {
+            let with = shared_with.iter().map(|&owner| model.named(owner)).collect();
+            return Err(AssemblyError::Driver { driver, name: model.drivers[driver].name.clone(), with });
+        }
+    }
+    Ok(())
+}
+
+/// Steps of the run after which redundant rows on driven bodies are looked at again: a motion may begin so smoothly that
+/// nothing shows at once.
+const LATER: [f64; 3] = [3.0, 10.0, 30.0];
+
+/// Rows between driven bodies may hold at the start and not later, when only the rows that are kept are heeded.
+fn check_later(
+    model: &Model,
+    scales: &Scales,
+    dropped: &[usize],
+    start: &Configuration,
+) -> Result<(), AssemblyError> {
+    if dropped.is_empty() || model.bodies.iter().all(|body| body.support != Support::Driven) {
+        return Ok(());
+    }
+    let mut at = start.clone();
+    for time in LATER.map(|steps| steps * model.simulation.step) {
+        let kinematics = Kinematics::at(model, time);
+        let kept = System::new(&kinematics, kinematics.equations(), scales).without(dropped);
+        at = kept.project(&at);
+        if !kept.is_met(&at) {
+            // A pose that cannot be reached says nothing about the rows that were dropped.
+            return Ok(());
+        }
+        let all = System::new(&kinematics, kinematics.equations(), scales);
+        let exact = all.project(&at);
+        if !all.is_met(&exact) {
+            let worst = all.residual(&at).iamax();
+            let (row, phi) = (kinematics.rows()[worst], kinematics.phi(&at.q, &at.near));
+            let (owner, name) = (row.owner, model.named(row.owner));
+            return Err(AssemblyError::Contradiction {
+                owner,
+                name,
+                time,
+                residual: phi[worst],
+                unit: row.unit,
+            });
+        }
+        at = exact;
+    }
+    Ok(())
+}
+
+fn over_constrained(model: &Model, tree: &Tree) -> AssemblyError {
+    let joints = tree.loop_joints.iter().map(|&joint| RowOwner::Joint(joint));
+    let owners: Vec<RowOwner> = joints.chain((0..model.couplers.len()).map(RowOwner::Coupler)).collect();
+    AssemblyError::OverConstrained {
+        owner: *owners.last().expect("an open tree is not analysed"),
+        closing: owners.into_iter().map(|owner| model.named(owner)).collect(),
+    }
+}

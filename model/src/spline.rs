@@ -1,0 +1,169 @@
+//! A smooth curve through the rows of a table: the natural cubic spline.
+
+use num_dual::Dual2_64;
+
+use crate::kinematics::Scalar;
+
+/// Natural cubic spline through given points: twice continuously differentiable, also where it goes on as a straight line
+/// before the first and after the last point (its second derivative is zero there).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spline {
+    /// Where the table was read, for messages and documentation.
+    pub source: String,
+    /// Times of the points, ascending, s. At least two.
+    pub knots: Vec<f64>,
+    /// For each interval between knots `[c0, c1, c2, c3]`: value `c0 + c1 u + c2 u² + c3 u³`, `u` from the interval's first
+    /// knot. The straight lines beyond the ends are not listed.
+    pub pieces: Vec<[f64; 4]>,
+}
+
+impl Spline {
+    /// The natural cubic spline through points `(time, value)`.
+    ///
+    /// The second derivatives at the knots solve the tridiagonal system of continuous slopes (de Boor, *A Practical
+    /// Guide to Splines*, chapter IV), which is diagonally dominant, so it is solved without pivoting.
+    ///
+    /// # Errors
+    /// Says what is wrong with the points: fewer than two, times that do not ascend, numbers that are not finite.
+    pub fn natural(source: String, points: &[(f64, f64)]) -> Result<Self, String> {
+        if points.len() < 2 {
+            return Err(format!("{} rows are too few for a curve: at least two are needed", points.len()));
+        }
+        if let Some(row) = points.iter().position(|(t, x)| !t.is_finite() || !x.is_finite()) {
+            return Err(format!("row {} holds a number that is not finite", row + 1));
+        }
+        if let Some(row) = points.windows(2).position(|pair| pair[0].0 >= pair[1].0) {
+            let (before, after) = (points[row].0, points[row + 1].0);
+            return Err(format!("times must ascend, but row {} has {after} s after {before} s", row + 2));
+        }
+        let curvature = curvatures(points);
+        let piece = |(pair, bend): (&[(f64, f64)], &[f64])| {
+            let (width, rise) = (pair[1].0 - pair[0].0, pair[1].1 - pair[0].1);
+            let slope = rise / width - width * (2.0 * bend[0] + bend[1]) / 6.0;
+            [pair[0].1, slope, 0.5 * bend[0], (bend[1] - bend[0]) / (6.0 * width)]
+        };
+        let pieces: Vec<_> = points.windows(2).zip(curvature.windows(2)).map(piece).collect();
+        if !pieces.iter().flatten().all(|c| c.is_finite()) {
+            return Err("neighbouring rows are too close or too far apart for a curve".to_owned());
+        }
+        Ok(Self { source, knots: points.iter().map(|p| p.0).collect(), pieces })
+    }
+
+    /// Value, first and second derivative at a time.
+    pub fn value(&self, t: f64) -> [f64; 3] {
+        let x = self.at(Dual2_64::from_re(t).derivative());
+        [x.re, x.v1, x.v2]
+    }
+
+    /// The curve over any scalar.
+    pub(crate) fn at<D: Scalar>(&self, t: D) -> D {
+        let (first, last) = (self.knots[0], self.knots[self.pieces.len()]);
+        let past = self.knots.partition_point(|&knot| knot <= t.re());
+        let piece = past.clamp(1, self.pieces.len()) - 1;
+        let [c0, c1, c2, c3] = self.pieces[piece];
+        if t.re() < first {
+            return (t - first) * c1 + c0;
+        }
+        if t.re() > last {
+            let u = last - self.knots[piece];
+            let (value, slope) = (c0 + u * (c1 + u * (c2 + u * c3)), c1 + u * (2.0 * c2 + u * 3.0 * c3));
+            return (t - last) * slope + value;
+        }
+        let u = t - self.knots[piece];
+        ((u * c3 + c2) * u + c1) * u + c0
+    }
+}
+
+/// Second derivatives at the points, zero at both ends: elimination and back substitution.
+fn curvatures(points: &[(f64, f64)]) -> Vec<f64> {
+    let n = points.len();
+    let width = |k: usize| points[k + 1].0 - points[k].0;
+    let slope = |k: usize| (points[k + 1].1 - points[k].1) / width(k);
+    let (mut upper, mut right) = (vec![0.0; n], vec![0.0; n]);
+    for k in 1..n - 1 {
+        let pivot = 2.0 * (width(k - 1) + width(k)) - width(k - 1) * upper[k - 1];
+        upper[k] = width(k) / pivot;
+        right[k] = (6.0 * (slope(k) - slope(k - 1)) - width(k - 1) * right[k - 1]) / pivot;
+    }
+    for k in (1..n - 1).rev() {
+        right[k] -= upper[k] * right[k + 1];
+    }
+    right
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rounding of a few operations on numbers of order ten.
+    const TOLERANCE: f64 = 1e-13;
+
+    fn through(points: &[(f64, f64)]) -> Spline {
+        Spline::natural("test".to_owned(), points).expect("good points")
+    }
+
+    fn uneven() -> Vec<(f64, f64)> {
+        (0..9).map(|k| (0.1 * f64::from(k * k) + 0.3 * f64::from(k), (1.7 * f64::from(k)).sin())).collect()
+    }
+
+    #[test]
+    fn two_points_make_a_line() {
+        let line = through(&[(1.0, 2.0), (3.0, 8.0)]);
+        for (t, x) in [(0.0, -1.0), (1.0, 2.0), (2.0, 5.0), (3.0, 8.0), (5.0, 14.0)] {
+            assert_eq!(line.value(t), [x, 3.0, 0.0]);
+        }
+    }
+
+    #[test]
+    fn it_passes_through_its_points_and_is_smooth_there() {
+        let (points, spline) = (uneven(), through(&uneven()));
+        for &(t, x) in &points {
+            let [below, above] = [-1e-9, 1e-9].map(|d| spline.value(t + d));
+            assert!((spline.value(t)[0] - x).abs() <= TOLERANCE, "{t}");
+            // The third derivative is of order ten.
+            assert!((0..3).all(|k| (below[k] - above[k]).abs() <= 1e-7), "{t}: {below:?} {above:?}");
+        }
+    }
+
+    #[test]
+    fn its_ends_are_natural_and_go_on_straight() {
+        let (points, spline) = (uneven(), through(&uneven()));
+        for (t, out) in [(points[0].0, -2.0), (points[8].0, 2.0)] {
+            let ([x, slope, bend], beyond) = (spline.value(t), spline.value(t + out));
+            assert!(bend.abs() <= TOLERANCE);
+            assert!((beyond[0] - x - out * slope).abs() <= TOLERANCE);
+            assert!((beyond[1] - slope).abs() <= TOLERANCE && beyond[2] == 0.0);
+        }
+    }
+
+    /// The natural spline of least bending, by the textbook example (0, 0), (1, 1), (2, 0): curvature −3 in the middle.
+    #[test]
+    fn three_points_have_the_known_curvature() {
+        let [x, slope, bend] = through(&[(0.0, 0.0), (1.0, 1.0), (2.0, 0.0)]).value(1.0);
+        assert!((x - 1.0).abs() + slope.abs() + (bend + 3.0).abs() <= TOLERANCE);
+    }
+
+    #[test]
+    fn derivatives_are_those_of_the_value() {
+        let (spline, h) = (through(&uneven()), 1e-4);
+        for t in [-1.0, 0.2, 0.55, 3.1, 8.0, 20.0] {
+            let [before, at, after] = [t - h, t, t + h].map(|t| spline.value(t));
+            assert!(((after[0] - before[0]) / (2.0 * h) - at[1]).abs() <= 1e-6);
+            assert!(((after[1] - before[1]) / (2.0 * h) - at[2]).abs() <= 1e-6);
+        }
+    }
+
+    #[test]
+    fn bad_points_are_refused() {
+        for (points, word) in [
+            (&[(0.0, 0.0)][..], "too few"),
+            (&[(0.0, 0.0), (0.0, 1.0)], "ascend"),
+            (&[(0.0, 0.0), (2.0, 1.0), (1.0, 1.0)], "row 3"),
+            (&[(0.0, 0.0), (1.0, f64::NAN)], "row 2"),
+            (&[(0.0, 1e300), (1e-300, -1e300)], "too close"),
+        ] {
+            let message = Spline::natural(String::new(), points).expect_err("a refusal");
+            assert!(message.contains(word), "{message}");
+        }
+    }
+}

@@ -1,0 +1,191 @@
+//! Couplers and drivers must not contradict one another, and forces and outputs must act on something.
+
+use super::{Owner, Place, Problem, Side};
+use crate::{CoordinateKind, ForceKind, JointCoordinate, Model, OutputKind, Support};
+
+/// Everything that is wrong, couplers first.
+pub(crate) fn problems(model: &Model) -> Vec<Problem> {
+    let mut groups = Groups::default();
+    let mut found = Vec::new();
+    for (index, coupler) in model.couplers.iter().enumerate() {
+        if !exists(model, coupler.first) || !exists(model, coupler.second) {
+            continue;
+        }
+        if coupler.first == coupler.second {
+            found.push(with_itself(model, index));
+        } else if !groups.join(coupler.first, coupler.second, index) {
+            found.push(cycle(model, &groups, index));
+        }
+    }
+    found.extend(contradicting_drivers(model, &mut groups));
+    found.extend((0..model.forces.len()).filter_map(|index| idle_force(model, index)));
+    found.extend((0..model.outputs.len()).filter_map(|index| fixed_output(model, index)));
+    found
+}
+
+/// Whether a coordinate is one of the model's; others stand for what the page does not name well.
+fn exists(model: &Model, coordinate: JointCoordinate) -> bool {
+    coordinate.joint < model.joints.len()
+}
+
+/// Coordinates that couplers tie together.
+#[derive(Debug, Default)]
+struct Groups {
+    /// Pairs of coordinates that some coupler ties, with its index.
+    ties: Vec<(JointCoordinate, JointCoordinate, usize)>,
+}
+
+impl Groups {
+    /// Ties two coordinates; `false` if they were tied already.
+    fn join(&mut self, a: JointCoordinate, b: JointCoordinate, coupler: usize) -> bool {
+        let is_new = !self.reached(a).iter().any(|(c, _)| *c == b);
+        if is_new {
+            self.ties.push((a, b, coupler));
+        }
+        is_new
+    }
+
+    /// All coordinates tied to one, each with the last coupler on the way to it; none for itself.
+    fn reached(&self, from: JointCoordinate) -> Vec<(JointCoordinate, Option<usize>)> {
+        let mut reached = vec![(from, None)];
+        let mut head = 0;
+        while let Some(&(at, _)) = reached.get(head) {
+            head += 1;
+            for &(a, b, coupler) in &self.ties {
+                for (near, far) in [(a, b), (b, a)] {
+                    if near == at && !reached.iter().any(|(c, _)| *c == far) {
+                        reached.push((far, Some(coupler)));
+                    }
+                }
+            }
+        }
+        reached
+    }
+}
+
+/// A coordinate in words.
+fn shown(model: &Model, coordinate: JointCoordinate) -> String {
+    let joint = &model.joints[coordinate.joint];
+    let kind: CoordinateKind = model.coordinate_kind(coordinate);
+    format!("`{}` of joint `{}`", kind.name(), joint.name)
+}
+
+fn with_itself(model: &Model, index: usize) -> Problem {
+    let coupler = &model.couplers[index];
+    let place = |side| Place { owner: Owner::CouplerEnd(index, side), key: "" };
+    Problem {
+        place: place(Side::Second),
+        also: Some((place(Side::First), "the first coordinate".to_owned())),
+        message: format!("coupler `{}` couples {} with itself", coupler.name, shown(model, coupler.first)),
+        label: "the same coordinate as the first".to_owned(),
+        help: "name two different coordinates in `first` and `second`".to_owned(),
+    }
+}
+
+fn cycle(model: &Model, groups: &Groups, index: usize) -> Problem {
+    let coupler = &model.couplers[index];
+    let path = groups.reached(coupler.first);
+    let last = path.iter().find(|(c, _)| *c == coupler.second).and_then(|(_, coupler)| *coupler);
+    let also = last.map(|other| {
+        (Place { owner: Owner::Coupler(other), key: "" }, "couples the second one already".to_owned())
+    });
+    Problem {
+        place: Place { owner: Owner::Coupler(index), key: "" },
+        also,
+        message: format!("coupler `{}` closes a cycle of couplers", coupler.name),
+        label: format!(
+            "{} and {} are coupled without it",
+            shown(model, coupler.first),
+            shown(model, coupler.second)
+        ),
+        help: "remove a coupler of the cycle: with it the coordinates would be held twice".to_owned(),
+    }
+}
+
+/// Drivers of coordinates that are driven already, directly or through couplers.
+fn contradicting_drivers(model: &Model, groups: &mut Groups) -> Vec<Problem> {
+    let mut found = Vec::new();
+    for (index, driver) in model.drivers.iter().enumerate() {
+        if !exists(model, driver.coordinate) {
+            continue;
+        }
+        let tied = groups.reached(driver.coordinate);
+        let earlier = model.drivers[..index].iter().enumerate().find_map(|(other, d)| {
+            tied.iter().find(|(c, _)| *c == d.coordinate).map(|&(_, via)| (other, via))
+        });
+        let Some((other, via)) = earlier else { continue };
+        let through = match via {
+            Some(coupler) => format!(" through coupler `{}`", model.couplers[coupler].name),
+            None => String::new(),
+        };
+        found.push(Problem {
+            place: Place { owner: Owner::Driver(index), key: "joint" },
+            also: Some((Place { owner: Owner::Driver(other), key: "joint" }, "driven here".to_owned())),
+            message: format!(
+                "driver `{}` contradicts driver `{}`: {} is driven already{through}",
+                driver.name,
+                model.drivers[other].name,
+                shown(model, driver.coordinate)
+            ),
+            label: "driven twice".to_owned(),
+            help: "remove one of the two drivers, or add their motions: motion = { sum = [...] }".to_owned(),
+        });
+    }
+    found
+}
+
+/// A link from a body to itself, or a force that can move nothing.
+fn idle_force(model: &Model, index: usize) -> Option<Problem> {
+    let force = &model.forces[index];
+    let moves = |body: &usize| model.bodies.get(*body).is_none_or(|b| b.support.has_coordinates());
+    match &force.kind {
+        ForceKind::Link { first: (first, _), second: (second, _), .. } => {
+            let place = |side| Place { owner: Owner::ForceEnd(index, side), key: "body" };
+            let (message, label) = if first == second {
+                (format!("link `{}` joins a body to itself", force.name), "the same body as the first")
+            } else if !moves(first) && !moves(second) {
+                (
+                    format!("link `{}` joins two bodies that it cannot move", force.name),
+                    "fixed or driven, too",
+                )
+            } else {
+                return None;
+            };
+            Some(Problem {
+                place: place(Side::Second),
+                also: Some((place(Side::First), "the first body".to_owned())),
+                message,
+                label: label.to_owned(),
+                help: "name two different bodies, of which one moves".to_owned(),
+            })
+        }
+        ForceKind::Load { body, .. } if !moves(body) => Some(Problem {
+            place: Place::force(index, "body"),
+            also: None,
+            message: format!("load `{}` acts on a body that it cannot move", force.name),
+            label: "fixed or driven".to_owned(),
+            help: "name a body that moves, or remove the load".to_owned(),
+        }),
+        _ => None,
+    }
+}
+
+/// An output of a body that does not move, or a driver's where it has none.
+fn fixed_output(model: &Model, index: usize) -> Option<Problem> {
+    let output = &model.outputs[index];
+    let (OutputKind::Pose { body, .. }
+    | OutputKind::Velocity { body, .. }
+    | OutputKind::Acceleration { body, .. }
+    | OutputKind::Inertial { body, .. }) = output.kind
+    else {
+        return None;
+    };
+    let body = model.bodies.get(body).filter(|body| body.support == Support::Fixed)?;
+    Some(Problem {
+        place: Place { owner: Owner::Output(index), key: "body" },
+        also: None,
+        message: format!("output `{}` is of body `{}`, which is fixed", output.name, body.name),
+        label: "never changes".to_owned(),
+        help: "name a body that moves".to_owned(),
+    })
+}

@@ -1,0 +1,109 @@
+//! Axes, zero directions and Euler parameters, decided exactly.
+
+use num_traits::{Signed, Zero};
+
+use super::{Owner, Place, Problem, Side};
+use crate::assemble::cross;
+use crate::{Body, Joint, JointEnd, JointKind, Model, Number, Rational};
+
+/// The orientation of a body.
+pub(super) fn of_body(model: &Model, index: usize, body: &Body) -> Option<Problem> {
+    zero_parameters(
+        model,
+        &body.orientation,
+        Place::body(index, "orientation"),
+        &format!("body `{}`", body.name),
+    )
+}
+
+/// The orientation at which a spherical joint starts.
+pub(super) fn of_start(model: &Model, index: usize, joint: &Joint) -> Option<Problem> {
+    let parameters = joint.start.orientation.as_ref()?;
+    zero_parameters(model, parameters, Place::joint(index, "orientation"), &format!("joint `{}`", joint.name))
+}
+
+fn zero_parameters(model: &Model, parameters: &[Number; 4], place: Place, of: &str) -> Option<Problem> {
+    parameters.iter().all(|x| model.exact(x).is_zero()).then(|| Problem {
+        place,
+        also: None,
+        message: format!("the Euler parameters of {of} are all zero"),
+        label: "no direction to normalise".to_owned(),
+        help: "write [1, 0, 0, 0] for no rotation: (cos(angle/2), axis * sin(angle/2))".to_owned(),
+    })
+}
+
+/// The directions of both ends; once where they are the same.
+pub(super) fn of_joint(model: &Model, index: usize) -> Vec<Problem> {
+    let Joint { kind, name, first, second, .. } = &model.joints[index];
+    match kind {
+        JointKind::Spherical | JointKind::Rod => return Vec::new(),
+        JointKind::PointOnLine => {
+            return directions(model, index, Side::First, &format!("joint `{name}`")).into_iter().collect();
+        }
+        _ => {}
+    }
+    if (&first.axis, &first.zero) == (&second.axis, &second.zero) {
+        return directions(model, index, Side::First, &format!("joint `{name}`")).into_iter().collect();
+    }
+    let of = |side: Side| format!("joint `{name}` on its {} body", side.key());
+    Side::BOTH.into_iter().filter_map(|side| directions(model, index, side, &of(side))).collect()
+}
+
+/// The axis and the zero direction of one end.
+fn directions(model: &Model, index: usize, side: Side, of: &str) -> Option<Problem> {
+    let joint = &model.joints[index];
+    let end = match side {
+        Side::First => &joint.first,
+        Side::Second => &joint.second,
+    };
+    let [axis, zero] = exact_directions(model, end);
+    let place = |key| Place::end(index, side, key);
+    let problem = |key, message: String, label: &str, help: String| Problem {
+        place: place(key),
+        also: None,
+        message,
+        label: label.to_owned(),
+        help,
+    };
+    let vanishes = |v: &[Rational; 3]| v.iter().all(Zero::is_zero);
+    for (key, direction) in [("axis", &axis), ("zero", &zero)] {
+        if vanishes(direction) {
+            let message = format!("the {key} direction of {of} is zero");
+            let help = format!("write a direction of any length but 0, such as {key} = [0, 0, 1]");
+            return Some(problem(key, message, "has no direction", help));
+        }
+    }
+    vanishes(&cross(&axis, &zero)).then(|| {
+        let message = format!("the zero direction of {of} is parallel to its axis");
+        let help = format!(
+            "angles are measured across the axis: write a direction off it, such as zero = {}",
+            off(&axis)
+        );
+        let also = Some((place("axis"), "the axis".to_owned()));
+        Problem { also, ..problem("zero", message, "parallel to the axis", help) }
+    })
+}
+
+/// The axes about which a driven body turns.
+pub(super) fn of_motion(model: &Model, index: usize, body: &Body) -> Vec<Problem> {
+    let rotations = body.motion.iter().flat_map(|motion| &motion.rotations);
+    let zero = rotations.filter(|(axis, _)| axis.iter().all(|x| model.exact(x).is_zero()));
+    let problem = |_| Problem {
+        place: Place { owner: Owner::Driven(index), key: "rotations" },
+        also: None,
+        message: format!("a rotation of body `{}` has no axis", body.name),
+        label: "an axis is zero".to_owned(),
+        help: "write a direction of any length but 0, such as axis = [0, 0, 1]".to_owned(),
+    };
+    zero.map(problem).collect()
+}
+
+fn exact_directions(model: &Model, end: &JointEnd) -> [[Rational; 3]; 2] {
+    [&end.axis, &end.zero].map(|v| v.each_ref().map(|x| model.exact(x)))
+}
+
+/// A coordinate direction far from an axis.
+fn off(axis: &[Rational; 3]) -> &'static str {
+    let smallest = (0..3).min_by_key(|&k| axis[k].abs());
+    ["[1, 0, 0]", "[0, 1, 0]", "[0, 0, 1]"][smallest.unwrap_or(0)]
+}

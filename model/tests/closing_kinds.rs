@@ -1,0 +1,176 @@
+//! Loops closed by every kind of joint on random frames: the pose is planted, the guess is rough.
+
+use std::fmt::Write as _;
+
+use gyro_model::{Kinematics, Model, Quaternion, Start, Vector, read};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// Kinds that carry the bodies of the chain, with their keys for coordinates.
+const CARRIERS: [(&str, &[&str]); 7] = [
+    ("revolute", &["angle"]),
+    ("universal", &["first_angle", "second_angle"]),
+    ("cylindrical", &["angle", "displacement"]),
+    ("prismatic", &["displacement"]),
+    ("planar", &["x", "y", "angle"]),
+    ("screw", &["angle"]),
+    ("spherical", &["orientation"]),
+];
+
+const CLOSERS: [&str; 10] = [
+    "revolute",
+    "spherical",
+    "fixed",
+    "universal",
+    "cylindrical",
+    "prismatic",
+    "planar",
+    "screw",
+    "point_on_line",
+    "rod",
+];
+
+/// Chains for each kind of closing joint.
+const CHAINS: u64 = 25;
+
+/// How far the guess is from the planted pose, rad or m.
+const ROUGH: f64 = 0.1;
+
+/// Rounding of some dozens of operations on numbers of order one.
+const TOLERANCE: f64 = 1e-13;
+
+fn vector(rng: &mut ChaCha8Rng) -> [f64; 3] {
+    std::array::from_fn(|_| (rng.random_range(-1.0..1.0_f64) * 1000.0).round() / 1000.0)
+}
+
+/// A chain of bodies from the ground with coordinates shifted by so much from the planted ones, the closing joint last.
+fn page(seed: u64, shift: f64, closing: &str) -> String {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let mut noise = ChaCha8Rng::seed_from_u64(seed + 1000);
+    let mut page = "format = 1\nname = \"chain\"\n[[body]]\nname = \"b0\"\nfixed = true\n".to_owned();
+    let mut joints = String::new();
+    for body in 1..=4 {
+        let _ = writeln!(page, "[[body]]\nname = \"b{body}\"\nmass = 1\ninertia = [1, 1, 1]");
+        let (kind, keys) = CARRIERS[rng.random_range(0..CARRIERS.len())];
+        let _ = writeln!(joints, "[[joint]]\nname = \"j{body}\"\nkind = \"{kind}\"");
+        for (key, body) in [("first", body - 1), ("second", body)] {
+            let frame = match kind {
+                "spherical" => String::new(),
+                _ => format!(", axis = {:?}, zero = {:?}", vector(&mut rng), vector(&mut rng)),
+            };
+            let point = vector(&mut rng);
+            let _ = writeln!(joints, "{key} = {{ body = \"b{body}\", point = {point:?}{frame} }}");
+        }
+        for key in keys {
+            let mut shifted = || rng.random_range(-1.0..1.0) + shift * noise.random_range(-1.0..1.0);
+            let _ = match *key {
+                "orientation" => {
+                    writeln!(joints, "orientation = {:?}", [2.0, shifted(), shifted(), shifted()])
+                }
+                _ => writeln!(joints, "{key} = {:?}", shifted()),
+            };
+        }
+        let lead = if kind == "screw" { "lead = 0.05\n" } else { "" };
+        let _ = writeln!(joints, "{lead}rough = true");
+    }
+    page + &joints + closing
+}
+
+fn model(page: &str) -> Model {
+    read("chain", page).unwrap_or_else(|mistakes| panic!("{mistakes}"))
+}
+
+/// A joint of a kind between the ground and the last body where the chain has it.
+fn closing(kind: &str, start: &Start, rng: &mut ChaCha8Rng) -> String {
+    let q = &start.q[start.q.len() - 7..];
+    let (r, p) = (Vector([q[0], q[1], q[2]]), Quaternion([q[3], q[4], q[5], q[6]]));
+    let (point, axis) = (Vector(vector(rng)), Vector(vector(rng)).normalised());
+    let g = axis.cross(Vector(vector(rng))).normalised();
+    let f = g.cross(axis);
+    // Coordinates of the planted joint, as far as its kind has them.
+    let angle: f64 = rng.random_range(-1.0..1.0);
+    let [x, y, z] = [0.3, -0.2, 0.1];
+    let lead = 0.05;
+    let (turn, d) = match kind {
+        "revolute" | "universal" => (angle, Vector::ZERO),
+        "cylindrical" => (angle, axis * z),
+        "prismatic" => (0.0, axis * z),
+        "planar" => (angle, f * x + g * y),
+        "screw" => (angle, axis * (lead * angle)),
+        "point_on_line" => (0.0, axis * z),
+        "rod" => (0.0, f * x + g * y + axis * z),
+        _ => (0.0, Vector::ZERO),
+    };
+    let (sin, cos) = turn.sin_cos();
+    // A universal joint's second axis is across the first's.
+    let (far_axis, far_zero) = match kind {
+        "universal" => (f * cos + g * sin, axis),
+        _ => (axis, f * cos + g * sin),
+    };
+    let far = |v: Vector| p.rotate_back(v).0;
+    let far_point = p.rotate_back(point + d - r).0;
+    let mut text = format!("[[joint]]\nname = \"closing\"\nkind = \"{kind}\"\n");
+    let frames = match kind {
+        "spherical" | "rod" => [String::new(), String::new()],
+        "point_on_line" => [format!(", axis = {:?}, zero = {:?}", axis.0, f.0), String::new()],
+        _ => [
+            format!(", axis = {:?}, zero = {:?}", axis.0, f.0),
+            format!(", axis = {:?}, zero = {:?}", far(far_axis), far(far_zero)),
+        ],
+    };
+    let [first, second] = frames;
+    let _ = writeln!(text, "first = {{ body = \"b0\", point = {:?}{first} }}", point.0);
+    let _ = writeln!(text, "second = {{ body = \"b4\", point = {far_point:?}{second} }}");
+    match kind {
+        "screw" => text + &format!("lead = {lead}\n"),
+        "rod" => text + &format!("length = {:?}\n", d.norm()),
+        _ => text,
+    }
+}
+
+#[test]
+fn every_kind_closes_a_loop_on_random_frames() {
+    for kind in CLOSERS {
+        for seed in 0..CHAINS {
+            let planted = model(&page(seed, 0.0, "")).assemble().expect("an open chain");
+            let mut rng = ChaCha8Rng::seed_from_u64(seed + 2000);
+            let closing = closing(kind, &planted, &mut rng);
+            let model = closed(&page(seed, ROUGH, &closing));
+            match model.assemble() {
+                Ok(start) => check(&model, &start, &format!("{kind}, seed {seed}")),
+                Err(error) => panic!("{kind}, seed {seed}: {error}"),
+            }
+        }
+    }
+}
+
+/// The model of a page whose loop may be over-constrained, which reading refuses: the closing joint is read with the
+/// first body of the chain free, and added.
+fn closed(page: &str) -> Model {
+    match read("chain", page) {
+        Ok(model) => model,
+        Err(_) => {
+            let (chain, _) = page.rsplit_once("[[joint]]").expect("a closing joint");
+            let (bodies, _) = page.split_once("[[joint]]").expect("joints");
+            let (_, last) = page.rsplit_once("[[joint]]").expect("a closing joint");
+            let mut chain = model(chain);
+            let others = bodies.replace("mass = 1", "free = true\nmass = 1");
+            let others = others.replacen("name = \"b4\"\nfree = true\n", "name = \"b4\"\n", 1);
+            chain.joints.extend(model(&format!("{others}[[joint]]{last}")).joints);
+            chain
+        }
+    }
+}
+
+fn check(model: &Model, start: &Start, title: &str) {
+    let kinematics = Kinematics::at(model, 0.0);
+    let near: Vec<Vec<f64>> = start.joints.iter().map(|joint| joint.position.clone()).collect();
+    let phi = kinematics.phi(&start.q, &near).amax();
+    assert!(phi <= TOLERANCE, "{title}: rows {phi:e}");
+    let coordinates = kinematics.coordinates(&start.q, &near);
+    for (joint, (found, told)) in coordinates.iter().zip(&near).enumerate() {
+        for (a, b) in found.iter().zip(told) {
+            assert!((a - b).abs() <= TOLERANCE, "{title}: joint {joint} at {a}, told {b}");
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! What bearings bear and sensors read, against Newton's and Euler's laws.
+
+use gyro_reference::{Chain, Pendulum, moving_base};
+use gyro_sim_suite::generated::{
+    gyroscope_bearings::GyroscopeBearings, pendulum, pitching_bearings::PitchingBearings,
+};
+use gyro_sim_suite::{Engine, PAPER, check, model, output, played, simulate, times};
+
+/// N and N·m, as the issue asks; m/s and m/s² for what is at the tip.
+const REACTION: f64 = 1e-9;
+
+/// Specific force, m/s², and angular rate, rad/s, of the inner ring: angular accelerations are a hundred and forty times the
+/// rates, which are good to 1e-8.
+const SENSOR: f64 = 1e-7;
+
+/// Power to move the base, W.
+const POWER: f64 = 1e-9;
+
+#[test]
+fn the_pendulum_hangs_on_its_bearing() {
+    let mechanism = pendulum::Pendulum::<f64>::default();
+    let run = played(&mechanism, &model("pendulum"));
+    let reference = Pendulum::slender_rod().solve(&times(&run));
+    check("pendulum: bearing", &run, REACTION, |k, sample| {
+        let [down, aside] = reference[k].force;
+        (output(&mechanism, sample, "bearing"), vec![down, aside, 0.0, 0.0, 0.0, 0.0])
+    });
+    check("pendulum: tip", &run, REACTION, |k, sample| {
+        let now = &reference[k];
+        let (sin, cos) = now.angle.sin_cos();
+        // From the pivot down the rod, and to the side to which the angle grows.
+        let (inwards, sideways) = (now.rate * now.rate, now.acceleration);
+        let position = [sin, -cos, 0.0];
+        let velocity = [now.rate * cos, now.rate * sin, 0.0, 0.0, 0.0, now.rate];
+        let acceleration = [sideways * cos - inwards * sin, sideways * sin + inwards * cos, 0.0];
+        // The rod's x axis leads down it, its y axis to the side.
+        let felt = [-inwards - 9.81 * cos, sideways + 9.81 * sin, 0.0, 0.0, 0.0, now.rate];
+        let names = ["tip", "tip_velocity", "tip_acceleration", "sensor"];
+        let mut found = names.map(|name| output(&mechanism, sample, name));
+        found[0].truncate(3);
+        let expected = [&position[..], &velocity, &acceleration, &[0.0, 0.0, sideways], &felt].concat();
+        (found.concat(), expected)
+    });
+    check("pendulum: energy", &run, REACTION, |k, sample| {
+        // The potential is −m g·r on both sides.
+        let found: f64 = output(&mechanism, sample, "energies").iter().sum();
+        (vec![found], vec![reference[k].energy])
+    });
+}
+
+fn check_bearings<M: Engine<f64>>(page: &str, mechanism: &M, chain: &Chain<3>) {
+    let run = simulate(mechanism, &model(page), &PAPER);
+    let reference = chain.solve(&times(&run));
+    check(&format!("{page}: bearings"), &run, REACTION, |k, sample| {
+        let found = ["alpha_load", "beta_load", "phi_load"].map(|name| output(mechanism, sample, name));
+        (found.concat(), moving_base::bearing_reactions(&reference[k]).concat())
+    });
+    check(&format!("{page}: sensor"), &run, SENSOR, |k, sample| {
+        let reading = chain.inertial_reading(&reference[k], 1, [0.01, 0.005, -0.002]);
+        (output(mechanism, sample, "sensor"), [reading.specific_force, reading.angular_rate].concat())
+    });
+}
+
+#[test]
+fn the_gyroscope_hangs_on_its_bearings() {
+    check_bearings("gyroscope-bearings", &GyroscopeBearings::<f64>::default(), &moving_base::resting());
+}
+
+#[test]
+fn the_gyroscope_on_a_base_that_moves_hangs_on_its_bearings() {
+    let (mechanism, chain) = (PitchingBearings::<f64>::default(), moving_base::rolling_and_pitching());
+    check_bearings("pitching-bearings", &mechanism, &chain);
+    let run = simulate(&mechanism, &model("pitching-bearings"), &PAPER);
+    let reference = chain.solve(&times(&run));
+    check("pitching-bearings: power", &run, POWER, |k, sample| {
+        (output(&mechanism, sample, "powers"), vec![0.0, reference[k].base_power])
+    });
+}
+
+#[test]
+fn a_bearing_on_another_base_bears_something_else() {
+    // The check must be able to fail.
+    let mechanism = GyroscopeBearings::<f64>::default();
+    let wrong = || check_bearings("gyroscope-bearings", &mechanism, &moving_base::rolling());
+    assert!(std::panic::catch_unwind(wrong).is_err());
+}

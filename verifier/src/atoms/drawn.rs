@@ -1,0 +1,190 @@
+//! Atoms drawn at random, one for each argument.
+
+use super::Atoms;
+use crate::field::{Field, Modular, Prime};
+use gyro_model::Spline;
+use rand_chacha::ChaCha8Rng;
+use std::cell::{Cell, RefCell};
+use std::collections::HashMap;
+use std::hash::Hash;
+
+/// Atoms over integers modulo a prime. What the functions are known to satisfy, the values do: `sin² + cos² = 1`, the
+/// double angle, sine, tanh and atan2 (in its first argument) are odd and cosine even, `√x² = x` and `√x √y = √(x y)`.
+#[derive(Debug)]
+pub struct Drawn<'p, const L: usize> {
+    prime: &'p Prime<L>,
+    random: RefCell<ChaCha8Rng>,
+    /// Cosine and sine of each argument that was met, its double and its half.
+    circle: Table<[u64; L], (Modular<'p, L>, Modular<'p, L>)>,
+    tanh: Table<[u64; L], Modular<'p, L>>,
+    atan2: Table<([u64; L], [u64; L]), Modular<'p, L>>,
+    splines: Table<(Vec<u64>, [u64; L]), [Modular<'p, L>; 3]>,
+    missed: Cell<bool>,
+}
+
+type Table<K, V> = RefCell<HashMap<K, V>>;
+
+impl<'p, const L: usize> Drawn<'p, L> {
+    /// Nothing drawn yet.
+    pub fn new(prime: &'p Prime<L>, random: ChaCha8Rng) -> Self {
+        Self {
+            prime,
+            random: RefCell::new(random),
+            circle: RefCell::default(),
+            tanh: RefCell::default(),
+            atan2: RefCell::default(),
+            splines: RefCell::default(),
+            missed: Cell::new(false),
+        }
+    }
+
+    /// Whether a root was asked for that does not exist: another point is needed.
+    pub fn missed_root(&self) -> bool {
+        self.missed.get()
+    }
+
+    fn draw(&self) -> Modular<'p, L> {
+        self.prime.draw(&mut *self.random.borrow_mut())
+    }
+
+    /// The value at a key, drawn if the key is new; undefined without a key.
+    fn value<K: Hash + Eq>(&self, table: &Table<K, Modular<'p, L>>, key: Option<K>) -> Modular<'p, L> {
+        let Some(key) = key else { return Modular::undefined(self.prime) };
+        *table.borrow_mut().entry(key).or_insert_with(|| self.draw())
+    }
+
+    /// Cosine and sine.
+    fn point(&self, x: &Modular<'p, L>) -> (Modular<'p, L>, Modular<'p, L>) {
+        let undefined = Modular::undefined(self.prime);
+        let Some(key) = x.key() else { return (undefined, undefined) };
+        if x.is_zero() {
+            return (Modular::one(self.prime), *x);
+        }
+        if let Some(&known) = self.circle.borrow().get(&key) {
+            return known;
+        }
+        let half = Modular::integer(self.prime, 2).inv().map_or(undefined, |half| x.mul(&half));
+        let Some(start) = self.circle_point() else { return (undefined, undefined) };
+        // The values of half the argument, the argument and its double agree with each other.
+        let mut point = twice(start);
+        for angle in [half, *x, x.add(x)] {
+            self.learn(&angle, point);
+            point = twice(point);
+        }
+        twice(twice(start))
+    }
+
+    fn learn(&self, angle: &Modular<'p, L>, (cosine, sine): (Modular<'p, L>, Modular<'p, L>)) {
+        let mut circle = self.circle.borrow_mut();
+        for (key, sine) in [(angle.key(), sine), (angle.neg().key(), sine.neg())] {
+            circle.extend(key.map(|key| (key, (cosine, sine))));
+        }
+    }
+
+    /// `((1 − u²) / (1 + u²), 2 u / (1 + u²))`; `None` does not happen, as −1 is no square.
+    fn circle_point(&self) -> Option<(Modular<'p, L>, Modular<'p, L>)> {
+        let (u, one) = (self.draw(), Modular::one(self.prime));
+        let square = u.mul(&u);
+        let scale = one.add(&square).inv()?;
+        Some((one.sub(&square).mul(&scale), u.add(&u).mul(&scale)))
+    }
+}
+
+/// The point at twice the angle.
+fn twice<F: Field>((cosine, sine): (F, F)) -> (F, F) {
+    let product = cosine.mul(&sine);
+    (cosine.mul(&cosine).sub(&sine.mul(&sine)), product.add(&product))
+}
+
+/// A key for a number and its negative, and whether the number is the negative of the one that the key stands for.
+fn unsigned<const L: usize>(x: &Modular<'_, L>) -> Option<([u64; L], bool)> {
+    let (key, negated) = x.key().zip(x.neg().key())?;
+    Some(if negated < key { (negated, true) } else { (key, false) })
+}
+
+fn signed<F: Field>(value: &F, negated: bool) -> F {
+    if negated { value.neg() } else { value.clone() }
+}
+
+impl<'p, const L: usize> Atoms<Modular<'p, L>> for Drawn<'p, L> {
+    fn sin(&self, x: &Modular<'p, L>) -> Modular<'p, L> {
+        self.point(x).1
+    }
+
+    fn cos(&self, x: &Modular<'p, L>) -> Modular<'p, L> {
+        self.point(x).0
+    }
+
+    fn tanh(&self, x: &Modular<'p, L>) -> Modular<'p, L> {
+        if x.is_zero() {
+            return *x;
+        }
+        let key = unsigned(x);
+        signed(&self.value(&self.tanh, key.map(|(key, _)| key)), key.is_some_and(|(_, negated)| negated))
+    }
+
+    fn atan2(&self, y: &Modular<'p, L>, x: &Modular<'p, L>) -> Modular<'p, L> {
+        let key = unsigned(y).zip(x.key());
+        let value = self.value(&self.atan2, key.map(|((y, _), x)| (y, x)));
+        signed(&value, key.is_some_and(|((_, negated), _)| negated))
+    }
+
+    fn sqrt(&self, x: &Modular<'p, L>) -> Modular<'p, L> {
+        x.sqrt().unwrap_or_else(|| {
+            self.missed.set(true);
+            Modular::undefined(self.prime)
+        })
+    }
+
+    fn spline(&self, table: &Spline, t: &Modular<'p, L>) -> [Modular<'p, L>; 3] {
+        let Some(t) = t.key() else { return [Modular::undefined(self.prime); 3] };
+        let bits = table.knots.iter().chain(table.pieces.iter().flatten()).map(|x| x.to_bits()).collect();
+        *self.splines.borrow_mut().entry((bits, t)).or_insert_with(|| [(); 3].map(|()| self.draw()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::SeedableRng;
+
+    #[test]
+    fn atoms_satisfy_what_the_functions_do() {
+        let prime = Prime::<9>::mersenne();
+        let atoms = Drawn::new(&prime, ChaCha8Rng::seed_from_u64(1));
+        let one = Modular::one(&prime);
+        for x in [prime.draw(&mut ChaCha8Rng::seed_from_u64(2)), one, Modular::integer(&prime, -7)] {
+            let (sin, cos) = (atoms.sin(&x), atoms.cos(&x));
+            assert_eq!(sin.mul(&sin).add(&cos.mul(&cos)), one);
+            assert_eq!(atoms.sin(&x.neg()), sin.neg());
+            assert_eq!(atoms.cos(&x.neg()), cos);
+            let half = x.mul(&Modular::integer(&prime, 2).inv().expect("two is not zero"));
+            for (angle, (cos, sin)) in
+                [(x.add(&x), twice((cos, sin))), (x, twice((atoms.cos(&half), atoms.sin(&half))))]
+            {
+                assert_eq!((atoms.cos(&angle), atoms.sin(&angle)), (cos, sin));
+            }
+            assert_eq!(atoms.tanh(&x.neg()), atoms.tanh(&x).neg());
+            assert_eq!(atoms.atan2(&x.neg(), &one), atoms.atan2(&x, &one).neg());
+            assert_ne!(atoms.atan2(&x, &one), atoms.atan2(&x, &one.neg()));
+            assert_ne!(atoms.tanh(&x), sin);
+            let square = x.mul(&x);
+            assert_eq!(atoms.sqrt(&square).mul(&atoms.sqrt(&square)), square);
+        }
+        assert!(!atoms.missed_root());
+        atoms.sqrt(&one.neg());
+        assert!(atoms.missed_root(), "−1 is no square modulo a prime that is 3 modulo 4");
+    }
+
+    #[test]
+    fn curves_are_told_apart_by_table_and_time() {
+        let prime = Prime::<9>::mersenne();
+        let atoms = Drawn::new(&prime, ChaCha8Rng::seed_from_u64(1));
+        let table =
+            |height| Spline::natural(String::new(), &[(0.0, 0.0), (1.0, height)]).expect("a good table");
+        let t = Modular::integer(&prime, 3);
+        assert_eq!(atoms.spline(&table(1.0), &t), atoms.spline(&table(1.0), &t));
+        assert_ne!(atoms.spline(&table(1.0), &t), atoms.spline(&table(2.0), &t));
+        assert_ne!(atoms.spline(&table(1.0), &t), atoms.spline(&table(1.0), &t.neg()));
+    }
+}

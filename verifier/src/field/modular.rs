@@ -1,0 +1,193 @@
+//! Integers modulo a prime, in Montgomery form.
+
+mod arithmetic;
+mod prime;
+
+pub use prime::Prime;
+
+use super::Field;
+use gyro_model::Rational;
+use num_bigint::{BigInt, BigUint, Sign};
+use std::fmt;
+
+/// An integer modulo a prime of at most `64 L − 1` bits.
+#[derive(Clone, Copy)]
+pub struct Modular<'p, const L: usize> {
+    /// The number times 2^(64 L), least significant limb first; `None` where it is undefined.
+    limbs: Option<[u64; L]>,
+    prime: &'p Prime<L>,
+}
+
+impl<'p, const L: usize> Modular<'p, L> {
+    /// The residue of an integer.
+    pub fn new(prime: &'p Prime<L>, value: &BigInt) -> Self {
+        let size = value.magnitude() % prime.value();
+        let positive = Self { limbs: Some(prime.in_montgomery_form(&size)), prime };
+        if value.sign() == Sign::Minus { positive.neg() } else { positive }
+    }
+
+    /// The number between zero and the prime; `None` if it is undefined.
+    pub fn residue(&self) -> Option<BigUint> {
+        self.limbs.map(|limbs| self.prime.plain(&limbs))
+    }
+
+    /// The limbs in Montgomery form: equal exactly for equal numbers.
+    pub fn key(&self) -> Option<[u64; L]> {
+        self.limbs
+    }
+
+    /// The root that is itself a square, if the number is a square: so that products of roots are roots of products.
+    pub fn sqrt(&self) -> Option<Self> {
+        let root = self.power(self.prime.root_exponent());
+        (root.mul(&root) == *self).then_some(root)
+    }
+
+    /// Nothing that equals anything.
+    pub fn undefined(prime: &'p Prime<L>) -> Self {
+        Self { limbs: None, prime }
+    }
+
+    fn power(&self, exponent: &BigUint) -> Self {
+        let one = Self { limbs: Some(self.prime.one()), prime: self.prime };
+        (0..exponent.bits()).rev().fold(one, |power, bit| {
+            let square = power.mul(&power);
+            if exponent.bit(bit) { square.mul(self) } else { square }
+        })
+    }
+
+    fn combine(&self, other: &Self, operation: impl Fn(&[u64; L], &[u64; L], &[u64; L]) -> [u64; L]) -> Self {
+        let limbs = self.limbs.zip(other.limbs).map(|(a, b)| operation(&a, &b, self.prime.limbs()));
+        Self { limbs, prime: self.prime }
+    }
+}
+
+impl<const L: usize> PartialEq for Modular<'_, L> {
+    fn eq(&self, other: &Self) -> bool {
+        self.limbs.is_some() && self.limbs == other.limbs
+    }
+}
+
+impl<const L: usize> fmt::Debug for Modular<'_, L> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.residue().fmt(f)
+    }
+}
+
+impl<'p, const L: usize> Field for Modular<'p, L> {
+    type Context = &'p Prime<L>;
+
+    /// Undefined where the prime divides the denominator.
+    fn from_rational(prime: Self::Context, value: &Rational) -> Self {
+        let quotient = || {
+            let [numerator, denominator] = [value.numer(), value.denom()].map(|n| Self::new(prime, n));
+            numerator.div(&denominator).unwrap_or(Self::undefined(prime))
+        };
+        Self { limbs: prime.known_rational(value, || quotient().limbs), prime }
+    }
+
+    /// Undefined where the prime was not made for this root; the prime then notes that it was missed.
+    fn sqrt_rational(prime: Self::Context, value: &Rational) -> Self {
+        let root = || {
+            if !prime.covers(value) {
+                prime.miss(value);
+                return None;
+            }
+            Self::from_rational(prime, value).sqrt().and_then(|root| root.limbs)
+        };
+        Self { limbs: prime.known_root(value, root), prime }
+    }
+
+    fn add(&self, other: &Self) -> Self {
+        self.combine(other, arithmetic::add)
+    }
+
+    fn sub(&self, other: &Self) -> Self {
+        self.combine(other, arithmetic::sub)
+    }
+
+    fn mul(&self, other: &Self) -> Self {
+        let inverse = self.prime.negated_inverse();
+        self.combine(other, |a, b, prime| arithmetic::mul(a, b, prime, inverse))
+    }
+
+    fn neg(&self) -> Self {
+        let zero = Self { limbs: Some([0; L]), prime: self.prime };
+        zero.sub(self)
+    }
+
+    /// By Fermat: `x^(p − 2)`.
+    fn inv(&self) -> Option<Self> {
+        let undefined_or_not_zero = !self.is_zero();
+        undefined_or_not_zero.then(|| self.power(self.prime.inverse_exponent()))
+    }
+
+    fn is_zero(&self) -> bool {
+        self.limbs == Some([0; L])
+    }
+
+    fn integer(prime: Self::Context, value: i64) -> Self {
+        Self::new(prime, &BigInt::from(value))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use num_traits::{One, ToPrimitive};
+    use rand::SeedableRng;
+    use rand_chacha::ChaCha8Rng;
+
+    /// Compares every operation with the same one of integers of any size.
+    fn check<const L: usize>(prime: &Prime<L>) {
+        let mut random = ChaCha8Rng::seed_from_u64(3);
+        let p = prime.value();
+        let largest = Modular::new(prime, &BigInt::from(-1));
+        for _ in 0..50 {
+            let (a, b) = (prime.draw(&mut random), prime.draw(&mut random));
+            for (a, b) in [(a, b), (a, largest), (largest, largest)] {
+                let residue = |x: Modular<L>| x.residue().expect("defined");
+                let (x, y) = (residue(a), residue(b));
+                assert_eq!(residue(a.add(&b)), (&x + &y) % p);
+                assert_eq!(residue(a.sub(&b)), (&x + p - &y) % p);
+                assert_eq!(residue(a.mul(&b)), (&x * &y) % p);
+                assert_eq!(residue(a.neg()), (p - &x) % p);
+                assert!(residue(a.inv().expect("not zero").mul(&a)).is_one());
+            }
+            let square = a.mul(&a);
+            assert_eq!(square.sqrt().expect("a square").mul(&square.sqrt().expect("a square")), square);
+        }
+    }
+
+    #[test]
+    fn arithmetic_is_that_of_integers() {
+        check(&Prime::<9>::mersenne());
+        let mut random = ChaCha8Rng::seed_from_u64(4);
+        check(&Prime::<9>::with_roots(&BigUint::from(15_u32), &mut random).expect("room"));
+        check(&Prime::<18>::with_roots(&BigUint::one(), &mut random).expect("room"));
+    }
+
+    #[test]
+    fn roots_are_positive_and_multiply() {
+        let mut random = ChaCha8Rng::seed_from_u64(5);
+        let prime = Prime::<9>::with_roots(&BigUint::from(2_u32 * 3 * 7), &mut random).expect("room");
+        let root = |n: i64| Modular::sqrt_rational(&prime, &Rational::new(n.into(), 3.into()));
+        assert_eq!(root(27).residue().and_then(|n| n.to_u32()), Some(3));
+        assert_eq!(root(12).residue().and_then(|n| n.to_u32()), Some(2));
+        assert_eq!(root(6).mul(&root(14)), root(7).mul(&root(12)));
+        assert!(prime.missed().is_empty());
+        assert_ne!(root(5), root(5), "five was not asked for");
+        assert_eq!(prime.missed(), [Rational::new(5.into(), 3.into())]);
+    }
+
+    #[test]
+    fn what_is_undefined_equals_nothing() {
+        let prime = Prime::<9>::mersenne();
+        let divisor = BigInt::from(prime.value().clone());
+        let undefined = Modular::from_rational(&prime, &Rational::new_raw(1.into(), divisor));
+        let zero = Modular::zero(&prime);
+        assert_ne!(undefined, undefined);
+        assert_ne!(undefined.mul(&zero), zero);
+        assert!(!undefined.sub(&undefined).is_zero());
+        assert_eq!(zero.inv(), None);
+    }
+}

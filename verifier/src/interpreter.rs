@@ -1,0 +1,99 @@
+//! Runs a program over any field.
+
+use crate::atoms::Atoms;
+use crate::field::Field;
+use crate::module::Module;
+use crate::point::Point;
+use crate::program::{Function, Node, Program, Source};
+
+/// What a program reads, besides a point.
+#[derive(Clone, Debug)]
+pub struct Given<'a, F: Field> {
+    /// Time, state, parameters, inputs.
+    pub point: &'a Point<F>,
+    /// Elements of `Equations::Accelerations`.
+    pub accelerations: &'a [F],
+    /// For each joint with a chart the vector that stands for it: of a chart that is chosen a unit vector.
+    pub charts: &'a [[F; 4]],
+}
+
+/// Something divided by zero.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DivisionByZero {
+    /// Line of the module's text.
+    pub line: usize,
+}
+
+/// The constants of a module as numbers.
+pub fn constants<F: Field>(context: F::Context, module: &Module) -> Vec<F> {
+    module.constants.values.iter().map(|constant| F::constant(context, constant)).collect()
+}
+
+/// The results of a program of a module, whose constants are given as numbers.
+///
+/// # Errors
+/// Where a divisor is zero.
+pub fn run<F: Field>(
+    module: &Module,
+    program: &Program,
+    constants: &[F],
+    atoms: &dyn Atoms<F>,
+    given: &Given<F>,
+) -> Result<Vec<F>, DivisionByZero> {
+    let values = values(module, program, constants, atoms, given)?;
+    Ok(program.results.iter().map(|&id| values[id].clone()).collect())
+}
+
+/// The values of all nodes of a program.
+///
+/// # Errors
+/// Where a divisor is zero.
+pub fn values<F: Field>(
+    module: &Module,
+    program: &Program,
+    constants: &[F],
+    atoms: &dyn Atoms<F>,
+    given: &Given<F>,
+) -> Result<Vec<F>, DivisionByZero> {
+    let mut values: Vec<F> = Vec::with_capacity(program.nodes.len());
+    for (node, &line) in program.nodes.iter().zip(&program.lines) {
+        let value = match *node {
+            Node::Constant(place) => constants[place].clone(),
+            Node::Read(source) => read(source, given),
+            Node::Add(a, b) => values[a].add(&values[b]),
+            Node::Sub(a, b) => values[a].sub(&values[b]),
+            Node::Mul(a, b) => values[a].mul(&values[b]),
+            Node::Div(a, b) => values[a].div(&values[b]).ok_or(DivisionByZero { line })?,
+            Node::Neg(a) => values[a].neg(),
+            Node::Call(function, a) => call(function, &values[a], atoms),
+            Node::Atan2(y, x) => atoms.atan2(&values[y], &values[x]),
+            Node::Curve { table, order, time } => {
+                let [value, first, second] = atoms.spline(&module.tables[table], &values[time]);
+                [value, first, second][order].clone()
+            }
+        };
+        values.push(value);
+    }
+    Ok(values)
+}
+
+fn read<F: Field>(source: Source, given: &Given<F>) -> F {
+    let point = given.point;
+    match source {
+        Source::Time => point.t.clone(),
+        Source::State(k) => point.state[k].clone(),
+        Source::Parameter(k) => point.parameters[k].clone(),
+        Source::Input(k) => point.inputs[k].clone(),
+        Source::Acceleration(k) => given.accelerations[k].clone(),
+        Source::Chart(chart, k) => given.charts[chart][k].clone(),
+    }
+}
+
+fn call<F: Field>(function: Function, x: &F, atoms: &dyn Atoms<F>) -> F {
+    match function {
+        Function::Sin => atoms.sin(x),
+        Function::Cos => atoms.cos(x),
+        Function::Tanh => atoms.tanh(x),
+        Function::Sqrt => atoms.sqrt(x),
+    }
+}

@@ -1,0 +1,361 @@
+//! Function bodies of the emitted subset.
+
+use super::expression::{decimal, integer, is_name, refused};
+use crate::constants::Constants;
+use crate::program::{Id, Node, Program, Source};
+use crate::refusal::Refusal;
+use gyro_model::Model;
+use proc_macro2::Span;
+use std::collections::HashMap;
+use syn::spanned::Spanned;
+use syn::{Block, Expr, ExprArray, Local, Pat, Stmt, UnOp};
+
+/// What a name stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Known {
+    /// A value.
+    Value(Id),
+    /// `T::constant`.
+    Literals,
+    /// The argument t.
+    Time,
+    /// The argument y.
+    State,
+    /// The argument or buffer of accelerations.
+    Accelerations,
+    /// The argument `choice`.
+    Choice,
+    /// The charts as unit vectors.
+    Charts,
+    /// A table's curve, evaluated.
+    Curve { table: usize, time: Id },
+    /// What is to be written.
+    Target,
+}
+
+/// How long the arrays are that a function reads.
+#[derive(Clone, Copy, Debug)]
+pub struct Sizes {
+    pub state: usize,
+    pub accelerations: usize,
+    pub charts: usize,
+    pub tables: usize,
+}
+
+/// How a function gives its results.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// `*out = [...];`
+    Filling,
+    /// `[[...], ...]`
+    Vectors,
+    /// `gyro_sim::Energy { kinetic: ..., potential: ... }`
+    Energy,
+    /// `y[3] = ...; Ok(())`
+    Stores,
+}
+
+/// Reads one function body.
+pub struct Reader<'a> {
+    pub model: &'a Model,
+    pub constants: &'a Constants,
+    pub used_constants: &'a mut [bool],
+    pub sizes: Sizes,
+    pub program: Program,
+    names: HashMap<String, Name>,
+}
+
+#[derive(Debug)]
+struct Name {
+    known: Known,
+    line: usize,
+    is_used: bool,
+}
+
+impl<'a> Reader<'a> {
+    pub fn new(
+        model: &'a Model,
+        constants: &'a Constants,
+        used_constants: &'a mut [bool],
+        sizes: Sizes,
+    ) -> Self {
+        Self { model, constants, used_constants, sizes, program: Program::default(), names: HashMap::new() }
+    }
+
+    /// Makes an argument known; one with an underscore is not to be used.
+    pub fn argument(&mut self, name: &str) {
+        let known = match name {
+            "t" => Known::Time,
+            "y" => Known::State,
+            "accelerations" => Known::Accelerations,
+            "choice" => Known::Choice,
+            "out" | "dy" | "lambda" => Known::Target,
+            _ => return,
+        };
+        self.names.insert(name.to_owned(), Name { known, line: 0, is_used: false });
+    }
+
+    pub fn push(&mut self, node: Node, span: Span) -> Id {
+        self.program.push(node, span.start().line)
+    }
+
+    /// What a name stands for.
+    pub fn known(&mut self, expression: &Expr) -> Result<Known, Refusal> {
+        let Expr::Path(path) = expression else { return Err(refused(expression)) };
+        let Some(name) = path.path.get_ident().map(ToString::to_string) else {
+            return Err(refused(expression));
+        };
+        match self.names.get_mut(&name) {
+            Some(entry) => {
+                entry.is_used = true;
+                Ok(entry.known)
+            }
+            None => Err(Refusal::at(expression.span(), format!("`{name}` is not known here"))),
+        }
+    }
+
+    /// Reads the whole body.
+    pub fn body(mut self, block: &Block, form: Form) -> Result<Program, Refusal> {
+        let mut statements = block.stmts.as_slice();
+        while let [Stmt::Local(local), rest @ ..] = statements {
+            statements = rest;
+            if starts_accelerations(local) {
+                let [call, rest @ ..] = statements else { return Err(refused(local)) };
+                self.accelerations(call)?;
+                statements = rest;
+            } else {
+                self.binding(local)?;
+            }
+        }
+        self.results(statements, block, form)?;
+        let mut unused: Vec<_> =
+            self.names.into_iter().filter(|(_, n)| !n.is_used && n.known != Known::Target).collect();
+        unused.sort_by_key(|(_, name)| name.line);
+        self.program.unused = unused.into_iter().map(|(name, entry)| (name, entry.line)).collect();
+        Ok(self.program)
+    }
+
+    fn bind(&mut self, name: String, known: Known, span: Span) -> Result<(), Refusal> {
+        let entry = Name { known, line: span.start().line, is_used: false };
+        match self.names.insert(name.clone(), entry) {
+            Some(_) => Err(Refusal::at(span, format!("`{name}` is bound twice"))),
+            None => Ok(()),
+        }
+    }
+
+    fn binding(&mut self, local: &Local) -> Result<(), Refusal> {
+        let Some(init) = local.init.as_ref().filter(|init| init.diverge.is_none() && local.attrs.is_empty())
+        else {
+            return Err(refused(local));
+        };
+        match &local.pat {
+            Pat::Ident(name)
+                if name.by_ref.is_none() && name.mutability.is_none() && name.subpat.is_none() =>
+            {
+                let name = name.ident.to_string();
+                let known = self.initial(&init.expr)?;
+                self.bind(name, known, local.span())
+            }
+            Pat::Tuple(names) => self.chunk(names.elems.iter(), &init.expr),
+            _ => Err(refused(local)),
+        }
+    }
+
+    /// What the right side of a binding stands for.
+    fn initial(&mut self, expression: &Expr) -> Result<Known, Refusal> {
+        if text(expression) == "T :: constant" {
+            return Ok(Known::Literals);
+        }
+        match expression {
+            Expr::Call(call) if text(&call.func) == "gyro_sim :: charts :: one_hot :: < T , _ >" => {
+                let is_choice = call.args.len() == 1 && self.known(&call.args[0])? == Known::Choice;
+                if is_choice { Ok(Known::Charts) } else { Err(refused(expression)) }
+            }
+            Expr::MethodCall(call) if call.method == "spline" => {
+                let time = self.expression(&call.receiver)?;
+                let table = (0..self.sizes.tables).find(|k| {
+                    let expected = [format!("& KNOTS_{k}"), format!("& PIECES_{k}")];
+                    call.args.len() == 2 && call.args.iter().map(text).eq(expected)
+                });
+                table.map(|table| Known::Curve { table, time }).ok_or_else(|| refused(expression))
+            }
+            Expr::Index(index) => match self.argument_element(&index.expr, &index.index)? {
+                Some(source) => Ok(Known::Value(self.push(Node::Read(source), expression.span()))),
+                None => Ok(Known::Value(self.expression(expression)?)),
+            },
+            _ => Ok(Known::Value(self.expression(expression)?)),
+        }
+    }
+
+    /// `y[3]`, `charts[0][1]`: only bindings read the state and the charts.
+    fn argument_element(&mut self, array: &Expr, index: &Expr) -> Result<Option<Source>, Refusal> {
+        if let Expr::Index(inner) = array {
+            if self.known(&inner.expr)? != Known::Charts {
+                return Err(refused(array));
+            }
+            let (chart, k) = (integer(&inner.index)?, integer(index)?);
+            let exists = chart < self.sizes.charts && k < 4;
+            return if exists { Ok(Some(Source::Chart(chart, k))) } else { Err(refused(index)) };
+        }
+        if self.known(array)? != Known::State {
+            return Ok(None);
+        }
+        let place = integer(index)?;
+        if place < self.sizes.state { Ok(Some(Source::State(place))) } else { Err(refused(index)) }
+    }
+
+    /// `let (a, b,) = { ...; (a, b,) };`: the bindings inside, of which only some go on.
+    fn chunk<'p>(&mut self, names: impl Iterator<Item = &'p Pat>, block: &Expr) -> Result<(), Refusal> {
+        let Expr::Block(inner) = block else { return Err(refused(block)) };
+        let Some((Stmt::Expr(Expr::Tuple(handed), None), statements)) = inner.block.stmts.split_last() else {
+            return Err(refused(block));
+        };
+        let before: Vec<String> = self.names.keys().cloned().collect();
+        for statement in statements {
+            let Stmt::Local(local) = statement else { return Err(refused(statement)) };
+            self.binding(local)?;
+        }
+        let names: Vec<String> = names.map(text).collect();
+        if handed.elems.iter().map(text).collect::<Vec<_>>() != names {
+            return Err(Refusal::at(block.span(), "a block must hand on the names that it binds"));
+        }
+        for name in &names {
+            if before.contains(name) || !self.names.contains_key(name) {
+                return Err(Refusal::at(block.span(), format!("`{name}` is not bound in this block")));
+            }
+        }
+        self.leave(&before, &names);
+        Ok(())
+    }
+
+    /// Forgets the names of a block that are not handed on.
+    fn leave(&mut self, before: &[String], handed: &[String]) {
+        let stays = |name: &String| before.contains(name) || handed.contains(name);
+        let left: Vec<String> = self.names.keys().filter(|name| !stays(name)).cloned().collect();
+        for name in left {
+            if let Some(entry) = self.names.remove(&name).filter(|entry| !entry.is_used) {
+                self.program.unused.push((name, entry.line));
+            }
+        }
+    }
+
+    /// `gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);` after its buffer.
+    fn accelerations(&mut self, statement: &Stmt) -> Result<(), Refusal> {
+        let is_call = text(statement)
+            == "gyro_sim :: Equations :: accelerations (self , t , y , & mut accelerations) ;";
+        for argument in ["t", "y"] {
+            let entry = self.names.get_mut(argument).filter(|_| is_call);
+            entry.ok_or_else(|| refused(statement))?.is_used = true;
+        }
+        self.bind("accelerations".to_owned(), Known::Accelerations, statement.span())
+    }
+
+    fn results(&mut self, statements: &[Stmt], block: &Block, form: Form) -> Result<(), Refusal> {
+        match (form, statements) {
+            (Form::Filling, [Stmt::Expr(Expr::Assign(assign), Some(_))]) => {
+                match (&*assign.left, &*assign.right) {
+                    (Expr::Unary(left), Expr::Array(array))
+                        if matches!(left.op, UnOp::Deref(_)) && self.known(&left.expr)? == Known::Target =>
+                    {
+                        self.all(array)
+                    }
+                    _ => Err(refused(assign)),
+                }
+            }
+            // A function without results has an empty body.
+            (Form::Filling, []) => Ok(()),
+            (Form::Vectors, [Stmt::Expr(Expr::Array(vectors), None)]) => {
+                vectors.elems.iter().try_for_each(|vector| match vector {
+                    Expr::Array(array) if array.elems.len() == 4 => self.all(array),
+                    _ => Err(refused(vector)),
+                })
+            }
+            (Form::Energy, [Stmt::Expr(Expr::Struct(energy), None)]) => {
+                let fields: Vec<_> = energy.fields.iter().map(|field| text(&field.member)).collect();
+                if text(&energy.path) != "gyro_sim :: Energy"
+                    || fields != ["kinetic", "potential"]
+                    || energy.rest.is_some()
+                {
+                    return Err(refused(energy));
+                }
+                energy.fields.iter().try_for_each(|field| self.result(&field.expr))
+            }
+            (Form::Stores, [stores @ .., Stmt::Expr(end, None)]) if text(end) == "Ok (())" => {
+                stores.iter().try_for_each(|store| self.store(store))
+            }
+            _ => Err(Refusal::at(
+                statements.first().map_or(block.span(), Spanned::span),
+                "the function does not end as it must",
+            )),
+        }
+    }
+
+    fn all(&mut self, array: &ExprArray) -> Result<(), Refusal> {
+        array.elems.iter().try_for_each(|element| self.result(element))
+    }
+
+    fn result(&mut self, expression: &Expr) -> Result<(), Refusal> {
+        let id = self.expression(expression)?;
+        self.program.results.push(id);
+        Ok(())
+    }
+
+    /// `y[3] = ...;`
+    fn store(&mut self, statement: &Stmt) -> Result<(), Refusal> {
+        let Stmt::Expr(Expr::Assign(assign), Some(_)) = statement else { return Err(refused(statement)) };
+        let Expr::Index(target) = &*assign.left else { return Err(refused(statement)) };
+        let place = integer(&target.index)?;
+        let is_new = self.program.places.last().is_none_or(|&last| last < place);
+        if !is_name(&target.expr, "y")
+            || self.known(&target.expr)? != Known::State
+            || place >= self.sizes.state
+        {
+            return Err(refused(statement));
+        }
+        if !is_new {
+            return Err(Refusal::at(statement.span(), format!("y[{place}] is stored after a later element")));
+        }
+        self.program.places.push(place);
+        self.result(&assign.right)
+    }
+}
+
+/// The literals of the start: `let k = T::constant; [k(0.5), ...]`.
+pub fn start(block: &Block) -> Result<Vec<f64>, Refusal> {
+    let [Stmt::Local(local), Stmt::Expr(Expr::Array(array), None)] = block.stmts.as_slice() else {
+        return Err(Refusal::at(block.span(), "the start must be an array of literals"));
+    };
+    if text(local) != "let k = T :: constant ;" {
+        return Err(refused(local));
+    }
+    let value = |element: &Expr| match element {
+        Expr::Call(call) if is_name(&call.func, "k") && call.args.len() == 1 => {
+            decimal(&call.args[0])?.parse().map_err(|_| refused(element))
+        }
+        _ => Err(refused(element)),
+    };
+    array.elems.iter().map(value).collect()
+}
+
+/// The places of a pattern: `&[(0, 3), ...]`.
+pub fn pattern(block: &Block) -> Result<Vec<(usize, usize)>, Refusal> {
+    let [Stmt::Expr(Expr::Reference(reference), None)] = block.stmts.as_slice() else {
+        return Err(Refusal::at(block.span(), "a pattern must be a list of places"));
+    };
+    let Expr::Array(array) = &*reference.expr else { return Err(refused(reference)) };
+    let place = |element: &Expr| match element {
+        Expr::Tuple(pair) if pair.elems.len() == 2 => {
+            Ok((integer(&pair.elems[0])?, integer(&pair.elems[1])?))
+        }
+        _ => Err(refused(element)),
+    };
+    array.elems.iter().map(place).collect()
+}
+
+fn starts_accelerations(local: &Local) -> bool {
+    text(local) == "let mut accelerations = gyro_sim :: Equations :: accelerations_buffer (self) ;"
+}
+
+fn text(tokens: &impl quote::ToTokens) -> String {
+    tokens.to_token_stream().to_string()
+}

@@ -1,0 +1,144 @@
+//! Expressions of the emitted subset.
+
+use super::block::{Known, Reader};
+use crate::program::{Function, Id, Node, Source};
+use crate::refusal::Refusal;
+use proc_macro2::Span;
+use quote::ToTokens;
+use syn::spanned::Spanned;
+use syn::{BinOp, Expr, ExprBinary, ExprCall, ExprIndex, ExprMethodCall, Lit, Member, UnOp};
+
+impl Reader<'_> {
+    /// Reads an expression and gives the place of its value.
+    pub fn expression(&mut self, expression: &Expr) -> Result<Id, Refusal> {
+        match expression {
+            Expr::Paren(inner) => self.expression(&inner.expr),
+            Expr::Binary(binary) => self.binary(binary),
+            Expr::Unary(unary) if matches!(unary.op, UnOp::Neg(_)) => {
+                let operand = self.expression(&unary.expr)?;
+                Ok(self.push(Node::Neg(operand), unary.op.span()))
+            }
+            Expr::Path(_) => match self.known(expression)? {
+                Known::Value(id) => Ok(id),
+                Known::Time => Ok(self.push(Node::Read(Source::Time), expression.span())),
+                _ => Err(refused(expression)),
+            },
+            Expr::Call(call) => self.literal(call),
+            Expr::MethodCall(call) => self.call(call),
+            Expr::Index(index) => self.element(index),
+            Expr::Field(field) if is_name(&field.base, "self") => match &field.member {
+                Member::Named(name) => self.parameter(&name.to_string(), field.span()),
+                Member::Unnamed(_) => Err(refused(expression)),
+            },
+            _ => Err(refused(expression)),
+        }
+    }
+
+    fn binary(&mut self, binary: &ExprBinary) -> Result<Id, Refusal> {
+        let left = self.expression(&binary.left)?;
+        let right = self.expression(&binary.right)?;
+        let node = match binary.op {
+            BinOp::Add(_) => Node::Add(left, right),
+            BinOp::Sub(_) => Node::Sub(left, right),
+            BinOp::Mul(_) => Node::Mul(left, right),
+            BinOp::Div(_) => Node::Div(left, right),
+            other => return Err(Refusal::at(other.span(), format!("`{}`: no such operation", text(&other)))),
+        };
+        Ok(self.push(node, binary.op.span()))
+    }
+
+    /// `k(0.5)`.
+    fn literal(&mut self, call: &ExprCall) -> Result<Id, Refusal> {
+        if !matches!(self.known(&call.func)?, Known::Literals) || call.args.len() != 1 {
+            return Err(refused(call));
+        }
+        let literal = decimal(&call.args[0])?;
+        let Some(place) = self.constants.place(&literal) else {
+            return Err(Refusal::at(call.span(), format!("no exact constant is given for `{literal}`")));
+        };
+        self.used_constants[place] = true;
+        Ok(self.push(Node::Constant(place), call.span()))
+    }
+
+    fn call(&mut self, call: &ExprMethodCall) -> Result<Id, Refusal> {
+        let receiver = self.expression(&call.receiver)?;
+        let arguments = call.args.iter().map(|a| self.expression(a)).collect::<Result<Vec<_>, _>>()?;
+        let function = match (call.method.to_string().as_str(), arguments.as_slice()) {
+            ("atan2", &[x]) => return Ok(self.push(Node::Atan2(receiver, x), call.method.span())),
+            ("sin", []) => Function::Sin,
+            ("cos", []) => Function::Cos,
+            ("tanh", []) => Function::Tanh,
+            ("sqrt", []) => Function::Sqrt,
+            (name, _) => return Err(Refusal::at(call.method.span(), format!("`{name}`: no such function"))),
+        };
+        Ok(self.push(Node::Call(function, receiver), call.method.span()))
+    }
+
+    /// `table0[1]`, `accelerations[2]`.
+    fn element(&mut self, index: &ExprIndex) -> Result<Id, Refusal> {
+        let place = integer(&index.index)?;
+        let node = match self.known(&index.expr)? {
+            Known::Curve { table, time } if place < 3 => Node::Curve { table, order: place, time },
+            Known::Accelerations if place < self.sizes.accelerations => {
+                Node::Read(Source::Acceleration(place))
+            }
+            _ => return Err(refused(index)),
+        };
+        Ok(self.push(node, index.span()))
+    }
+
+    fn parameter(&mut self, name: &str, span: Span) -> Result<Id, Refusal> {
+        let at = |fields: &[gyro_model::Parameter]| fields.iter().position(|f| f.name == name);
+        let source = at(&self.model.parameters)
+            .map(Source::Parameter)
+            .or_else(|| at(&self.model.inputs).map(Source::Input));
+        match source {
+            Some(source) => Ok(self.push(Node::Read(source), span)),
+            None => Err(Refusal::at(span, format!("`{name}` is neither a parameter nor an input"))),
+        }
+    }
+}
+
+/// The text of a decimal with its sign, as it stands in the text of constants.
+pub fn decimal(expression: &Expr) -> Result<String, Refusal> {
+    match expression {
+        Expr::Unary(unary) if matches!(unary.op, UnOp::Neg(_)) => Ok(format!(
+            "-{}",
+            decimal(&unary.expr)
+                .ok()
+                .filter(|text| !text.starts_with('-'))
+                .ok_or_else(|| refused(expression))?
+        )),
+        Expr::Lit(literal) => match &literal.lit {
+            Lit::Float(float) if float.suffix().is_empty() => Ok(float.to_string()),
+            _ => Err(refused(expression)),
+        },
+        _ => Err(refused(expression)),
+    }
+}
+
+/// An index.
+pub fn integer(expression: &Expr) -> Result<usize, Refusal> {
+    match expression {
+        Expr::Lit(literal) => match &literal.lit {
+            Lit::Int(integer) if integer.suffix().is_empty() => Ok(integer.base10_parse()?),
+            _ => Err(refused(expression)),
+        },
+        _ => Err(refused(expression)),
+    }
+}
+
+/// Whether an expression is just this name.
+pub fn is_name(expression: &Expr, name: &str) -> bool {
+    matches!(expression, Expr::Path(path) if path.path.is_ident(name))
+}
+
+/// The refusal of something that is not of the emitted subset.
+pub fn refused(tokens: &(impl ToTokens + Spanned)) -> Refusal {
+    let text: String = text(tokens).chars().take(60).collect();
+    Refusal::at(tokens.span(), format!("`{text}` is not of the emitted subset"))
+}
+
+fn text(tokens: &impl ToTokens) -> String {
+    tokens.to_token_stream().to_string()
+}

@@ -1,0 +1,393 @@
+//! What a module must look like around its formulas: everything that the description alone determines.
+//!
+//! Function bodies are left open as `{ HOLE_name }`, counts that depend on formulas as `INT_name`, and arguments that a body may
+//! leave unread as `ANY_name`.
+
+use gyro_model::{JointKind, Model, Parameter, RowOwner, RowUnit, Spline, to_f64};
+use std::fmt::Display;
+
+/// How the coordinate partition is chosen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Choice {
+    /// One special Euler parameter for each joint.
+    Charts,
+    /// Full pivoting at run time.
+    Pivoting,
+}
+
+/// The expected text.
+pub fn text(model: &Model, type_name: &str, tables: &[Spline], choice: Choice) -> String {
+    [
+        constants(tables),
+        definition(model, type_name),
+        ode(model, type_name),
+        mechanism(model, type_name),
+        partition(model, type_name, choice),
+        equations(model, type_name),
+        ports(model, type_name),
+    ]
+    .concat()
+}
+
+/// `gyroscope_maximal` to `GyroscopeMaximal`; a name that Rust or the module needs otherwise gets an underscore.
+pub fn type_name(name: &str) -> String {
+    let words = name.split('_').filter(|word| !word.is_empty());
+    let name: String = words.map(|word| word[..1].to_uppercase() + &word[1..]).collect();
+    if name == "Self" || name == "T" { name + "_" } else { name }
+}
+
+fn list<T: Display>(items: impl IntoIterator<Item = T>) -> String {
+    items.into_iter().map(|item| item.to_string()).collect::<Vec<_>>().join(", ")
+}
+
+fn lines<T: Display>(items: impl IntoIterator<Item = T>) -> String {
+    items.into_iter().map(|item| item.to_string()).collect::<Vec<_>>().join(" ")
+}
+
+fn names<'a>(items: impl IntoIterator<Item = &'a String>) -> String {
+    list(items.into_iter().map(|name| format!("{name:?}")))
+}
+
+fn constants(tables: &[Spline]) -> String {
+    let numbers = |numbers: &[f64]| list(numbers.iter().map(|x| format!("{x:?}")));
+    lines(tables.iter().enumerate().map(|(k, table)| {
+        let pieces = list(table.pieces.iter().map(|piece| format!("[{}]", numbers(piece))));
+        format!(
+            "const KNOTS_{k}: [f64; {}] = [{}]; const PIECES_{k}: [[f64; 4]; {}] = [{pieces}];",
+            table.knots.len(),
+            numbers(&table.knots),
+            table.pieces.len(),
+        )
+    }))
+}
+
+/// `match` that sets one of some fields, or its refusal where there are none.
+fn setter(signature: &str, fields: &[Parameter]) -> String {
+    if fields.is_empty() {
+        return format!("{signature}(&mut self, _index: usize, _value: T) -> bool {{ false }}");
+    }
+    let arms =
+        list(fields.iter().enumerate().map(|(k, field)| format!("{k} => self.{} = value", field.name)));
+    format!(
+        "{signature}(&mut self, index: usize, value: T) -> bool {{
+            match index {{ {arms}, _ => return false, }}
+            true
+        }}"
+    )
+}
+
+fn definition(model: &Model, name: &str) -> String {
+    let fields = || model.parameters.iter().chain(&model.inputs);
+    let is_empty = fields().next().is_none();
+    let (declared, defaults) = if is_empty {
+        let marker = "scalar: ::core::marker::PhantomData";
+        (format!("{marker}<T>"), marker.to_owned())
+    } else {
+        let default = |f: &Parameter| format!("{}: T::constant({:?})", f.name, to_f64(&f.value));
+        (list(fields().map(|f| format!("pub {}: T", f.name))), list(fields().map(default)))
+    };
+    format!(
+        "#[derive(Clone, Copy, Debug, PartialEq)]
+        pub struct {name}<T> {{ {declared} }}
+        impl<T: gyro_sim::Scalar> ::core::default::Default for {name}<T> {{
+            fn default() -> Self {{ Self {{ {defaults} }} }}
+        }}
+        impl<T> {name}<T> {{
+            pub const PARAMETERS: [&'static str; {}] = [{}];
+            {}
+        }}",
+        model.parameters.len(),
+        names(model.parameters.iter().map(|p| &p.name)),
+        setter("pub fn set_parameter", &model.parameters),
+    )
+}
+
+/// Number of elements of the state.
+pub fn n_state(model: &Model) -> usize {
+    let n = model.coordinate_bodies().len();
+    13 * n + usize::from(model.has_work()) + model.turn_references().len()
+}
+
+fn ode(model: &Model, name: &str) -> String {
+    format!(
+        "impl<T: gyro_sim::Scalar> gyro_sim::Ode for {name}<T> {{
+            type Scalar = T;
+            type State = [T; {}];
+            fn start(&self) -> Self::State {{ HOLE_start }}
+            fn derivative(&self, ANY_t: T, ANY_y: &Self::State, dy: &mut Self::State) {{ HOLE_derivative }}
+        }}",
+        n_state(model)
+    )
+}
+
+/// A function that gives a buffer of zeros, one for each pair.
+fn buffers(pairs: &[(&str, &str, &str)]) -> String {
+    lines(pairs.iter().map(|(function, ty, count)| {
+        format!("fn {function}(&self) -> Self::{ty} {{ [T::constant(0.0); {count}] }}")
+    }))
+}
+
+/// A function that fills `out`, for each pair of name and type.
+fn fillings(pairs: &[(&str, &str)]) -> String {
+    lines(pairs.iter().map(|(function, ty)| {
+        format!(
+            "fn {function}(&self, ANY_t: T, ANY_y: &Self::State, ANY_out: &mut Self::{ty}) {{ HOLE_{function} }}"
+        )
+    }))
+}
+
+/// A function that gives an entry of a table by its index, or something else beyond its end.
+fn lookup(signature: &str, argument: &str, entry: &str, entries: &[String], otherwise: &str) -> String {
+    let table = signature.rsplit(' ').next().unwrap_or_default().to_owned();
+    let function = signature.trim_end_matches(&table);
+    format!(
+        "{function} {{
+            const {table}: [{entry}; {}] = [{}];
+            {table}.get({argument}).copied().{otherwise}
+        }}",
+        entries.len(),
+        list(entries),
+    )
+}
+
+fn name_lookup(function: &str, argument: &str, table: &str, entries: &[&String]) -> String {
+    let entries: Vec<_> = entries.iter().map(|name| format!("{name:?}")).collect();
+    let signature = format!("fn {function}(&self, {argument}: usize) -> &str {table}");
+    lookup(&signature, argument, "&str", &entries, "unwrap_or_default()")
+}
+
+fn coordinates(kind: JointKind) -> String {
+    if kind == JointKind::Spherical {
+        return "gyro_sim::Coordinate::Orientation".to_owned();
+    }
+    let name = |is_angle| if is_angle { "Angle" } else { "Length" };
+    list(kind.coordinates().iter().map(|c| format!("gyro_sim::Coordinate::{}", name(c.is_angle()))))
+}
+
+fn owner(model: &Model, owner: RowOwner) -> String {
+    let (kind, index) = match owner {
+        RowOwner::Body(body) => {
+            let before = model.coordinate_bodies().iter().filter(|&&other| other < body).count();
+            ("Body", before)
+        }
+        RowOwner::Joint(joint) => ("Joint", joint),
+        RowOwner::Coupler(coupler) => ("Coupler", coupler),
+        RowOwner::Driver(driver) => ("Driver", driver),
+    };
+    format!("gyro_sim::Owner::{kind}({index})")
+}
+
+/// How many numbers are read off all joints: of an angle three, of a length two, of an orientation seven.
+pub fn n_readings(model: &Model) -> usize {
+    let of_joint = |kind: JointKind| match kind {
+        JointKind::Spherical => 7,
+        _ => kind.coordinates().iter().map(|c| if c.is_angle() { 3 } else { 2 }).sum(),
+    };
+    model.joints.iter().map(|joint| of_joint(joint.kind)).sum()
+}
+
+fn mechanism(model: &Model, name: &str) -> String {
+    let (n, n_rows) = (model.coordinate_bodies().len(), model.rows().len());
+    let [rows, constraints, readings] = [n_rows, n_rows + n, n_readings(model)].map(|n| n.to_string());
+    format!(
+        "impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for {name}<T> {{
+            type Rows = [T; {rows}];
+            type Constraints = [T; {constraints}];
+            type Readings = [T; {readings}];
+            {}
+            {}
+            fn energy(&self, ANY_t: T, ANY_y: &Self::State) -> gyro_sim::Energy<T> {{ HOLE_energy }}
+            {}
+            {}
+        }}",
+        buffers(&[
+            ("rows", "Rows", &rows),
+            ("constraints", "Constraints", &constraints),
+            ("readings", "Readings", &readings)
+        ]),
+        fillings(&[("phi", "Constraints"), ("velocity_residual", "Rows")]),
+        fillings(&[("read_joints", "Readings")]),
+        descriptions(model),
+    )
+}
+
+/// Names, rows and sizes.
+fn descriptions(model: &Model) -> String {
+    let slots = model.coordinate_bodies();
+    let bodies: Vec<_> = slots.iter().map(|&b| &model.bodies[b].name).collect();
+    let couplers: Vec<_> = model.couplers.iter().map(|c| &c.name).collect();
+    let drivers: Vec<_> = model.drivers.iter().map(|d| &d.name).collect();
+    let joint = |name: &str, coordinates: &str| {
+        format!("gyro_sim::JointInfo {{ name: {name:?}, coordinates: &[{coordinates}] }}")
+    };
+    let joints: Vec<_> = model.joints.iter().map(|j| joint(&j.name, &coordinates(j.kind))).collect();
+    let row = |owner: &str, is_length: bool| {
+        format!("gyro_sim::RowInfo {{ owner: {owner}, is_length: {is_length} }}")
+    };
+    let rows = model.rows();
+    let rows: Vec<_> = rows.iter().map(|r| row(&owner(model, r.owner), r.unit == RowUnit::Length)).collect();
+    let work = if model.has_work() {
+        format!("fn work(&self, y: &Self::State) -> T {{ y[{}] }}", 13 * slots.len())
+    } else {
+        "fn work(&self, _y: &Self::State) -> T { T::constant(0.0) }".to_owned()
+    };
+    format!(
+        "fn n_bodies(&self) -> usize {{ {} }}
+        fn n_joints(&self) -> usize {{ {} }}
+        {} {} {} {} {}
+        fn size(&self) -> T {{ T::constant({:?}) }}
+        {work}",
+        slots.len(),
+        model.joints.len(),
+        name_lookup("body_name", "body", "BODIES", &bodies),
+        lookup(
+            "fn joint(&self, joint: usize) -> gyro_sim::JointInfo<'_> JOINTS",
+            "joint",
+            "gyro_sim::JointInfo<'static>",
+            &joints,
+            &format!("unwrap_or({})", joint("", "")),
+        ),
+        name_lookup("coupler_name", "coupler", "COUPLERS", &couplers),
+        name_lookup("driver_name", "driver", "DRIVERS", &drivers),
+        lookup(
+            "fn row(&self, row: usize) -> gyro_sim::RowInfo ROWS",
+            "row",
+            "gyro_sim::RowInfo",
+            &rows,
+            &format!("unwrap_or({})", row("gyro_sim::Owner::Body(0)", false)),
+        ),
+        model.size(),
+    )
+}
+
+fn partition(model: &Model, name: &str, choice: Choice) -> String {
+    match choice {
+        Choice::Charts => by_charts(model, name),
+        Choice::Pivoting => by_pivoting(model, name),
+    }
+}
+
+const SOLVED: &str = "::core::result::Result<(), gyro_sim::Error>";
+
+fn by_charts(model: &Model, name: &str) -> String {
+    let solves = lines(["newton_step", "solve_velocities"].map(|solve| {
+        format!(
+            "fn {solve}(&self, ANY_t: T, ANY_choice: &Self::Independent, ANY_y: &mut Self::State) -> {SOLVED} {{
+                HOLE_{solve}
+            }}"
+        )
+    }));
+    format!(
+        "impl<T: gyro_sim::Scalar> {name}<T> {{
+            fn chart_vectors(&self, ANY_y: &[T; {}]) -> [[T; 4]; INT_charts] {{ HOLE_chart_vectors }}
+        }}
+        impl<T: gyro_sim::Real> gyro_sim::Partition for {name}<T> {{
+            type Independent = gyro_sim::charts::Charts<INT_charts>;
+            fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {{
+                gyro_sim::charts::best(&self.chart_vectors(y))
+            }}
+            fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {{
+                gyro_sim::charts::follow(&self.chart_vectors(y), choice)
+            }}
+            {solves}
+        }}",
+        n_state(model)
+    )
+}
+
+fn by_pivoting(model: &Model, name: &str) -> String {
+    let n = model.coordinate_bodies().len();
+    let solves = lines(["newton_step", "solve_velocities"].map(|solve| {
+        format!(
+            "fn {solve}(&self, t: T, choice: &Self::Independent, y: &mut Self::State) -> {SOLVED} {{
+                gyro_sim::pivoting::{solve}(self, t, choice, y)
+            }}"
+        )
+    }));
+    format!(
+        "impl<T: gyro_sim::Real> gyro_sim::Partition for {name}<T> {{
+            type Independent = gyro_sim::pivoting::Pivots<{}, {}>;
+            fn independent(&self, t: T, y: &Self::State) -> Self::Independent {{
+                gyro_sim::pivoting::independent(self, t, y)
+            }}
+            fn follow(&self, t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {{
+                gyro_sim::pivoting::follow(self, t, y, choice)
+            }}
+            {solves}
+        }}",
+        model.rows().len() + n,
+        7 * n
+    )
+}
+
+fn equations(model: &Model, name: &str) -> String {
+    let velocities = (6 * model.coordinate_bodies().len()).to_string();
+    let patterns =
+        lines(["phi_q", "phi_pi"].map(|matrix| {
+            format!("fn {matrix}_pattern(&self) -> &[(u16, u16)] {{ HOLE_{matrix}_pattern }}")
+        }));
+    format!(
+        "impl<T: gyro_sim::Scalar> gyro_sim::Equations for {name}<T> {{
+            type Velocities = [T; {velocities}];
+            type PhiQ = [T; INT_phi_q];
+            type PhiPi = [T; INT_phi_pi];
+            type Accelerations = [T; INT_accelerations];
+            {} {patterns} {}
+            fn multipliers(
+                &self, ANY_t: T, ANY_y: &Self::State, ANY_accelerations: &Self::Accelerations, lambda: &mut Self::Rows,
+            ) {{ HOLE_multipliers }}
+        }}",
+        buffers(&[
+            ("velocities", "Velocities", &velocities),
+            ("phi_q_values", "PhiQ", "INT_phi_q"),
+            ("phi_pi_values", "PhiPi", "INT_phi_pi"),
+            ("accelerations_buffer", "Accelerations", "INT_accelerations"),
+        ]),
+        fillings(&[
+            ("phi_q", "PhiQ"),
+            ("phi_pi", "PhiPi"),
+            ("nu", "Rows"),
+            ("gamma", "Rows"),
+            ("applied_force", "Velocities"),
+            ("accelerations", "Accelerations"),
+        ]),
+    )
+}
+
+/// Numbers of all outputs: name, suffix, unit.
+fn columns(model: &Model) -> Vec<(&str, &'static str, &'static str)> {
+    let of = |output: &'_ gyro_model::Output| output.kind.columns().to_vec();
+    let outputs = model.outputs.iter();
+    outputs.flat_map(|o| of(o).into_iter().map(|(suffix, unit)| (o.name.as_str(), suffix, unit))).collect()
+}
+
+fn ports(model: &Model, name: &str) -> String {
+    let info = |(name, suffix, unit): (&str, &str, &str)| {
+        format!("gyro_sim::OutputInfo {{ name: {name:?}, suffix: {suffix:?}, unit: {unit:?} }}")
+    };
+    let infos: Vec<_> = columns(model).into_iter().map(info).collect();
+    let inputs: Vec<_> = model.inputs.iter().map(|input| &input.name).collect();
+    let count = infos.len().to_string();
+    format!(
+        "impl<T: gyro_sim::Scalar> gyro_sim::Ports for {name}<T> {{
+            type Outputs = [T; {count}];
+            {} {}
+            fn n_outputs(&self) -> usize {{ {count} }}
+            {}
+            fn n_inputs(&self) -> usize {{ {} }}
+            {} {}
+        }}",
+        buffers(&[("outputs_buffer", "Outputs", &count)]),
+        fillings(&[("outputs", "Outputs")]),
+        lookup(
+            "fn output(&self, index: usize) -> gyro_sim::OutputInfo<'_> OUTPUTS",
+            "index",
+            "gyro_sim::OutputInfo<'static>",
+            &infos,
+            &format!("unwrap_or({})", info(("", "", ""))),
+        ),
+        inputs.len(),
+        name_lookup("input_name", "index", "INPUTS", &inputs),
+        setter("fn set_input", &model.inputs),
+    )
+}

@@ -1,0 +1,125 @@
+//! What only numbers can show: the start, and that angles are read with the right sign.
+
+use crate::atoms::{Atoms, Elementary};
+use crate::field::{Field, Precision, Real};
+use crate::interpreter::{self, Given};
+use crate::module::Module;
+use crate::point::Point;
+use crate::textbook::{Reading, Textbook};
+use gyro_model::{Model, RowUnit, to_f64};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// What a start may violate rows by, relative to the mechanism's size and largest velocity: the roundings of an assembly in `f64`.
+const START_TOLERANCE: f64 = 1e-12;
+
+/// States at which the signs of angles are compared.
+const STATES: usize = 16;
+
+/// All that is wrong with the start and the readings.
+pub fn problems(model: &Model, module: &Module) -> Vec<String> {
+    let mut problems: Vec<String> = start_differs(model, module).into_iter().collect();
+    problems.extend(start_violates(model, module));
+    problems.extend(wrong_signs(model, module));
+    problems
+}
+
+/// The start must be the one that the model assembles.
+fn start_differs(model: &Model, module: &Module) -> Option<String> {
+    let start = match model.assemble() {
+        Ok(start) => start,
+        Err(error) => return Some(format!("the start cannot be assembled: {error}")),
+    };
+    let turns = model.turn_references();
+    let turns = turns.iter().map(|turn| start.joints[turn.joint].position[turn.coordinate]);
+    let work = model.has_work().then_some(0.0);
+    let expected = start.q.iter().chain(&start.v).copied().chain(work).chain(turns);
+    let place = expected.zip(&module.start).position(|(expected, found)| expected != *found);
+    place.map(|place| format!("element {place} of the start is not what the model assembles"))
+}
+
+/// The start must satisfy the textbook's rows, at time zero.
+fn start_violates(model: &Model, module: &Module) -> Option<String> {
+    let precision = Precision::new();
+    let point = point(model, &precision, &module.start, 0.0, |x| Real::new(&precision, x));
+    let textbook = Textbook::new(model);
+    let Some((phi, rates)) =
+        textbook.at(&point, &Elementary).and_then(|e| Some((e.phi()?, e.velocity_residual()?)))
+    else {
+        return Some("the textbook divides by zero at the start".to_owned());
+    };
+    let fastest =
+        module.start[7 * model.coordinate_bodies().len()..].iter().fold(1.0, |a: f64, b| a.max(b.abs()));
+    let rows = model.rows();
+    let size = |row: usize| {
+        if rows.get(row).is_some_and(|r| r.unit == RowUnit::Length) { model.size() } else { 1.0 }
+    };
+    let violated = |values: &[Real], scale: f64| {
+        let is_within =
+            |(row, value): (usize, &Real)| value.to_f64().abs() <= START_TOLERANCE * scale * size(row);
+        values.iter().enumerate().position(|row| !is_within(row))
+    };
+    let row = violated(&phi, 1.0).or_else(|| violated(&rates, fastest));
+    row.map(|row| format!("the start violates row {row}"))
+}
+
+/// Angles are proved up to a factor: here it must be positive.
+fn wrong_signs(model: &Model, module: &Module) -> Option<String> {
+    let textbook = Textbook::new(model);
+    let constants: Vec<f64> = interpreter::constants((), module);
+    let mut random = ChaCha8Rng::seed_from_u64(1);
+    for _ in 0..STATES {
+        let state = random_state(model, &mut random);
+        let point = point(model, (), &state, random.random_range(-1.0..1.0), |x| x);
+        let given = Given { point: &point, accelerations: &[], charts: &[] };
+        let expected = textbook.at(&point, &Elementary).and_then(|evaluation| evaluation.readings());
+        let program = &module.programs["read_joints"];
+        let found = interpreter::run(module, program, &constants, &Elementary as &dyn Atoms<f64>, &given);
+        let (Some(expected), Ok(found)) = (expected, found) else { continue };
+        let mut found = found.as_slice();
+        for reading in expected {
+            let count = match reading {
+                Reading::Angle { sine, cosine, .. } => {
+                    if sine * found[0] + cosine * found[1] <= 0.0 {
+                        return Some("an angle is read with the wrong sign".to_owned());
+                    }
+                    3
+                }
+                Reading::Length(_) => 2,
+                Reading::Orientation(_) => 7,
+            };
+            found = &found[count..];
+        }
+    }
+    None
+}
+
+/// A state of numbers between −1 and 1 with |p| = 1 to rounding.
+pub fn random_state(model: &Model, random: &mut ChaCha8Rng) -> Vec<f64> {
+    let n = model.coordinate_bodies().len();
+    let rest = 6 * n + usize::from(model.has_work()) + model.turn_references().len();
+    let mut state: Vec<f64> = (0..7 * n + rest).map(|_| random.random_range(-1.0..1.0)).collect();
+    for position in state[..7 * n].chunks_mut(7) {
+        let length = position[3..].iter().map(|e| e * e).sum::<f64>().sqrt();
+        position[3..].iter_mut().for_each(|e| *e /= length);
+    }
+    state
+}
+
+/// A point of given numbers, with parameters and inputs at their defaults.
+pub fn point<F: Field>(
+    model: &Model,
+    context: F::Context,
+    state: &[f64],
+    t: f64,
+    number: impl Fn(f64) -> F,
+) -> Point<F> {
+    let values = |fields: &[gyro_model::Parameter]| fields.iter().map(|f| number(to_f64(&f.value))).collect();
+    Point {
+        context,
+        t: number(t),
+        state: state.iter().map(|&x| number(x)).collect(),
+        parameters: values(&model.parameters),
+        inputs: values(&model.inputs),
+    }
+}

@@ -1,0 +1,49 @@
+//! Where an identity is tested.
+
+use crate::field::Field;
+use gyro_model::{Model, Number};
+
+/// Values of everything that a mechanism's functions depend on.
+#[derive(Clone, Debug)]
+pub struct Point<F: Field> {
+    /// What new numbers are made of.
+    pub context: F::Context,
+    /// Time.
+    pub t: F,
+    /// State: 7 positions (r, p) of each body that has coordinates, with |p| = 1 unless said otherwise; 6 velocities
+    /// (s, w') of each; the work if [`Model::has_work`]; one turn reference for each of [`Model::turn_references`].
+    pub state: Vec<F>,
+    /// Values of [`Model::parameters`].
+    pub parameters: Vec<F>,
+    /// Values of [`Model::inputs`].
+    pub inputs: Vec<F>,
+}
+
+impl<F: Field> Point<F> {
+    /// The value of a number of the page here.
+    pub fn number(&self, number: &Number) -> F {
+        let signed = |value: &F, negated: bool| if negated { value.neg() } else { value.clone() };
+        match number {
+            Number::Exact(value) => F::from_rational(self.context, value),
+            Number::Parameter { index, negated } => signed(&self.parameters[*index], *negated),
+            Number::Input { index, negated } => signed(&self.inputs[*index], *negated),
+        }
+    }
+
+    /// (r, p) of the body in a slot (see [`Model::coordinate_bodies`]).
+    pub fn position(&self, slot: usize) -> &[F] {
+        &self.state[7 * slot..7 * slot + 7]
+    }
+
+    /// (s, w') of the body in a slot of a model.
+    pub fn velocity(&self, model: &Model, slot: usize) -> &[F] {
+        let start = 7 * model.coordinate_bodies().len() + 6 * slot;
+        &self.state[start..start + 6]
+    }
+
+    /// The turn reference at a place of [`Model::turn_references`].
+    pub fn turn_reference(&self, model: &Model, place: usize) -> &F {
+        let work = usize::from(model.has_work());
+        &self.state[13 * model.coordinate_bodies().len() + work + place]
+    }
+}

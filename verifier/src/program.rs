@@ -1,0 +1,104 @@
+//! A function of a module as a straight-line program.
+
+/// Place of a value in [`Program::nodes`].
+pub type Id = usize;
+
+/// One operation, as often as it is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Node {
+    /// A literal, by its place among the module's constants.
+    Constant(usize),
+    /// Something given.
+    Read(Source),
+    /// Sum.
+    Add(Id, Id),
+    /// Difference.
+    Sub(Id, Id),
+    /// Product.
+    Mul(Id, Id),
+    /// Quotient.
+    Div(Id, Id),
+    /// Negation.
+    Neg(Id),
+    /// A function of one argument.
+    Call(Function, Id),
+    /// The angle of the point (second, first).
+    Atan2(Id, Id),
+    /// Value (order 0) or a derivative of a table's curve at a time.
+    Curve {
+        /// Index into the module's tables.
+        table: usize,
+        /// Which derivative.
+        order: usize,
+        /// When.
+        time: Id,
+    },
+}
+
+/// What a program reads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Source {
+    /// t.
+    Time,
+    /// An element of the state.
+    State(usize),
+    /// A parameter.
+    Parameter(usize),
+    /// An input.
+    Input(usize),
+    /// An element of `Equations::Accelerations`.
+    Acceleration(usize),
+    /// Component of a joint's chart.
+    Chart(usize, usize),
+}
+
+/// A function of one argument.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Function {
+    /// Sine.
+    Sin,
+    /// Cosine.
+    Cos,
+    /// Hyperbolic tangent.
+    Tanh,
+    /// Square root.
+    Sqrt,
+}
+
+/// A straight-line program.
+#[derive(Clone, Debug, Default)]
+pub struct Program {
+    /// Operands come before their users.
+    pub nodes: Vec<Node>,
+    /// Line of each node in the module's text.
+    pub lines: Vec<usize>,
+    /// What the function gives, in order.
+    pub results: Vec<Id>,
+    /// For functions that overwrite part of the state: where each result is stored.
+    pub places: Vec<usize>,
+    /// Names that nothing refers to, with their lines.
+    pub unused: Vec<(String, usize)>,
+}
+
+impl Node {
+    /// What the node is computed from.
+    pub fn operands(&self) -> impl Iterator<Item = Id> {
+        let (first, second) = match *self {
+            Self::Constant(_) | Self::Read(_) => (None, None),
+            Self::Neg(a) | Self::Call(_, a) | Self::Curve { time: a, .. } => (Some(a), None),
+            Self::Add(a, b) | Self::Sub(a, b) | Self::Mul(a, b) | Self::Div(a, b) | Self::Atan2(a, b) => {
+                (Some(a), Some(b))
+            }
+        };
+        first.into_iter().chain(second)
+    }
+}
+
+impl Program {
+    /// Adds a node.
+    pub fn push(&mut self, node: Node, line: usize) -> Id {
+        self.nodes.push(node);
+        self.lines.push(line);
+        self.nodes.len() - 1
+    }
+}

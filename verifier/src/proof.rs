@@ -1,0 +1,10 @@
+//! Identity testing: both sides at random points modulo a prime, and how likely it is that they agree by accident.
+
+mod case;
+mod claim;
+mod decide;
+mod partition;
+mod point;
+
+pub use claim::Claim;
+pub use decide::{Decider, Needless, Verdict, prime};

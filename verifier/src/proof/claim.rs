@@ -1,0 +1,245 @@
+//! What is proved of each function: numbers that must be zero wherever they exist.
+
+use super::case::{Case, Undecided};
+use super::partition;
+use super::point::stretched;
+use crate::field::Field;
+use crate::point::Point;
+use crate::textbook::Reading;
+
+/// A claim.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Claim {
+    /// `phi` is Φ.
+    Phi,
+    /// `phi_q` is Φ_q, and zero where the pattern has no place, joint rows up to multiples of those of eq. (12): where |p| = 1, Φ itself is given only
+    /// up to multiples of pᵀp − 1.
+    PhiQ,
+    /// `phi_pi` is (Φ_r, Φ_π'), likewise.
+    PhiPi,
+    /// `nu` is ν.
+    Nu,
+    /// `gamma` is γ.
+    Gamma,
+    /// `velocity_residual` is `Φ_r s + Φ_π' w' − ν`.
+    VelocityResidual,
+    /// `applied_force` is `(f, n' − w̃'J'w')`.
+    AppliedForce,
+    /// `accelerations` and `multipliers` satisfy eq. (17).
+    Motion,
+    /// `derivative` gives eqs. (14), (16), these accelerations, the power and the rates of the turn references.
+    Derivative,
+    /// `energy` gives both energies.
+    Energy,
+    /// `read_joints` gives the joint coordinates, also where |p| is not one.
+    Readings,
+    /// `outputs` gives the outputs of the page.
+    Outputs,
+    /// `chart_vectors` are the directions in which, or across which, a joint moves p.
+    ChartVectors,
+    /// `newton_step` is one Newton step.
+    NewtonStep,
+    /// `solve_velocities` satisfies eq. (19) and keeps what is independent.
+    SolveVelocities,
+}
+
+impl Claim {
+    /// All claims of modules with or without charts.
+    pub fn all(has_charts: bool) -> Vec<Self> {
+        use Claim::*;
+        let mut claims = vec![
+            Phi,
+            PhiQ,
+            PhiPi,
+            Nu,
+            Gamma,
+            VelocityResidual,
+            AppliedForce,
+            Motion,
+            Derivative,
+            Energy,
+            Readings,
+            Outputs,
+        ];
+        if has_charts {
+            claims.extend([ChartVectors, NewtonStep, SolveVelocities]);
+        }
+        claims
+    }
+
+    /// The functions that the claim is about.
+    pub fn functions(self) -> &'static [&'static str] {
+        match self {
+            Self::Phi => &["phi"],
+            Self::PhiQ => &["phi_q"],
+            Self::PhiPi => &["phi_pi"],
+            Self::Nu => &["nu"],
+            Self::Gamma => &["gamma"],
+            Self::VelocityResidual => &["velocity_residual"],
+            Self::AppliedForce => &["applied_force"],
+            Self::Motion => &["accelerations", "multipliers"],
+            Self::Derivative => &["derivative"],
+            Self::Energy => &["energy"],
+            Self::Readings => &["read_joints"],
+            Self::Outputs => &["outputs"],
+            Self::ChartVectors => &["chart_vectors"],
+            Self::NewtonStep => &["newton_step"],
+            Self::SolveVelocities => &["solve_velocities"],
+        }
+    }
+
+    /// The claim in words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Phi => "Φ of the joints, eqs. (7) to (12)",
+            Self::PhiQ => "Φ_q by dual numbers, zero outside its pattern, across p",
+            Self::PhiPi => "½ Φ_p Gᵀ by dual numbers, zero outside its pattern",
+            Self::Nu => "ν = −Φ_t",
+            Self::Gamma => "γ, minus the second derivative of Φ at s̈ = ẇ' = 0",
+            Self::VelocityResidual => "Φ_r s + Φ_π' w' − ν",
+            Self::AppliedForce => "(f, n' − w̃'J'w')",
+            Self::Motion => "eq. (17) leaves no residual",
+            Self::Derivative => "eqs. (14), (16), power, rates of turn references",
+            Self::Energy => "T and V",
+            Self::Readings => "joint coordinates and rates, also for |p| ≠ 1",
+            Self::Outputs => "outputs at the proved accelerations and multipliers",
+            Self::ChartVectors => "parallel to Gᵀh' or to p",
+            Self::NewtonStep => "linearised rows vanish, the special parameter is kept",
+            Self::SolveVelocities => "velocity rows vanish, independent rates are kept",
+        }
+    }
+
+    /// The numbers that must be zero.
+    pub fn residuals<F: Field>(self, case: &Case<F>) -> Result<Vec<F>, Undecided> {
+        let point = &case.point;
+        let textbook = case.textbook(point)?;
+        let exists = |values: Option<Vec<F>>| values.ok_or(Undecided::Textbook);
+        let equal = |function: &str, values: Option<Vec<F>>| {
+            Ok(differences(&case.run(function, point)?, &exists(values)?))
+        };
+        match self {
+            Self::Phi => equal("phi", textbook.phi()),
+            Self::Nu => equal("nu", textbook.nu()),
+            Self::Gamma => equal("gamma", textbook.gamma()),
+            Self::VelocityResidual => equal("velocity_residual", textbook.velocity_residual()),
+            Self::AppliedForce => equal("applied_force", textbook.applied_force()),
+            Self::Energy => equal("energy", textbook.energy().map(|energies| energies.to_vec())),
+            Self::PhiQ => {
+                let matrix = textbook.phi_q().ok_or(Undecided::Textbook)?;
+                let (values, pattern) = (case.run("phi_q", point)?, &case.module.phi_q_pattern);
+                let rows = sparse_differences(&values, pattern, matrix);
+                let (rows, normalisations) = rows.split_at(case.model.rows().len());
+                let across = rows.iter().flat_map(|row| partition::tangential(case, row));
+                Ok(across.chain(normalisations.iter().flatten().cloned()).collect())
+            }
+            Self::PhiPi => {
+                let matrix = textbook.phi_pi().ok_or(Undecided::Textbook)?;
+                let (values, pattern) = (case.run("phi_pi", point)?, &case.module.phi_pi_pattern);
+                Ok(sparse_differences(&values, pattern, matrix).concat())
+            }
+            Self::Motion => {
+                let (accelerations, multipliers) = case.motion()?;
+                exists(textbook.residual_of_motion(&accelerations[..6 * case.n_bodies()], &multipliers))
+            }
+            Self::Derivative => derivative(case),
+            Self::Outputs => {
+                let (accelerations, multipliers) = case.motion()?;
+                let values = textbook.outputs(&accelerations[..6 * case.n_bodies()], &multipliers);
+                Ok(differences(&case.run_with("outputs", point, &accelerations)?, &exists(values)?))
+            }
+            Self::Readings => {
+                let stretched = stretched(point, &case.factors);
+                Ok([readings(case, point)?, angles(case, &stretched)?].concat())
+            }
+            Self::ChartVectors => partition::chart_vectors(case),
+            Self::NewtonStep => partition::newton_step(case),
+            Self::SolveVelocities => partition::solve_velocities(case),
+        }
+    }
+}
+
+/// Of two lists; where one is longer, its rest, so that nothing escapes comparison.
+pub fn differences<F: Field>(a: &[F], b: &[F]) -> Vec<F> {
+    let both = a.iter().zip(b).map(|(a, b)| a.sub(b));
+    let rest = a.iter().skip(b.len()).chain(b.iter().skip(a.len())).cloned();
+    both.chain(rest).collect()
+}
+
+/// The matrix that the values are, minus the given one, by rows. A value without a place in the matrix is a row of its own.
+fn sparse_differences<F: Field>(
+    values: &[F],
+    pattern: &[(usize, usize)],
+    expected: Vec<Vec<F>>,
+) -> Vec<Vec<F>> {
+    let mut differences: Vec<Vec<F>> =
+        expected.into_iter().map(|row| row.iter().map(F::neg).collect()).collect();
+    for (value, &(row, column)) in values.iter().zip(pattern) {
+        match differences.get_mut(row).and_then(|row| row.get_mut(column)) {
+            Some(entry) => *entry = entry.add(value),
+            None => differences.push(vec![value.clone(); 7]),
+        }
+    }
+    differences
+}
+
+fn derivative<F: Field>(case: &Case<F>) -> Result<Vec<F>, Undecided> {
+    let textbook = case.textbook(&case.point)?;
+    let (accelerations, multipliers) = case.motion()?;
+    let mut expected = textbook.position_rates();
+    expected.extend(accelerations[..6 * case.n_bodies()].iter().cloned());
+    if case.model.has_work() {
+        let [forces, drivers] = textbook.power(&multipliers).ok_or(Undecided::Textbook)?;
+        expected.push(forces.add(&drivers));
+    }
+    expected.extend(textbook.turn_rates());
+    Ok(differences(&case.run_with("derivative", &case.point, &accelerations)?, &expected))
+}
+
+fn readings<F: Field>(case: &Case<F>, point: &Point<F>) -> Result<Vec<F>, Undecided> {
+    let expected = case.textbook(point)?.readings().ok_or(Undecided::Textbook)?;
+    let found = case.run("read_joints", point)?;
+    let (mut found, mut residuals) = (found.as_slice(), Vec::new());
+    for reading in expected {
+        let count = match reading {
+            Reading::Angle { sine, cosine, rate } => {
+                residuals.push(across(&found[..2], &[sine, cosine]));
+                residuals.push(found[2].sub(&rate));
+                3
+            }
+            Reading::Length(numbers) => {
+                residuals.extend(differences(&found[..2], &numbers));
+                2
+            }
+            Reading::Orientation(numbers) => {
+                residuals.extend(differences(&found[..7], &numbers));
+                7
+            }
+        };
+        found = &found[count..];
+    }
+    Ok(residuals)
+}
+
+/// That angles read off longer Euler parameters are those of the unit ones.
+fn angles<F: Field>(case: &Case<F>, stretched: &Point<F>) -> Result<Vec<F>, Undecided> {
+    let expected = case.textbook(&case.point)?.readings().ok_or(Undecided::Textbook)?;
+    let found = case.run("read_joints", stretched)?;
+    let (mut found, mut residuals) = (found.as_slice(), Vec::new());
+    for reading in expected {
+        let count = match reading {
+            Reading::Angle { sine, cosine, .. } => {
+                residuals.push(across(&found[..2], &[sine, cosine]));
+                3
+            }
+            Reading::Length(_) => 2,
+            Reading::Orientation(_) => 7,
+        };
+        found = &found[count..];
+    }
+    Ok(residuals)
+}
+
+/// `a₀ b₁ − a₁ b₀`: zero where the pairs are parallel.
+fn across<F: Field>(a: &[F], b: &[F; 2]) -> F {
+    a[0].mul(&b[1]).sub(&a[1].mul(&b[0]))
+}

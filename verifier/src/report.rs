@@ -1,0 +1,131 @@
+//! What was proved of a module, for people and for programs.
+
+use crate::proof::{Claim, Verdict};
+use crate::refusal::Refusal;
+use serde_json::{Value, json};
+use std::fmt;
+
+/// The largest probability of a false proof that is accepted, as a logarithm to base ten.
+pub const ACCEPTED_LOG10: f64 = -30.0;
+
+/// All that was found out about a module.
+#[derive(Clone, Debug, Default)]
+pub struct Report {
+    /// Name of the mechanism.
+    pub mechanism: String,
+    /// Bits of the prime.
+    pub prime_bits: u64,
+    /// Whether the prime is 2^521 − 1; otherwise it was drawn so that the constants have their roots.
+    pub is_mersenne: bool,
+    /// Points at which each claim was tested.
+    pub points: u32,
+    /// The claims.
+    pub findings: Vec<Finding>,
+    /// What is wrong with the text or its exact constants so that nothing could be proved, or what the structure is like.
+    pub refusals: Vec<Refusal>,
+    /// What is wrong with the patterns, the start or the signs of readings.
+    pub problems: Vec<String>,
+}
+
+/// A claim with its verdict.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Finding {
+    /// What is claimed, of which functions.
+    pub claim: Claim,
+    /// How it was decided.
+    pub verdict: Verdict,
+}
+
+impl Finding {
+    /// Whether the claim is proved well enough.
+    pub fn is_proved(&self) -> bool {
+        matches!(self.verdict, Verdict::Proved { error_log10, .. } if error_log10 <= ACCEPTED_LOG10)
+    }
+
+    fn functions(&self) -> String {
+        self.claim.functions().join(", ")
+    }
+
+    fn to_json(&self) -> Value {
+        let (verdict, detail) = match self.verdict {
+            Verdict::Proved { error_log10, degree_log2 } => {
+                ("proved", json!({ "error_log10": error_log10, "degree_log2": degree_log2 }))
+            }
+            Verdict::Refuted { residual } => ("refuted", json!({ "residual": residual })),
+            Verdict::Undecided { line } => ("undecided", json!({ "line": line })),
+        };
+        json!({
+            "functions": self.claim.functions(),
+            "claim": self.claim.words(),
+            "verdict": verdict,
+            "is_proved": self.is_proved(),
+            "detail": detail,
+        })
+    }
+}
+
+impl Report {
+    /// Whether all is proved and nothing is wrong.
+    pub fn is_proved(&self) -> bool {
+        !self.findings.is_empty()
+            && self.findings.iter().all(Finding::is_proved)
+            && self.refusals.is_empty()
+            && self.problems.is_empty()
+    }
+
+    /// The bound on the probability that any claim of the report is false, as a logarithm to base ten.
+    pub fn error_log10(&self) -> f64 {
+        let errors = self.findings.iter().map(|finding| match finding.verdict {
+            Verdict::Proved { error_log10, .. } => error_log10,
+            _ => 0.0,
+        });
+        // No more claims than 16, so their sum is less than 16 times the largest.
+        errors.fold(f64::NEG_INFINITY, f64::max) + 16.0_f64.log10()
+    }
+
+    /// The report as JSON.
+    pub fn to_json(&self) -> Value {
+        let refusals = self.refusals.iter().map(|r| json!({ "line": r.line, "message": r.message }));
+        json!({
+            "mechanism": self.mechanism,
+            "is_proved": self.is_proved(),
+            "prime": self.prime(),
+            "prime_bits": self.prime_bits,
+            "points": self.points,
+            "findings": self.findings.iter().map(Finding::to_json).collect::<Vec<_>>(),
+            "refusals": refusals.collect::<Vec<_>>(),
+            "problems": self.problems,
+        })
+    }
+
+    fn prime(&self) -> String {
+        if self.is_mersenne { "2^521 - 1".to_owned() } else { format!("random, {} bits", self.prime_bits) }
+    }
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let verdict = if self.is_proved() { "proved" } else { "NOT PROVED" };
+        writeln!(f, "{}: {verdict} (prime: {}; points: {})", self.mechanism, self.prime(), self.points)?;
+        for refusal in &self.refusals {
+            writeln!(f, "  {refusal}")?;
+        }
+        for problem in &self.problems {
+            writeln!(f, "  {problem}")?;
+        }
+        for finding in &self.findings {
+            let verdict = match finding.verdict {
+                Verdict::Proved { error_log10, degree_log2 } => {
+                    format!("degree < 2^{:.0}, error < 1e{:.0}", degree_log2.ceil(), error_log10.ceil())
+                }
+                Verdict::Refuted { residual } => format!("REFUTED: number {residual} is not zero"),
+                Verdict::Undecided { line: Some(line) } => format!("UNDECIDED: line {line} divides by zero"),
+                Verdict::Undecided { line: None } => {
+                    "UNDECIDED: no point has all roots and quotients".to_owned()
+                }
+            };
+            writeln!(f, "  {:26} {:58} {verdict}", finding.functions(), finding.claim.words())?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,95 @@
+//! The dynamic side of eq. (17), energies and powers.
+
+use super::Evaluation;
+use super::jet::Jet;
+use super::linear::{Matrix, Vector};
+use super::pose::Moving;
+use crate::field::Field;
+use gyro_model::Support;
+
+impl<F: Field> Evaluation<'_, F> {
+    /// `diag(M, J')` of eq. (17) by rows, (s̈, ẇ') body after body.
+    pub fn mass_matrix(&self) -> Vec<Vec<F>> {
+        let size = 6 * self.textbook.slots.len();
+        let mut matrix = vec![vec![self.scope.zero.value.clone(); size]; size];
+        for (slot, &body) in self.textbook.slots.iter().enumerate() {
+            let (mass, inertia) = (self.mass(body), self.inertia(body));
+            for row in 0..3 {
+                matrix[6 * slot + row][6 * slot + row] = mass.value.clone();
+                for column in 0..3 {
+                    matrix[6 * slot + 3 + row][6 * slot + 3 + column] = inertia.0[row][column].value.clone();
+                }
+            }
+        }
+        matrix
+    }
+
+    /// `(f, n' − w̃'J'w')` body after body; gravity is eq. (21).
+    pub fn applied_force(&self) -> Option<Vec<F>> {
+        let (loads, gravity) = (self.forces()?.loads, self.gravity());
+        let mut applied = Vec::new();
+        for &body in &self.textbook.slots {
+            let w = &self.moving[body].w;
+            let force = gravity.times(&self.mass(body)) + &loads[body].force;
+            let torque = loads[body].torque.clone() - w.cross(&self.inertia(body).apply(w));
+            applied.extend(force.0.into_iter().chain(torque.0).map(|x| x.value));
+        }
+        Some(applied)
+    }
+
+    /// Kinetic and potential energy: `½ Σ (m s·s + w'·J'w')`, `−Σ m g·r` and the energy of springs.
+    pub fn energy(&self) -> Option<[F; 2]> {
+        let (mut twice_kinetic, mut potential) = (self.scope.zero.clone(), self.forces()?.potential);
+        let gravity = self.gravity();
+        for &body in &self.textbook.slots {
+            let (mass, Moving { pose, s, w }) = (self.mass(body), &self.moving[body]);
+            twice_kinetic = twice_kinetic + &mass * s.dot(s) + w.dot(&self.inertia(body).apply(w));
+            potential = potential - mass * gravity.dot(&pose.r);
+        }
+        Some([twice_kinetic * &self.scope.half, potential].map(|energy| energy.value))
+    }
+
+    /// Power of non-conservative forces and power of the drivers, from the multipliers of all rows.
+    ///
+    /// Drivers do `−λᵀν`; what moves a driven body does besides what it takes against the forces on that body.
+    pub fn power(&self, lambda: &[F]) -> Option<[F; 2]> {
+        let (forces, nu) = (self.forces()?, self.nu()?);
+        let mut drivers = self.scope.zero.value.clone();
+        for (lambda, nu) in lambda.iter().zip(&nu) {
+            drivers = drivers.sub(&lambda.mul(nu));
+        }
+        for (body, load) in forces.loads.iter().enumerate() {
+            if self.textbook.model.bodies[body].support == Support::Driven {
+                drivers = drivers.sub(&load.power(&self.moving[body]).value);
+            }
+        }
+        Some([forces.power.value, drivers])
+    }
+
+    /// What is left of eq. (17) at accelerations `(s̈, ẇ')` and multipliers: 6 numbers for each body, then one for each row.
+    pub fn residual_of_motion(&self, accelerations: &[F], lambda: &[F]) -> Option<Vec<F>> {
+        let (mass, phi_pi) = (self.mass_matrix(), self.phi_pi()?);
+        let (applied, gamma) = (self.applied_force()?, self.gamma()?);
+        let zero = &self.scope.zero.value;
+        let dot = |row: &[F], x: &[F]| row.iter().zip(x).fold(zero.clone(), |sum, (a, b)| sum.add(&a.mul(b)));
+        let columns = (0..applied.len()).map(|k| phi_pi.iter().map(|row| row[k].clone()).collect::<Vec<F>>());
+        let balances = mass.iter().zip(columns).zip(&applied);
+        let forces =
+            balances.map(|((row, column), f)| dot(row, accelerations).add(&dot(&column, lambda)).sub(f));
+        let rows = phi_pi.iter().zip(&gamma).map(|(row, gamma)| dot(row, accelerations).sub(gamma));
+        Some(forces.chain(rows).collect())
+    }
+
+    pub(super) fn gravity(&self) -> Vector<F> {
+        self.scope.vector(&self.textbook.model.gravity)
+    }
+
+    fn mass(&self, body: usize) -> Jet<F> {
+        self.scope.number(&self.textbook.model.bodies[body].mass)
+    }
+
+    fn inertia(&self, body: usize) -> Matrix<F> {
+        let [xx, yy, zz, xy, xz, yz] = self.scope.numbers(&self.textbook.model.bodies[body].inertia);
+        Matrix([[xx, xy.clone(), xz.clone()], [xy, yy, yz.clone()], [xz, yz, zz]])
+    }
+}

@@ -1,0 +1,153 @@
+//! Forces besides gravity: see [`gyro_model::ForceKind`].
+
+use super::Evaluation;
+use super::jet::Jet;
+use super::linear::Vector;
+use super::load::Load;
+use crate::field::Field;
+use gyro_model::{ForceKind, JointCoordinate, JointKind, LoadFrame, Number, StopSide};
+
+/// All forces but gravity together.
+#[derive(Clone, Debug)]
+pub struct Forces<F> {
+    /// On each body of the model, whether it has coordinates or not.
+    pub loads: Vec<Load<F>>,
+    /// Energy of springs.
+    pub potential: Jet<F>,
+    /// Power of forces that store no energy.
+    pub power: Jet<F>,
+}
+
+impl<F: Field> Evaluation<'_, F> {
+    /// `None` where a force is not defined: at a link of no length.
+    pub(super) fn forces(&self) -> Option<Forces<F>> {
+        let model = self.textbook.model;
+        let (none, zero) = (Load::none(&self.scope), self.scope.zero.clone());
+        let mut forces =
+            Forces { loads: vec![none; model.bodies.len()], potential: zero.clone(), power: zero };
+        for joint in 0..model.joints.len() {
+            self.add_friction(&mut forces, joint);
+        }
+        for force in &model.forces {
+            self.add(&mut forces, &force.kind)?;
+        }
+        Some(forces)
+    }
+
+    fn add(&self, forces: &mut Forces<F>, kind: &ForceKind) -> Option<()> {
+        match kind {
+            ForceKind::Spring { on, stiffness, free } => {
+                let stretch = self.coordinate(*on, &self.still)? - self.scope.number(free);
+                let pull = self.scope.number(stiffness) * &stretch;
+                forces.potential = &forces.potential + &pull * stretch * &self.scope.half;
+                self.push_along(forces, *on, &-pull);
+            }
+            ForceKind::Damper { on, damping } => self.add_damper(forces, *on, damping),
+            ForceKind::Coulomb { on, level, rate } => {
+                let ratio = self.coordinate_rate(*on) * self.scope.number(rate).reciprocal()?;
+                let force = -(self.scope.number(level) * self.scope.tanh(&ratio));
+                self.work_along(forces, *on, &force);
+            }
+            ForceKind::Stop { on, .. } => {
+                let force = self.stop(kind)?;
+                self.work_along(forces, *on, &force);
+            }
+            ForceKind::Motor { on, value } => self.work_along(forces, *on, &self.scope.number(value)),
+            ForceKind::Link { .. } => self.add_link(forces, kind)?,
+            ForceKind::Load { .. } => self.add_load(forces, kind),
+        }
+        Some(())
+    }
+
+    /// A joint's own viscous friction: along its one coordinate, or against all relative rotation.
+    fn add_friction(&self, forces: &mut Forces<F>, joint: usize) {
+        let description = &self.textbook.model.joints[joint];
+        if description.friction.is_zero() {
+            return;
+        }
+        if description.kind != JointKind::Spherical {
+            return self.add_damper(forces, JointCoordinate { joint, coordinate: 0 }, &description.friction);
+        }
+        let [first, second] = [description.first.body, description.second.body];
+        let spin = self.moving[second].omega() - self.moving[first].omega();
+        let drag = spin.times(&self.scope.number(&description.friction));
+        forces.power = &forces.power - drag.dot(&spin);
+        forces.push(first, &Load::torque(&self.moving[first], &self.scope, &drag));
+        forces.push(second, &Load::torque(&self.moving[second], &self.scope, &-drag));
+    }
+
+    fn add_damper(&self, forces: &mut Forces<F>, on: JointCoordinate, damping: &Number) {
+        let force = -(self.scope.number(damping) * self.coordinate_rate(on));
+        self.work_along(forces, on, &force);
+    }
+
+    /// `∓stiffness ρ(z) − damping σ(z) ẋ` with z the depth beyond the limit.
+    fn stop(&self, kind: &ForceKind) -> Option<Jet<F>> {
+        let ForceKind::Stop { on, limit, side, stiffness, damping, softness } = kind else { return None };
+        let [limit, stiffness, damping, softness] =
+            [limit, stiffness, damping, softness].map(|number| self.scope.number(number));
+        let beyond = self.coordinate(*on, &self.still)? - limit;
+        let z = if *side == StopSide::Upper { beyond } else { -beyond };
+        let root = self.scope.sqrt(&(&z * &z + &softness * &softness))?;
+        let ramp = (&z + &root) * &self.scope.half;
+        let slope = (&self.scope.one + &z * root.reciprocal()?) * &self.scope.half;
+        let push = stiffness * ramp;
+        let push = if *side == StopSide::Upper { -push } else { push };
+        Some(push - damping * slope * self.coordinate_rate(*on))
+    }
+
+    /// Along the line between two points.
+    fn add_link(&self, forces: &mut Forces<F>, kind: &ForceKind) -> Option<()> {
+        let ForceKind::Link { first, second, stiffness, damping, free_length } = kind else { return None };
+        let (i, j) = (&self.moving[first.0], &self.moving[second.0]);
+        let [s_i, s_j] = [&first.1, &second.1].map(|point| self.scope.vector(point));
+        let [stiffness, damping, free] =
+            [stiffness, damping, free_length].map(|number| self.scope.number(number));
+        let d = j.pose.point(&s_j) - i.pose.point(&s_i);
+        let length = self.scope.sqrt(&d.dot(&d))?;
+        let unit = d.times(&length.reciprocal()?);
+        let speed = unit.dot(&(j.velocity(&s_j) - i.velocity(&s_i)));
+        let stretch = length - free;
+        let (pull, drag) = (stiffness * &stretch, damping * &speed);
+        let force = unit.times(&-(&pull + &drag));
+        forces.potential = &forces.potential + pull * stretch * &self.scope.half;
+        forces.power = &forces.power - drag * speed;
+        forces.push(first.0, &Load::at(i, &-force.clone(), &i.pose.point(&s_i)));
+        forces.push(second.0, &Load::at(j, &force, &j.pose.point(&s_j)));
+        Some(())
+    }
+
+    fn add_load(&self, forces: &mut Forces<F>, kind: &ForceKind) {
+        let ForceKind::Load { body, point, force, torque, frame } = kind else { return };
+        let moving = &self.moving[*body];
+        let in_global = |v: Vector<F>| match frame {
+            LoadFrame::Global => v,
+            LoadFrame::Body => moving.pose.a.apply(&v),
+        };
+        let [force, torque] = [force, torque].map(|given| in_global(self.scope.vector(given)));
+        let place = moving.pose.point(&self.scope.vector(point));
+        let pushed = Load::at(moving, &force, &place);
+        let load = pushed.plus(&Load::torque(moving, &self.scope, &torque));
+        forces.power = &forces.power + load.power(moving);
+        forces.push(*body, &load);
+    }
+
+    /// A force along a coordinate that stores no energy.
+    fn work_along(&self, forces: &mut Forces<F>, on: JointCoordinate, force: &Jet<F>) {
+        forces.power = &forces.power + force * self.coordinate_rate(on);
+        self.push_along(forces, on, force);
+    }
+
+    fn push_along(&self, forces: &mut Forces<F>, on: JointCoordinate, force: &Jet<F>) {
+        let joint = &self.joints[on.joint];
+        let [on_first, on_second] = self.loads_along(on, force);
+        forces.push(joint.first.body, &on_first);
+        forces.push(joint.second.body, &on_second);
+    }
+}
+
+impl<F: Field> Forces<F> {
+    fn push(&mut self, body: usize, load: &Load<F>) {
+        self.loads[body] = self.loads[body].plus(load);
+    }
+}

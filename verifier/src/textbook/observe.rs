@@ -1,0 +1,164 @@
+//! What is read off a state, and the outputs of the page.
+
+use super::Evaluation;
+use super::attitude::{compose, conjugate};
+use super::jet::Jet;
+use super::linear::Vector;
+use super::pose::Path;
+use crate::field::Field;
+use gyro_model::{JointCoordinate, JointKind, Number, OutputKind, RowOwner};
+
+/// The reading of one coordinate of a joint.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Reading<F> {
+    /// Sine and cosine of an angle, which may be read up to one positive factor, and its rate.
+    Angle {
+        /// Sine.
+        sine: F,
+        /// Cosine.
+        cosine: F,
+        /// Rate.
+        rate: F,
+    },
+    /// A length and its rate.
+    Length([F; 2]),
+    /// Euler parameters of the second body's frame in the first's, and the angular velocity of the second body relative to the
+    /// first in the second's frame.
+    Orientation([F; 7]),
+}
+
+impl<F: Field> Evaluation<'_, F> {
+    /// The readings of all joints, coordinate after coordinate.
+    pub fn readings(&self) -> Option<Vec<Reading<F>>> {
+        let mut readings = Vec::new();
+        for (joint, frames) in self.joints.iter().enumerate() {
+            if frames.kind == JointKind::Spherical {
+                readings.push(self.orientation(joint));
+            }
+            for coordinate in 0..frames.kind.coordinates().len() {
+                readings.push(self.reading(JointCoordinate { joint, coordinate })?);
+            }
+        }
+        Some(readings)
+    }
+
+    fn reading(&self, on: JointCoordinate) -> Option<Reading<F>> {
+        let (kind, rate) = (self.textbook.model.coordinate_kind(on), self.coordinate_rate(on).value);
+        if kind.is_angle() {
+            let (sine, cosine) = self.joints[on.joint].placed(&self.still).sine_and_cosine(kind);
+            return Some(Reading::Angle { sine: sine.value, cosine: cosine.value, rate });
+        }
+        Some(Reading::Length([self.coordinate(on, &self.still)?.value, rate]))
+    }
+
+    fn orientation(&self, joint: usize) -> Reading<F> {
+        let frames = &self.joints[joint];
+        let (i, j) = (&self.moving[frames.first.body], &self.moving[frames.second.body]);
+        let [e0, e1, e2, e3] = compose(&conjugate(&i.pose.p), &j.pose.p);
+        let [x, y, z] = j.pose.a.transposed().apply(&(j.omega() - i.omega())).0;
+        Reading::Orientation([e0, e1, e2, e3, x, y, z].map(|x| x.value))
+    }
+
+    /// `ṙ = s` and `ṗ = ½ Gᵀ w'` body after body, eqs. (14) and (16).
+    pub fn position_rates(&self) -> Vec<F> {
+        let poses = self.poses(Path::Motion);
+        let rate = |x: &Jet<F>| x.rate.clone().unwrap_or_else(|| self.scope.zero.value.clone());
+        let moving = self.textbook.slots.iter().map(|&body| &poses[body]);
+        moving.flat_map(|pose| pose.r.0.iter().chain(&pose.p).map(rate).collect::<Vec<F>>()).collect()
+    }
+
+    /// The rates of the turn references.
+    pub fn turn_rates(&self) -> Vec<F> {
+        self.textbook.turns.iter().map(|&turn| self.coordinate_rate(turn).value).collect()
+    }
+
+    /// The numbers of all outputs, at accelerations `(s̈, ẇ')` of the bodies with coordinates and multipliers of all rows.
+    pub fn outputs(&self, accelerations: &[F], lambda: &[F]) -> Option<Vec<F>> {
+        let outputs = self.textbook.model.outputs.iter();
+        let numbers = outputs.map(|output| self.output(&output.kind, accelerations, lambda));
+        numbers.collect::<Option<Vec<_>>>().map(|numbers| numbers.concat())
+    }
+
+    fn output(&self, kind: &OutputKind, accelerations: &[F], lambda: &[F]) -> Option<Vec<F>> {
+        let values = |linear: Vector<F>, rest: &[Jet<F>]| {
+            linear.0.iter().chain(rest).map(|x| x.value.clone()).collect::<Vec<F>>()
+        };
+        Some(match kind {
+            OutputKind::Pose { body, point } => {
+                let pose = &self.moving[*body].pose;
+                values(pose.point(&self.scope.vector(point)), &pose.p)
+            }
+            OutputKind::Velocity { body, point } => {
+                let moving = &self.moving[*body];
+                values(moving.velocity(&self.scope.vector(point)), &moving.w.0)
+            }
+            OutputKind::Acceleration { body, point } => {
+                let [linear, angular] = self.acceleration_of_point(*body, point, accelerations);
+                values(linear, &angular.0)
+            }
+            OutputKind::Inertial { body, point } => {
+                let [linear, _] = self.acceleration_of_point(*body, point, accelerations);
+                let moving = &self.moving[*body];
+                let felt = moving.pose.a.transposed().apply(&(linear - self.gravity()));
+                values(felt, &moving.w.0)
+            }
+            OutputKind::Reaction { joint } => {
+                let [force, torque] = self.reaction(*joint, lambda)?;
+                values(force, &torque.0)
+            }
+            OutputKind::Driver { driver } => vec![self.driver(*driver, lambda)],
+            OutputKind::Energy => self.energy()?.to_vec(),
+            OutputKind::Power => self.power(lambda)?.to_vec(),
+        })
+    }
+
+    /// `s̈ + A (ẇ' × s' + w' × (w' × s'))` in the global frame, and ẇ'.
+    fn acceleration_of_point(&self, body: usize, point: &[Number; 3], given: &[F]) -> [Vector<F>; 2] {
+        let (moving, point) = (&self.moving[body], self.scope.vector(point));
+        let acceleration = self.acceleration(body, given);
+        let relative = acceleration.w.cross(&point) + moving.w.cross(&moving.w.cross(&point));
+        [acceleration.s + moving.pose.a.apply(&relative), acceleration.w]
+    }
+
+    /// `−Φ_rᵀλ` and `−A Φ_π'ᵀλ` of a joint's rows on its second body, about its joint point there, in the first body's joint
+    /// frame; where the second has no coordinates, the opposite of what the rows do to the first.
+    fn reaction(&self, joint: usize, lambda: &[F]) -> Option<[Vector<F>; 2]> {
+        let frames = &self.joints[joint];
+        let (i, j) = (frames.first.body, frames.second.body);
+        let (force, torque, body) = match (self.textbook.slot_of(i), self.textbook.slot_of(j)) {
+            (_, Some(slot)) => {
+                let [force, torque] = self.taken(joint, slot, lambda)?;
+                (-force, -torque, j)
+            }
+            (Some(slot), None) => {
+                let [force, torque] = self.taken(joint, slot, lambda)?;
+                (force, torque, i)
+            }
+            (None, None) => (self.scope.no_vector(), self.scope.no_vector(), j),
+        };
+        let place = self.moving[j].pose.point(&frames.second.point);
+        let arm = self.moving[body].pose.r.clone() - place;
+        let torque = self.moving[body].pose.a.apply(&torque) + arm.cross(&force);
+        let placed = frames.placed(&self.still);
+        let in_frame = |v: Vector<F>| Vector([&placed.f_i, &placed.g_i, &placed.h_i].map(|u| u.dot(&v)));
+        Some([in_frame(force), in_frame(torque)])
+    }
+
+    /// `Φ_rᵀλ` and `Φ_π'ᵀλ` of a joint's rows for one slot.
+    fn taken(&self, joint: usize, slot: usize, lambda: &[F]) -> Option<[Vector<F>; 2]> {
+        let phi_pi = self.phi_pi()?;
+        let rows = self.textbook.model.rows_of(RowOwner::Joint(joint));
+        let column = |k: usize| {
+            rows.clone().fold(self.scope.zero.clone(), |sum, row| {
+                sum + Jet::constant(phi_pi[row][6 * slot + k].mul(&lambda[row]))
+            })
+        };
+        Some([0, 3].map(|from| Vector(std::array::from_fn(|k| column(from + k)))))
+    }
+
+    /// `−λ` of a driver's row; zero where the row is redundant.
+    fn driver(&self, driver: usize, lambda: &[F]) -> F {
+        let rows = self.textbook.model.rows_of(RowOwner::Driver(driver));
+        rows.fold(self.scope.zero.value.clone(), |sum, row| sum.sub(&lambda[row]))
+    }
+}

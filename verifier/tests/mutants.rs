@@ -1,0 +1,193 @@
+//! Fault injection: emitted modules with one thing wrong must not be proved.
+//!
+//! Formulas are mutated after they were read, so that a mutant differs in nothing but its formula; the text is mutated as text.
+
+mod faults;
+mod support;
+
+use faults::{Fault, apply, faults};
+use gyro_verifier::field::Prime;
+use gyro_verifier::module::Module;
+use gyro_verifier::proof::{Claim, Decider, Verdict, prime};
+use gyro_verifier::{Depth, verify};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use std::collections::BTreeMap;
+use support::Page;
+
+/// Pages whose modules are mutated, and how many mutants of each are tried.
+const MUTATED: [(&str, usize); 12] = [
+    ("gyroscope", 150),
+    ("gyroscope-maximal", 100),
+    ("gyroscope-parameters", 100),
+    ("gyroscope-viscous", 100),
+    ("pitching-gyroscope", 100),
+    ("driven-gyroscope", 100),
+    ("torsion", 100),
+    ("free-body", 100),
+    ("heavy-top", 100),
+    ("four-bar", 100),
+    ("stops", 100),
+    ("cam", 50),
+];
+
+/// Seed of the points.
+const SEED: u64 = 11;
+
+#[test]
+fn no_inequivalent_mutant_of_a_formula_survives() {
+    let (mut count, mut equivalent, mut survivors) = (0, Vec::new(), Vec::new());
+    let mut kinds = BTreeMap::<String, usize>::new();
+    for (name, mutants) in MUTATED {
+        let page = support::page(name);
+        let module = Module::read(&page.model, &page.code, &page.constants).expect("the emitted subset");
+        let prime: Prime<9> = prime(&page.model, &module, SEED).expect("room for all roots");
+        let decider = Decider::new(&page.model, prime);
+        for (function, fault) in sample(&module, mutants) {
+            let Some(mutant) = apply(&module, &function, &fault) else { continue };
+            count += 1;
+            *kinds
+                .entry(format!("{fault:?}").split('(').next().unwrap_or_default().to_owned())
+                .or_default() += 1;
+            if is_killed(&decider, &mutant, &function) {
+                continue;
+            }
+            let line = format!("{name}, {function}: {fault:?}");
+            match decider.agree([&module, &mutant], &function, SEED) {
+                Some(true) if module.phi_q_pattern == mutant.phi_q_pattern => equivalent.push(line),
+                _ => survivors.push(line),
+            }
+        }
+    }
+    println!("{count} mutants of formulas: {kinds:?}");
+    println!("{} compute the same function:\n{}", equivalent.len(), equivalent.join("\n"));
+    assert!(survivors.is_empty(), "{} survivors:\n{}", survivors.len(), survivors.join("\n"));
+    assert!(count >= 1000, "{count} are too few");
+}
+
+/// Whether a claim about the function is not proved, or a pattern found wrong.
+fn is_killed(decider: &Decider<9>, mutant: &Module, function: &str) -> bool {
+    let claims = Claim::all(mutant.n_charts.is_some());
+    let mut claims = claims.into_iter().filter(|claim| claim.functions().contains(&function));
+    claims.any(|claim| !matches!(decider.decide(mutant, claim, 1, SEED), Verdict::Proved { .. }))
+        || decider.sparsity(mutant, SEED).is_ok_and(|problems| !problems.is_empty())
+}
+
+/// Faults of the derivation of γ, and others spread evenly over all possible ones.
+fn sample(module: &Module, count: usize) -> Vec<(String, Fault)> {
+    let is_derivation = |fault: &Fault| {
+        matches!(fault, Fault::ForgottenTerm | Fault::TransposedRotation(_) | Fault::ForgottenVelocities(_))
+    };
+    let (mut sample, mut all): (Vec<_>, Vec<_>) =
+        faults(module).into_iter().partition(|(name, fault)| name == "gamma" && is_derivation(fault));
+    let mut random = ChaCha8Rng::seed_from_u64(SEED);
+    let others = count.min(all.len());
+    sample.extend((0..others).map(|_| all.swap_remove(random.random_range(0..all.len()))));
+    sample
+}
+
+#[test]
+fn no_mutant_of_a_text_survives() {
+    let mut survivors = Vec::new();
+    let mut count = 0;
+    for name in ["spinning-top", "pendulum"] {
+        let page = support::page(name);
+        let mut random = ChaCha8Rng::seed_from_u64(SEED);
+        let whole = verify(&page.model, &page.code, &page.constants, Depth::Quick);
+        assert!(whole.is_proved(), "{whole}");
+        for _ in 0..60 {
+            let (code, what) = without_a_character(&page.code, &mut random);
+            count += 1;
+            if verify(&page.model, &code, &page.constants, Depth::Quick).is_proved() {
+                survivors.push(format!("{name}: {what}"));
+            }
+        }
+        for (code, what) in edited(&page) {
+            count += 1;
+            if verify(&page.model, &code, &page.constants, Depth::Quick).is_proved() {
+                survivors.push(format!("{name}: {what}"));
+            }
+        }
+    }
+    println!("{count} mutants of texts");
+    assert!(survivors.is_empty(), "{} survivors:\n{}", survivors.len(), survivors.join("\n"));
+}
+
+/// The text with one character of its code less: no space, no comma, nothing of a comment.
+fn without_a_character(code: &str, random: &mut ChaCha8Rng) -> (String, String) {
+    loop {
+        let at = random.random_range(0..code.len());
+        let Some(found) = code.get(at..=at) else { continue };
+        let line = code[..at].rsplit('\n').next().unwrap_or_default();
+        if line.trim_start().starts_with("//") || found.trim().is_empty() || "/,".contains(found) {
+            continue;
+        }
+        let what = format!("`{found}` after `{line}`");
+        return (format!("{}{}", &code[..at], &code[at + 1..]), what);
+    }
+}
+
+/// Texts with one piece replaced.
+fn edited(page: &Page) -> Vec<(String, String)> {
+    let edits = [
+        ("kinetic:", "potential:"),
+        ("&self, t: T", "&self, _t: T"),
+        ("T::constant", "T::from"),
+        ("k(0.5)", "k(0.5f64)"),
+        ("let k = T::constant;", "let k = T::constant; let unused = k(0.5);"),
+        ("Ok(())", "return Ok(());"),
+        ("*out = [", "*out = [k(0.0), "),
+        ("fn phi(&self", "fn phi_other(&self"),
+        ("is_length: true", "is_length: false"),
+        ("gyro_sim::charts::best", "gyro_sim::charts::worst"),
+        ("PARAMETERS: [", "PARAMETERS: [\"more\", "),
+        ("impl<T: gyro_sim::Scalar>", "impl<T: gyro_sim::Real>"),
+        ("#[derive(", "#[derive(Eq, "),
+        ("let k", "#[allow(unused)] let k"),
+        ("e0 * ", "e0 % "),
+        ("operations (", "operations (1"),
+        ("//! | phi | Φ | ", "//! | phi | Φ | 1"),
+        ("gyro_sim::Energy {", "gyro_sim::Energy::<T> {"),
+    ];
+    let edits = edits.into_iter().filter(|(from, _)| page.code.contains(from));
+    edits.map(|(from, to)| (page.code.replacen(from, to, 1), format!("`{from}` became `{to}`"))).collect()
+}
+
+/// A module of a page that was changed since, or with other constants.
+#[test]
+fn stale_files_and_wrong_constants_are_not_proved() {
+    let page = support::page("heavy-top");
+    let proves =
+        |model, code: &str, constants: &str| verify(model, code, constants, Depth::Quick).is_proved();
+    assert!(proves(&page.model, &page.code, &page.constants));
+    let mut changed = page.model.clone();
+    changed.bodies.iter_mut().for_each(|body| body.inertia.swap(0, 1));
+    changed.bodies.iter_mut().for_each(|body| body.inertia.swap(1, 2));
+    assert!(!proves(&changed, &page.code, &page.constants), "a stale file");
+    for (index, line) in page.constants.lines().enumerate() {
+        let (literal, exact) = line.split_once(" = ").expect("a line of constants");
+        let others: Vec<&str> =
+            page.constants.lines().enumerate().filter(|(k, _)| *k != index).map(|(_, line)| line).collect();
+        let with = |line: String| [others.join("\n"), line, String::new()].join("\n");
+        for wrong in [format!("{literal} = {exact}0"), format!("{literal} = -{exact}"), String::new()] {
+            let is_zero = literal == "0.0";
+            assert!(
+                is_zero || !proves(&page.model, &page.code, &with(wrong.clone())),
+                "`{line}` became `{wrong}`"
+            );
+        }
+        // Nearer to the literal than half a unit in its last place, and yet another number.
+        let close = format!("{literal} = {}", near(exact));
+        assert!(!proves(&page.model, &page.code, &with(close.clone())), "`{line}` became `{close}`");
+    }
+}
+
+/// A rational greater by one part in 10^30.
+fn near(exact: &str) -> String {
+    let (numerator, denominator) = exact.split_once('/').unwrap_or((exact, "1"));
+    let zeros = "0".repeat(30);
+    match numerator {
+        "0" => format!("1/1{zeros}{zeros}{}", "0".repeat(300)),
+        _ => format!("{numerator}{}1/{denominator}{zeros}", &zeros[1..]),
+    }
+}

@@ -1,0 +1,207 @@
+//! Samples as a table of named columns with units.
+
+use crate::scene::observed;
+use gyro_model::{CoordinateKind, JointKind, Model, Output, OutputKind};
+use gyro_runner::{JointSample, Sample, energy_error};
+use std::fmt::Write as _;
+
+/// A quantity that every sample has.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Column {
+    pub(crate) name: String,
+    pub(crate) unit: &'static str,
+    pub(crate) values: Vec<f64>,
+}
+
+/// A joint coordinate as it is shown; they come in the order of [`Sample::coordinates`].
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Shown {
+    /// The joint's name, and the coordinate's if there are several: `table.x`.
+    pub(crate) name: String,
+    /// Index of the joint.
+    pub(crate) joint: usize,
+    /// What it is; `None` for an orientation.
+    pub(crate) kind: Option<CoordinateKind>,
+}
+
+impl Shown {
+    /// Unit of a scalar coordinate.
+    pub(crate) fn unit(&self) -> &'static str {
+        if self.kind.is_some_and(CoordinateKind::is_angle) { "rad" } else { "m" }
+    }
+
+    /// Unit of its rate.
+    pub(crate) fn rate_unit(&self) -> &'static str {
+        if self.kind.is_some_and(CoordinateKind::is_angle) { "rad/s" } else { "m/s" }
+    }
+}
+
+/// All joint coordinates of a model.
+pub(crate) fn coordinates(model: &Model) -> Vec<Shown> {
+    let mut shown = Vec::new();
+    for (joint, described) in model.joints.iter().enumerate() {
+        let kinds = described.kind.coordinates();
+        if described.kind == JointKind::Spherical {
+            shown.push(Shown { name: described.name.clone(), joint, kind: None });
+        }
+        for kind in kinds {
+            let name = match kinds {
+                [_] => described.name.clone(),
+                _ => format!("{}.{}", described.name, kind.name()),
+            };
+            shown.push(Shown { name, joint, kind: Some(*kind) });
+        }
+    }
+    shown
+}
+
+/// Suffix and unit of each number of an output.
+pub(crate) fn output_columns(model: &Model, output: &Output) -> Vec<(&'static str, &'static str)> {
+    let columns = output.kind.columns();
+    match output.kind {
+        OutputKind::Driver { driver } => {
+            let is_angle = model.coordinate_kind(model.drivers[driver].coordinate).is_angle();
+            columns.iter().map(|(suffix, _)| (*suffix, if is_angle { "N*m" } else { "N" })).collect()
+        }
+        _ => columns.to_vec(),
+    }
+}
+
+/// The table of a run, in a fixed order: time, joints, outputs, free bodies, energy, violations, charts.
+pub(crate) fn columns(model: &Model, samples: &[Sample]) -> Vec<Column> {
+    let mut table = Table { samples, columns: Vec::new() };
+    table.add("t", "s", |s| s.t);
+    for (index, coordinate) in coordinates(model).iter().enumerate() {
+        table.add_coordinate(index, coordinate);
+    }
+    table.add_outputs(model);
+    for (index, (_, name)) in observed(model).iter().enumerate() {
+        table.add_body(index, name);
+    }
+    table.add("kinetic energy", "J", |s| s.kinetic);
+    table.add("potential energy", "J", |s| s.potential);
+    table.add("energy", "J", Sample::energy);
+    if model.has_work() {
+        table.add("work", "J", |s| s.work);
+    }
+    if let Some(first) = samples.first() {
+        table.add("energy error", "J", |s| energy_error(first, s));
+    }
+    table.add("constraint violation", "1", |s| s.position_violation);
+    table.add("velocity violation", "1/s", |s| s.velocity_violation);
+    table.add("norm violation", "1", |s| s.norm_violation);
+    #[expect(clippy::cast_precision_loss, reason = "a count")]
+    table.add("chart switches", "1", |s| s.chart_switches as f64);
+    table.columns
+}
+
+/// The table as text: 17 significant digits, so that every number reads back as it was.
+pub(crate) fn text(columns: &[Column]) -> String {
+    let header: Vec<String> = columns.iter().map(|c| format!("{} [{}]", c.name, c.unit)).collect();
+    let mut text = header.join(",");
+    text.push('\n');
+    for row in 0..columns.first().map_or(0, |c| c.values.len()) {
+        for (index, column) in columns.iter().enumerate() {
+            let comma = if index == 0 { "" } else { "," };
+            let _ = write!(text, "{comma}{:.16e}", column.values[row]);
+        }
+        text.push('\n');
+    }
+    text
+}
+
+struct Table<'a> {
+    samples: &'a [Sample],
+    columns: Vec<Column>,
+}
+
+impl Table<'_> {
+    fn add(&mut self, name: &str, unit: &'static str, value: impl Fn(&Sample) -> f64) {
+        let values = self.samples.iter().map(value).collect();
+        self.columns.push(Column { name: name.to_owned(), unit, values });
+    }
+
+    fn add_coordinate(&mut self, index: usize, shown: &Shown) {
+        let name = &shown.name;
+        if shown.kind.is_some() {
+            self.add(name, shown.unit(), |s| scalar(&s.coordinates[index]).0);
+            self.add(&format!("{name} rate"), shown.rate_unit(), |s| scalar(&s.coordinates[index]).1);
+            return;
+        }
+        for k in 0..4 {
+            self.add(&format!("{name} e{k}"), "1", |s| orientation(&s.coordinates[index]).0[k]);
+        }
+        for (k, axis) in AXES.iter().enumerate() {
+            let name = format!("{name} rate {axis}");
+            self.add(&name, "rad/s", |s| orientation(&s.coordinates[index]).1[k]);
+        }
+    }
+
+    fn add_outputs(&mut self, model: &Model) {
+        let mut index = 0;
+        for output in &model.outputs {
+            for (suffix, unit) in output_columns(model, output) {
+                let name =
+                    if suffix.is_empty() { output.name.clone() } else { format!("{}.{suffix}", output.name) };
+                self.add(&name, if unit.is_empty() { "1" } else { unit }, |s| s.outputs[index]);
+                index += 1;
+            }
+        }
+    }
+
+    fn add_body(&mut self, body: usize, name: &str) {
+        for (k, axis) in AXES.iter().enumerate() {
+            self.add(&format!("{name} {axis}"), "m", |s| s.bodies[body].pose[k]);
+        }
+        for k in 0..4 {
+            self.add(&format!("{name} e{k}"), "1", |s| s.bodies[body].pose[3 + k]);
+        }
+        for (k, axis) in AXES.iter().enumerate() {
+            self.add(&format!("{name} velocity {axis}"), "m/s", |s| s.bodies[body].velocity[k]);
+        }
+        for (k, axis) in AXES.iter().enumerate() {
+            let name = format!("{name} angular velocity {axis}'");
+            self.add(&name, "rad/s", |s| s.bodies[body].velocity[3 + k]);
+        }
+    }
+}
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// A scalar coordinate and its rate.
+pub(crate) fn scalar(coordinate: &JointSample) -> (f64, f64) {
+    match coordinate {
+        JointSample::Angle { position, rate } | JointSample::Length { position, rate } => (*position, *rate),
+        JointSample::Orientation { .. } => (f64::NAN, f64::NAN),
+    }
+}
+
+/// Euler parameters and angular velocity of a spherical joint.
+pub(crate) fn orientation(coordinate: &JointSample) -> ([f64; 4], [f64; 3]) {
+    match coordinate {
+        JointSample::Orientation { position, rate } => (*position, *rate),
+        JointSample::Angle { .. } | JointSample::Length { .. } => ([f64::NAN; 4], [f64::NAN; 3]),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_read_back_as_they_were() {
+        let awkward = vec![0.1, -1.0 / 3.0, 5e-324, f64::MAX, 0.0, 123_456_789.123_456_78];
+        let columns = [
+            Column { name: "t".to_owned(), unit: "s", values: awkward.clone() },
+            Column { name: "alpha rate".to_owned(), unit: "rad/s", values: awkward.clone() },
+        ];
+        let text = text(&columns);
+        let mut lines = text.lines();
+        assert_eq!(lines.next(), Some("t [s],alpha rate [rad/s]"));
+        for (line, value) in lines.zip(awkward) {
+            for cell in line.split(',') {
+                assert_eq!(cell.parse::<f64>().unwrap().to_bits(), value.to_bits());
+            }
+        }
+    }
+}

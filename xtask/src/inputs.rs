@@ -1,0 +1,120 @@
+//! What `--input` feeds into a model.
+
+use crate::args::Feed;
+use crate::failure::Failure;
+use crate::words;
+use gyro_model::Model;
+use gyro_runner::Input;
+use std::fs;
+use std::path::Path;
+
+/// The inputs that the command line gives.
+pub(crate) fn inputs(model: &Model, given: &[(String, Feed)]) -> Result<Vec<Input>, Failure> {
+    let known: Vec<&str> = model.inputs.iter().map(|input| input.name.as_str()).collect();
+    let mut inputs: Vec<Input> = Vec::new();
+    for (name, feed) in given {
+        let index =
+            known.iter().position(|other| other == name).ok_or_else(|| unknown(model, name, &known))?;
+        if inputs.iter().any(|input| input.index == index) {
+            return Err(Failure::Usage(format!("--input gives `{name}` twice")));
+        }
+        let rows = match feed {
+            Feed::Number(value) => vec![[0.0, *value]],
+            Feed::File(path) => read(path)
+                .map_err(|words| Failure::Usage(format!("--input {name}={}: {words}", path.display())))?,
+        };
+        inputs.push(Input { index, rows });
+    }
+    Ok(inputs)
+}
+
+fn unknown(model: &Model, name: &str, known: &[&str]) -> Failure {
+    let help = if known.is_empty() {
+        format!("the model `{}` has no inputs; the page names them under [inputs]", model.name)
+    } else {
+        words::instead(name, known)
+    };
+    Failure::Usage(format!("--input: unknown input `{name}`: {help}"))
+}
+
+fn read(path: &Path) -> Result<Vec<[f64; 2]>, String> {
+    let text = fs::read_to_string(path).map_err(|e| format!("the file cannot be read: {e}"))?;
+    rows(&text)
+}
+
+/// The rows of a table of times and values. A first line without numbers is a header; lines that start with `#` are comments.
+fn rows(text: &str) -> Result<Vec<[f64; 2]>, String> {
+    let mut table = csv::ReaderBuilder::new()
+        .has_headers(false)
+        .flexible(true)
+        .trim(csv::Trim::All)
+        .comment(Some(b'#'))
+        .from_reader(text.as_bytes());
+    let mut rows: Vec<[f64; 2]> = Vec::new();
+    for (number, record) in table.records().enumerate() {
+        let record = record.map_err(|e| e.to_string())?;
+        if number == 0 && record.iter().all(|cell| cell.parse::<f64>().is_err()) {
+            continue;
+        }
+        let line = record.position().map_or(0, |position| line(text, position));
+        let row = row(&record).map_err(|words| format!("line {line}: {words}"))?;
+        if let Some([before, _]) = rows.last().filter(|last| last[0] >= row[0]) {
+            return Err(format!(
+                "line {line}: the time {:?} does not follow {before:?}: times must ascend",
+                row[0]
+            ));
+        }
+        rows.push(row);
+    }
+    if rows.is_empty() { Err("it has no rows: write lines `time,value`".to_owned()) } else { Ok(rows) }
+}
+
+/// The line of a record: its position counts the empty lines and comments before it as its own.
+fn line(text: &str, position: &csv::Position) -> u64 {
+    let start = usize::try_from(position.byte()).unwrap_or(usize::MAX);
+    let lines = text.get(start..).unwrap_or_default().lines();
+    position.line() + lines.take_while(|line| line.is_empty() || line.starts_with('#')).count() as u64
+}
+
+fn row(record: &csv::StringRecord) -> Result<[f64; 2], String> {
+    if record.len() != 2 {
+        let found = words::count(record.len() as u64, "column");
+        return Err(format!("found {found}: two were expected, time and value"));
+    }
+    let number = |k: usize| match record[k].parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        _ => Err(format!("found `{}` in place of a finite number", &record[k])),
+    };
+    Ok([number(0)?, number(1)?])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tables_have_two_columns_and_perhaps_a_header() {
+        let expected = vec![[0.0, 1.5], [0.25, -2e-3]];
+        for text in ["0,1.5\n0.25,-2e-3\n", "t [s],torque [N*m]\n# from the bench\n 0 , 1.5\n\n.25,-0.002"] {
+            assert_eq!(rows(text).unwrap(), expected, "{text}");
+        }
+    }
+
+    #[test]
+    fn bad_tables_are_refused_with_their_line() {
+        for (text, message) in [
+            ("", "it has no rows"),
+            ("t,value\n", "it has no rows"),
+            ("t,value\n0,1\n1,2,3\n", "line 3: found 3 columns: two were expected"),
+            ("0;1\n", "it has no rows"),
+            ("t;value\n0;1\n", "line 2: found 1 column: two were expected"),
+            ("0,1\n1,high\n", "line 2: found `high` in place of a finite number"),
+            ("0,1\ninf,1\n", "line 2: found `inf` in place of a finite number"),
+            ("0,1\n\n1,high\n", "line 3: found `high`"),
+            ("0,1\n# held\n0,2\n", "line 3: the time 0.0 does not follow 0.0: times must ascend"),
+        ] {
+            let found = rows(text).unwrap_err();
+            assert!(found.starts_with(message), "{text:?}: {found}");
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! What is to be said of a model besides its motion: redundant rows.
+
+use crate::failure::Failure;
+use crate::words::count;
+use gyro_model::{JointKind, Model, OutputKind, RedundantRow, RowOwner};
+use std::io::Write as _;
+
+/// Says on standard error which rows of a page were dropped; refuses the page if that is to be an error.
+pub(crate) fn report_redundant(model: &Model, page: &str, strict: bool) -> Result<(), Failure> {
+    let lines: Vec<String> = model.redundant.iter().map(|row| describe(model, row)).collect();
+    if lines.is_empty() {
+        return Ok(());
+    }
+    if strict {
+        let rows = count(lines.len() as u64, "redundant constraint row");
+        return Err(Failure::Usage(format!("{page} has {rows}, refused by --strict:\n{}", lines.join("\n"))));
+    }
+    for line in lines {
+        // Nobody is left to be warned if standard error is closed.
+        let _ = writeln!(std::io::stderr(), "warning: {page}: {line}");
+    }
+    Ok(())
+}
+
+/// A dropped row in words: whose it is, what it says, and whose multipliers are not unique without it.
+pub(crate) fn describe(model: &Model, dropped: &RedundantRow) -> String {
+    let row = dropped.row;
+    let symbol = symbols(model, row.owner).get(row.index).copied().unwrap_or_default();
+    let shared: Vec<String> =
+        dropped.shared_with.iter().filter(|other| **other != row.owner).map(|o| owner(model, *o)).collect();
+    let with = if shared.is_empty() { "its other rows".to_owned() } else { shared.join(", ") };
+    format!(
+        "row {} ({symbol}) of {} depends on {with} and is dropped; how these share a load is not unique",
+        row.index + 1,
+        owner(model, row.owner)
+    )
+}
+
+/// Whether an output is made of multipliers that are not unique.
+pub(crate) fn is_not_unique(model: &Model, output: &OutputKind) -> bool {
+    let owner = match output {
+        OutputKind::Reaction { joint } => RowOwner::Joint(*joint),
+        OutputKind::Driver { driver } => RowOwner::Driver(*driver),
+        _ => return false,
+    };
+    model.redundant.iter().any(|dropped| dropped.row.owner == owner || dropped.shared_with.contains(&owner))
+}
+
+/// An owner of rows by kind and name.
+pub(crate) fn owner(model: &Model, owner: RowOwner) -> String {
+    let (kind, name) = kind_and_name(model, owner);
+    format!("{kind} `{name}`")
+}
+
+/// Kind and name of an owner of rows.
+pub(crate) fn kind_and_name(model: &Model, owner: RowOwner) -> (&'static str, &str) {
+    match owner {
+        RowOwner::Body(index) => ("body", &model.bodies[index].name),
+        RowOwner::Joint(index) => ("joint", &model.joints[index].name),
+        RowOwner::Coupler(index) => ("coupler", &model.couplers[index].name),
+        RowOwner::Driver(index) => ("driver", &model.drivers[index].name),
+    }
+}
+
+/// What each row of an owner is: see [`Model::rows`].
+fn symbols(model: &Model, owner: RowOwner) -> &'static [&'static str] {
+    match owner {
+        RowOwner::Body(_) => &["r x", "r y", "r z", "p x", "p y", "p z"],
+        RowOwner::Coupler(_) => &["second - ratio * first - offset"],
+        RowOwner::Driver(_) => &["coordinate - motion"],
+        RowOwner::Joint(index) => match model.joints[index].kind {
+            JointKind::Revolute => &["d x", "d y", "d z", "f_i.h_j", "g_i.h_j"],
+            JointKind::Spherical => &["d x", "d y", "d z"],
+            JointKind::Fixed => &["d x", "d y", "d z", "f_i.h_j", "g_i.h_j", "f_i.g_j"],
+            JointKind::Universal => &["d x", "d y", "d z", "h_i.h_j"],
+            JointKind::Cylindrical => &["f_i.d", "g_i.d", "f_i.h_j", "g_i.h_j"],
+            JointKind::Prismatic => &["f_i.d", "g_i.d", "f_i.h_j", "g_i.h_j", "f_i.g_j"],
+            JointKind::Planar => &["h_i.d", "f_i.h_j", "g_i.h_j"],
+            JointKind::Screw => &["f_i.d", "g_i.d", "h_i.d - lead * angle", "f_i.h_j", "g_i.h_j"],
+            JointKind::PointOnLine => &["f_i.d", "g_i.d"],
+            JointKind::Rod => &["(d.d / length - length) / 2"],
+        },
+    }
+}

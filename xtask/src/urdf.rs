@@ -1,0 +1,76 @@
+//! `cargo xtask import`: a robot of the Unified Robot Description Format as a model page.
+//!
+//! ```text
+//! arm.urdf ─robot─▶ links and joints ─merge─▶ bodies ─page─▶ arm.toml
+//! ```
+
+mod element;
+mod merge;
+mod names;
+mod page;
+mod robot;
+
+use crate::args::ImportArgs;
+use crate::failure::Failure;
+use crate::files;
+use crate::words::count;
+use gyro_model::Model;
+use std::fmt::Write as _;
+use std::fs;
+use std::io::Write as _;
+use std::path::Path;
+
+/// Writes the page and says what has no counterpart on it.
+pub(crate) fn import(args: &ImportArgs) -> Result<(), Failure> {
+    let out = args.out.clone().unwrap_or_else(|| args.file.with_extension("toml"));
+    if out.exists() && !args.force {
+        let out = out.display();
+        return Err(Failure::Usage(format!(
+            "{out} exists: choose another place with --out, or give --force"
+        )));
+    }
+    let file = args.file.display().to_string();
+    let text =
+        fs::read_to_string(&args.file).map_err(|e| Failure::Usage(format!("{file} cannot be read: {e}")))?;
+    let shown = args.file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let (page, remarks) = convert(&file, &shown, &text).map_err(Failure::Usage)?;
+    let model = gyro_model::read(&out.display().to_string(), &page).map_err(Failure::Page)?;
+    files::write(&out, &page)?;
+    // What was said is only about a file that is there already.
+    let _ = std::io::stdout().write_all(report(&out, &model, &remarks).as_bytes());
+    Ok(())
+}
+
+/// The page of a robot and what is not on it; or every mistake of the file, a line for each.
+fn convert(file: &str, shown: &str, text: &str) -> Result<(String, Vec<String>), String> {
+    let joined = |problems: Vec<String>| problems.join("\n");
+    let robot = robot::read(file, text).map_err(joined)?;
+    let merged = merge::merge(file, &robot).map_err(joined)?;
+    let mut remarks = robot.remarks.clone();
+    remarks.extend(merged.remarks.iter().cloned());
+    let page = page::write(shown, &robot, &merged, &mut remarks);
+    Ok((page, remarks))
+}
+
+fn report(out: &Path, model: &Model, remarks: &[String]) -> String {
+    let number = |n: usize, noun: &str| count(n as u64, noun);
+    let n_bodies = model.coordinate_bodies().len();
+    let mut text = format!(
+        "wrote {}: {n_bodies} moving {}, {}, {}, {}\n",
+        out.display(),
+        if n_bodies == 1 { "body" } else { "bodies" },
+        number(model.joints.len(), "joint"),
+        number(model.couplers.len(), "coupler"),
+        number(model.forces.len(), "force"),
+    );
+    if !remarks.is_empty() {
+        text.push_str("what differs from the robot:\n");
+    }
+    for remark in remarks {
+        let _ = writeln!(text, "  {remark}");
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests;
