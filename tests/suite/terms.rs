@@ -67,8 +67,7 @@ fn terms<M: Engine<f64>>(mechanism: &M, model: &Model, values: &[f64]) -> Vec<Ki
     kinds.extend(by_unit(mechanism, ["γ, lengths", "γ, pure"], out.as_ref()));
     mechanism.velocity_residual(t, &y, &mut out);
     kinds.extend(by_unit(mechanism, ["velocity, lengths", "velocity, pure"], out.as_ref()));
-    let phi_q = without_stretching(phi_q(mechanism, T, &y), values, n_rows);
-    kinds.extend(by_block(["Φ_r of Φ_q", "Φ_p"], 7, &phi_q));
+    kinds.extend(by_block(["Φ_r of Φ_q", "Φ_p"], 7, &phi_q(mechanism, T, &y)));
     kinds.extend(by_block(["Φ_r", "Φ_π'"], 6, &phi_pi(mechanism, T, &y)));
     let mut force = mechanism.velocities();
     mechanism.applied_force(t, &y, &mut force);
@@ -79,18 +78,6 @@ fn terms<M: Engine<f64>>(mechanism: &M, model: &Model, values: &[f64]) -> Vec<Ki
     kinds.extend(forces);
     kinds.extend(readings_and_energy(mechanism, model, &y));
     kinds
-}
-
-/// Φ_q with the joint rows' derivatives along p itself taken away: rows are functions of rotations, and what A(p) is of a p that is
-/// not of unit length, as in eq. (3) or otherwise, is nobody's business.
-fn without_stretching(mut phi_q: Matrix, values: &[f64], n_rows: usize) -> Matrix {
-    for row in &mut phi_q.rows[..n_rows] {
-        for (row, q) in row.chunks_exact_mut(7).zip(values.chunks_exact(7)) {
-            let along: f64 = row[3..].iter().zip(&q[3..]).map(|(a, e)| a * e).sum();
-            row[3..].iter_mut().zip(&q[3..]).for_each(|(a, e)| *a -= along * e);
-        }
-    }
-    phi_q
 }
 
 /// Readings: sines and cosines, Euler parameters and rates all have values up to 2π or 2 · [`RATE`].

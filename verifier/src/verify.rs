@@ -41,22 +41,20 @@ pub fn verify(model: &Model, module: &str, constants: &str, depth: Depth) -> Rep
     }
 }
 
-/// Proves a module that was read, modulo the shortest prime that has the roots and bounds the error.
+/// Proves a module that was read, modulo the shorter of two primes that has the roots and bounds the error.
 fn prove(model: &Model, module: &Module, report: Report) -> Report {
     let report = Report {
         refusals: structure::problems(model, module),
         problems: numeric::problems(model, module),
         ..report
     };
-    modulo::<9>(model, module, &report)
-        .or_else(|| modulo::<18>(model, module, &report))
-        .or_else(|| modulo::<36>(model, module, &report))
-        .or_else(|| modulo::<72>(model, module, &report))
-        .unwrap_or_else(|| {
+    modulo::<9>(model, module, &report).or_else(|| modulo::<36>(model, module, &report)).unwrap_or_else(
+        || {
             let refusal =
                 Refusal::new(1, "the square roots of the constants or the degrees need too long a prime");
             Report { refusals: vec![refusal], ..report }
-        })
+        },
+    )
 }
 
 /// Proves modulo a prime of this many limbs; `None` if it is too short.

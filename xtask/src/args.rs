@@ -57,6 +57,9 @@ pub(crate) struct VerifyArgs {
     /// Model pages; all of the workspace if none is given
     #[arg(value_name = "MODEL")]
     pub(crate) models: Vec<PathBuf>,
+    /// Measure rounding instead: errors of generated code and of both forms of the twin, against 384 bits
+    #[arg(long, conflicts_with_all = ["quick", "json"])]
+    pub(crate) rounding: bool,
     /// One point for each claim instead of two
     #[arg(long)]
     pub(crate) quick: bool,

@@ -14,6 +14,7 @@ mod nested;
 mod plot;
 mod progress;
 mod remarks;
+mod rounding;
 mod scene;
 mod simulate;
 mod spectrum;

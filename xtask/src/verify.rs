@@ -4,7 +4,8 @@ use crate::args::VerifyArgs;
 use crate::failure::Failure;
 use crate::generate::{Places, all_pages, module_path};
 use crate::words::count;
-use crate::{files, scene};
+use crate::{files, rounding, scene};
+use gyro_model::Model;
 use gyro_verifier::{Depth, Report, verify};
 use rayon::prelude::*;
 use std::io::Write;
@@ -15,6 +16,11 @@ use std::{fs, io};
 pub(crate) fn verify_models(args: &VerifyArgs) -> Result<(), Failure> {
     let places = Places::of_workspace(&files::root());
     let pages = if args.models.is_empty() { all_pages(&places)? } else { args.models.clone() };
+    if args.rounding {
+        let tables: Result<Vec<String>, Failure> =
+            pages.par_iter().map(|page| rounding_of(&places, page)).collect();
+        return say(&tables?.join("\n"));
+    }
     let depth = if args.quick { Depth::Quick } else { Depth::Full };
     let reports: Result<Vec<Report>, Failure> =
         pages.par_iter().map(|page| verify_page(&places, page, depth)).collect();
@@ -24,7 +30,7 @@ pub(crate) fn verify_models(args: &VerifyArgs) -> Result<(), Failure> {
     } else {
         in_words(&reports)
     };
-    io::stdout().write_all(text.as_bytes()).map_err(|e| Failure::Run(format!("standard output: {e}")))?;
+    say(&text)?;
     let n_unproved = reports.iter().filter(|report| !report.is_proved()).count();
     if n_unproved == 0 {
         return Ok(());
@@ -32,8 +38,18 @@ pub(crate) fn verify_models(args: &VerifyArgs) -> Result<(), Failure> {
     Err(Failure::Run(format!("{} not proved", count(n_unproved as u64, "module"))))
 }
 
-/// The module as it is on disk.
 fn verify_page(places: &[Places], page: &Path, depth: Depth) -> Result<Report, Failure> {
+    let (model, [code, constants]) = read_page(places, page)?;
+    Ok(verify(&model, &code, &constants, depth))
+}
+
+fn rounding_of(places: &[Places], page: &Path) -> Result<String, Failure> {
+    let (model, [code, constants]) = read_page(places, page)?;
+    rounding::table(&model, &code, &constants)
+}
+
+/// A model with its module and exact constants as they are on disk.
+fn read_page(places: &[Places], page: &Path) -> Result<(Model, [String; 2]), Failure> {
     let model = scene::read(page)?;
     let path = module_path(places, page, &model.name);
     let read = |path: &Path| {
@@ -42,14 +58,16 @@ fn verify_page(places: &[Places], page: &Path, depth: Depth) -> Result<Report, F
             Failure::Usage(format!("{path} cannot be read: {e}\nto write it: cargo xtask generate {page}"))
         })
     };
-    Ok(verify(&model, &read(&path)?, &read(&path.with_extension("exact"))?, depth))
+    let texts = [read(&path)?, read(&path.with_extension("exact"))?];
+    Ok((model, texts))
+}
+
+fn say(text: &str) -> Result<(), Failure> {
+    io::stdout().write_all(text.as_bytes()).map_err(|e| Failure::Run(format!("standard output: {e}")))
 }
 
 /// Proves a module that was just made; for the commands that make one.
-pub(crate) fn verify_quickly(
-    model: &gyro_model::Model,
-    module: &gyro_codegen::Module,
-) -> Result<(), Failure> {
+pub(crate) fn verify_quickly(model: &Model, module: &gyro_codegen::Module) -> Result<(), Failure> {
     let report = verify(model, &module.code, &module.constants, Depth::Quick);
     if report.is_proved() {
         return Ok(());

@@ -12,8 +12,7 @@ use crate::textbook::Reading;
 pub enum Claim {
     /// `phi` is Φ.
     Phi,
-    /// `phi_q` is Φ_q, and zero where the pattern has no place, joint rows up to multiples of those of eq. (12): where |p| = 1, Φ itself is given only
-    /// up to multiples of pᵀp − 1.
+    /// `phi_q` is Φ_q, and zero where the pattern has no place.
     PhiQ,
     /// `phi_pi` is (Φ_r, Φ_π'), likewise.
     PhiPi,
@@ -92,7 +91,7 @@ impl Claim {
     pub fn words(self) -> &'static str {
         match self {
             Self::Phi => "Φ of the joints, eqs. (7) to (12)",
-            Self::PhiQ => "Φ_q by dual numbers, zero outside its pattern, across p",
+            Self::PhiQ => "Φ_q by dual numbers, zero outside its pattern",
             Self::PhiPi => "½ Φ_p Gᵀ by dual numbers, zero outside its pattern",
             Self::Nu => "ν = −Φ_t",
             Self::Gamma => "γ, minus the second derivative of Φ at s̈ = ẇ' = 0",
@@ -127,10 +126,7 @@ impl Claim {
             Self::PhiQ => {
                 let matrix = textbook.phi_q().ok_or(Undecided::Textbook)?;
                 let (values, pattern) = (case.run("phi_q", point)?, &case.module.phi_q_pattern);
-                let rows = sparse_differences(&values, pattern, matrix);
-                let (rows, normalisations) = rows.split_at(case.model.rows().len());
-                let across = rows.iter().flat_map(|row| partition::tangential(case, row));
-                Ok(across.chain(normalisations.iter().flatten().cloned()).collect())
+                Ok(sparse_differences(&values, pattern, matrix).concat())
             }
             Self::PhiPi => {
                 let matrix = textbook.phi_pi().ok_or(Undecided::Textbook)?;

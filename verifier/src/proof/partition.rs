@@ -117,19 +117,6 @@ fn turning<F: Field>(p: &[F], [x, y, z]: &[F; 3]) -> [F; 4] {
     ]
 }
 
-/// A row of Φ_q with its derivatives by p multiplied by Gᵀ: what is left of it across p.
-pub fn tangential<F: Field>(case: &Case<F>, row: &[F]) -> Vec<F> {
-    let [one, zero] = [1, 0].map(|n| F::integer(case.point.context, n));
-    let axis = |axis: usize| [0, 1, 2].map(|k| if k == axis { one.clone() } else { zero.clone() });
-    let mut across = Vec::new();
-    for (slot, entries) in row.chunks(7).enumerate() {
-        across.extend(entries[..3].iter().cloned());
-        let p = euler(&case.point, slot);
-        across.extend([0, 1, 2].map(|k| dot(&turning(p, &axis(k)), &entries[3..])));
-    }
-    across
-}
-
 /// One Newton step of the dependent positions.
 pub fn newton_step<F: Field>(case: &Case<F>) -> Result<Vec<F>, Undecided> {
     let Some(bodies) = bodies(case) else { return Ok(wrong(case)) };

@@ -1,11 +1,9 @@
 //! Eq. (17): both forms solve it, and they agree.
 
-mod support;
-
+use crate::support::{Random, assert_close, careful_models, dense_phi_pi, state_near};
 use gyro_assembled::{Careful, Dense};
 use gyro_sim::{Equations, Mechanism, Ode};
 use nalgebra::{DMatrix, DVector};
-use support::{Random, assert_close, careful_models, dense_phi_pi, state_near};
 
 const STATES: usize = 200;
 
@@ -78,7 +76,7 @@ fn single_precision_follows_double() {
         let reference = Careful::<f64>::new(&model).expect("it has a start");
         let mut expected = reference.start();
         reference.derivative(0.0, &reference.start(), &mut expected);
-        let scale = support::max_norm(&expected);
+        let scale = crate::support::max_norm(&expected);
         let mut out = careful.start();
         careful.derivative(0.0, &careful.start(), &mut out);
         let wide: Vec<f64> = out.iter().map(|&x| f64::from(x)).collect();

@@ -1,10 +1,8 @@
 //! The paper's section 7, its first hundredth of a second, against the project's reference solution.
 
-mod support;
-
+use crate::support::model;
 use gyro_assembled::{Careful, Dense};
 use gyro_sim::{JointCoordinate, Partition, Partitioned, Turns};
-use support::model;
 
 /// The reference angles at 0.01 s, rad.
 const ALPHA: f64 = 3.126_943_474_878_552e-4;

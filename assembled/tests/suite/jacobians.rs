@@ -1,12 +1,10 @@
 //! Φ_q, (Φ_r, Φ_π'), ν and γ against finite differences and against one another, on and off the constraints.
 
-mod support;
-
-use gyro_assembled::Dense;
-use gyro_sim::{Equations, Mechanism, Ode};
-use support::{
+use crate::support::{
     Random, assert_close, dense_phi_pi, dense_phi_q, normalise, phi, state_near, twins, velocity_residual,
 };
+use gyro_assembled::Dense;
+use gyro_sim::{Equations, Mechanism, Ode};
 
 const STATES: usize = 50;
 

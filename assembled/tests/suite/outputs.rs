@@ -1,12 +1,10 @@
 //! Outputs against Newton and Euler by hand, and against difference quotients along the motion.
 
-mod support;
-
+use crate::support::{Random, assert_close, careful_models, dense, read_text, state_near, test_model};
 use gyro_assembled::Dense;
 use gyro_model::{JointKind, Model, Number, OutputKind, Support};
 use gyro_sim::{Mechanism, Ode, Ports, Rk4};
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
-use support::{Random, assert_close, careful_models, dense, read_text, state_near, test_model};
 
 const STATES: usize = 50;
 
@@ -124,7 +122,7 @@ fn a_joint_has_as_many_rows_as_it_takes_freedoms() {
     };
     for model in singles() {
         let mechanism = dense(&model);
-        let phi_pi = support::dense_phi_pi(&mechanism, 0.0, &mechanism.start());
+        let phi_pi = crate::support::dense_phi_pi(&mechanism, 0.0, &mechanism.start());
         let kind = model.joints[0].kind;
         assert_eq!(mechanism.rows().len(), 6 - freedoms(kind), "{kind:?}");
         assert_eq!(phi_pi.rank(1e-9), 6 - freedoms(kind), "{kind:?}");

@@ -1,10 +1,8 @@
 //! Motions with a solution in closed form.
 
-mod support;
-
+use crate::support::{dense, model};
 use gyro_assembled::{Careful, Dense};
 use gyro_sim::{JointCoordinate, Partition, Partitioned, Turns};
-use support::{dense, model};
 
 /// `models/torsion.toml`: x = x0 exp(−d t) (cos w t + d/w sin w t).
 fn torsion(t: f64) -> f64 {

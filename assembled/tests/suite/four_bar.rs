@@ -1,10 +1,8 @@
 //! A closed loop: the dense partition keeps it closed through full turns of the crank, and the energy with it.
 
-mod support;
-
+use crate::support::{dense, max_norm, model, phi, test_model, velocity_residual};
 use gyro_assembled::{Careful, Form, Unsupported};
 use gyro_sim::{Mechanism, Ode, Partitioned};
-use support::{dense, max_norm, model, phi, test_model, velocity_residual};
 
 #[test]
 fn the_dense_partition_keeps_the_loop_closed() {

@@ -1,11 +1,9 @@
 //! Energy less the work of what is not conservative stays constant: for every force alone, for drivers and driven bodies.
 
-mod support;
-
+use crate::support::{Random, assert_close, dense, models, state_near, test_model};
 use gyro_assembled::Dense;
 use gyro_model::Model;
 use gyro_sim::{Direct, Mechanism, Ode, Ports};
-use support::{Random, assert_close, dense, models, state_near, test_model};
 
 /// Step and length of the runs. The fourth power of the step times the rates of the test models, 30 rad/s, is 1e-10.
 const STEP: f64 = 1e-4;

@@ -1,10 +1,8 @@
 //! What the joints of a start show is what the page asked for.
 
-mod support;
-
+use crate::support::{assert_close, models};
 use gyro_assembled::Dense;
 use gyro_sim::{JointCoordinate, Mechanism, Ode, Turns};
-use support::{assert_close, models};
 
 /// Rounding of a few products, at rates of up to 100 rad/s.
 const ROUNDING: f64 = 1e-13;

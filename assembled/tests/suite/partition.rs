@@ -1,14 +1,12 @@
 //! The partition of both forms: it restores the constraints, keeps the independent coordinates and follows the motion.
 
-mod support;
-
+use crate::support::{
+    Random, assert_close, careful_models, max_norm, model, models, phi, state_near, twins, velocity_residual,
+};
 use gyro_assembled::{Careful, Dense};
 use gyro_model::{Attachment, JointKind, Tree};
 use gyro_sim::{Mechanism, Ode, Partition, Partitioned};
 use nalgebra::Vector3;
-use support::{
-    Random, assert_close, careful_models, max_norm, model, models, phi, state_near, twins, velocity_residual,
-};
 
 /// Sixteen roundings, as the solver asks, with room for lengths that are divided by the mechanism's size.
 const RESTORED: f64 = 1e-13;

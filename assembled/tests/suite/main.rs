@@ -1,0 +1,14 @@
+//! The twin's formulas and solvers. One program: each of its parts would compile the whole twin anew.
+
+#[path = "../support/mod.rs"]
+mod support;
+
+mod closed_forms;
+mod energy;
+mod equations_of_motion;
+mod four_bar;
+mod gyroscope;
+mod jacobians;
+mod outputs;
+mod partition;
+mod readings;
