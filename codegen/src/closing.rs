@@ -6,7 +6,7 @@ use crate::freedom::Twist;
 use crate::graph::{ExprId, Graph};
 use crate::kinematics::Kinematics;
 use crate::ldl::Elimination;
-use crate::null_space::EliminatedTree;
+use crate::null_space::{EliminatedTree, Excitation};
 use crate::system::System;
 use gyro_model::{Attachment, RowOwner};
 use std::collections::BTreeMap;
@@ -42,10 +42,10 @@ pub fn close(
 ) -> (Vec<Twist>, Vec<ExprId>) {
     let rows = closing_rows(system);
     let gradients: Vec<_> = rows.iter().map(|&row| gradient(kinematics, row)).collect();
-    let at_rest = vec![Twist::ZERO; tree.joints.len()];
     let respond = |gradient: &Vec<Twist>| {
         let bias = gradient.iter().map(|twist| twist.negated(&mut system.graph)).collect();
-        tree.respond(system, bias, &at_rest)
+        let (forced, along) = (vec![Twist::ZERO; tree.joints.len()], vec![Vec::new(); tree.joints.len()]);
+        tree.respond(&mut system.graph, Excitation { bias, forced, along }).motions
     };
     let responses: Vec<_> = gradients.iter().map(respond).collect();
     let graph = &mut system.graph;

@@ -14,6 +14,8 @@ pub struct Dynamics {
     pub mass_matrix: Matrix,
     /// (f, n' − w̃'J'w') of each slot.
     pub applied_force: Vec<ExprId>,
+    /// What acts on each body besides gravity and forces along joint coordinates.
+    pub other_loads: Vec<Load>,
     /// ½ Σ (sᵀ m s + w'ᵀ J' w').
     pub kinetic: ExprId,
     /// −Σ m gᵀ r, and what springs store.
@@ -31,6 +33,7 @@ impl Dynamics {
         let mut dynamics = Self {
             mass_matrix: vec![vec![Graph::ZERO; 6 * n_slots]; 6 * n_slots],
             applied_force: Vec::new(),
+            other_loads: forces.other_loads.clone(),
             kinetic: Graph::ZERO,
             potential: forces.potential,
             power: forces.power,
@@ -70,7 +73,7 @@ impl Dynamics {
 }
 
 /// `w̃'J'w'`, collected in products of components so that equal moments of inertia cancel exactly.
-fn gyroscopic_torque(graph: &mut Graph, inertia: &Mat3, w: &Vec3) -> Vec3 {
+pub fn gyroscopic_torque(graph: &mut Graph, inertia: &Mat3, w: &Vec3) -> Vec3 {
     // Component i of w × (J w) is Σ_k w_j w_k J_lk − w_l w_k J_jk with (i, j, l) cyclic.
     std::array::from_fn(|i| {
         let (j, l) = ((i + 1) % 3, (i + 2) % 3);

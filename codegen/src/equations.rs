@@ -5,12 +5,13 @@ use crate::closing::closing_rows;
 use crate::definitions::Expansion;
 use crate::dynamics::Dynamics;
 use crate::graph::{ExprId, Graph};
+use crate::joint_space::JointSpace;
 use crate::kinematics::{Kinematics, Matrix, non_zeros};
 use crate::outputs::{self, Sources};
 use crate::partition::Partition;
 use crate::system::System;
 use crate::{coordinate, null_space, readings, saddle};
-use gyro_model::{Model, Spline};
+use gyro_model::{Model, Spline, Start};
 
 /// Non-zeros with their places.
 pub type Sparse = Vec<(usize, usize, ExprId)>;
@@ -47,6 +48,8 @@ pub struct Equations<'m> {
     pub readings: Vec<ExprId>,
     /// The numbers of the outputs, the accelerations being known.
     pub outputs: Vec<ExprId>,
+    /// Joint coordinates, where the mechanism is a tree.
+    pub joint_space: Option<JointSpace>,
     /// Charts, where the mechanism is a tree that they cover.
     pub charts: Option<Charts>,
 }
@@ -60,7 +63,7 @@ pub struct Charts {
 }
 
 impl<'m> Equations<'m> {
-    pub fn derive(model: &'m Model, elimination: Elimination) -> Self {
+    pub fn derive(model: &'m Model, elimination: Elimination, start: &Start) -> Self {
         let mut system = System::new(model);
         let kinematics = Kinematics::derive(&mut system);
         let dynamics = Dynamics::derive(&mut system);
@@ -79,6 +82,8 @@ impl<'m> Equations<'m> {
         let readings = readings::readings(&mut system);
         let partition = Partition::covers(&system).then(|| Partition::derive(&mut system, &kinematics));
         let position_rates = position_rates(&mut system);
+        let joint_space =
+            JointSpace::covers(&system).then(|| JointSpace::derive(&mut system, &dynamics, model.has_work().then_some(power), start));
 
         let definitions = std::mem::take(&mut system.definitions);
         let mut expansion = Expansion::new(&definitions);
@@ -103,6 +108,7 @@ impl<'m> Equations<'m> {
             potential: expansion.of(graph, dynamics.potential),
             readings: expansion.all(graph, &readings),
             outputs: expansion.all(graph, &outputs),
+            joint_space,
             charts: partition.map(|partition| Charts::expand(&mut expansion, graph, &partition)),
             tables: system.tables,
             graph: system.graph,

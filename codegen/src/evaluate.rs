@@ -1,4 +1,4 @@
-//! For the tests of the passes: the value of an expression, by a walk that shares nothing with simplification.
+//! The value of an expression, by a walk that shares nothing with simplification.
 
 use crate::graph::{ExprId, Graph, Node};
 use crate::symbol::Symbol;
@@ -27,6 +27,7 @@ pub fn evaluate(graph: &Graph, roots: &[ExprId], value: impl Fn(Symbol) -> f64) 
 }
 
 /// A reproducible value between −1 and 1 for each symbol.
+#[cfg(test)]
 pub fn sample(seed: u64) -> impl Fn(Symbol) -> f64 {
     use std::hash::{DefaultHasher, Hash, Hasher};
     move |symbol| {

@@ -11,6 +11,8 @@ use gyro_model::{Force, ForceKind, JointCoordinate, JointKind, LoadFrame, Number
 pub struct Forces {
     /// On each body of the model.
     pub loads: Vec<Load>,
+    /// The part of them that does not act along joint coordinates.
+    pub other_loads: Vec<Load>,
     /// Energy stored in springs.
     pub potential: ExprId,
     /// Power of the forces that store none.
@@ -18,66 +20,113 @@ pub struct Forces {
 }
 
 /// A force along a joint coordinate.
-struct Along {
-    force: ExprId,
+pub struct Along {
+    pub on: JointCoordinate,
+    pub force: ExprId,
     /// Stored energy; a force that stores none has power.
     potential: Option<ExprId>,
+}
+
+/// What forces along joint coordinates read.
+pub trait Readings {
+    /// The joint coordinate; of an angle its continuous value.
+    fn value(&self, system: &mut System, on: JointCoordinate) -> ExprId;
+    /// Its rate.
+    fn rate(&self, system: &mut System, on: JointCoordinate) -> ExprId;
+}
+
+/// Joint coordinates in terms of maximal ones.
+struct OfBodies;
+
+impl Readings for OfBodies {
+    fn value(&self, system: &mut System, on: JointCoordinate) -> ExprId {
+        coordinate::value(system, on)
+    }
+
+    fn rate(&self, system: &mut System, on: JointCoordinate) -> ExprId {
+        coordinate::rate(system, on)
+    }
+}
+
+/// All forces that act along joint coordinates.
+pub fn along_coordinates(system: &mut System, readings: &impl Readings) -> Vec<Along> {
+    let (joints, forces) = (&system.model.joints, &system.model.forces);
+    let mut all = Vec::new();
+    for (index, joint) in joints.iter().enumerate() {
+        if !joint.friction.is_zero() && joint.kind != JointKind::Spherical {
+            let on = JointCoordinate { joint: index, coordinate: 0 };
+            all.push(damper(system, readings, on, &joint.friction));
+        }
+    }
+    all.extend(forces.iter().filter_map(|force| along(system, readings, force)));
+    all
+}
+
+fn along(system: &mut System, readings: &impl Readings, force: &Force) -> Option<Along> {
+    match &force.kind {
+        ForceKind::Spring { on, stiffness, free } => {
+            let (x, [stiffness, free]) = (readings.value(system, *on), numbers(system, [stiffness, free]));
+            let (force, stored) = spring(&mut system.graph, stiffness, x, free);
+            Some(Along { on: *on, force, potential: Some(stored) })
+        }
+        ForceKind::Damper { on, damping } => Some(damper(system, readings, *on, damping)),
+        ForceKind::Coulomb { on, level, rate } => {
+            let (speed, [level, rate]) = (readings.rate(system, *on), numbers(system, [level, rate]));
+            let ratio = system.graph.div(speed, rate);
+            let sliding = system.graph.tanh(ratio);
+            let drag = system.graph.mul(level, sliding);
+            Some(Along { on: *on, force: system.graph.neg(drag), potential: None })
+        }
+        ForceKind::Stop { on, limit, side, stiffness, damping, softness } => {
+            let numbers = numbers(system, [limit, stiffness, damping, softness]);
+            let (x, rate) = (readings.value(system, *on), readings.rate(system, *on));
+            let force = stop(&mut system.graph, *side, (x, rate), numbers);
+            Some(Along { on: *on, force, potential: None })
+        }
+        ForceKind::Motor { on, value } => {
+            Some(Along { on: *on, force: system.number(value), potential: None })
+        }
+        ForceKind::Link { .. } | ForceKind::Load { .. } => None,
+    }
+}
+
+fn damper(
+    system: &mut System,
+    readings: &impl Readings,
+    on: JointCoordinate,
+    damping: &Number,
+) -> Along {
+    let (speed, damping) = (readings.rate(system, on), system.number(damping));
+    let drag = system.graph.mul(damping, speed);
+    Along { on, force: system.graph.neg(drag), potential: None }
 }
 
 impl Forces {
     pub fn of(system: &mut System) -> Self {
         let none = Load { force: ZERO3, torque: ZERO3 };
         let loads = vec![none; system.model.bodies.len()];
-        let mut forces = Self { loads, potential: Graph::ZERO, power: Graph::ZERO };
+        let mut forces =
+            Self { other_loads: loads.clone(), loads, potential: Graph::ZERO, power: Graph::ZERO };
         for joint in 0..system.joints.len() {
             forces.add_friction(system, joint);
         }
         for force in &system.model.forces {
-            forces.add(system, force);
+            forces.add_link(system, &force.kind);
+            forces.add_load(system, &force.kind);
+        }
+        forces.other_loads = forces.loads.clone();
+        for along in along_coordinates(system, &OfBodies) {
+            forces.add_along(system, &along);
         }
         forces
     }
 
-    fn add(&mut self, system: &mut System, force: &Force) {
-        match &force.kind {
-            ForceKind::Spring { on, stiffness, free } => {
-                let (x, [stiffness, free]) =
-                    (coordinate::value(system, *on), numbers(system, [stiffness, free]));
-                let along = spring(&mut system.graph, stiffness, x, free);
-                self.add_along(system, *on, &along);
-            }
-            ForceKind::Damper { on, damping } => self.add_damper(system, *on, damping),
-            ForceKind::Coulomb { on, level, rate } => {
-                let (speed, [level, rate]) = (coordinate::rate(system, *on), numbers(system, [level, rate]));
-                let ratio = system.graph.div(speed, rate);
-                let sliding = system.graph.tanh(ratio);
-                let drag = system.graph.mul(level, sliding);
-                let force = system.graph.neg(drag);
-                self.add_along(system, *on, &Along { force, potential: None });
-            }
-            ForceKind::Stop { on, limit, side, stiffness, damping, softness } => {
-                let numbers = numbers(system, [limit, stiffness, damping, softness]);
-                let force = stop(system, *on, *side, numbers);
-                self.add_along(system, *on, &Along { force, potential: None });
-            }
-            ForceKind::Motor { on, value } => {
-                let force = system.number(value);
-                self.add_along(system, *on, &Along { force, potential: None });
-            }
-            ForceKind::Link { .. } => self.add_link(system, &force.kind),
-            ForceKind::Load { .. } => self.add_load(system, &force.kind),
-        }
-    }
-
-    /// The viscous friction of a joint itself.
+    /// The viscous friction of a spherical joint.
     fn add_friction(&mut self, system: &mut System, index: usize) {
         let friction = &system.model.joints[index].friction;
         let joint = system.joints[index];
-        if friction.is_zero() {
+        if friction.is_zero() || joint.kind != JointKind::Spherical {
             return;
-        }
-        if joint.kind != JointKind::Spherical {
-            return self.add_damper(system, JointCoordinate { joint: index, coordinate: 0 }, friction);
         }
         let (coefficient, spin) = (system.number(friction), relative_spin(system, &joint));
         let graph = &mut system.graph;
@@ -89,14 +138,8 @@ impl Forces {
         self.push(system, joint.second.body, &Load { force: ZERO3, torque: on_second });
     }
 
-    fn add_damper(&mut self, system: &mut System, on: JointCoordinate, damping: &Number) {
-        let (speed, damping) = (coordinate::rate(system, on), system.number(damping));
-        let drag = system.graph.mul(damping, speed);
-        let force = system.graph.neg(drag);
-        self.add_along(system, on, &Along { force, potential: None });
-    }
-
-    fn add_along(&mut self, system: &mut System, on: JointCoordinate, along: &Along) {
+    fn add_along(&mut self, system: &mut System, along: &Along) {
+        let on = along.on;
         let bodies = [system.joints[on.joint].first.body, system.joints[on.joint].second.body];
         for (body, load) in bodies.into_iter().zip(coordinate::unit_loads(system, on)) {
             let load = load.scaled(&mut system.graph, along.force);
@@ -126,14 +169,13 @@ impl Forces {
         let inverse = graph.recip(length);
         let unit = graph.scale_vec(inverse, &d);
         let rate = graph.dot(&unit, &d_dot);
-        let elastic = spring(graph, stiffness, length, free);
+        let (elastic, stored) = spring(graph, stiffness, length, free);
         let drag = graph.mul(damping, rate);
-        let force = graph.sub(elastic.force, drag);
+        let force = graph.sub(elastic, drag);
         let on_second = graph.scale_vec(force, &unit);
         let on_first = graph.neg_vec(&on_second);
         let loss = graph.mul(drag, rate);
         self.power = graph.sub(self.power, loss);
-        let stored = elastic.potential.expect("a spring stores energy");
         self.potential = graph.add(self.potential, stored);
         for (end, force) in ends.iter().zip([on_first, on_second]) {
             let load = end.load(system, &force);
@@ -219,23 +261,21 @@ impl PointOfBody {
     }
 }
 
-/// `−stiffness (x − free)`, which stores half the stiffness times the square.
-fn spring(graph: &mut Graph, stiffness: ExprId, x: ExprId, free: ExprId) -> Along {
+/// `−stiffness (x − free)`, and the energy stored: half the stiffness times the square.
+fn spring(graph: &mut Graph, stiffness: ExprId, x: ExprId, free: ExprId) -> (ExprId, ExprId) {
     let stretch = graph.sub(x, free);
     let pull = graph.mul(stiffness, stretch);
     let (half, double) = (graph.fraction(1, 2), graph.mul(pull, stretch));
-    Along { force: graph.neg(pull), potential: Some(graph.mul(half, double)) }
+    (graph.neg(pull), graph.mul(half, double))
 }
 
 /// The smooth end stop of `ForceKind::Stop`.
 fn stop(
-    system: &mut System,
-    on: JointCoordinate,
+    graph: &mut Graph,
     side: StopSide,
+    (x, rate): (ExprId, ExprId),
     [limit, stiffness, damping, softness]: [ExprId; 4],
 ) -> ExprId {
-    let (x, rate) = (coordinate::value(system, on), coordinate::rate(system, on));
-    let graph = &mut system.graph;
     let beyond = graph.sub(x, limit);
     let depth = if side == StopSide::Upper { beyond } else { graph.neg(beyond) };
     let square = graph.dot(&[depth, softness], &[depth, softness]);

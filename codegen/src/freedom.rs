@@ -15,7 +15,7 @@ use std::ops::Range;
 /// A velocity, virtual displacement or acceleration of a body at its joint point, or a wrench there, its dual.
 #[derive(Clone, Copy, Debug)]
 pub struct Twist {
-    /// Of the joint point, global frame; or a force.
+    /// Of the joint point, global frame (in joint coordinates the body's own); or a force.
     pub t: Vec3,
     /// Rotation, body frame; or a torque about the joint point.
     pub rho: Vec3,
@@ -29,6 +29,8 @@ pub struct Freedom {
     pub parent: Option<Parent>,
     /// The joint point as the body meets it, in the body's frame; its mass centre where no joint holds it.
     pub point: Vec3,
+    /// From the body's frame to that of the translations `t`.
+    pub frame: Mat3,
     /// Null space of the rows: with the parent at rest, these twists leave them all unchanged.
     pub free: Vec<Twist>,
     /// The joint's rows among all rows.
@@ -45,6 +47,10 @@ pub struct Parent {
     pub point: Vec3,
     /// `A_parentᵀ A_body`.
     pub relative: Mat3,
+    /// From the parent's frame to that of its translations.
+    pub frame: Mat3,
+    /// From the frame of the body's translations to that of the parent's.
+    pub carried: Mat3,
 }
 
 /// How a joint restrains its child relative to its parent at rest.
@@ -61,7 +67,7 @@ impl Freedom {
     pub fn of(system: &mut System, kinematics: &Kinematics, link: Link) -> Self {
         let slot = system.slot_of(link.body).expect("links have coordinates");
         match link.attachment {
-            Attachment::Free => Self::whole(slot),
+            Attachment::Free => Self::whole(system, slot),
             Attachment::Constrained => Self::held(system, kinematics, link.body, slot),
             Attachment::Joint { joint, reversed, .. } => {
                 Self::carried(system, kinematics, slot, joint, reversed)
@@ -70,11 +76,12 @@ impl Freedom {
     }
 
     /// Nothing holds the body.
-    fn whole(slot: usize) -> Self {
+    fn whole(system: &System, slot: usize) -> Self {
         let translations = UNIT3.map(|t| Twist { t, rho: ZERO3 });
         let rotations = UNIT3.map(|rho| Twist { t: ZERO3, rho });
         let free = translations.into_iter().chain(rotations).collect();
-        Self { slot, parent: None, point: ZERO3, free, rows: 0..0, forced: Vec::new() }
+        let frame = system.poses[system.slots[slot]].a;
+        Self { slot, parent: None, point: ZERO3, frame, free, rows: 0..0, forced: Vec::new() }
     }
 
     /// The body's own six rows hold it.
@@ -85,7 +92,8 @@ impl Freedom {
         let translations = UNIT3.map(|t| Twist { t, rho: ZERO3 });
         let rotations = rotations.into_iter().map(|rho| Twist { t: ZERO3, rho });
         let forced = translations.into_iter().chain(rotations).collect();
-        Self { slot, parent: None, point: ZERO3, free: Vec::new(), rows, forced }
+        let frame = system.poses[body].a;
+        Self { slot, parent: None, point: ZERO3, frame, free: Vec::new(), rows, forced }
     }
 
     /// A joint holds the body. Its rows measure from the first body to the second, whichever of them is nearer to the root.
@@ -116,6 +124,7 @@ impl Freedom {
             slot,
             parent: Parent::of(system, &joint, reversed, parent_point),
             point,
+            frame: system.poses[system.slots[slot]].a,
             free: sliding.chain(turning).collect(),
             rows,
             forced: held.into_iter().chain(rotations).collect(),
@@ -197,7 +206,10 @@ impl Parent {
         let end = if reversed { &joint.second } else { &joint.first };
         let turned = |column: usize| joint.relative.map(|row| row[column]);
         let relative = if reversed { [0, 1, 2].map(turned) } else { joint.relative };
-        system.slot_of(end.body).map(|slot| Self { slot, point, relative })
+        system.slot_of(end.body).map(|slot| {
+            let frame = system.poses[end.body].a;
+            Self { slot, point, relative, frame, carried: UNIT3 }
+        })
     }
 }
 
@@ -233,7 +245,7 @@ mod tests {
     use super::*;
     use crate::definitions::Expansion;
     use crate::evaluate::{evaluate, sample};
-    use crate::null_space::{Arm, Outwards};
+    use crate::null_space::Arm;
     use crate::symbol::Symbol;
 
     /// Products of a dozen numbers of order one.
@@ -275,7 +287,7 @@ mod tests {
         let link = system.tree.links.iter().copied().find(|link| link.body == 1).expect("b hangs on a");
         let freedom = Freedom::of(&mut system, &kinematics, link);
         assert_eq!(freedom.free.len() + freedom.forced.len(), 6, "{kind}");
-        let arm = Arm::new(&mut system, freedom.slot, &freedom.point, Outwards::No);
+        let arm = Arm::on_body(&mut system.graph, &freedom);
         let mut changes = Vec::new();
         for twist in freedom.free.iter().chain(&freedom.forced) {
             let centre = arm.twist(&mut system.graph, twist);

@@ -1,7 +1,9 @@
 //! The functions of a generated module: which expressions each of them computes.
 
 use crate::equations::{Charts, Equations, Sparse};
-use crate::graph::ExprId;
+use crate::graph::{ExprId, Graph, Node};
+use crate::joint_space::JointSpace;
+use crate::symbol::Symbol;
 
 /// The roots of each function that computes something.
 #[derive(Debug)]
@@ -22,6 +24,12 @@ pub struct Functions {
     pub chart_vectors: Vec<ExprId>,
     pub newton_step: Vec<ExprId>,
     pub solve_velocities: Vec<ExprId>,
+    pub joint_accelerations: Vec<ExprId>,
+    pub joint_derivative: Vec<ExprId>,
+    pub to_maximal: Vec<ExprId>,
+    pub to_joints: Vec<ExprId>,
+    pub joint_accelerations_at: Vec<ExprId>,
+    pub corrected_accelerations: Vec<ExprId>,
 }
 
 impl Functions {
@@ -29,6 +37,9 @@ impl Functions {
         let values = |sparse: &Sparse| sparse.iter().map(|entry| entry.2).collect::<Vec<_>>();
         let of_charts = |part: fn(&Charts) -> &Vec<ExprId>| {
             equations.charts.as_ref().map_or_else(Vec::new, |charts| part(charts).clone())
+        };
+        let of_joints = |part: fn(&JointSpace) -> &Vec<ExprId>| {
+            equations.joint_space.as_ref().map_or_else(Vec::new, |space| part(space).clone())
         };
         let rates = equations.position_rates.iter().chain(&equations.power).chain(&equations.turn_rates);
         Self {
@@ -48,12 +59,25 @@ impl Functions {
             chart_vectors: of_charts(|charts| &charts.vectors),
             newton_step: of_charts(|charts| &charts.newton_positions),
             solve_velocities: of_charts(|charts| &charts.solved_velocities),
+            joint_accelerations: of_joints(|space| &space.accelerations),
+            joint_derivative: of_joints(|space| &space.derivative),
+            to_maximal: of_joints(|space| &space.maximal),
+            to_joints: of_joints(|space| &space.reduced),
+            joint_accelerations_at: of_joints(|space| &space.accelerations_at),
+            corrected_accelerations: of_joints(|space| &space.corrected),
         }
+    }
+
+    /// Whether part of ẏ depends on multipliers that only the exact accelerations come with.
+    pub fn derivative_needs_multipliers(&self, graph: &Graph) -> bool {
+        graph.reachable(&self.derivative).into_iter().any(|id| {
+            matches!(graph.node(id), Node::Symbol(Symbol::Closing(_)))
+        })
     }
 
     /// Name, meaning and roots of each that there is, in the order of the data sheet.
     pub fn list(&self) -> Vec<(&'static str, &'static str, &[ExprId])> {
-        let all: [(_, _, &[ExprId]); 16] = [
+        let all: [(_, _, &[ExprId]); 22] = [
             ("phi", "Φ", &self.phi),
             ("phi_q", "Φ_q, non-zeros in (r, p)", &self.phi_q),
             ("phi_pi", "(Φ_r, Φ_π'), non-zeros", &self.phi_pi),
@@ -70,6 +94,12 @@ impl Functions {
             ("chart vectors", "for the choice of independent coordinates", &self.chart_vectors),
             ("newton_step", "dependent positions, one Newton step", &self.newton_step),
             ("solve_velocities", "dependent velocities, eq. (19)", &self.solve_velocities),
+            ("joint_accelerations", "u̇ in joint coordinates", &self.joint_accelerations),
+            ("joint_derivative", "ẋ but for u̇", &self.joint_derivative),
+            ("to_maximal", "(q, v) of a joint state", &self.to_maximal),
+            ("to_joints", "(x, u) of a maximal state", &self.to_joints),
+            ("joint_accelerations_at", "u̇ at a corrected maximal state", &self.joint_accelerations_at),
+            ("corrected_accelerations", "(s̈, ẇ') at a corrected state", &self.corrected_accelerations),
         ];
         all.into_iter().filter(|(.., roots)| !roots.is_empty()).collect()
     }

@@ -31,6 +31,20 @@ impl Elimination {
         self.substitute_back(graph)
     }
 
+    /// Rewrites all that is yet to be eliminated.
+    pub fn rewrite(&mut self, rewritten: impl FnOnce(Vec<ExprId>) -> Vec<ExprId>) {
+        let old = self.entries.values().chain(&self.rhs).copied().collect();
+        let mut new = rewritten(old).into_iter();
+        for (value, new) in self.entries.values_mut().chain(&mut self.rhs).zip(&mut new) {
+            *value = new;
+        }
+        self.entries.retain(|_, value| *value != Graph::ZERO);
+    }
+
+    pub fn diagonal(&self, unknown: usize) -> ExprId {
+        self.entries.get(&(unknown, unknown)).copied().unwrap_or(Graph::ZERO)
+    }
+
     /// The unknowns that share an entry with one, and the entries.
     pub fn neighbours(&self, unknown: usize) -> Vec<(usize, ExprId)> {
         let row = self.entries.range((unknown, 0)..(unknown, unknown)).map(|(&(_, column), &v)| (column, v));

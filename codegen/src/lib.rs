@@ -46,18 +46,19 @@ mod differentiate;
 mod dynamics;
 mod emit;
 mod equations;
-#[cfg(test)]
 mod evaluate;
 mod forces;
 mod freedom;
 mod functions;
 mod graph;
+mod joint_space;
 mod kinematics;
 mod ldl;
 mod linear;
 mod module;
 mod motion;
 mod multipliers;
+mod normal_form;
 mod null_space;
 mod outputs;
 mod partition;
@@ -163,7 +164,7 @@ pub fn generate_model(file_name: &str, model: &Model) -> Result<Module, Error> {
 /// Why no consistent start exists.
 pub fn generate_by(elimination: Elimination, file_name: &str, model: &Model) -> Result<Module, Error> {
     let start = model.assemble().map_err(Error::Start)?;
-    let equations = equations::Equations::derive(model, elimination);
+    let equations = equations::Equations::derive(model, elimination, &start);
     let type_name = module::type_name(&model.name);
     let module::Text { code, constants } = module::write(file_name, &type_name, &equations, &start);
     Ok(Module { name: model.name.clone(), type_name, code, constants })

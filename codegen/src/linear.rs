@@ -16,6 +16,10 @@ pub const UNIT3: Mat3 = [
     [Graph::ZERO, Graph::ZERO, Graph::ONE],
 ];
 
+pub fn transposed(m: &Mat3) -> Mat3 {
+    std::array::from_fn(|row| std::array::from_fn(|column| m[column][row]))
+}
+
 impl Graph {
     pub fn dot<const N: usize>(&mut self, a: &[ExprId; N], b: &[ExprId; N]) -> ExprId {
         let mut sum = Self::ZERO;
@@ -125,6 +129,26 @@ impl Graph {
         let [e0, e1, e2, e3] = *p;
         let [_, n1, n2, n3] = self.neg_vec(p);
         [[n1, e0, e3, n2], [n2, n3, e0, e1], [n3, e2, n1, e0]]
+    }
+
+    /// `p ∘ q`: first the turn q, then p, as A(p) A(q).
+    pub fn compose(&mut self, p: &Vec4, q: &Vec4) -> Vec4 {
+        // (p0 q0 − p·q, p0 q + q0 p + p × q) = q0 p + Gᵀ(p) q.
+        let g = self.g_matrix(p);
+        std::array::from_fn(|k| {
+            let kept = self.mul(q[0], p[k]);
+            let turned = self.dot(&[g[0][k], g[1][k], g[2][k]], &[q[1], q[2], q[3]]);
+            self.add(kept, turned)
+        })
+    }
+
+    /// The angle of the point (cosine, sine) that is nearest to one that is known.
+    pub fn continued(&mut self, known: ExprId, sine: ExprId, cosine: ExprId) -> ExprId {
+        let (sin, cos) = (self.sin(known), self.cos(known));
+        let (minus_sin, point) = (self.neg(sin), [cosine, sine]);
+        let (across, along) = (self.dot(&point, &[minus_sin, cos]), self.dot(&point, &[cos, sin]));
+        let rest = self.atan2(across, along);
+        self.add(known, rest)
     }
 
     /// `½ G(p)ᵀ w`, paper eq. (14).

@@ -106,11 +106,6 @@ fn turned(graph: &mut Graph, p: &Vec4, u: &Vec3, angle: ExprId) -> Vec4 {
     let half = graph.fraction(1, 2);
     let half_angle = graph.mul(half, angle);
     let (sin, cos) = (graph.sin(half_angle), graph.cos(half_angle));
-    // p ∘ (0, u) = Gᵀ u.
-    let g = graph.g_matrix(p);
-    from_fn(|k| {
-        let along = graph.dot(&[g[0][k], g[1][k], g[2][k]], u);
-        let (kept, moved) = (graph.mul(cos, p[k]), graph.mul(sin, along));
-        graph.add(kept, moved)
-    })
+    let [x, y, z] = graph.scale_vec(sin, u);
+    graph.compose(p, &[cos, x, y, z])
 }

@@ -5,7 +5,7 @@ use crate::dynamics::Dynamics;
 use crate::freedom::Twist;
 use crate::graph::{ExprId, Graph};
 use crate::kinematics::Kinematics;
-use crate::null_space::{Arm, EliminatedTree, Inertia, Outwards, minus_applied_force};
+use crate::null_space::{Arm, EliminatedTree, Inertia, minus_applied_force};
 use crate::symbol::Symbol;
 use crate::system::System;
 use std::array::from_fn;
@@ -28,8 +28,8 @@ pub fn of(
     }
     for joint in tree.joints.iter().rev() {
         let freedom = &joint.freedom;
-        let arm = Arm::new(system, freedom.slot, &freedom.point, Outwards::No);
         let graph = &mut system.graph;
+        let arm = Arm::on_body(graph, freedom);
         let at_joint = arm.wrench(graph, &lacking[freedom.slot]);
         for (row, forced) in freedom.rows.clone().zip(&freedom.forced) {
             // M v̇ + Φᵀλ = f.
@@ -37,10 +37,8 @@ pub fn of(
             lambda[row] = graph.neg(supplied);
         }
         if let Some(parent) = freedom.parent {
-            let turned = Twist { t: at_joint.t, rho: graph.mat_vec(&parent.relative, &at_joint.rho) };
-            let arm = Arm::new(system, parent.slot, &parent.point, Outwards::Yes);
-            let carried = arm.wrench(&mut system.graph, &turned);
-            lacking[parent.slot] = lacking[parent.slot].plus(&mut system.graph, &carried);
+            let carried = parent.wrench(graph, &at_joint);
+            lacking[parent.slot] = lacking[parent.slot].plus(graph, &carried);
         }
     }
     lambda

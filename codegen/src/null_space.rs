@@ -8,10 +8,10 @@
 
 use crate::closing;
 use crate::dynamics::Dynamics;
-use crate::freedom::{Freedom, Twist};
+use crate::freedom::{Freedom, Parent, Twist};
 use crate::graph::{ExprId, Graph};
 use crate::kinematics::Kinematics;
-use crate::linear::{Mat3, Vec3, ZERO3};
+use crate::linear::{Mat3, Vec3, ZERO3, transposed};
 use crate::multipliers;
 use crate::system::System;
 
@@ -28,8 +28,10 @@ pub struct Solution {
 
 /// Solves eq. (17); the result is expressed in symbols that are yet to be expanded.
 pub fn solve(system: &mut System, kinematics: &Kinematics, dynamics: &Dynamics) -> Solution {
-    let tree = EliminatedTree::new(system, kinematics, dynamics);
-    let free = tree.accelerations(system, kinematics);
+    let links = system.tree.links.clone();
+    let freedoms = links.iter().map(|&link| Freedom::of(system, kinematics, link)).collect();
+    let tree = EliminatedTree::new(system, freedoms);
+    let free = tree.accelerations(system, kinematics, dynamics);
     let (motions, closing) = closing::close(system, kinematics, &tree, free);
     let accelerations = motions.iter().flat_map(|motion| motion.t.into_iter().chain(motion.rho)).collect();
     let lambda = multipliers::of(system, kinematics, dynamics, &tree);
@@ -41,14 +43,31 @@ pub fn solve(system: &mut System, kinematics: &Kinematics, dynamics: &Dynamics) 
 pub struct EliminatedTree {
     /// Root first.
     pub joints: Vec<EliminatedJoint>,
-    /// Minus the applied force on each slot.
-    bias: Vec<Twist>,
+}
+
+/// What sets a tree in motion.
+#[derive(Debug)]
+pub struct Excitation {
+    /// On the mass centre of each slot: minus the applied wrench.
+    pub bias: Vec<Twist>,
+    /// On each joint, root first: the acceleration forced upon it.
+    pub forced: Vec<Twist>,
+    /// On each joint, root first: the force along each of its free twists; those not listed have none.
+    pub along: Vec<Vec<ExprId>>,
+}
+
+/// How a tree moves.
+#[derive(Debug)]
+pub struct Response {
+    /// The acceleration of each slot's mass centre.
+    pub motions: Vec<Twist>,
+    /// For each joint, root first: how fast each of its free twists accelerates.
+    pub rates: Vec<Vec<ExprId>>,
 }
 
 impl EliminatedTree {
-    fn new(system: &mut System, kinematics: &Kinematics, dynamics: &Dynamics) -> Self {
-        let links = system.tree.links.clone();
-        let freedoms: Vec<_> = links.iter().map(|&link| Freedom::of(system, kinematics, link)).collect();
+    /// The links come root first.
+    pub fn new(system: &mut System, freedoms: Vec<Freedom>) -> Self {
         let n_slots = system.slots.len();
         let mut bodies: Vec<_> = (0..n_slots).map(|slot| Inertia::rigid(system, slot)).collect();
         let mut joints = Vec::new();
@@ -56,21 +75,26 @@ impl EliminatedTree {
             let parent = freedom.parent;
             let joint = EliminatedJoint::new(system, freedom, &bodies);
             if let Some(parent) = parent {
-                let load = joint.on_parent(&mut system.graph, &parent.relative);
-                let arm = Arm::new(system, parent.slot, &parent.point, Outwards::Yes);
-                let load = load.seen_through(&mut system.graph, &arm);
-                bodies[parent.slot].add(&mut system.graph, &load);
+                let graph = &mut system.graph;
+                let load = joint.rest.on_parent(graph, &parent);
+                let arm = Arm::on_parent(graph, &parent);
+                let load = load.seen_through(graph, &arm);
+                bodies[parent.slot].add(graph, &load);
             }
             joints.push(joint);
         }
         joints.reverse();
-        let bias = (0..n_slots).map(|slot| minus_applied_force(system, dynamics, slot)).collect();
-        Self { joints, bias }
+        Self { joints }
     }
 
     /// The accelerations that the applied forces and the rows of the tree's own joints bring about.
-    fn accelerations(&self, system: &mut System, kinematics: &Kinematics) -> Vec<Twist> {
-        let forced: Vec<_> = self
+    fn accelerations(
+        &self,
+        system: &mut System,
+        kinematics: &Kinematics,
+        dynamics: &Dynamics,
+    ) -> Vec<Twist> {
+        let forced = self
             .joints
             .iter()
             .map(|joint| {
@@ -81,24 +105,29 @@ impl EliminatedTree {
                 parts.iter().fold(Twist::ZERO, |sum, part| sum.plus(&mut system.graph, part))
             })
             .collect();
-        self.respond(system, self.bias.clone(), &forced)
+        let n_slots = system.slots.len();
+        let bias = (0..n_slots).map(|slot| minus_applied_force(system, dynamics, slot)).collect();
+        let along = vec![Vec::new(); self.joints.len()];
+        self.respond(&mut system.graph, Excitation { bias, forced, along }).motions
     }
 
-    /// The accelerations of the mass centres for a bias on each slot and an acceleration forced upon each joint.
-    pub fn respond(&self, system: &mut System, mut bias: Vec<Twist>, forced: &[Twist]) -> Vec<Twist> {
+    pub fn respond(&self, graph: &mut Graph, excitation: Excitation) -> Response {
+        let Excitation { mut bias, forced, along } = excitation;
         let mut loads = Vec::new();
-        for (joint, forced) in self.joints.iter().zip(forced).rev() {
-            let (own, on_parent) = joint.yield_to(system, &bias[joint.freedom.slot], forced);
+        for ((joint, forced), along) in self.joints.iter().zip(&forced).zip(&along).rev() {
+            let (own, on_parent) = joint.yield_to(graph, &bias[joint.freedom.slot], forced, along);
             loads.push(own);
             if let Some(parent) = joint.freedom.parent {
-                bias[parent.slot] = bias[parent.slot].plus(&mut system.graph, &on_parent);
+                bias[parent.slot] = bias[parent.slot].plus(graph, &on_parent);
             }
         }
-        let mut motions = vec![Twist::ZERO; bias.len()];
-        for ((joint, forced), loads) in self.joints.iter().zip(forced).zip(loads.iter().rev()) {
-            motions[joint.freedom.slot] = joint.motion(system, forced, loads, &motions);
+        let mut response = Response { motions: vec![Twist::ZERO; bias.len()], rates: Vec::new() };
+        for ((joint, forced), loads) in self.joints.iter().zip(&forced).zip(loads.iter().rev()) {
+            let (motion, rates) = joint.motion(graph, forced, loads, &response.motions);
+            response.motions[joint.freedom.slot] = motion;
+            response.rates.push(rates);
         }
-        motions
+        response
     }
 }
 
@@ -130,16 +159,8 @@ impl Twist {
     }
 }
 
-/// Which of the two points the twist is known at.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Outwards {
-    /// At the mass centre; wanted at the joint point.
-    Yes,
-    /// At the joint point; wanted at the mass centre.
-    No,
-}
-
-/// The change of the reference point of a body's twist: `t_wanted = t_known + K ρ` with `K = ∓A s̃'`.
+/// The change of the reference point of a body's twist: `t_wanted = t_known + K ρ` with `K = ∓A s̃'`, A the frame of the
+/// translations.
 #[derive(Clone, Copy, Debug)]
 pub struct Arm {
     k: Mat3,
@@ -148,12 +169,20 @@ pub struct Arm {
 }
 
 impl Arm {
-    pub fn new(system: &mut System, slot: usize, point: &Vec3, outwards: Outwards) -> Self {
-        let a = system.poses[system.slots[slot]].a;
-        let graph = &mut system.graph;
-        let known_to_wanted = if outwards == Outwards::Yes { graph.neg_vec(point) } else { *point };
-        let tilde = graph.tilde(&known_to_wanted);
-        let k = graph.mat_mul(&a, &tilde);
+    /// Known at the joint point, wanted at the mass centre.
+    pub fn on_body(graph: &mut Graph, freedom: &Freedom) -> Self {
+        Self::new(graph, &freedom.frame, &freedom.point)
+    }
+
+    /// Known at the parent's mass centre, wanted at the joint point.
+    pub fn on_parent(graph: &mut Graph, parent: &Parent) -> Self {
+        let towards_centre = graph.neg_vec(&parent.point);
+        Self::new(graph, &parent.frame, &towards_centre)
+    }
+
+    fn new(graph: &mut Graph, frame: &Mat3, known_from_wanted: &Vec3) -> Self {
+        let tilde = graph.tilde(known_from_wanted);
+        let k = graph.mat_mul(frame, &tilde);
         let square = graph.mat_mul(&transposed(&tilde), &tilde);
         Self { k, square }
     }
@@ -167,6 +196,28 @@ impl Arm {
     pub fn wrench(&self, graph: &mut Graph, wanted: &Twist) -> Twist {
         let moment = graph.transposed_vec(&self.k, &wanted.t);
         Twist { t: wanted.t, rho: graph.add_vec(&wanted.rho, &moment) }
+    }
+}
+
+impl Parent {
+    /// The twist of the parent's mass centre as one of the body at the joint point.
+    pub fn twist(&self, graph: &mut Graph, of_parent: &Twist) -> Twist {
+        let arm = Arm::on_parent(graph, self);
+        let at_joint = arm.twist(graph, of_parent);
+        Twist {
+            t: graph.transposed_vec(&self.carried, &at_joint.t),
+            rho: graph.transposed_vec(&self.relative, &at_joint.rho),
+        }
+    }
+
+    /// A wrench on the body at the joint point as one on the parent at its mass centre.
+    pub fn wrench(&self, graph: &mut Graph, on_body: &Twist) -> Twist {
+        let turned = Twist {
+            t: graph.mat_vec(&self.carried, &on_body.t),
+            rho: graph.mat_vec(&self.relative, &on_body.rho),
+        };
+        let arm = Arm::on_parent(graph, self);
+        arm.wrench(graph, &turned)
     }
 }
 
@@ -190,7 +241,7 @@ impl Inertia {
         Self { mass, linear: [ZERO3; 3], coupling: [ZERO3; 3], angular }
     }
 
-    fn add(&mut self, graph: &mut Graph, other: &Self) {
+    pub fn add(&mut self, graph: &mut Graph, other: &Self) {
         self.mass = graph.add(self.mass, other.mass);
         self.linear = sum(graph, &self.linear, &other.linear);
         self.coupling = sum(graph, &self.coupling, &other.coupling);
@@ -206,8 +257,23 @@ impl Inertia {
         Twist { t: graph.add_vec(&force, &turned), rho: graph.add_vec(&torque, &moment) }
     }
 
+    /// What the parent feels at the joint point, in its own frames.
+    pub fn on_parent(&self, graph: &mut Graph, parent: &Parent) -> Self {
+        let Parent { relative, carried, .. } = parent;
+        let mut turned = |m: &Mat3, left: &Mat3, right: &Mat3| {
+            let product = graph.mat_mul(left, m);
+            graph.mat_mul(&product, &transposed(right))
+        };
+        Self {
+            mass: self.mass,
+            linear: symmetric(&turned(&self.linear, carried, carried)),
+            coupling: turned(&self.coupling, carried, relative),
+            angular: symmetric(&turned(&self.angular, relative, relative)),
+        }
+    }
+
     /// The same inertia in terms of the twist at an arm's known point.
-    fn seen_through(&self, graph: &mut Graph, arm: &Arm) -> Self {
+    pub fn seen_through(&self, graph: &mut Graph, arm: &Arm) -> Self {
         let k_transposed = transposed(&arm.k);
         let even = arm.k.map(|row| graph.scale_vec(self.mass, &row));
         let rest = graph.mat_mul(&self.linear, &arm.k);
@@ -243,8 +309,8 @@ struct Step {
 
 impl EliminatedJoint {
     fn new(system: &mut System, freedom: Freedom, bodies: &[Inertia]) -> Self {
-        let arm = Arm::new(system, freedom.slot, &freedom.point, Outwards::No);
         let graph = &mut system.graph;
+        let arm = Arm::on_body(graph, &freedom);
         let mut rest = bodies[freedom.slot].seen_through(graph, &arm);
         let mut steps = Vec::new();
         for twist in &freedom.free {
@@ -257,26 +323,20 @@ impl EliminatedJoint {
         Self { freedom, steps, rest }
     }
 
-    /// The inertia that the parent feels at the joint point, in its own frame.
-    fn on_parent(&self, graph: &mut Graph, relative: &Mat3) -> Inertia {
-        let back = transposed(relative);
-        let turned = graph.mat_mul(relative, &self.rest.angular);
-        Inertia {
-            mass: self.rest.mass,
-            linear: self.rest.linear,
-            coupling: graph.mat_mul(&self.rest.coupling, &back),
-            angular: symmetric(&graph.mat_mul(&turned, &back)),
-        }
-    }
-
     /// The load that each free twist yields to, and the bias that is left for the parent's mass centre.
-    fn yield_to(&self, system: &mut System, bias: &Twist, forced: &Twist) -> (Vec<ExprId>, Twist) {
-        let arm = Arm::new(system, self.freedom.slot, &self.freedom.point, Outwards::No);
-        let graph = &mut system.graph;
+    fn yield_to(
+        &self,
+        graph: &mut Graph,
+        bias: &Twist,
+        forced: &Twist,
+        along: &[ExprId],
+    ) -> (Vec<ExprId>, Twist) {
+        let arm = Arm::on_body(graph, &self.freedom);
         let mut bias = arm.wrench(graph, bias);
         let mut loads = Vec::new();
-        for step in &self.steps {
+        for (k, step) in self.steps.iter().enumerate() {
             let load = step.twist.dot(graph, &bias);
+            let load = graph.sub(load, along.get(k).copied().unwrap_or(Graph::ZERO));
             let share = graph.mul(load, step.inverse);
             let reaction = step.resistance.scaled(graph, share).negated(graph);
             bias = bias.plus(graph, &reaction);
@@ -285,26 +345,32 @@ impl EliminatedJoint {
         let Some(parent) = self.freedom.parent else { return (loads, Twist::ZERO) };
         let inertial = self.rest.times(graph, forced);
         bias = bias.plus(graph, &inertial);
-        let turned = Twist { t: bias.t, rho: graph.mat_vec(&parent.relative, &bias.rho) };
-        let arm = Arm::new(system, parent.slot, &parent.point, Outwards::Yes);
-        (loads, arm.wrench(&mut system.graph, &turned))
+        (loads, parent.wrench(graph, &bias))
     }
 
-    /// The acceleration of the body's mass centre.
-    fn motion(&self, system: &mut System, forced: &Twist, loads: &[ExprId], motions: &[Twist]) -> Twist {
+    /// The acceleration of the body's mass centre, and that of each free twist.
+    fn motion(
+        &self,
+        graph: &mut Graph,
+        forced: &Twist,
+        loads: &[ExprId],
+        motions: &[Twist],
+    ) -> (Twist, Vec<ExprId>) {
         let mut motion = *forced;
         if let Some(parent) = self.freedom.parent {
-            let arm = Arm::new(system, parent.slot, &parent.point, Outwards::Yes);
-            let graph = &mut system.graph;
-            let at_joint = arm.twist(graph, &motions[parent.slot]);
-            let rho = graph.transposed_vec(&parent.relative, &at_joint.rho);
-            motion = motion.plus(graph, &Twist { t: at_joint.t, rho });
+            let carried = parent.twist(graph, &motions[parent.slot]);
+            motion = motion.plus(graph, &carried);
         }
+        let mut rates = Vec::new();
         for (step, load) in self.steps.iter().zip(loads).rev() {
-            motion = step.release(&mut system.graph, &motion, *load);
+            let rate = step.release(graph, &motion, *load);
+            let yielded = step.twist.scaled(graph, rate);
+            motion = motion.plus(graph, &yielded);
+            rates.push(rate);
         }
-        let arm = Arm::new(system, self.freedom.slot, &self.freedom.point, Outwards::No);
-        arm.twist(&mut system.graph, &motion)
+        rates.reverse();
+        let arm = Arm::on_body(graph, &self.freedom);
+        (arm.twist(graph, &motion), rates)
     }
 }
 
@@ -321,14 +387,12 @@ impl Step {
         }
     }
 
-    /// Adds the twist, yielding to the load and to the acceleration so far.
-    fn release(&self, graph: &mut Graph, motion: &Twist, load: ExprId) -> Twist {
+    /// How fast the twist accelerates, yielding to the load and to the acceleration so far.
+    fn release(&self, graph: &mut Graph, motion: &Twist, load: ExprId) -> ExprId {
         let inertial = self.resistance.dot(graph, motion);
         let resisting = graph.add(inertial, load);
         let rate = graph.mul(resisting, self.inverse);
-        let rate = graph.neg(rate);
-        let yielded = self.twist.scaled(graph, rate);
-        motion.plus(graph, &yielded)
+        graph.neg(rate)
     }
 }
 
@@ -352,10 +416,6 @@ fn less_product(graph: &mut Graph, m: &Mat3, u: &Vec3, v: &Vec3, symmetry: Symme
 /// The upper triangle mirrored: entries that are equal become one expression.
 fn symmetric(m: &Mat3) -> Mat3 {
     std::array::from_fn(|row| std::array::from_fn(|column| m[row.min(column)][row.max(column)]))
-}
-
-fn transposed(m: &Mat3) -> Mat3 {
-    std::array::from_fn(|row| std::array::from_fn(|column| m[column][row]))
 }
 
 fn sum(graph: &mut Graph, a: &Mat3, b: &Mat3) -> Mat3 {

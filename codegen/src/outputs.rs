@@ -86,7 +86,7 @@ fn acceleration(system: &mut System, body: usize, point: &[Number; 3]) -> (Vec3,
     (graph.add_vec(&linear, &relative), angular)
 }
 
-fn time_derivative(system: &mut System, vector: &Vec3) -> Vec3 {
+pub fn time_derivative(system: &mut System, vector: &Vec3) -> Vec3 {
     let time = Direction::from([(Symbol::Time, Graph::ONE)]);
     let mut derivative = Derivative::new(&system.definitions, time);
     vector.map(|x| derivative.of(&mut system.graph, x))

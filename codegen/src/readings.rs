@@ -2,9 +2,9 @@
 
 use crate::coordinate::{self, relative_spin};
 use crate::graph::ExprId;
-use crate::linear::Mat3;
+use crate::linear::{Mat3, Vec4};
 use crate::system::{JointFrames, System};
-use gyro_model::{JointCoordinate, JointKind};
+use gyro_model::{CoordinateKind, JointCoordinate, JointKind};
 
 /// The raw readings of all joints: see `gyro_sim::Coordinate`.
 pub fn readings(system: &mut System) -> Vec<ExprId> {
@@ -18,9 +18,7 @@ pub fn readings(system: &mut System) -> Vec<ExprId> {
         for (coordinate, &kind) in joint.kind.coordinates().iter().enumerate() {
             let place = JointCoordinate { joint: index, coordinate };
             if kind.is_angle() {
-                let relative = direction_rotation(system, &joint);
-                let graph = &mut system.graph;
-                let (sine, cosine) = coordinate::sine_and_cosine(graph, kind, &joint, &relative);
+                let (sine, cosine) = raw_angle(system, place, kind);
                 readings.extend([sine, cosine]);
             } else {
                 readings.push(coordinate::value(system, place));
@@ -29,6 +27,13 @@ pub fn readings(system: &mut System) -> Vec<ExprId> {
         }
     }
     readings
+}
+
+/// Sine and cosine of an angle up to a common factor, whatever the lengths of p.
+pub fn raw_angle(system: &mut System, place: JointCoordinate, kind: CoordinateKind) -> (ExprId, ExprId) {
+    let joint = system.joints[place.joint];
+    let relative = direction_rotation(system, &joint);
+    coordinate::sine_and_cosine(&mut system.graph, kind, &joint, &relative)
 }
 
 /// `A_iᵀ A_j` times |p_i|² |p_j|²: a rotation in direction whatever the length of p, which direct integration loses. Only the
@@ -45,9 +50,8 @@ fn direction_rotation(system: &mut System, joint: &JointFrames) -> Mat3 {
 }
 
 /// `p_i* p_j`: scalar part p_iᵀp_j, vector part G(p_i) p_j.
-fn relative_euler(system: &mut System, joint: &JointFrames) -> Vec<ExprId> {
+pub fn relative_euler(system: &mut System, joint: &JointFrames) -> Vec4 {
     let (p_i, p_j) = (system.poses[joint.first.body].p, system.poses[joint.second.body].p);
-    let g = system.graph.g_matrix(&p_i);
-    let scalar = system.graph.dot(&p_i, &p_j);
-    std::iter::once(scalar).chain(g.map(|row| system.graph.dot(&row, &p_j))).collect()
+    let [x, y, z] = system.graph.g_matrix(&p_i);
+    [p_i, x, y, z].map(|row| system.graph.dot(&row, &p_j))
 }

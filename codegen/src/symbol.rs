@@ -30,6 +30,14 @@ pub enum Symbol {
     Acceleration { slot: usize, k: usize },
     /// Multiplier of a row that closes a loop, where accelerations are known.
     Closing(usize),
+    /// Joint coordinate, by its place in x: see `joint_space::Layout`.
+    Coordinate(usize),
+    /// Rate, by its place in u.
+    Rate(usize),
+    /// Sine of the joint coordinate of that place, an angle.
+    Sine(usize),
+    /// Its cosine.
+    Cosine(usize),
     /// Entry of A(p), defined by eq. (3).
     Rotation { slot: usize, row: usize, column: usize },
     /// Entry of A_iᵀ A_j between a joint's first and second body, eq. (4).

@@ -98,11 +98,7 @@ impl<'m> System<'m> {
             let graph = &mut self.graph;
             let (sine, cosine) = coordinate::sine_and_cosine(graph, kind, &joint, &joint.relative);
             let reference = graph.symbol(Symbol::Turn(turn));
-            let (sin, cos) = (graph.sin(reference), graph.cos(reference));
-            let (minus_sin, point) = (graph.neg(sin), [cosine, sine]);
-            let (across, along) = (graph.dot(&point, &[minus_sin, cos]), graph.dot(&point, &[cos, sin]));
-            let rest = graph.atan2(across, along);
-            let angle = graph.add(reference, rest);
+            let angle = graph.continued(reference, sine, cosine);
             self.definitions.insert_angle(turn, angle, (sine, cosine));
         }
     }

@@ -69,7 +69,7 @@ mod violation;
 
 pub use error::Error;
 pub use mechanism::{
-    Coordinate, Energy, Equations, JointInfo, Mechanism, Ode, OutputInfo, Owner, Partition, Ports, RowInfo,
+    Coordinate, Energy, Equations, JointForm, JointInfo, JointSpace, Mechanism, Ode, OutputInfo, Owner, Partition, Ports, RowInfo,
     Storage,
 };
 pub use partition::{Direct, Partitioned};

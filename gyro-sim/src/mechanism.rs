@@ -99,6 +99,60 @@ pub trait Partition: Mechanism<Scalar: Real> {
         choice: &Self::Independent,
         y: &mut Self::State,
     ) -> Result<(), Error>;
+    /// Writes `f(t, y)` like [`Ode::derivative`], for states that were corrected a few steps ago: violations of the constraints
+    /// are of the order of the integrator's error, and so is what this takes for granted. Trees need far fewer operations
+    /// for it.
+    fn corrected_derivative(&self, t: Self::Scalar, y: &Self::State, dy: &mut Self::State) {
+        self.derivative(t, y, dy);
+    }
+}
+
+/// A tree in joint coordinates: the state-space form, with the maps to and from maximal coordinates, and short ways to the
+/// accelerations of a maximal state that satisfies the constraints.
+///
+/// The joint state is `(x, u [, work])`. x has, joint after joint in the order of the model page, each scalar coordinate (an angle, rad,
+/// continuous over turns; a displacement, m), and then, of spherical joints and points on a line, the Euler parameters of the second
+/// body in the first's frame; after the joints, of each free body `r` and `p`. u has their rates: of Euler parameters the
+/// angular velocity relative to the first body in the second's frame, rad/s, of free bodies `s` and `w'`.
+pub trait JointSpace: Equations {
+    /// `(x, u [, work])`.
+    type Joints: Storage<Self::Scalar>;
+    /// One scalar for each rate.
+    type Rates: Storage<Self::Scalar>;
+
+    /// The assembled start, with all parameters at their defaults.
+    fn joint_start(&self) -> Self::Joints;
+    /// Zeroed buffer.
+    fn rates(&self) -> Self::Rates;
+    /// Writes u̇.
+    fn joint_accelerations(&self, t: Self::Scalar, x: &Self::Joints, out: &mut Self::Rates);
+    /// Writes the derivative of the joint state: an [`Ode`] by way of [`JointForm`].
+    fn joint_derivative(&self, t: Self::Scalar, x: &Self::Joints, dx: &mut Self::Joints);
+    /// The maximal state of a joint state; it satisfies the constraints.
+    fn to_maximal(&self, t: Self::Scalar, x: &Self::Joints, y: &mut Self::State);
+    /// The joint state of a maximal state; angles are those nearest to what `x` holds before.
+    fn to_joints(&self, t: Self::Scalar, y: &Self::State, x: &mut Self::Joints);
+    /// Writes u̇ at a maximal state that satisfies the constraints.
+    fn joint_accelerations_at(&self, t: Self::Scalar, y: &Self::State, out: &mut Self::Rates);
+    /// Writes (s̈, ẇ') at a maximal state that satisfies the constraints; elsewhere
+    /// [`Equations::accelerations`] solves eq. (17).
+    fn corrected_accelerations(&self, t: Self::Scalar, y: &Self::State, out: &mut Self::Velocities);
+}
+
+/// A tree's joint coordinates as a first-order system, for any explicit integrator.
+#[derive(Clone, Copy, Debug)]
+pub struct JointForm<'a, M>(pub &'a M);
+
+impl<M: JointSpace> Ode for JointForm<'_, M> {
+    type Scalar = M::Scalar;
+    type State = M::Joints;
+
+    fn start(&self) -> Self::State {
+        self.0.joint_start()
+    }
+    fn derivative(&self, t: Self::Scalar, x: &Self::State, dx: &mut Self::State) {
+        self.0.joint_derivative(t, x, dx);
+    }
 }
 
 /// The equations of motion term by term, for inspection, tests and other solvers.

@@ -48,6 +48,21 @@ pub struct Partitioned<M: Partition> {
     switches: u64,
 }
 
+/// A mechanism between two corrections.
+struct Corrected<'a, M>(&'a M);
+
+impl<M: Partition> Ode for Corrected<'_, M> {
+    type Scalar = M::Scalar;
+    type State = M::State;
+
+    fn start(&self) -> Self::State {
+        self.0.start()
+    }
+    fn derivative(&self, t: Self::Scalar, y: &Self::State, dy: &mut Self::State) {
+        self.0.corrected_derivative(t, y, dy);
+    }
+}
+
 /// Newton–Raphson converges quadratically from the drift of a few steps: one or two iterations. Ten mean that it does not.
 const MAX_ITERATIONS: u32 = 10;
 
@@ -79,7 +94,7 @@ impl<M: Partition> Partitioned<M> {
         n_steps: u32,
         y: &mut M::State,
     ) -> Result<(), Error> {
-        self.direct.advance(mechanism, t, h, n_steps, y)?;
+        self.direct.advance(&Corrected(mechanism), t, h, n_steps, y)?;
         self.correct(mechanism, t + h * M::Scalar::constant(f64::from(n_steps)), y)
     }
 

@@ -9,6 +9,7 @@ mod four_bar;
 mod generated_files;
 mod joint_kinds;
 mod joint_readings;
+mod joint_space;
 mod long_run;
 mod moving_base;
 mod paper_scenes;

@@ -2,6 +2,7 @@
 
 mod definition;
 mod equations;
+mod joint_space;
 mod mechanism;
 mod ode;
 mod partition;
@@ -98,7 +99,7 @@ impl ModuleWriter<'_> {
     fn tokens(&self, start: &Start) -> TokenStream {
         let (tables, definition, ode) = (self.tables_of_motions(), self.definition(), self.ode(start));
         let (mechanism, partition) = (self.mechanism(), self.partition());
-        let (equations, ports) = (self.equations(), self.ports());
+        let (equations, joint_space, ports) = (self.equations(), self.joint_space(), self.ports());
         quote! {
             #tables
             #definition
@@ -106,6 +107,7 @@ impl ModuleWriter<'_> {
             #mechanism
             #partition
             #equations
+            #joint_space
             #ports
         }
     }
@@ -148,7 +150,7 @@ impl ModuleWriter<'_> {
         &self,
         what: &str,
         roots: &[ExprId],
-        write: impl Fn(&Body, &TokenStream, &TokenStream) -> TokenStream,
+        write: impl Fn(&Body, &TokenStream, &Ident) -> TokenStream,
     ) -> TokenStream {
         let body = self.body(roots);
         let reads_state = body.symbols.iter().any(|symbol| {
@@ -166,11 +168,13 @@ impl ModuleWriter<'_> {
         } else {
             quote! { _t }
         };
-        let y = if reads_state {
-            quote! { y }
-        } else {
-            quote! { _y }
-        };
+        let reads_joints =
+            body.symbols.iter().any(|symbol| matches!(symbol, Symbol::Coordinate(_) | Symbol::Rate(_)));
+        let y = ident(match (reads_state, reads_joints) {
+            (true, _) => "y",
+            (false, true) => "x",
+            (false, false) => "_y",
+        });
         let doc = format!(" {what}: {}.", self.operations(roots));
         let function = write(&body, &t, &y);
         quote! { #[doc = #doc] #function }

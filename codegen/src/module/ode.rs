@@ -33,15 +33,34 @@ impl ModuleWriter<'_> {
 
     /// The rates of everything but the velocities; the accelerations are those of `Equations`, unrolled there and nowhere else.
     fn derivative(&self) -> TokenStream {
-        let n_positions = 7 * self.equations.n_slots();
         let what = "Writes ẏ; beyond what [`Equations::accelerations`] takes";
+        self.derivative_with(&quote! { derivative }, what, &quote! {
+            let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
+            gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
+        })
+    }
+
+    /// The same between two corrections, where there are cheaper accelerations for it.
+    pub fn corrected_derivative(&self) -> Option<TokenStream> {
+        self.equations.joint_space.as_ref()?;
+        if self.functions.derivative_needs_multipliers(&self.equations.graph) {
+            return None;
+        }
+        let what = "Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes";
+        Some(self.derivative_with(&quote! { corrected_derivative }, what, &quote! {
+            let mut accelerations = gyro_sim::Equations::velocities(self);
+            gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        }))
+    }
+
+    fn derivative_with(&self, name: &TokenStream, what: &str, solve: &TokenStream) -> TokenStream {
+        let n_positions = 7 * self.equations.n_slots();
         self.function(what, &self.functions.derivative, |body, _, _| {
             let (statements, (positions, rest)) = (&body.statements, body.values.split_at(n_positions));
             let places = (0..self.equations.accelerations.len()).map(index);
             quote! {
-                fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-                    let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
-                    gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
+                fn #name(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+                    #solve
                     #statements
                     *dy = [#(#positions,)* #(accelerations[#places],)* #(#rest),*];
                 }

@@ -15,6 +15,7 @@ impl ModuleWriter<'_> {
     /// Full pivoting at run time.
     fn by_pivoting(&self) -> TokenStream {
         let name = ident(self.type_name);
+        let corrected = self.corrected_derivative();
         let [n_constraints, n_positions] =
             [self.equations.phi.len(), 7 * self.equations.n_slots()].map(index);
         quote! {
@@ -37,6 +38,7 @@ impl ModuleWriter<'_> {
                 ) -> ::core::result::Result<(), gyro_sim::Error> {
                     gyro_sim::pivoting::solve_velocities(self, t, choice, y)
                 }
+                #corrected
             }
         }
     }
@@ -72,6 +74,7 @@ impl ModuleWriter<'_> {
             &self.functions.solve_velocities,
             7 * self.equations.n_slots(),
         );
+        let corrected = self.corrected_derivative();
         quote! {
             impl<T: gyro_sim::Scalar> #name<T> {
                 #vectors
@@ -89,6 +92,7 @@ impl ModuleWriter<'_> {
 
                 #newton
                 #velocities
+                #corrected
             }
         }
     }

@@ -79,7 +79,7 @@ impl ModuleWriter<'_> {
                     let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
                     gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
                 };
-                (&quote! { t }, &quote! { y }, solved)
+                (&quote! { t }, &ident("y"), solved)
             } else {
                 (t, y, quote! {})
             };

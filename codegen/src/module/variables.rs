@@ -54,7 +54,14 @@ impl Variables for ModuleWriter<'_> {
             Symbol::Closing(row) => {
                 bound(format!("closing{row}"), "accelerations", self.equations.accelerations.len() + row)
             }
-            Symbol::Angle(_)
+            Symbol::Coordinate(place) => bound(format!("x{place}"), "x", place),
+            Symbol::Rate(place) => {
+                let first = self.equations.joint_space.as_ref().map_or(0, |space| space.layout.n_coordinates);
+                bound(format!("u{place}"), "x", first + place)
+            }
+            Symbol::Sine(_)
+            | Symbol::Cosine(_)
+            | Symbol::Angle(_)
             | Symbol::Rotation { .. }
             | Symbol::Relative { .. }
             | Symbol::RotationRate { .. }

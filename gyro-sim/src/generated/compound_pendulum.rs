@@ -27,6 +27,12 @@
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 4 |
 //! | newton_step | dependent positions, one Newton step | 51 | 86 | 1 | 138 | 0 of 7 |
 //! | solve_velocities | dependent velocities, eq. (19) | 21 | 41 | 1 | 63 | 0 of 6 |
+//! | joint_accelerations | u̇ in joint coordinates | 0 | 1 | 0 | 1 | 0 of 1 |
+//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 1 |
+//! | to_maximal | (q, v) of a joint state | 3 | 10 | 0 | 13 | 6 of 13 |
+//! | to_joints | (x, u) of a maximal state | 10 | 12 | 0 | 22 | 0 of 2 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 2 | 2 | 0 | 4 | 0 of 1 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 23 | 40 | 0 | 63 | 0 of 6 |
 
 /// The mechanism `compound_pendulum`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -387,6 +393,37 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for CompoundPendulum<T> {
         y[11] = t10;
         Ok(())
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let rod_e0 = y[3];
+        let rod_e1 = y[4];
+        let rod_e2 = y[5];
+        let rod_e3 = y[6];
+        let rod_sx = y[7];
+        let rod_sy = y[8];
+        let rod_sz = y[9];
+        let rod_wx = y[10];
+        let rod_wy = y[11];
+        let rod_wz = y[12];
+        *dy = [
+            rod_sx,
+            rod_sy,
+            rod_sz,
+            -(k(0.5) * (rod_e1 * rod_wx + rod_e2 * rod_wy + rod_e3 * rod_wz)),
+            k(0.5) * (rod_e0 * rod_wx - rod_e3 * rod_wy + rod_e2 * rod_wz),
+            k(0.5) * (rod_e3 * rod_wx + rod_e0 * rod_wy - rod_e1 * rod_wz),
+            -(k(0.5) * (rod_e2 * rod_wx - rod_e1 * rod_wy - rod_e0 * rod_wz)),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+        ];
+    }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for CompoundPendulum<T> {
     type Velocities = [T; 6];
@@ -676,6 +713,128 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CompoundPendulum<T> {
             -t2,
             -(t9 * t10 * t13 + t11 * (t5 * t10)),
             t4 * t10 * t13 + t11 * (t8 * t10),
+        ];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CompoundPendulum<T> {
+    type Joints = [T; 2];
+    type Rates = [T; 1];
+    fn joint_start(&self) -> Self::Joints {
+        let k = T::constant;
+        [k(1.5707963267948966), k(0.0)]
+    }
+    fn rates(&self) -> Self::Rates {
+        [T::constant(0.0); 1]
+    }
+    /// Writes u̇: 1 operations (0 ±, 1 ×, 0 ÷) and 1 functions.
+    fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
+        let k = T::constant;
+        let x0 = x[0];
+        *out = [-(k(14.715) * x0.sin())];
+    }
+    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
+    fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
+        let mut rates = gyro_sim::JointSpace::rates(self);
+        gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
+        let u0 = x[1];
+        *dx = [u0, rates[0]];
+    }
+    /// Writes the maximal state of a joint state: 13 operations (3 ±, 10 ×, 0 ÷) and 2 functions.
+    fn to_maximal(&self, _t: T, x: &Self::Joints, y: &mut Self::State) {
+        let k = T::constant;
+        let x0 = x[0];
+        let u0 = x[1];
+        let t0 = k(0.5) * x0;
+        let t1 = t0.cos();
+        let t2 = t0.sin();
+        let t3 = k(0.7071067811865476) * (t2 + t1);
+        let t4 = k(0.5) - t3 * t3;
+        let t5 = k(0.7071067811865476) * (t2 - t1);
+        let t6 = t3 * t5;
+        let t7 = k(0.5) * u0;
+        *y = [
+            -t4,
+            t6,
+            k(0.0),
+            -t3,
+            k(0.0),
+            k(0.0),
+            -t5,
+            -(t7 * (k(2.0) * t6)),
+            -(t7 * (k(2.0) * t4)),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            u0,
+        ];
+    }
+    /// Writes the joint state of a maximal state: 22 operations (10 ±, 12 ×, 0 ÷) and 3 functions.
+    fn to_joints(&self, _t: T, y: &Self::State, x: &mut Self::Joints) {
+        let k = T::constant;
+        let rod_e0 = y[3];
+        let rod_e1 = y[4];
+        let rod_e2 = y[5];
+        let rod_e3 = y[6];
+        let rod_wz = y[12];
+        let x0 = x[0];
+        let t0 = x0.sin();
+        let t1 = rod_e0 * rod_e0 + rod_e1 * rod_e1;
+        let t2 = k(2.0) * (k(0.5) - t1)
+            - (k(1.0) - (rod_e3 * rod_e3 + (t1 + rod_e2 * rod_e2)));
+        let t3 = x0.cos();
+        let t4 = k(2.0) * (rod_e1 * rod_e2 + rod_e0 * rod_e3);
+        let t5 = (t4 * t0 - t2 * t3).atan2(-(t4 * t3 + t2 * t0));
+        x[0] = x0 + t5;
+        x[1] = rod_wz;
+    }
+    /// Writes u̇ at a state that satisfies the constraints: 4 operations (2 ±, 2 ×, 0 ÷).
+    fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
+        let k = T::constant;
+        let rod_e0 = y[3];
+        let rod_e3 = y[6];
+        *out = [-(k(14.715) * ((rod_e0 + rod_e3) * (rod_e0 - rod_e3)))];
+    }
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 63 operations (23 ±, 40 ×, 0 ÷).
+    fn corrected_accelerations(
+        &self,
+        _t: T,
+        y: &Self::State,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let rod_e0 = y[3];
+        let rod_e1 = y[4];
+        let rod_e2 = y[5];
+        let rod_e3 = y[6];
+        let rod_wx = y[10];
+        let rod_wy = y[11];
+        let rod_wz = y[12];
+        let t0 = k(0.5) * rod_wz;
+        let t1 = k(0.5) * rod_wy;
+        let t2 = rod_wy * t1 + rod_wz * t0;
+        let t3 = rod_e0 * rod_e0;
+        let t4 = (rod_e0 + rod_e3) * (rod_e0 - rod_e3);
+        let t5 = rod_wx * t1 - k(7.3575) * t4;
+        let t6 = rod_e0 * rod_e3;
+        let t7 = rod_e1 * rod_e2;
+        let t8 = k(2.0) * (t7 - t6) * t5
+            + k(2.0) * (k(0.5) - (t3 + rod_e1 * rod_e1)) * t2;
+        let t9 = rod_wx * rod_wz;
+        let t10 = rod_wx * t0 + k(0.5) * t9;
+        let t11 = rod_e0 * rod_e2;
+        let t12 = rod_e1 * rod_e3;
+        let t13 = k(2.0) * (k(0.5) - (t3 + rod_e2 * rod_e2)) * t5
+            + k(2.0) * (t7 + t6) * t2;
+        let t14 = rod_e0 * rod_e1;
+        let t15 = rod_e2 * rod_e3;
+        let t16 = k(2.0) * (t15 + t14) * t5 - k(2.0) * (t12 - t11) * t2;
+        *out = [
+            k(2.0) * (t12 + t11) * t10 + t8,
+            k(2.0) * (t15 - t14) * t10 - t13,
+            t16 - k(2.0) * (k(0.5) - (t3 + rod_e3 * rod_e3)) * t10,
+            rod_wy * rod_wz,
+            -t9,
+            -(k(14.715) * t4),
         ];
     }
 }

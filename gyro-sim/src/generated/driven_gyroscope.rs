@@ -26,6 +26,12 @@
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
 //! | newton_step | dependent positions, one Newton step | 200 | 330 | 3 | 533 | 6 of 21 |
 //! | solve_velocities | dependent velocities, eq. (19) | 102 | 173 | 3 | 278 | 6 of 18 |
+//! | joint_accelerations | u̇ in joint coordinates | 21 | 48 | 1 | 70 | 0 of 3 |
+//! | joint_derivative | ẋ but for u̇ | 160 | 287 | 2 | 449 | 0 of 4 |
+//! | to_maximal | (q, v) of a joint state | 32 | 72 | 0 | 104 | 12 of 39 |
+//! | to_joints | (x, u) of a maximal state | 65 | 77 | 0 | 142 | 0 of 6 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 34 | 71 | 1 | 106 | 0 of 3 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 73 | 130 | 1 | 204 | 7 of 18 |
 
 /// The mechanism `driven_gyroscope`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -1130,6 +1136,204 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for DrivenGyroscope<T> {
         y[38] = rotor_wz + t83 * (t73 * t75) + t81 * (t72 * t75);
         Ok(())
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 332 operations (121 ±, 210 ×, 1 ÷) and 4 functions.
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_sx = y[21];
+        let outer_ring_sy = y[22];
+        let outer_ring_sz = y[23];
+        let inner_ring_sx = y[27];
+        let inner_ring_sy = y[28];
+        let inner_ring_sz = y[29];
+        let rotor_sx = y[33];
+        let rotor_sy = y[34];
+        let rotor_sz = y[35];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        let outer_ring_dwx = accelerations[3];
+        let outer_ring_dwz = accelerations[5];
+        let inner_ring_dwx = accelerations[9];
+        let inner_ring_dwy = accelerations[10];
+        let inner_ring_dwz = accelerations[11];
+        let rotor_dsx = accelerations[12];
+        let rotor_dsy = accelerations[13];
+        let rotor_dsz = accelerations[14];
+        let rotor_dwx = accelerations[15];
+        let rotor_dwy = accelerations[16];
+        let rotor_dwz = accelerations[17];
+        let t0 = rotor_e0 * rotor_e0;
+        let t1 = k(2.0) * (k(0.5) - (t0 + rotor_e1 * rotor_e1));
+        let t2 = inner_ring_e0 * inner_ring_e0;
+        let t3 = k(2.0) * (k(0.5) - (t2 + inner_ring_e1 * inner_ring_e1));
+        let t4 = rotor_e0 * rotor_e3;
+        let t5 = rotor_e1 * rotor_e2;
+        let t6 = k(2.0) * (t5 + t4);
+        let t7 = inner_ring_e0 * inner_ring_e3;
+        let t8 = inner_ring_e1 * inner_ring_e2;
+        let t9 = k(2.0) * (t8 + t7);
+        let t10 = rotor_e0 * rotor_e2;
+        let t11 = rotor_e1 * rotor_e3;
+        let t12 = k(2.0) * (t11 - t10);
+        let t13 = inner_ring_e0 * inner_ring_e2;
+        let t14 = inner_ring_e1 * inner_ring_e3;
+        let t15 = k(2.0) * (t14 - t13);
+        let t16 = k(1e-5) * rotor_dwx;
+        let t17 = k(2.0) * (t5 - t4);
+        let t18 = k(2.0) * (k(0.5) - (t0 + rotor_e2 * rotor_e2));
+        let t19 = rotor_e0 * rotor_e1;
+        let t20 = rotor_e2 * rotor_e3;
+        let t21 = k(2.0) * (t20 + t19);
+        let t22 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
+        let t23 = t22 * (t15 * t21 - (t9 * t18 + t3 * t17))
+            + t16 * (t15 * t12 + (t9 * t6 + t3 * t1));
+        let t24 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
+        let t25 = k(2.0) * (t11 + t10);
+        let t26 = k(2.0) * (t20 - t19);
+        let t27 = k(2.0) * (k(0.5) - (t0 + rotor_e3 * rotor_e3));
+        let t28 = (t15 * t27 - (t9 * t26 - t3 * t25)) * t24 + t23;
+        let t29 = t28 - k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx);
+        let t30 = outer_ring_e0 * outer_ring_e0;
+        let t31 = k(2.0) * (k(0.5) - (t30 + outer_ring_e1 * outer_ring_e1));
+        let t32 = k(2.0)
+            * (outer_ring_e1 * outer_ring_e2 + outer_ring_e0 * outer_ring_e3);
+        let t33 = outer_ring_e0 * outer_ring_e2;
+        let t34 = outer_ring_e1 * outer_ring_e3;
+        let t35 = k(2.0) * (t34 - t33);
+        let t36 = t8 - t7;
+        let t37 = k(2.0) * t36;
+        let t38 = k(0.5) - (t2 + inner_ring_e2 * inner_ring_e2);
+        let t39 = k(2.0) * t38;
+        let t40 = inner_ring_e0 * inner_ring_e1;
+        let t41 = inner_ring_e2 * inner_ring_e3;
+        let t42 = t41 + t40;
+        let t43 = k(2.0) * t42;
+        let t44 = t22 * (t43 * t21 + (t37 * t17 + t39 * t18))
+            + t16 * (t43 * t12 - (t39 * t6 + t37 * t1));
+        let t45 = (t43 * t27 - (t37 * t25 - t39 * t26)) * t24 + t44;
+        let t46 = t14 + t13;
+        let t47 = k(0.08) * rotor_dsx;
+        let t48 = t41 - t40;
+        let t49 = k(0.8) + k(0.08) * rotor_dsy;
+        let t50 = k(0.5) - (t2 + inner_ring_e3 * inner_ring_e3);
+        let t51 = k(0.08) * rotor_dsz;
+        let t52 = t51 * (k(0.00025) * t50)
+            - (t49 * (k(0.00025) * t48) + t47 * (k(0.00025) * t46));
+        let t53 = k(2e-6) * inner_ring_dwy + (t52 + t45);
+        let t54 = (t35 * t43 - (t32 * t39 + t31 * t37)) * t53
+            + (t35 * t15 + (t32 * t9 + t31 * t3)) * t29;
+        let t55 = k(2.0) * t46;
+        let t56 = k(2.0) * t48;
+        let t57 = k(2.0) * t50;
+        let t58 = t22 * (t57 * t21 - (t55 * t17 - t56 * t18))
+            + t16 * (t57 * t12 - (t56 * t6 - t55 * t1));
+        let t59 = (t55 * t25 + t56 * t26 + t57 * t27) * t24 + t58;
+        let t60 = t51 * (k(0.00025) * t42)
+            - (t49 * (k(0.00025) * t38) - t47 * (k(0.00025) * t36));
+        let t61 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz)
+            + (t60 - t59);
+        let t62 = (t35 * t57 - (t32 * t56 - t31 * t55)) * t61 - t54;
+        let t63 = k(2.0) * (k(0.5) - (t30 + outer_ring_e3 * outer_ring_e3));
+        let t64 = k(12.566370614359172) * t;
+        let t65 = k(0.1) * t64.sin();
+        let t66 = t65.cos();
+        let t67 = outer_ring_e0 * outer_ring_e1;
+        let t68 = outer_ring_e2 * outer_ring_e3;
+        let t69 = k(2.0) * (t68 - t67);
+        let t70 = t65.sin();
+        let t71 = k(2.0) * (t34 + t33);
+        let t72 = t71 * (t70 * t32 - t66 * t35) + t31 * (t70 * t69 + t66 * t63);
+        let t73 = k(1.0) / t72;
+        let t74 = (t63 * t43 - (t71 * t37 - t69 * t39)) * t53
+            + (t63 * t15 - (t69 * t9 - t71 * t3)) * t29;
+        let t75 = (t71 * t55 + t69 * t56 + t63 * t57) * t61 - t74;
+        let t76 = t71 * t73
+            * (t75 - k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz))
+            - t31 * t73 * (k(2e-6) * outer_ring_dwx - t62);
+        let t77 = k(1.2566370614359172) * t64.cos();
+        let t78 = k(2.0) * (k(0.5) - (t30 + outer_ring_e2 * outer_ring_e2)) * (t77 * t66)
+            - k(2.0) * (t68 + t67) * (t77 * t70);
+        *dy = [
+            outer_ring_sx,
+            outer_ring_sy,
+            outer_ring_sz,
+            -(k(0.5)
+                * (outer_ring_e1 * outer_ring_wx + outer_ring_e2 * outer_ring_wy
+                    + outer_ring_e3 * outer_ring_wz)),
+            k(0.5)
+                * (outer_ring_e0 * outer_ring_wx - outer_ring_e3 * outer_ring_wy
+                    + outer_ring_e2 * outer_ring_wz),
+            k(0.5)
+                * (outer_ring_e3 * outer_ring_wx + outer_ring_e0 * outer_ring_wy
+                    - outer_ring_e1 * outer_ring_wz),
+            -(k(0.5)
+                * (outer_ring_e2 * outer_ring_wx - outer_ring_e1 * outer_ring_wy
+                    - outer_ring_e0 * outer_ring_wz)),
+            inner_ring_sx,
+            inner_ring_sy,
+            inner_ring_sz,
+            -(k(0.5)
+                * (inner_ring_e1 * inner_ring_wx + inner_ring_e2 * inner_ring_wy
+                    + inner_ring_e3 * inner_ring_wz)),
+            k(0.5)
+                * (inner_ring_e0 * inner_ring_wx - inner_ring_e3 * inner_ring_wy
+                    + inner_ring_e2 * inner_ring_wz),
+            k(0.5)
+                * (inner_ring_e3 * inner_ring_wx + inner_ring_e0 * inner_ring_wy
+                    - inner_ring_e1 * inner_ring_wz),
+            -(k(0.5)
+                * (inner_ring_e2 * inner_ring_wx - inner_ring_e1 * inner_ring_wy
+                    - inner_ring_e0 * inner_ring_wz)),
+            rotor_sx,
+            rotor_sy,
+            rotor_sz,
+            -(k(0.5)
+                * (rotor_e1 * rotor_wx + rotor_e2 * rotor_wy + rotor_e3 * rotor_wz)),
+            k(0.5) * (rotor_e0 * rotor_wx - rotor_e3 * rotor_wy + rotor_e2 * rotor_wz),
+            k(0.5) * (rotor_e3 * rotor_wx + rotor_e0 * rotor_wy - rotor_e1 * rotor_wz),
+            -(k(0.5)
+                * (rotor_e2 * rotor_wx - rotor_e1 * rotor_wy - rotor_e0 * rotor_wz)),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            accelerations[6],
+            accelerations[7],
+            accelerations[8],
+            accelerations[9],
+            accelerations[10],
+            accelerations[11],
+            accelerations[12],
+            accelerations[13],
+            accelerations[14],
+            accelerations[15],
+            accelerations[16],
+            accelerations[17],
+            -(t78 * t76),
+        ];
+    }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenGyroscope<T> {
     type Velocities = [T; 18];
@@ -2162,6 +2366,609 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenGyroscope<T> {
             -t4,
             t67 * t92 * t30 + t28 * (t65 * t92),
             t55 * t92 * t30 + t28 * (t53 * t92),
+        ];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for DrivenGyroscope<T> {
+    type Joints = [T; 7];
+    type Rates = [T; 3];
+    fn joint_start(&self) -> Self::Joints {
+        let k = T::constant;
+        [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(100.0), k(0.0)]
+    }
+    fn rates(&self) -> Self::Rates {
+        [T::constant(0.0); 3]
+    }
+    /// Writes u̇: 70 operations (21 ±, 48 ×, 1 ÷) and 8 functions.
+    fn joint_accelerations(&self, t: T, x: &Self::Joints, out: &mut Self::Rates) {
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let u0 = x[3];
+        let u1 = x[4];
+        let u2 = x[5];
+        let t0 = k(12.566370614359172) * t;
+        let t1 = t0.sin();
+        let t2 = k(6.314572895816972e-6) - k(6.314572895816972e-6) * (t1 * t1);
+        let t3 = x0.sin();
+        let t4 = t3 * t2;
+        let t5 = x1.cos();
+        let t6 = k(0.1) * t1;
+        let t7 = k(0.0001) * t6.sin() + t5 * t4;
+        let t8 = k(9.476794145926002e-5) * t1;
+        let t9 = x1.sin();
+        let t10 = x0.cos();
+        let t11 = t0.cos();
+        let t12 = t11 * t10;
+        let t13 = u0 * t9;
+        let t14 = t11 * t3;
+        let t15 = k(1.2566370614359172) * ((u2 + t13) * t14)
+            + u1 * (u2 - k(0.20025) * (t13 + k(1.2566370614359172) * (t5 * t12)));
+        let t16 = k(1e-5) * t5;
+        let t17 = t16 * t15 + t10 * (t5 * (t9 * t8 + t7) + k(0.5001562988433885) * t4);
+        let t18 = t5 * t5;
+        let t19 = t17 / (k(2e-6) + k(6.00125e-6) * t18);
+        let t20 = k(0.0001) * t6.cos() + t9 * (t2 - k(3.99875e-6) * (u0 * u0));
+        let t21 = u0 * t16 - k(1.2566370614359173e-5) * (t9 * t12);
+        let t22 = u2 * t21 + t3 * (t8 + t9 * t7) - t5 * t20;
+        let t23 = k(1.2566370614359173e-5)
+            * (t5 * (k(12.566370614359172) * (t1 * t10) + u0 * t14)) - u1 * t21;
+        *out = [
+            -t19,
+            k(166631.95167673402)
+                * (t22
+                    - k(1.0049954898833748e-5)
+                        * (t12 * (u0 * (k(1.2503907471084714) - t18)))),
+            t9 * t19 + k(100000.0) * t23,
+        ];
+    }
+    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 449 operations (160 ±, 287 ×, 2 ÷) and 18 functions.
+    fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
+        let mut rates = gyro_sim::JointSpace::rates(self);
+        gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let u0 = x[3];
+        let u1 = x[4];
+        let u2 = x[5];
+        let t0 = k(0.5) * x0;
+        let t1 = t0.cos();
+        let t2 = k(12.566370614359172) * t;
+        let t3 = t2.sin();
+        let t4 = k(0.05) * t3;
+        let t5 = t4.sin();
+        let t6 = t5 * t1;
+        let t7 = t4.cos();
+        let t8 = t7 * t1;
+        let t9 = t8 * t6;
+        let t10 = t0.sin();
+        let t11 = t5 * t10;
+        let t12 = t7 * t10;
+        let t13 = t12 * t11;
+        let t14 = k(0.1) * t3;
+        let t15 = t14.sin();
+        let t16 = t2.cos();
+        let t17 = k(1.2566370614359172) * t16;
+        let t18 = t8 * t8;
+        let t19 = t14.cos();
+        let t20 = t17 * t19 * (k(2.0) * (k(0.5) - (t18 + t12 * t12)))
+            - t17 * t15 * (k(2.0) * (t13 + t9));
+        let t21 = k(2.0) * (t13 - t9);
+        let t22 = k(2.0) * (k(0.5) - (t18 + t11 * t11));
+        let t23 = k(2.0) * (k(0.5) - (t18 + t6 * t6));
+        let t24 = k(2.0) * (t6 * t12 + t8 * t11);
+        let t25 = t8 * t12;
+        let t26 = t6 * t11;
+        let t27 = k(2.0) * (t26 - t25);
+        let t28 = k(2.0) * (t26 + t25);
+        let t29 = t28 * (t19 * t27 - t15 * t24) - t23 * (t19 * t22 + t15 * t21);
+        let t30 = k(1.0) / t29;
+        let t31 = k(2.0) * t10;
+        let t32 = t17 * (t1 * t31);
+        let t33 = x0.cos();
+        let t34 = k(15.791367041742975) * t3;
+        let t35 = t34 * t33 + u0 * t32;
+        let t36 = k(0.5) * x1;
+        let t37 = t36.sin();
+        let t38 = t36.cos();
+        let t39 = t6 * t38 + t12 * t37;
+        let t40 = t8 * t38 - t11 * t37;
+        let t41 = t40 * t40;
+        let t42 = k(2.0) * (k(0.5) - (t41 + t39 * t39));
+        let t43 = t11 * t38 + t8 * t37;
+        let t44 = t40 * t43;
+        let t45 = t12 * t38 - t6 * t37;
+        let t46 = t39 * t45;
+        let t47 = k(2.0) * (t46 + t44);
+        let t48 = t40 * t45;
+        let t49 = t39 * t43;
+        let t50 = k(2.0) * (t49 - t48);
+        let t51 = u1 + t32;
+        let t52 = t17 * (k(1.0) - t10 * t31);
+        let t53 = k(2.0) * t37;
+        let t54 = t38 * t53;
+        let t55 = k(1.0) - t37 * t53;
+        let t56 = u0 * t55 - t54 * t52;
+        let t57 = x1.cos();
+        let t58 = k(6.314572895816972e-6) - k(6.314572895816972e-6) * (t3 * t3);
+        let t59 = x0.sin();
+        let t60 = t59 * t58;
+        let t61 = k(0.0001) * t15 + t57 * t60;
+        let t62 = k(9.476794145926002e-5) * t3;
+        let t63 = x1.sin();
+        let t64 = t16 * t33;
+        let t65 = u0 * t63;
+        let t66 = t16 * t59;
+        let t67 = k(1.2566370614359172) * ((u2 + t65) * t66)
+            + u1 * (u2 - k(0.20025) * (t65 + k(1.2566370614359172) * (t57 * t64)));
+        let t68 = k(1e-5) * t57;
+        let t69 = t68 * t67
+            + t33 * (t57 * (t63 * t62 + t61) + k(0.5001562988433885) * t60);
+        let t70 = t57 * t57;
+        let t71 = t69 / (k(2e-6) + k(6.00125e-6) * t70);
+        let t72 = t63 * t71;
+        let t73 = t72 + t57 * t35 - u1 * t56;
+        let t74 = k(0.5) * x2;
+        let t75 = t74.sin();
+        let t76 = t74.cos();
+        let t77 = t39 * t76 + t40 * t75;
+        let t78 = t40 * t76 - t39 * t75;
+        let t79 = t78 * t78;
+        let t80 = k(2.0) * (k(0.5) - (t79 + t77 * t77));
+        let t81 = t43 * t76 - t45 * t75;
+        let t82 = t78 * t81;
+        let t83 = t45 * t76 + t43 * t75;
+        let t84 = t77 * t83;
+        let t85 = k(2.0) * (t84 + t82);
+        let t86 = t78 * t83;
+        let t87 = t77 * t81;
+        let t88 = k(2.0) * (t87 - t86);
+        let t89 = u0 * t68 - k(1.2566370614359173e-5) * (t63 * t64);
+        let t90 = k(1.2566370614359173e-5)
+            * (t57 * (k(12.566370614359172) * (t3 * t33) + u0 * t66)) - u1 * t89;
+        let t91 = k(1e-5) * (t72 + k(100000.0) * t90 - t73);
+        let t92 = k(2.0) * (t84 - t82);
+        let t93 = k(2.0) * (k(0.5) - (t79 + t83 * t83));
+        let t94 = t78 * t77;
+        let t95 = t83 * t81;
+        let t96 = k(2.0) * (t95 + t94);
+        let t97 = k(2.0) * t75;
+        let t98 = t76 * t97;
+        let t99 = k(1.0) - t75 * t97;
+        let t100 = t99 * t51 - t98 * t56;
+        let t101 = u0 * t54 + t55 * t52;
+        let t102 = u2 + t101;
+        let t103 = t57 * t71 - t63 * t35 + u1 * t101;
+        let t104 = x2.cos();
+        let t105 = u0 * t52;
+        let t106 = t34 * t59 - t105;
+        let t107 = t57 * (k(0.0001) * t19 + t63 * (t58 - k(3.99875e-6) * (u0 * u0)));
+        let t108 = u2 * t89 + t59 * (t62 + t63 * t61) - t107
+            - k(1.0049954898833748e-5) * (t64 * (u0 * (k(1.2503907471084714) - t70)));
+        let t109 = k(166631.95167673402) * t108 - t106;
+        let t110 = x2.sin();
+        let t111 = t110 * t109 - t104 * t103 + u2 * t100 + t102 * t100;
+        let t112 = k(5e-6) * t111;
+        let t113 = t112 * (t50 * t96 - (t47 * t93 + t42 * t92))
+            + t91 * (t50 * t88 + (t47 * t85 + t42 * t80));
+        let t114 = k(2.0) * (t87 + t86);
+        let t115 = k(2.0) * (t95 - t94);
+        let t116 = k(2.0) * (k(0.5) - (t79 + t81 * t81));
+        let t117 = t98 * t51 + t99 * t56;
+        let t118 = t104 * t109 + t110 * t103 - u2 * t117 - t102 * t117;
+        let t119 = k(5e-6) * t118;
+        let t120 = t119 * (t50 * t116 - (t47 * t115 - t42 * t114)) - t113;
+        let t121 = t120 + k(1e-6) * (t73 + t56 * t51);
+        let t122 = t46 - t44;
+        let t123 = k(2.0) * t122;
+        let t124 = k(0.5) - (t41 + t45 * t45);
+        let t125 = k(2.0) * t124;
+        let t126 = t40 * t39;
+        let t127 = t45 * t43;
+        let t128 = t127 + t126;
+        let t129 = k(2.0) * t128;
+        let t130 = t112 * (t129 * t96 + (t125 * t93 + t123 * t92))
+            + t91 * (t129 * t88 - (t125 * t85 + t123 * t80));
+        let t131 = t119 * (t129 * t116 + (t125 * t115 - t123 * t114)) - t130;
+        let t132 = k(0.000125) * t56;
+        let t133 = k(0.000125) * t51;
+        let t134 = t51 * t133 + t56 * t132;
+        let t135 = t132 * t101;
+        let t136 = t133 * t101;
+        let t137 = t49 + t48;
+        let t138 = k(2.0) * t137;
+        let t139 = k(0.00025) * t137;
+        let t140 = k(0.00025) * t122;
+        let t141 = t109 * t140 + t103 * t139
+            + (t138 * t136 + (t123 * t135 + t42 * t134));
+        let t142 = k(0.08) * t141;
+        let t143 = t127 - t126;
+        let t144 = k(2.0) * t143;
+        let t145 = k(0.00025) * t143;
+        let t146 = k(0.00025) * t124;
+        let t147 = t109 * t146 - t103 * t145
+            - (t144 * t136 - (t125 * t135 + t47 * t134));
+        let t148 = k(0.8) - k(0.08) * t147;
+        let t149 = k(0.5) - (t41 + t43 * t43);
+        let t150 = k(2.0) * t149;
+        let t151 = k(0.00025) * t149;
+        let t152 = k(0.00025) * t128;
+        let t153 = t109 * t152 - t103 * t151
+            - (t150 * t136 - (t129 * t135 - t50 * t134));
+        let t154 = k(0.08) * t153;
+        let t155 = t151 * t154 - (t145 * t148 + t139 * t142) - t131 - k(2e-6) * t103;
+        let t156 = t155 * (t27 * t129 - (t24 * t125 + t23 * t123))
+            - t121 * (t27 * t50 + (t24 * t47 + t23 * t42));
+        let t157 = t112 * (t150 * t96 + (t144 * t93 - t138 * t92))
+            + t91 * (t150 * t88 - (t144 * t85 - t138 * t80));
+        let t158 = t119 * (t150 * t116 + (t144 * t115 + t138 * t114)) - t157;
+        let t159 = t152 * t154 - (t146 * t148 - t140 * t142) + t158
+            + k(1e-6) * (t109 + t56 * t101);
+        let t160 = t159 * (t27 * t150 - (t24 * t144 - t23 * t138)) - t156;
+        let t161 = t155 * (t22 * t129 + (t21 * t125 - t28 * t123))
+            - t121 * (t22 * t50 - (t21 * t47 - t28 * t42));
+        let t162 = t159 * (t22 * t150 + (t21 * t144 + t28 * t138)) - t161;
+        let t163 = (t162 - k(1e-6) * (t105 + t106)) * (t28 * t30)
+            + (t160 + k(2e-6) * t35) * (t23 * t30);
+        *dx = [u0, u1, u2, rates[0], rates[1], rates[2], t163 * t20];
+    }
+    /// Writes the maximal state of a joint state: 104 operations (32 ±, 72 ×, 0 ÷) and 10 functions.
+    fn to_maximal(&self, t: T, x: &Self::Joints, y: &mut Self::State) {
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let u0 = x[3];
+        let u1 = x[4];
+        let u2 = x[5];
+        let t0 = k(0.5) * x0;
+        let t1 = t0.cos();
+        let t2 = k(12.566370614359172) * t;
+        let t3 = k(0.05) * t2.sin();
+        let t4 = t3.cos();
+        let t5 = t4 * t1;
+        let t6 = t3.sin();
+        let t7 = t6 * t1;
+        let t8 = t0.sin();
+        let t9 = t4 * t8;
+        let t10 = t6 * t8;
+        let t11 = k(0.5) * x1;
+        let t12 = t11.sin();
+        let t13 = t11.cos();
+        let t14 = t5 * t13 - t10 * t12;
+        let t15 = t7 * t13 + t9 * t12;
+        let t16 = t9 * t13 - t7 * t12;
+        let t17 = t10 * t13 + t5 * t12;
+        let t18 = t14 * t14;
+        let t19 = t14 * t17;
+        let t20 = t15 * t16;
+        let t21 = t14 * t16;
+        let t22 = t15 * t17;
+        let t23 = k(0.5) * x2;
+        let t24 = t23.sin();
+        let t25 = t23.cos();
+        let t26 = k(2.0) * t8;
+        let t27 = k(1.2566370614359172) * t2.cos();
+        let t28 = t27 * (k(1.0) - t8 * t26);
+        let t29 = t27 * (t1 * t26);
+        let t30 = k(2.0) * t12;
+        let t31 = k(1.0) - t12 * t30;
+        let t32 = t13 * t30;
+        let t33 = u0 * t32 + t31 * t28;
+        let t34 = u0 * t31 - t32 * t28;
+        let t35 = u1 + t29;
+        let t36 = k(0.000125) * t35;
+        let t37 = k(0.000125) * t34;
+        let t38 = k(2.0) * (t22 + t21) * t37 - k(2.0) * (t20 - t19) * t36;
+        let t39 = t14 * t15;
+        let t40 = t16 * t17;
+        let t41 = k(2.0) * (t40 - t39) * t37
+            + k(2.0) * (k(0.5) - (t18 + t16 * t16)) * t36;
+        let t42 = k(2.0) * (k(0.5) - (t18 + t17 * t17)) * t37
+            + k(2.0) * (t40 + t39) * t36;
+        let t43 = k(2.0) * t24;
+        let t44 = k(1.0) - t24 * t43;
+        let t45 = t25 * t43;
+        *y = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t5,
+            t7,
+            t9,
+            t10,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t14,
+            t15,
+            t16,
+            t17,
+            -(k(0.00025) * (k(0.5) - (t18 + t15 * t15))),
+            k(0.00025) * (t20 + t19),
+            k(0.00025) * (t22 - t21),
+            t14 * t25 - t15 * t24,
+            t15 * t25 + t14 * t24,
+            t16 * t25 + t17 * t24,
+            t17 * t25 - t16 * t24,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t28,
+            u0,
+            t29,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t33,
+            t34,
+            t35,
+            -t38,
+            -t41,
+            t42,
+            u2 + t33,
+            t45 * t35 + t44 * t34,
+            t44 * t35 - t45 * t34,
+            x[6],
+        ];
+    }
+    /// Writes the joint state of a maximal state: 142 operations (65 ±, 77 ×, 0 ÷) and 12 functions.
+    fn to_joints(&self, t: T, y: &Self::State, x: &mut Self::Joints) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let t0 = x0.sin();
+        let t1 = outer_ring_e0 * outer_ring_e2;
+        let t2 = outer_ring_e1 * outer_ring_e3;
+        let t3 = k(2.0) * (t2 + t1);
+        let t4 = x0.cos();
+        let t5 = outer_ring_e2 * outer_ring_e2;
+        let t6 = outer_ring_e0 * outer_ring_e0;
+        let t7 = t6 + outer_ring_e1 * outer_ring_e1;
+        let t8 = outer_ring_e3 * outer_ring_e3;
+        let t9 = k(1.0) - (t8 + (t7 + t5));
+        let t10 = k(0.1) * (k(12.566370614359172) * t).sin();
+        let t11 = outer_ring_e0 * outer_ring_e1;
+        let t12 = outer_ring_e2 * outer_ring_e3;
+        let t13 = t10.sin() * (k(2.0) * (t12 - t11))
+            + t10.cos() * (k(2.0) * (k(0.5) - (t6 + t8)) - t9);
+        let t14 = (t13 * t0 + t3 * t4).atan2(t3 * t0 - t13 * t4);
+        let t15 = x1.sin();
+        let t16 = inner_ring_e0 * inner_ring_e2;
+        let t17 = inner_ring_e1 * inner_ring_e3;
+        let t18 = k(2.0) * (t17 - t16);
+        let t19 = inner_ring_e0 * inner_ring_e3;
+        let t20 = inner_ring_e1 * inner_ring_e2;
+        let t21 = k(2.0) * (t20 + t19);
+        let t22 = inner_ring_e2 * inner_ring_e2;
+        let t23 = inner_ring_e0 * inner_ring_e0;
+        let t24 = t23 + inner_ring_e1 * inner_ring_e1;
+        let t25 = inner_ring_e3 * inner_ring_e3;
+        let t26 = k(1.0) - (t25 + (t24 + t22));
+        let t27 = k(2.0) * (k(0.5) - t24) - t26;
+        let t28 = outer_ring_e0 * outer_ring_e3;
+        let t29 = outer_ring_e1 * outer_ring_e2;
+        let t30 = k(2.0) * (t29 - t28) * t27
+            + t21 * (k(2.0) * (k(0.5) - (t6 + t5)) - t9);
+        let t31 = t30 - k(2.0) * (t12 + t11) * t18;
+        let t32 = x1.cos();
+        let t33 = (k(2.0) * (k(0.5) - t7) - t9) * t27 + k(2.0) * (t29 + t28) * t21;
+        let t34 = t33 + k(2.0) * (t2 - t1) * t18;
+        let t35 = -(t34 * t15 + t31 * t32).atan2(t34 * t32 - t31 * t15);
+        let t36 = x2.sin();
+        let t37 = k(2.0) * (rotor_e2 * rotor_e3 + rotor_e0 * rotor_e1);
+        let t38 = rotor_e2 * rotor_e2;
+        let t39 = rotor_e0 * rotor_e0;
+        let t40 = k(2.0) * (k(0.5) - (t39 + t38))
+            - (k(1.0) - (rotor_e3 * rotor_e3 + (t39 + rotor_e1 * rotor_e1 + t38)));
+        let t41 = inner_ring_e0 * inner_ring_e1;
+        let t42 = inner_ring_e2 * inner_ring_e3;
+        let t43 = k(2.0) * (rotor_e1 * rotor_e2 - rotor_e0 * rotor_e3);
+        let t44 = k(2.0) * (t17 + t16) * t43 - k(2.0) * (t42 - t41) * t40;
+        let t45 = t44 - t37 * (k(2.0) * (k(0.5) - (t23 + t25)) - t26);
+        let t46 = x2.cos();
+        let t47 = k(2.0) * (t20 - t19) * t43
+            + (k(2.0) * (k(0.5) - (t23 + t22)) - t26) * t40;
+        let t48 = t47 + k(2.0) * (t42 + t41) * t37;
+        let t49 = (t45 * t46 - t48 * t36).atan2(t48 * t46 + t45 * t36);
+        x[0] = x0 + t14;
+        x[1] = x1 + t35;
+        x[2] = x2 + t49;
+        x[3] = outer_ring_wy;
+        x[4] = inner_ring_wz - outer_ring_wz;
+        x[5] = rotor_wx - inner_ring_wx;
+        x[6] = y[39];
+    }
+    /// Writes u̇ at a state that satisfies the constraints: 106 operations (34 ±, 71 ×, 1 ÷) and 5 functions.
+    fn joint_accelerations_at(&self, t: T, y: &Self::State, out: &mut Self::Rates) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let t0 = outer_ring_wz - inner_ring_wz;
+        let t1 = inner_ring_wy * t0;
+        let t2 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t3 = k(2.0) * t2;
+        let t4 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t5 = t4 * t3;
+        let t6 = inner_ring_wx - rotor_wx;
+        let t7 = inner_ring_wx - t6;
+        let t8 = k(1e-5) * (inner_ring_wx * (k(0.000125) * inner_ring_wz))
+            - k(5e-6) * (inner_ring_wz * t7 - inner_ring_wz * t6);
+        let t9 = k(1.0) - t2 * t3;
+        let t10 = t9 * (k(7.00125e-6) * (inner_ring_wx * t0) - t8)
+            + t5 * (k(1e-6) * (inner_ring_wy * inner_ring_wz + t1));
+        let t11 = (k(12.566370614359172) * t).sin();
+        let t12 = k(0.05) * t11;
+        let t13 = t12.sin();
+        let t14 = t12.cos();
+        let t15 = t14 * outer_ring_e2 + t13 * outer_ring_e3;
+        let t16 = k(2.0) * t15;
+        let t17 = k(1.0) - t15 * t16;
+        let t18 = k(15.791367041742975) * t11;
+        let t19 = outer_ring_wy * outer_ring_wz + t18 * t17;
+        let t20 = k(0.1) * t11;
+        let t21 = k(10.0) * t20.sin();
+        let t22 = k(1e-5) * t9 * (t17 * t21)
+            - (t9 * (k(7.00125e-6) * t5) - t5 * (k(1e-6) * t9)) * t19;
+        let t23 = (t22 + (k(1e-6) * (outer_ring_wx * outer_ring_wz) + t10))
+            / (k(1e-6) + (t9 * (k(7.00125e-6) * t9) + t5 * (k(1e-6) * t5)));
+        let t24 = k(1e-5) * (inner_ring_wx * (k(0.000125) * inner_ring_wy))
+            - k(5e-6) * (inner_ring_wy * t7 - inner_ring_wy * t6);
+        let t25 = (t14 * outer_ring_e0 + t13 * outer_ring_e1) * t16;
+        let t26 = k(1e-5) * (t9 * (k(10.0) * t20.cos()) + t5 * (t25 * t21));
+        let t27 = t26 + k(6.00125e-6) * (outer_ring_wx * outer_ring_wy - t18 * t25)
+            + (k(1e-6) * (inner_ring_wx * inner_ring_wy) + t24);
+        *out = [-t23, -(k(166631.95167673402) * t27), t1 - (t5 * t23 - t9 * t19)];
+    }
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 204 operations (73 ±, 130 ×, 1 ÷) and 5 functions.
+    fn corrected_accelerations(
+        &self,
+        t: T,
+        y: &Self::State,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        let t0 = (k(12.566370614359172) * t).sin();
+        let t1 = k(0.05) * t0;
+        let t2 = t1.sin();
+        let t3 = t1.cos();
+        let t4 = t3 * outer_ring_e2 + t2 * outer_ring_e3;
+        let t5 = k(2.0) * t4;
+        let t6 = k(1.0) - t4 * t5;
+        let t7 = k(15.791367041742975) * t0;
+        let t8 = outer_ring_wy * outer_ring_wz + t7 * t6;
+        let t9 = outer_ring_wz - inner_ring_wz;
+        let t10 = inner_ring_wy * t9;
+        let t11 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t12 = k(2.0) * t11;
+        let t13 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t14 = t13 * t12;
+        let t15 = inner_ring_wx - rotor_wx;
+        let t16 = inner_ring_wx - t15;
+        let t17 = k(0.000125) * inner_ring_wz;
+        let t18 = inner_ring_wx * t17;
+        let t19 = inner_ring_wx * t9;
+        let t20 = k(7.00125e-6) * t19
+            - (k(1e-5) * t18 - k(5e-6) * (inner_ring_wz * t16 - inner_ring_wz * t15));
+        let t21 = k(1.0) - t11 * t12;
+        let t22 = k(1e-6) * (outer_ring_wx * outer_ring_wz)
+            + (t21 * t20 + t14 * (k(1e-6) * (inner_ring_wy * inner_ring_wz + t10)));
+        let t23 = k(0.1) * t0;
+        let t24 = k(10.0) * t23.sin();
+        let t25 = k(1e-5) * t21 * (t6 * t24)
+            - (t21 * (k(7.00125e-6) * t14) - t14 * (k(1e-6) * t21)) * t8;
+        let t26 = (t25 + t22)
+            / (k(1e-6) + (t21 * (k(7.00125e-6) * t21) + t14 * (k(1e-6) * t14)));
+        let t27 = (t3 * outer_ring_e0 + t2 * outer_ring_e1) * t5;
+        let t28 = outer_ring_wx * outer_ring_wy - t7 * t27;
+        let t29 = t19 - (t14 * t8 + t21 * t26);
+        let t30 = k(0.000125) * inner_ring_wy;
+        let t31 = inner_ring_wx * t30;
+        let t32 = k(1e-6) * (inner_ring_wx * inner_ring_wy)
+            + (k(1e-5) * t31 - k(5e-6) * (inner_ring_wy * t16 - inner_ring_wy * t15));
+        let t33 = k(1e-5) * (t21 * (k(10.0) * t23.cos()) + t14 * (t27 * t24));
+        let t34 = t28 - k(166631.95167673402) * (t33 + k(6.00125e-6) * t28 + t32);
+        let t35 = k(0.000125) * t34;
+        let t36 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t37 = k(2.0) * t36;
+        let t38 = k(1.0) - t36 * t37;
+        let t39 = k(0.000125) * t29;
+        let t40 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t41 = t40 * t37;
+        let t42 = t41 * t18 - t38 * t31 - (t41 * t39 + t38 * t35);
+        let t43 = rotor_e0 * rotor_e3;
+        let t44 = rotor_e1 * rotor_e2;
+        let t45 = inner_ring_wy * t30 + inner_ring_wz * t17;
+        let t46 = rotor_e0 * rotor_e0;
+        let t47 = k(2.0) * (k(0.5) - (t46 + rotor_e1 * rotor_e1)) * t45
+            - k(2.0) * (t44 - t43) * t42;
+        let t48 = t38 * t18 + t41 * t31 - (t38 * t39 - t41 * t35);
+        let t49 = rotor_e0 * rotor_e2;
+        let t50 = rotor_e1 * rotor_e3;
+        let t51 = k(2.0) * (t44 + t43) * t45
+            - k(2.0) * (k(0.5) - (t46 + rotor_e2 * rotor_e2)) * t42;
+        let t52 = rotor_e0 * rotor_e1;
+        let t53 = rotor_e2 * rotor_e3;
+        let t54 = k(2.0) * (t50 - t49) * t45 + k(2.0) * (t53 + t52) * t42;
+        *out = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t8,
+            -t26,
+            t28,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t14 * t26 - t21 * t8 - t10,
+            t29,
+            t34,
+            k(2.0) * (t50 + t49) * t48 + t47,
+            k(2.0) * (t53 - t52) * t48 - t51,
+            -(k(2.0) * (k(0.5) - (t46 + rotor_e3 * rotor_e3)) * t48 + t54),
+            k(0.0),
+            -(rotor_wz * t15 + (t41 * t34 - t38 * t29)),
+            rotor_wy * t15 + (t38 * t34 + t41 * t29),
         ];
     }
 }

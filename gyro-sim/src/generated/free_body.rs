@@ -21,6 +21,12 @@
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 4 |
 //! | newton_step | dependent positions, one Newton step | 11 | 13 | 1 | 25 | 0 of 7 |
 //! | solve_velocities | dependent velocities, eq. (19) | 0 | 0 | 0 | 0 | 0 of 6 |
+//! | joint_accelerations | u̇ in joint coordinates | 0 | 3 | 0 | 3 | 4 of 6 |
+//! | joint_derivative | ẋ but for u̇ | 8 | 16 | 0 | 24 | 0 of 7 |
+//! | to_maximal | (q, v) of a joint state | 0 | 0 | 0 | 0 | 0 of 13 |
+//! | to_joints | (x, u) of a maximal state | 0 | 0 | 0 | 0 | 0 of 13 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 0 | 3 | 0 | 3 | 4 of 6 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 0 | 3 | 0 | 3 | 4 of 6 |
 
 /// The mechanism `free_body`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -246,6 +252,37 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for FreeBody<T> {
     ) -> ::core::result::Result<(), gyro_sim::Error> {
         Ok(())
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let body_e0 = y[3];
+        let body_e1 = y[4];
+        let body_e2 = y[5];
+        let body_e3 = y[6];
+        let body_sx = y[7];
+        let body_sy = y[8];
+        let body_sz = y[9];
+        let body_wx = y[10];
+        let body_wy = y[11];
+        let body_wz = y[12];
+        *dy = [
+            body_sx,
+            body_sy,
+            body_sz,
+            -(k(0.5) * (body_e1 * body_wx + body_e2 * body_wy + body_e3 * body_wz)),
+            k(0.5) * (body_e0 * body_wx - body_e3 * body_wy + body_e2 * body_wz),
+            k(0.5) * (body_e3 * body_wx + body_e0 * body_wy - body_e1 * body_wz),
+            -(k(0.5) * (body_e2 * body_wx - body_e1 * body_wy - body_e0 * body_wz)),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+        ];
+    }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for FreeBody<T> {
     type Velocities = [T; 6];
@@ -331,6 +368,140 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FreeBody<T> {
         lambda: &mut Self::Rows,
     ) {
         *lambda = [];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for FreeBody<T> {
+    type Joints = [T; 13];
+    type Rates = [T; 6];
+    fn joint_start(&self) -> Self::Joints {
+        let k = T::constant;
+        [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.9486832980505138),
+            k(0.0),
+            k(-0.31622776601683794),
+            k(0.0),
+            k(0.1),
+            k(-0.2),
+            k(0.3),
+            k(10.0),
+            k(0.0),
+            k(10.0),
+        ]
+    }
+    fn rates(&self) -> Self::Rates {
+        [T::constant(0.0); 6]
+    }
+    /// Writes u̇: 3 operations (0 ±, 3 ×, 0 ÷).
+    fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
+        let k = T::constant;
+        let u3 = x[10];
+        let u4 = x[11];
+        let u5 = x[12];
+        let t0 = k(0.3333333333333333) * u5;
+        *out = [k(0.0), k(0.0), k(0.0), -(u4 * t0), u3 * t0, k(0.0)];
+    }
+    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
+    fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
+        let mut rates = gyro_sim::JointSpace::rates(self);
+        gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
+        let k = T::constant;
+        let x3 = x[3];
+        let x4 = x[4];
+        let x5 = x[5];
+        let x6 = x[6];
+        let u0 = x[7];
+        let u1 = x[8];
+        let u2 = x[9];
+        let u3 = x[10];
+        let u4 = x[11];
+        let u5 = x[12];
+        *dx = [
+            u0,
+            u1,
+            u2,
+            -(k(0.5) * (x4 * u3 + x5 * u4 + x6 * u5)),
+            k(0.5) * (x3 * u3 - x6 * u4 + x5 * u5),
+            k(0.5) * (x6 * u3 + x3 * u4 - x4 * u5),
+            -(k(0.5) * (x5 * u3 - x4 * u4 - x3 * u5)),
+            rates[0],
+            rates[1],
+            rates[2],
+            rates[3],
+            rates[4],
+            rates[5],
+        ];
+    }
+    /// Writes the maximal state of a joint state: 0 operations (0 ±, 0 ×, 0 ÷).
+    fn to_maximal(&self, _t: T, x: &Self::Joints, y: &mut Self::State) {
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let x3 = x[3];
+        let x4 = x[4];
+        let x5 = x[5];
+        let x6 = x[6];
+        let u0 = x[7];
+        let u1 = x[8];
+        let u2 = x[9];
+        let u3 = x[10];
+        let u4 = x[11];
+        let u5 = x[12];
+        *y = [x0, x1, x2, x3, x4, x5, x6, u0, u1, u2, u3, u4, u5];
+    }
+    /// Writes the joint state of a maximal state: 0 operations (0 ±, 0 ×, 0 ÷).
+    fn to_joints(&self, _t: T, y: &Self::State, x: &mut Self::Joints) {
+        let body_rx = y[0];
+        let body_ry = y[1];
+        let body_rz = y[2];
+        let body_e0 = y[3];
+        let body_e1 = y[4];
+        let body_e2 = y[5];
+        let body_e3 = y[6];
+        let body_sx = y[7];
+        let body_sy = y[8];
+        let body_sz = y[9];
+        let body_wx = y[10];
+        let body_wy = y[11];
+        let body_wz = y[12];
+        x[0] = body_rx;
+        x[1] = body_ry;
+        x[2] = body_rz;
+        x[3] = body_e0;
+        x[4] = body_e1;
+        x[5] = body_e2;
+        x[6] = body_e3;
+        x[7] = body_sx;
+        x[8] = body_sy;
+        x[9] = body_sz;
+        x[10] = body_wx;
+        x[11] = body_wy;
+        x[12] = body_wz;
+    }
+    /// Writes u̇ at a state that satisfies the constraints: 3 operations (0 ±, 3 ×, 0 ÷).
+    fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
+        let k = T::constant;
+        let body_wx = y[10];
+        let body_wy = y[11];
+        let body_wz = y[12];
+        let t0 = k(0.3333333333333333) * body_wz;
+        *out = [k(0.0), k(0.0), k(0.0), -(body_wy * t0), body_wx * t0, k(0.0)];
+    }
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 3 operations (0 ±, 3 ×, 0 ÷).
+    fn corrected_accelerations(
+        &self,
+        _t: T,
+        y: &Self::State,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let body_wx = y[10];
+        let body_wy = y[11];
+        let body_wz = y[12];
+        let t0 = k(0.3333333333333333) * body_wz;
+        *out = [k(0.0), k(0.0), k(0.0), -(body_wy * t0), body_wx * t0, k(0.0)];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Ports for FreeBody<T> {

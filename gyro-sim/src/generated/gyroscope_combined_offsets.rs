@@ -27,6 +27,12 @@
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
 //! | newton_step | dependent positions, one Newton step | 220 | 343 | 3 | 566 | 6 of 21 |
 //! | solve_velocities | dependent velocities, eq. (19) | 126 | 203 | 3 | 332 | 6 of 18 |
+//! | joint_accelerations | u̇ in joint coordinates | 57 | 79 | 2 | 138 | 0 of 3 |
+//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 |
+//! | to_maximal | (q, v) of a joint state | 69 | 113 | 0 | 182 | 16 of 39 |
+//! | to_joints | (x, u) of a maximal state | 63 | 72 | 0 | 135 | 0 of 6 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 73 | 101 | 2 | 176 | 0 of 3 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 132 | 187 | 2 | 321 | 6 of 18 |
 
 /// The mechanism `gyroscope_combined_offsets`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -1085,6 +1091,101 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeCombinedOffsets<T> {
         y[37] = t74;
         y[38] = t75;
         Ok(())
+    }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 72 operations (24 ±, 48 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_sx = y[21];
+        let outer_ring_sy = y[22];
+        let outer_ring_sz = y[23];
+        let inner_ring_sx = y[27];
+        let inner_ring_sy = y[28];
+        let inner_ring_sz = y[29];
+        let rotor_sx = y[33];
+        let rotor_sy = y[34];
+        let rotor_sz = y[35];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        *dy = [
+            outer_ring_sx,
+            outer_ring_sy,
+            outer_ring_sz,
+            -(k(0.5)
+                * (outer_ring_e1 * outer_ring_wx + outer_ring_e2 * outer_ring_wy
+                    + outer_ring_e3 * outer_ring_wz)),
+            k(0.5)
+                * (outer_ring_e0 * outer_ring_wx - outer_ring_e3 * outer_ring_wy
+                    + outer_ring_e2 * outer_ring_wz),
+            k(0.5)
+                * (outer_ring_e3 * outer_ring_wx + outer_ring_e0 * outer_ring_wy
+                    - outer_ring_e1 * outer_ring_wz),
+            -(k(0.5)
+                * (outer_ring_e2 * outer_ring_wx - outer_ring_e1 * outer_ring_wy
+                    - outer_ring_e0 * outer_ring_wz)),
+            inner_ring_sx,
+            inner_ring_sy,
+            inner_ring_sz,
+            -(k(0.5)
+                * (inner_ring_e1 * inner_ring_wx + inner_ring_e2 * inner_ring_wy
+                    + inner_ring_e3 * inner_ring_wz)),
+            k(0.5)
+                * (inner_ring_e0 * inner_ring_wx - inner_ring_e3 * inner_ring_wy
+                    + inner_ring_e2 * inner_ring_wz),
+            k(0.5)
+                * (inner_ring_e3 * inner_ring_wx + inner_ring_e0 * inner_ring_wy
+                    - inner_ring_e1 * inner_ring_wz),
+            -(k(0.5)
+                * (inner_ring_e2 * inner_ring_wx - inner_ring_e1 * inner_ring_wy
+                    - inner_ring_e0 * inner_ring_wz)),
+            rotor_sx,
+            rotor_sy,
+            rotor_sz,
+            -(k(0.5)
+                * (rotor_e1 * rotor_wx + rotor_e2 * rotor_wy + rotor_e3 * rotor_wz)),
+            k(0.5) * (rotor_e0 * rotor_wx - rotor_e3 * rotor_wy + rotor_e2 * rotor_wz),
+            k(0.5) * (rotor_e3 * rotor_wx + rotor_e0 * rotor_wy - rotor_e1 * rotor_wz),
+            -(k(0.5)
+                * (rotor_e2 * rotor_wx - rotor_e1 * rotor_wy - rotor_e0 * rotor_wz)),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            accelerations[6],
+            accelerations[7],
+            accelerations[8],
+            accelerations[9],
+            accelerations[10],
+            accelerations[11],
+            accelerations[12],
+            accelerations[13],
+            accelerations[14],
+            accelerations[15],
+            accelerations[16],
+            accelerations[17],
+        ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
@@ -2521,6 +2622,507 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
             -t4,
             t84 * t105 * t45 + t82 * t105 * t39,
             t74 * t105 * t45 + t72 * t105 * t39,
+        ];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
+    type Joints = [T; 6];
+    type Rates = [T; 3];
+    fn joint_start(&self) -> Self::Joints {
+        let k = T::constant;
+        [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(100.0)]
+    }
+    fn rates(&self) -> Self::Rates {
+        [T::constant(0.0); 3]
+    }
+    /// Writes u̇: 138 operations (57 ±, 79 ×, 2 ÷) and 4 functions.
+    fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
+        let k = T::constant;
+        let x1 = x[1];
+        let x2 = x[2];
+        let u0 = x[3];
+        let u1 = x[4];
+        let u2 = x[5];
+        let t0 = x2.cos();
+        let t1 = x2.sin();
+        let t2 = t1 * (k(1.4e-9) * t0 + k(4.8e-9) * t1);
+        let t3 = k(2.52e-9) + (k(4.4e-10) * t1 - (t2 + k(1.08e-9) * t0));
+        let t4 = x1.sin();
+        let t5 = k(3e-10) * t0 - k(4e-10) * t1;
+        let t6 = k(6e-11) - t5;
+        let t7 = x1.cos();
+        let t8 = k(1.2e-9) * t1 + k(1.6e-9) * t0;
+        let t9 = t1 * (k(4.8e-9) * t0 - k(1.4e-9) * t1);
+        let t10 = t9 - t8;
+        let t11 = k(4.00335e-6) + t10;
+        let t12 = k(0.5) * t8;
+        let t13 = k(2e-10) - t12;
+        let t14 = t4 * t13;
+        let t15 = u0 * (t13 - k(2.0) * (t4 * (t14 + t7 * t11)));
+        let t16 = t7 * t5;
+        let t17 = k(2.4e-9) - t2;
+        let t18 = k(2.0) * t5 - t17;
+        let t19 = u0 * (t17 - (t4 * (t16 - t4 * t18) + k(0.3) * t8));
+        let t20 = k(2.0)
+            * (t19 + (t9 - k(1.2) * (k(4.168166666666667e-6) - t5)) * (u1 * t7));
+        let t21 = t20
+            - u2 * (t16 + k(1.16e-9) * (t4 * (t1 - k(0.10344827586206896) * t0)));
+        let t22 = u2 * t21 + u1 * (t15 - u1 * (t7 * t6 - t4 * t3));
+        let t23 = u1 * t18;
+        let t24 = t7 * t8;
+        let t25 = u0 * (t24 + (t4 * t12 - t7 * (k(1.00064e-5) + k(2.0) * t9)));
+        let t26 = k(400000.0) * t16 + u1 * (t25 - t23) - u0 * t19;
+        let t27 = k(0.25) * t24
+            - k(1.2e-10) * (t4 * (k(9.666666666666666) * t0 + (t1 - k(83375.0))));
+        let t28 = k(99950.02498750624) * t27;
+        let t29 = u2 * (t25 - k(2.0) * t23 + k(0.25) * (u2 * t8)) + k(2e-5) * t7;
+        let t30 = k(99950.02498750624) * t5;
+        let t31 = t30 * t26 - (t29 + k(0.5) * (u0 * t15) - k(200000.0) * t14);
+        let t32 = t30 * t27 + (t7 * t3 + t4 * t6);
+        let t33 = k(1.0) / (t5 * t30 - (k(6.00345e-6) + t10));
+        let t34 = t33 * t32;
+        let t35 = k(8.001922e-6) - k(2.4) * t5 - t4 * (t7 * t13 - t4 * t11);
+        let t36 = (t34 * t31 - (t28 * t26 - t22))
+            / (t32 * t34 - (t27 * t28 + (t9 - t35)));
+        let t37 = t34 * t36 - t33 * t31;
+        *out = [t36, t37, t30 * t37 - (t28 * t36 - k(99950.02498750624) * t26)];
+    }
+    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
+    fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
+        let mut rates = gyro_sim::JointSpace::rates(self);
+        gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
+        let u0 = x[3];
+        let u1 = x[4];
+        let u2 = x[5];
+        *dx = [u0, u1, u2, rates[0], rates[1], rates[2]];
+    }
+    /// Writes the maximal state of a joint state: 182 operations (69 ±, 113 ×, 0 ÷) and 6 functions.
+    fn to_maximal(&self, _t: T, x: &Self::Joints, y: &mut Self::State) {
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let u0 = x[3];
+        let u1 = x[4];
+        let u2 = x[5];
+        let t0 = k(0.5) * x0;
+        let t1 = t0.cos();
+        let t2 = t0.sin();
+        let t3 = k(0.5) * x1;
+        let t4 = t3.cos();
+        let t5 = t1 * t4;
+        let t6 = t3.sin();
+        let t7 = t2 * t6;
+        let t8 = t2 * t4;
+        let t9 = t1 * t6;
+        let t10 = k(0.5) * x2;
+        let t11 = t10.sin();
+        let t12 = t10.cos();
+        let t13 = t8 * t12 + t9 * t11;
+        let t14 = t5 * t12 - t7 * t11;
+        let t15 = t14 * t13;
+        let t16 = t9 * t12 - t8 * t11;
+        let t17 = t7 * t12 + t5 * t11;
+        let t18 = t17 * t16;
+        let t19 = t18 + t15;
+        let t20 = t14 * t16;
+        let t21 = t17 * t13;
+        let t22 = t21 - t20;
+        let t23 = t14 * t14;
+        let t24 = k(0.5) - (t23 + t17 * t17);
+        let t25 = t5 * t8;
+        let t26 = t7 * t9;
+        let t27 = t26 + t25;
+        let t28 = t5 * t9;
+        let t29 = t7 * t8;
+        let t30 = t29 - t28;
+        let t31 = t5 * t5;
+        let t32 = k(0.5) - (t31 + t7 * t7);
+        let t33 = k(0.00025) * t32 - k(0.0001) * t30 + k(6e-5) * t27
+            - (k(0.0002) * t24 - k(0.0004) * t22 + k(0.0003) * t19);
+        let t34 = t14 * t17;
+        let t35 = t13 * t16;
+        let t36 = t35 - t34;
+        let t37 = k(0.5) - (t23 + t13 * t13);
+        let t38 = t21 + t20;
+        let t39 = t5 * t7;
+        let t40 = t8 * t9;
+        let t41 = t40 - t39;
+        let t42 = k(0.5) - (t31 + t8 * t8);
+        let t43 = t29 + t28;
+        let t44 = k(0.00025) * t43 - k(0.0001) * t42 - k(6e-5) * t41
+            - (k(0.0002) * t38 - k(0.0004) * t37 - k(0.0003) * t36);
+        let t45 = k(0.5) - (t23 + t16 * t16);
+        let t46 = t35 + t34;
+        let t47 = t18 - t15;
+        let t48 = k(0.5) - (t31 + t9 * t9);
+        let t49 = t40 + t39;
+        let t50 = t26 - t25;
+        let t51 = k(0.00025) * t50 + k(0.0001) * t49 + k(6e-5) * t48
+            - (k(0.0002) * t47 + k(0.0004) * t46 + k(0.0003) * t45);
+        let t52 = k(2.0) * t6;
+        let t53 = u0 * (t4 * t52);
+        let t54 = u0 * (k(1.0) - t6 * t52);
+        let t55 = k(5e-5) * u1 + k(3e-5) * t54;
+        let t56 = k(0.000125) * u1 + k(3e-5) * t53;
+        let t57 = k(0.000125) * t54 - k(5e-5) * t53;
+        let t58 = k(2.0) * t27 * t57 - (k(2.0) * t30 * t56 + k(2.0) * t32 * t55);
+        let t59 = k(2.0) * t11;
+        let t60 = k(1.0) - t11 * t59;
+        let t61 = t12 * t59;
+        let t62 = u1 * t61 + t60 * t54;
+        let t63 = u1 * t60 - t61 * t54;
+        let t64 = k(0.0002) * t63 + k(0.00015) * t62;
+        let t65 = u2 + t53;
+        let t66 = k(0.00015) * t65 + k(0.0001) * t63;
+        let t67 = k(0.0001) * t62 - k(0.0002) * t65;
+        let t68 = k(2.0) * t19 * t67 - (k(2.0) * t22 * t66 + k(2.0) * t24 * t64);
+        let t69 = k(2.0) * t41 * t57 + (k(2.0) * t42 * t56 + k(2.0) * t43 * t55);
+        let t70 = k(2.0) * t36 * t67 + (k(2.0) * t37 * t66 + k(2.0) * t38 * t64);
+        let t71 = k(2.0) * t48 * t57 + (k(2.0) * t49 * t56 - k(2.0) * t50 * t55);
+        let t72 = k(2.0) * t45 * t67 + (k(2.0) * t46 * t66 - k(2.0) * t47 * t64);
+        *y = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t1,
+            k(0.0),
+            t2,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t5,
+            t7,
+            t8,
+            t9,
+            -t33,
+            t44,
+            t51,
+            t14,
+            t17,
+            t13,
+            t16,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            u0,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t53,
+            t54,
+            u1,
+            t68 - t58,
+            t70 - t69,
+            t71 - t72,
+            t65,
+            t62,
+            t63,
+        ];
+    }
+    /// Writes the joint state of a maximal state: 135 operations (63 ±, 72 ×, 0 ÷) and 9 functions.
+    fn to_joints(&self, _t: T, y: &Self::State, x: &mut Self::Joints) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let t0 = x0.sin();
+        let t1 = outer_ring_e0 * outer_ring_e2;
+        let t2 = outer_ring_e1 * outer_ring_e3;
+        let t3 = k(2.0) * (t2 + t1);
+        let t4 = x0.cos();
+        let t5 = outer_ring_e2 * outer_ring_e2;
+        let t6 = outer_ring_e0 * outer_ring_e0;
+        let t7 = t6 + outer_ring_e1 * outer_ring_e1;
+        let t8 = outer_ring_e3 * outer_ring_e3;
+        let t9 = k(1.0) - (t8 + (t7 + t5));
+        let t10 = k(2.0) * (k(0.5) - (t6 + t8)) - t9;
+        let t11 = (t10 * t0 + t3 * t4).atan2(t3 * t0 - t10 * t4);
+        let t12 = x1.sin();
+        let t13 = inner_ring_e0 * inner_ring_e2;
+        let t14 = inner_ring_e1 * inner_ring_e3;
+        let t15 = k(2.0) * (t14 - t13);
+        let t16 = inner_ring_e0 * inner_ring_e3;
+        let t17 = inner_ring_e1 * inner_ring_e2;
+        let t18 = k(2.0) * (t17 + t16);
+        let t19 = inner_ring_e2 * inner_ring_e2;
+        let t20 = inner_ring_e0 * inner_ring_e0;
+        let t21 = t20 + inner_ring_e1 * inner_ring_e1;
+        let t22 = inner_ring_e3 * inner_ring_e3;
+        let t23 = k(1.0) - (t22 + (t21 + t19));
+        let t24 = k(2.0) * (k(0.5) - t21) - t23;
+        let t25 = outer_ring_e0 * outer_ring_e3;
+        let t26 = outer_ring_e1 * outer_ring_e2;
+        let t27 = k(2.0) * (t26 - t25) * t24
+            + t18 * (k(2.0) * (k(0.5) - (t6 + t5)) - t9);
+        let t28 = t27
+            - k(2.0) * (outer_ring_e2 * outer_ring_e3 + outer_ring_e0 * outer_ring_e1)
+                * t15;
+        let t29 = x1.cos();
+        let t30 = (k(2.0) * (k(0.5) - t7) - t9) * t24 + k(2.0) * (t26 + t25) * t18;
+        let t31 = t30 + k(2.0) * (t2 - t1) * t15;
+        let t32 = -(t31 * t12 + t28 * t29).atan2(t31 * t29 - t28 * t12);
+        let t33 = x2.sin();
+        let t34 = k(2.0) * (rotor_e2 * rotor_e3 + rotor_e0 * rotor_e1);
+        let t35 = rotor_e2 * rotor_e2;
+        let t36 = rotor_e0 * rotor_e0;
+        let t37 = k(2.0) * (k(0.5) - (t36 + t35))
+            - (k(1.0) - (rotor_e3 * rotor_e3 + (t36 + rotor_e1 * rotor_e1 + t35)));
+        let t38 = inner_ring_e0 * inner_ring_e1;
+        let t39 = inner_ring_e2 * inner_ring_e3;
+        let t40 = k(2.0) * (rotor_e1 * rotor_e2 - rotor_e0 * rotor_e3);
+        let t41 = k(2.0) * (t14 + t13) * t40 - k(2.0) * (t39 - t38) * t37;
+        let t42 = t41 - t34 * (k(2.0) * (k(0.5) - (t20 + t22)) - t23);
+        let t43 = x2.cos();
+        let t44 = k(2.0) * (t17 - t16) * t40
+            + (k(2.0) * (k(0.5) - (t20 + t19)) - t23) * t37;
+        let t45 = t44 + k(2.0) * (t39 + t38) * t34;
+        let t46 = (t42 * t43 - t45 * t33).atan2(t45 * t43 + t42 * t33);
+        x[0] = x0 + t11;
+        x[1] = x1 + t32;
+        x[2] = x2 + t46;
+        x[3] = outer_ring_wy;
+        x[4] = inner_ring_wz - outer_ring_wz;
+        x[5] = rotor_wx - inner_ring_wx;
+    }
+    /// Writes u̇ at a state that satisfies the constraints: 176 operations (73 ±, 101 ×, 2 ÷).
+    fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let t0 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t1 = k(2.0) * t0;
+        let t2 = k(1.0) - t0 * t1;
+        let t3 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t4 = t3 * t1;
+        let t5 = t4 * (k(1.4e-9) * t2 - k(4.8e-9) * t4);
+        let t6 = k(2.52e-9) - (k(4.4e-10) * t4 - (t5 - k(1.08e-9) * t2));
+        let t7 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t8 = k(2.0) * t7;
+        let t9 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t10 = t9 * t8;
+        let t11 = k(3e-10) * t2 + k(4e-10) * t4;
+        let t12 = k(6e-11) - t11;
+        let t13 = k(1.0) - t7 * t8;
+        let t14 = outer_ring_wz - inner_ring_wz;
+        let t15 = k(1.2e-9) * t4 - k(1.6e-9) * t2;
+        let t16 = t4 * (k(4.8e-9) * t2 + k(1.4e-9) * t4);
+        let t17 = t16 - t15;
+        let t18 = k(4.00335e-6) - t17;
+        let t19 = k(0.5) * t15;
+        let t20 = k(2e-10) + t19;
+        let t21 = t10 * t20;
+        let t22 = outer_ring_wy * (t20 - k(2.0) * (t10 * (t21 - t13 * t18)));
+        let t23 = t13 * t11;
+        let t24 = inner_ring_wx - rotor_wx;
+        let t25 = k(2.4e-9) + t5;
+        let t26 = k(2.0) * t11 - t25;
+        let t27 = outer_ring_wy * (t25 + (t10 * (t23 + t10 * t26) + k(0.3) * t15));
+        let t28 = k(2.0)
+            * (t27 + (t16 + k(1.2) * (k(4.168166666666667e-6) - t11)) * (t14 * t13));
+        let t29 = t28
+            + t24 * (t23 + k(1.16e-9) * (t10 * (t4 + k(0.10344827586206896) * t2)));
+        let t30 = t24 * t29 + t14 * (t22 + t14 * (t13 * t12 + t10 * t6));
+        let t31 = t14 * t26;
+        let t32 = t13 * t15;
+        let t33 = outer_ring_wy
+            * (t32 - (t10 * t19 - t13 * (k(1.00064e-5) - k(2.0) * t16)));
+        let t34 = k(400000.0) * t23 + t14 * (t33 - t31) - outer_ring_wy * t27;
+        let t35 = k(0.25) * t32
+            - k(1.2e-10) * (t10 * (k(9.666666666666666) * t2 - (t4 + k(83375.0))));
+        let t36 = k(99950.02498750624) * t35;
+        let t37 = t24 * (t33 - k(2.0) * t31 - k(0.25) * (t24 * t15)) + k(2e-5) * t13;
+        let t38 = k(99950.02498750624) * t11;
+        let t39 = t38 * t34 - (t37 + k(0.5) * (outer_ring_wy * t22) + k(200000.0) * t21);
+        let t40 = t38 * t35 - (t13 * t6 - t10 * t12);
+        let t41 = k(1.0) / (t11 * t38 - (k(6.00345e-6) - t17));
+        let t42 = t41 * t40;
+        let t43 = k(8.001922e-6) - k(2.4) * t11 + t10 * (t13 * t20 + t10 * t18);
+        let t44 = (t42 * t39 - (t36 * t34 - t30))
+            / (t40 * t42 - (t35 * t36 - (t16 + t43)));
+        let t45 = t42 * t44 - t41 * t39;
+        *out = [-t44, t45, t38 * t45 - (t36 * t44 - k(99950.02498750624) * t34)];
+    }
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 321 operations (132 ±, 187 ×, 2 ÷).
+    fn corrected_accelerations(
+        &self,
+        _t: T,
+        y: &Self::State,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        let t0 = outer_ring_wy * outer_ring_wz;
+        let t1 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t2 = k(2.0) * t1;
+        let t3 = k(1.0) - t1 * t2;
+        let t4 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t5 = t4 * t2;
+        let t6 = t5 * (k(1.4e-9) * t3 - k(4.8e-9) * t5);
+        let t7 = k(2.52e-9) - (k(4.4e-10) * t5 - (t6 - k(1.08e-9) * t3));
+        let t8 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t9 = k(2.0) * t8;
+        let t10 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t11 = t10 * t9;
+        let t12 = k(3e-10) * t3 + k(4e-10) * t5;
+        let t13 = k(6e-11) - t12;
+        let t14 = k(1.0) - t8 * t9;
+        let t15 = outer_ring_wz - inner_ring_wz;
+        let t16 = k(1.2e-9) * t5 - k(1.6e-9) * t3;
+        let t17 = t5 * (k(4.8e-9) * t3 + k(1.4e-9) * t5);
+        let t18 = t17 - t16;
+        let t19 = k(4.00335e-6) - t18;
+        let t20 = k(0.5) * t16;
+        let t21 = k(2e-10) + t20;
+        let t22 = t11 * t21;
+        let t23 = outer_ring_wy * (t21 - k(2.0) * (t11 * (t22 - t14 * t19)));
+        let t24 = t14 * t12;
+        let t25 = inner_ring_wx - rotor_wx;
+        let t26 = k(2.4e-9) + t6;
+        let t27 = k(2.0) * t12 - t26;
+        let t28 = outer_ring_wy * (t26 + (t11 * (t24 + t11 * t27) + k(0.3) * t16));
+        let t29 = k(2.0)
+            * (t28 + (t17 + k(1.2) * (k(4.168166666666667e-6) - t12)) * (t15 * t14));
+        let t30 = t29
+            + t25 * (t24 + k(1.16e-9) * (t11 * (t5 + k(0.10344827586206896) * t3)));
+        let t31 = t25 * t30 + t15 * (t23 + t15 * (t14 * t13 + t11 * t7));
+        let t32 = t15 * t27;
+        let t33 = t14 * t16;
+        let t34 = outer_ring_wy
+            * (t33 - (t11 * t20 - t14 * (k(1.00064e-5) - k(2.0) * t17)));
+        let t35 = k(400000.0) * t24 + t15 * (t34 - t32) - outer_ring_wy * t28;
+        let t36 = k(0.25) * t33
+            - k(1.2e-10) * (t11 * (k(9.666666666666666) * t3 - (t5 + k(83375.0))));
+        let t37 = k(99950.02498750624) * t36;
+        let t38 = t25 * (t34 - k(2.0) * t32 - k(0.25) * (t25 * t16)) + k(2e-5) * t14;
+        let t39 = k(99950.02498750624) * t12;
+        let t40 = t39 * t35 - (t38 + k(0.5) * (outer_ring_wy * t23) + k(200000.0) * t22);
+        let t41 = t39 * t36 - (t14 * t7 - t11 * t13);
+        let t42 = k(1.0) / (t12 * t39 - (k(6.00345e-6) - t18));
+        let t43 = t42 * t41;
+        let t44 = k(8.001922e-6) - k(2.4) * t12 + t11 * (t14 * t21 + t11 * t19);
+        let t45 = (t43 * t40 - (t37 * t35 - t31))
+            / (t41 * t43 - (t36 * t37 - (t17 + t44)));
+        let t46 = outer_ring_wx * outer_ring_wy;
+        let t47 = inner_ring_wy * t15 + (t0 * t14 - t11 * t45);
+        let t48 = inner_ring_wx * t15 - (t0 * t11 + t14 * t45);
+        let t49 = t43 * t45 - t42 * t40;
+        let t50 = t46 + t49;
+        let t51 = k(0.0001) * rotor_wz + k(0.00015) * rotor_wx;
+        let t52 = k(0.0002) * rotor_wx - k(0.0001) * rotor_wy;
+        let t53 = k(0.000125) * inner_ring_wz + k(3e-5) * inner_ring_wx;
+        let t54 = k(5e-5) * inner_ring_wx - k(0.000125) * inner_ring_wy;
+        let t55 = inner_ring_wy * t54 - inner_ring_wz * t53
+            - (rotor_wy * t52 - rotor_wz * t51);
+        let t56 = rotor_wz * t25 + (t5 * t50 - t3 * t48);
+        let t57 = rotor_wy * t25 + (t3 * t50 + t5 * t48);
+        let t58 = k(0.0002) * t57 - k(0.00015) * t56
+            + (t55 - (k(5e-5) * t50 + k(3e-5) * t48));
+        let t59 = rotor_e0 * rotor_e0;
+        let t60 = k(0.000125) * t50 - k(3e-5) * t47;
+        let t61 = k(0.000125) * t48 + k(5e-5) * t47;
+        let t62 = k(3e-5) * inner_ring_wy + k(5e-5) * inner_ring_wz;
+        let t63 = inner_ring_wz * t62 + inner_ring_wx * t54;
+        let t64 = inner_ring_wx * t53 + inner_ring_wy * t62;
+        let t65 = k(0.00015) * rotor_wy + k(0.0002) * rotor_wz;
+        let t66 = rotor_wz * t65 + rotor_wx * t52 - (t5 * t64 + t3 * t63);
+        let t67 = t39 * t49 - (t37 * t45 - k(99950.02498750624) * t35) - t47;
+        let t68 = k(0.0001) * t57 + k(0.00015) * t67 - (t66 + (t5 * t61 + t3 * t60));
+        let t69 = rotor_e0 * rotor_e3;
+        let t70 = rotor_e1 * rotor_e2;
+        let t71 = k(2.0) * (t70 - t69) * t68
+            + k(2.0) * (k(0.5) - (t59 + rotor_e1 * rotor_e1)) * t58;
+        let t72 = rotor_wx * t51 + rotor_wy * t65 - (t3 * t64 - t5 * t63);
+        let t73 = k(0.0001) * t56 + k(0.0002) * t67 + (t72 + (t3 * t61 - t5 * t60));
+        let t74 = rotor_e0 * rotor_e2;
+        let t75 = rotor_e1 * rotor_e3;
+        let t76 = k(2.0) * (k(0.5) - (t59 + rotor_e2 * rotor_e2)) * t68
+            + k(2.0) * (t70 + t69) * t58;
+        let t77 = rotor_e0 * rotor_e1;
+        let t78 = rotor_e2 * rotor_e3;
+        let t79 = k(2.0) * (t78 + t77) * t68 - k(2.0) * (t75 - t74) * t58;
+        *out = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t0,
+            -t45,
+            t46,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t47,
+            t48,
+            t50,
+            -(k(2.0) * (t75 + t74) * t73 + t71),
+            t76 - k(2.0) * (t78 - t77) * t73,
+            k(2.0) * (k(0.5) - (t59 + rotor_e3 * rotor_e3)) * t73 - t79,
+            t67,
+            -t56,
+            t57,
         ];
     }
 }

@@ -26,6 +26,12 @@
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
 //! | newton_step | dependent positions, one Newton step | 193 | 318 | 3 | 514 | 12 of 28 |
 //! | solve_velocities | dependent velocities, eq. (19) | 112 | 185 | 3 | 300 | 12 of 24 |
+//! | joint_accelerations | u̇ in joint coordinates | 5 | 12 | 1 | 18 | 0 of 3 |
+//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 |
+//! | to_maximal | (q, v) of a joint state | 24 | 54 | 0 | 78 | 28 of 52 |
+//! | to_joints | (x, u) of a maximal state | 82 | 95 | 0 | 177 | 0 of 6 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 15 | 23 | 1 | 39 | 0 of 3 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 57 | 92 | 1 | 150 | 12 of 24 |
 
 /// The mechanism `gyroscope_maximal`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -1178,6 +1184,124 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeMaximal<T> {
         y[50] = rotor_wy - t87 * (t70 * t79) - t85 * (t78 * t79);
         y[51] = rotor_wz + t87 * (t77 * t79) + t85 * (t76 * t79);
         Ok(())
+    }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 96 operations (32 ±, 64 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let base_e0 = y[3];
+        let base_e1 = y[4];
+        let base_e2 = y[5];
+        let base_e3 = y[6];
+        let outer_ring_e0 = y[10];
+        let outer_ring_e1 = y[11];
+        let outer_ring_e2 = y[12];
+        let outer_ring_e3 = y[13];
+        let inner_ring_e0 = y[17];
+        let inner_ring_e1 = y[18];
+        let inner_ring_e2 = y[19];
+        let inner_ring_e3 = y[20];
+        let rotor_e0 = y[24];
+        let rotor_e1 = y[25];
+        let rotor_e2 = y[26];
+        let rotor_e3 = y[27];
+        let base_sx = y[28];
+        let base_sy = y[29];
+        let base_sz = y[30];
+        let outer_ring_sx = y[34];
+        let outer_ring_sy = y[35];
+        let outer_ring_sz = y[36];
+        let inner_ring_sx = y[40];
+        let inner_ring_sy = y[41];
+        let inner_ring_sz = y[42];
+        let rotor_sx = y[46];
+        let rotor_sy = y[47];
+        let rotor_sz = y[48];
+        let base_wx = y[31];
+        let base_wy = y[32];
+        let base_wz = y[33];
+        let outer_ring_wx = y[37];
+        let outer_ring_wy = y[38];
+        let outer_ring_wz = y[39];
+        let inner_ring_wx = y[43];
+        let inner_ring_wy = y[44];
+        let inner_ring_wz = y[45];
+        let rotor_wx = y[49];
+        let rotor_wy = y[50];
+        let rotor_wz = y[51];
+        *dy = [
+            base_sx,
+            base_sy,
+            base_sz,
+            -(k(0.5) * (base_e1 * base_wx + base_e2 * base_wy + base_e3 * base_wz)),
+            k(0.5) * (base_e0 * base_wx - base_e3 * base_wy + base_e2 * base_wz),
+            k(0.5) * (base_e3 * base_wx + base_e0 * base_wy - base_e1 * base_wz),
+            -(k(0.5) * (base_e2 * base_wx - base_e1 * base_wy - base_e0 * base_wz)),
+            outer_ring_sx,
+            outer_ring_sy,
+            outer_ring_sz,
+            -(k(0.5)
+                * (outer_ring_e1 * outer_ring_wx + outer_ring_e2 * outer_ring_wy
+                    + outer_ring_e3 * outer_ring_wz)),
+            k(0.5)
+                * (outer_ring_e0 * outer_ring_wx - outer_ring_e3 * outer_ring_wy
+                    + outer_ring_e2 * outer_ring_wz),
+            k(0.5)
+                * (outer_ring_e3 * outer_ring_wx + outer_ring_e0 * outer_ring_wy
+                    - outer_ring_e1 * outer_ring_wz),
+            -(k(0.5)
+                * (outer_ring_e2 * outer_ring_wx - outer_ring_e1 * outer_ring_wy
+                    - outer_ring_e0 * outer_ring_wz)),
+            inner_ring_sx,
+            inner_ring_sy,
+            inner_ring_sz,
+            -(k(0.5)
+                * (inner_ring_e1 * inner_ring_wx + inner_ring_e2 * inner_ring_wy
+                    + inner_ring_e3 * inner_ring_wz)),
+            k(0.5)
+                * (inner_ring_e0 * inner_ring_wx - inner_ring_e3 * inner_ring_wy
+                    + inner_ring_e2 * inner_ring_wz),
+            k(0.5)
+                * (inner_ring_e3 * inner_ring_wx + inner_ring_e0 * inner_ring_wy
+                    - inner_ring_e1 * inner_ring_wz),
+            -(k(0.5)
+                * (inner_ring_e2 * inner_ring_wx - inner_ring_e1 * inner_ring_wy
+                    - inner_ring_e0 * inner_ring_wz)),
+            rotor_sx,
+            rotor_sy,
+            rotor_sz,
+            -(k(0.5)
+                * (rotor_e1 * rotor_wx + rotor_e2 * rotor_wy + rotor_e3 * rotor_wz)),
+            k(0.5) * (rotor_e0 * rotor_wx - rotor_e3 * rotor_wy + rotor_e2 * rotor_wz),
+            k(0.5) * (rotor_e3 * rotor_wx + rotor_e0 * rotor_wy - rotor_e1 * rotor_wz),
+            -(k(0.5)
+                * (rotor_e2 * rotor_wx - rotor_e1 * rotor_wy - rotor_e0 * rotor_wz)),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            accelerations[6],
+            accelerations[7],
+            accelerations[8],
+            accelerations[9],
+            accelerations[10],
+            accelerations[11],
+            accelerations[12],
+            accelerations[13],
+            accelerations[14],
+            accelerations[15],
+            accelerations[16],
+            accelerations[17],
+            accelerations[18],
+            accelerations[19],
+            accelerations[20],
+            accelerations[21],
+            accelerations[22],
+            accelerations[23],
+        ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
@@ -2659,6 +2783,382 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
             -t6,
             t70 * t137 * t33 + t31 * (t68 * t137),
             t58 * t137 * t33 + t31 * (t56 * t137),
+        ];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
+    type Joints = [T; 6];
+    type Rates = [T; 3];
+    fn joint_start(&self) -> Self::Joints {
+        let k = T::constant;
+        [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(100.0)]
+    }
+    fn rates(&self) -> Self::Rates {
+        [T::constant(0.0); 3]
+    }
+    /// Writes u̇: 18 operations (5 ±, 12 ×, 1 ÷) and 2 functions.
+    fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
+        let k = T::constant;
+        let x1 = x[1];
+        let u0 = x[3];
+        let u1 = x[4];
+        let u2 = x[5];
+        let t0 = x1.cos();
+        let t1 = u1 * t0;
+        let t2 = x1.sin();
+        let t3 = u0 * t2;
+        let t4 = k(1.6663195167673401)
+            * ((u2 - k(0.20025) * t3) / (k(1.3332639033534681) - t2 * t2));
+        *out = [
+            -(t4 * t1),
+            -(k(1.6663195167673401) * (t0 * (k(10.0) - u0 * (u2 + k(0.399875) * t3)))),
+            -(t1 * (u0 - t2 * t4)),
+        ];
+    }
+    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
+    fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
+        let mut rates = gyro_sim::JointSpace::rates(self);
+        gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
+        let u0 = x[3];
+        let u1 = x[4];
+        let u2 = x[5];
+        *dx = [u0, u1, u2, rates[0], rates[1], rates[2]];
+    }
+    /// Writes the maximal state of a joint state: 78 operations (24 ±, 54 ×, 0 ÷) and 6 functions.
+    fn to_maximal(&self, _t: T, x: &Self::Joints, y: &mut Self::State) {
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let u0 = x[3];
+        let u1 = x[4];
+        let u2 = x[5];
+        let t0 = k(0.5) * x0;
+        let t1 = t0.cos();
+        let t2 = t0.sin();
+        let t3 = k(0.5) * x1;
+        let t4 = t3.cos();
+        let t5 = t1 * t4;
+        let t6 = t3.sin();
+        let t7 = t2 * t6;
+        let t8 = t2 * t4;
+        let t9 = t1 * t6;
+        let t10 = t5 * t5;
+        let t11 = t5 * t9;
+        let t12 = t7 * t8;
+        let t13 = t5 * t8;
+        let t14 = t7 * t9;
+        let t15 = k(0.5) * x2;
+        let t16 = t15.sin();
+        let t17 = t15.cos();
+        let t18 = k(2.0) * t6;
+        let t19 = u0 * (t4 * t18);
+        let t20 = u0 * (k(1.0) - t6 * t18);
+        let t21 = k(0.000125) * t20;
+        let t22 = k(0.000125) * u1;
+        let t23 = k(2.0) * (t12 - t11) * t22 - k(2.0) * (t14 + t13) * t21;
+        let t24 = t5 * t7;
+        let t25 = t8 * t9;
+        let t26 = k(2.0) * (k(0.5) - (t10 + t8 * t8)) * t22 + k(2.0) * (t25 - t24) * t21;
+        let t27 = k(2.0) * (t25 + t24) * t22 + k(2.0) * (k(0.5) - (t10 + t9 * t9)) * t21;
+        let t28 = k(2.0) * t16;
+        let t29 = k(1.0) - t16 * t28;
+        let t30 = t17 * t28;
+        *y = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t1,
+            k(0.0),
+            t2,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t5,
+            t7,
+            t8,
+            t9,
+            -(k(0.00025) * (k(0.5) - (t10 + t7 * t7))),
+            k(0.00025) * (t12 + t11),
+            k(0.00025) * (t14 - t13),
+            t5 * t17 - t7 * t16,
+            t7 * t17 + t5 * t16,
+            t8 * t17 + t9 * t16,
+            t9 * t17 - t8 * t16,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            u0,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t19,
+            t20,
+            u1,
+            t23,
+            -t26,
+            t27,
+            u2 + t19,
+            u1 * t30 + t29 * t20,
+            u1 * t29 - t30 * t20,
+        ];
+    }
+    /// Writes the joint state of a maximal state: 177 operations (82 ±, 95 ×, 0 ÷) and 9 functions.
+    fn to_joints(&self, _t: T, y: &Self::State, x: &mut Self::Joints) {
+        let k = T::constant;
+        let base_e0 = y[3];
+        let base_e1 = y[4];
+        let base_e2 = y[5];
+        let base_e3 = y[6];
+        let outer_ring_e0 = y[10];
+        let outer_ring_e1 = y[11];
+        let outer_ring_e2 = y[12];
+        let outer_ring_e3 = y[13];
+        let inner_ring_e0 = y[17];
+        let inner_ring_e1 = y[18];
+        let inner_ring_e2 = y[19];
+        let inner_ring_e3 = y[20];
+        let rotor_e0 = y[24];
+        let rotor_e1 = y[25];
+        let rotor_e2 = y[26];
+        let rotor_e3 = y[27];
+        let base_wy = y[32];
+        let outer_ring_wy = y[38];
+        let outer_ring_wz = y[39];
+        let inner_ring_wx = y[43];
+        let inner_ring_wz = y[45];
+        let rotor_wx = y[49];
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let t0 = x0.sin();
+        let t1 = outer_ring_e2 * outer_ring_e2;
+        let t2 = outer_ring_e0 * outer_ring_e0;
+        let t3 = t2 + outer_ring_e1 * outer_ring_e1;
+        let t4 = outer_ring_e3 * outer_ring_e3;
+        let t5 = k(1.0) - (t4 + (t3 + t1));
+        let t6 = k(2.0) * (k(0.5) - (t2 + t4)) - t5;
+        let t7 = base_e0 * base_e2;
+        let t8 = base_e1 * base_e3;
+        let t9 = outer_ring_e0 * outer_ring_e1;
+        let t10 = outer_ring_e2 * outer_ring_e3;
+        let t11 = k(2.0) * (t10 - t9);
+        let t12 = base_e0 * base_e0;
+        let t13 = t12 + base_e1 * base_e1;
+        let t14 = base_e3 * base_e3;
+        let t15 = k(1.0) - (t14 + (t13 + base_e2 * base_e2));
+        let t16 = outer_ring_e0 * outer_ring_e2;
+        let t17 = outer_ring_e1 * outer_ring_e3;
+        let t18 = k(2.0) * (t17 + t16);
+        let t19 = t18 * (k(2.0) * (k(0.5) - t13) - t15)
+            - k(2.0) * (base_e1 * base_e2 + base_e0 * base_e3) * t11;
+        let t20 = t19 + k(2.0) * (t8 - t7) * t6;
+        let t21 = x0.cos();
+        let t22 = k(2.0) * (t8 + t7) * t18
+            + k(2.0) * (base_e2 * base_e3 - base_e0 * base_e1) * t11;
+        let t23 = t22 + (k(2.0) * (k(0.5) - (t12 + t14)) - t15) * t6;
+        let t24 = -(t23 * t0 + t20 * t21).atan2(t23 * t21 - t20 * t0);
+        let t25 = x1.sin();
+        let t26 = inner_ring_e0 * inner_ring_e2;
+        let t27 = inner_ring_e1 * inner_ring_e3;
+        let t28 = k(2.0) * (t27 - t26);
+        let t29 = inner_ring_e0 * inner_ring_e3;
+        let t30 = inner_ring_e1 * inner_ring_e2;
+        let t31 = k(2.0) * (t30 + t29);
+        let t32 = inner_ring_e2 * inner_ring_e2;
+        let t33 = inner_ring_e0 * inner_ring_e0;
+        let t34 = t33 + inner_ring_e1 * inner_ring_e1;
+        let t35 = inner_ring_e3 * inner_ring_e3;
+        let t36 = k(1.0) - (t35 + (t34 + t32));
+        let t37 = k(2.0) * (k(0.5) - t34) - t36;
+        let t38 = outer_ring_e0 * outer_ring_e3;
+        let t39 = outer_ring_e1 * outer_ring_e2;
+        let t40 = k(2.0) * (t39 - t38) * t37
+            + t31 * (k(2.0) * (k(0.5) - (t2 + t1)) - t5);
+        let t41 = t40 - k(2.0) * (t10 + t9) * t28;
+        let t42 = x1.cos();
+        let t43 = (k(2.0) * (k(0.5) - t3) - t5) * t37 + k(2.0) * (t39 + t38) * t31;
+        let t44 = t43 + k(2.0) * (t17 - t16) * t28;
+        let t45 = -(t44 * t25 + t41 * t42).atan2(t44 * t42 - t41 * t25);
+        let t46 = x2.sin();
+        let t47 = k(2.0) * (rotor_e2 * rotor_e3 + rotor_e0 * rotor_e1);
+        let t48 = rotor_e2 * rotor_e2;
+        let t49 = rotor_e0 * rotor_e0;
+        let t50 = k(2.0) * (k(0.5) - (t49 + t48))
+            - (k(1.0) - (rotor_e3 * rotor_e3 + (t49 + rotor_e1 * rotor_e1 + t48)));
+        let t51 = inner_ring_e0 * inner_ring_e1;
+        let t52 = inner_ring_e2 * inner_ring_e3;
+        let t53 = k(2.0) * (rotor_e1 * rotor_e2 - rotor_e0 * rotor_e3);
+        let t54 = k(2.0) * (t27 + t26) * t53 - k(2.0) * (t52 - t51) * t50;
+        let t55 = t54 - t47 * (k(2.0) * (k(0.5) - (t33 + t35)) - t36);
+        let t56 = x2.cos();
+        let t57 = k(2.0) * (t30 - t29) * t53
+            + (k(2.0) * (k(0.5) - (t33 + t32)) - t36) * t50;
+        let t58 = t57 + k(2.0) * (t52 + t51) * t47;
+        let t59 = (t55 * t56 - t58 * t46).atan2(t58 * t56 + t55 * t46);
+        x[0] = x0 + t24;
+        x[1] = x1 + t45;
+        x[2] = x2 + t59;
+        x[3] = outer_ring_wy - base_wy;
+        x[4] = inner_ring_wz - outer_ring_wz;
+        x[5] = rotor_wx - inner_ring_wx;
+    }
+    /// Writes u̇ at a state that satisfies the constraints: 39 operations (15 ±, 23 ×, 1 ÷).
+    fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
+        let k = T::constant;
+        let outer_ring_e0 = y[10];
+        let outer_ring_e1 = y[11];
+        let outer_ring_e2 = y[12];
+        let outer_ring_e3 = y[13];
+        let inner_ring_e0 = y[17];
+        let inner_ring_e1 = y[18];
+        let inner_ring_e2 = y[19];
+        let inner_ring_e3 = y[20];
+        let base_wy = y[32];
+        let outer_ring_wy = y[38];
+        let outer_ring_wz = y[39];
+        let inner_ring_wx = y[43];
+        let inner_ring_wz = y[45];
+        let rotor_wx = y[49];
+        let t0 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t1 = k(2.0) * t0;
+        let t2 = k(1.0) - t0 * t1;
+        let t3 = (outer_ring_wz - inner_ring_wz) * t2;
+        let t4 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t5 = t4 * t1;
+        let t6 = base_wy - outer_ring_wy;
+        let t7 = t6 * t5;
+        let t8 = inner_ring_wx - rotor_wx;
+        let t9 = k(1.6663195167673401)
+            * ((t8 + k(0.20025) * t7) / (k(1.3332639033534681) - t5 * t5));
+        *out = [
+            -(t9 * t3),
+            -(k(1.6663195167673401) * (t2 * (k(10.0) - t6 * (t8 - k(0.399875) * t7)))),
+            -(t3 * (t6 + t5 * t9)),
+        ];
+    }
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 150 operations (57 ±, 92 ×, 1 ÷).
+    fn corrected_accelerations(
+        &self,
+        _t: T,
+        y: &Self::State,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let outer_ring_e0 = y[10];
+        let outer_ring_e1 = y[11];
+        let outer_ring_e2 = y[12];
+        let outer_ring_e3 = y[13];
+        let inner_ring_e0 = y[17];
+        let inner_ring_e1 = y[18];
+        let inner_ring_e2 = y[19];
+        let inner_ring_e3 = y[20];
+        let rotor_e0 = y[24];
+        let rotor_e1 = y[25];
+        let rotor_e2 = y[26];
+        let rotor_e3 = y[27];
+        let base_wy = y[32];
+        let outer_ring_wx = y[37];
+        let outer_ring_wy = y[38];
+        let outer_ring_wz = y[39];
+        let inner_ring_wx = y[43];
+        let inner_ring_wy = y[44];
+        let inner_ring_wz = y[45];
+        let rotor_wx = y[49];
+        let rotor_wy = y[50];
+        let rotor_wz = y[51];
+        let t0 = base_wy - outer_ring_wy;
+        let t1 = outer_ring_wz * t0;
+        let t2 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t3 = k(2.0) * t2;
+        let t4 = k(1.0) - t2 * t3;
+        let t5 = outer_ring_wz - inner_ring_wz;
+        let t6 = t5 * t4;
+        let t7 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t8 = t7 * t3;
+        let t9 = t0 * t8;
+        let t10 = inner_ring_wx - rotor_wx;
+        let t11 = k(1.6663195167673401)
+            * ((t10 + k(0.20025) * t9) / (k(1.3332639033534681) - t8 * t8));
+        let t12 = t11 * t6;
+        let t13 = outer_ring_wx * t0;
+        let t14 = inner_ring_wy * t5 - (t4 * t1 + t8 * t12);
+        let t15 = inner_ring_wx * t5 + (t8 * t1 - t4 * t12);
+        let t16 = k(1.6663195167673401)
+            * (t4 * (k(10.0) - t0 * (t10 - k(0.399875) * t9))) + t13;
+        let t17 = k(0.000125) * t16;
+        let t18 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t19 = k(2.0) * t18;
+        let t20 = k(1.0) - t18 * t19;
+        let t21 = k(0.000125) * t15;
+        let t22 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t23 = t22 * t19;
+        let t24 = k(0.000125) * inner_ring_wy;
+        let t25 = inner_ring_wx * t24;
+        let t26 = k(0.000125) * inner_ring_wz;
+        let t27 = inner_ring_wx * t26;
+        let t28 = t23 * t27 - t20 * t25 - (t23 * t21 - t20 * t17);
+        let t29 = rotor_e0 * rotor_e3;
+        let t30 = rotor_e1 * rotor_e2;
+        let t31 = inner_ring_wy * t24 + inner_ring_wz * t26;
+        let t32 = rotor_e0 * rotor_e0;
+        let t33 = k(2.0) * (k(0.5) - (t32 + rotor_e1 * rotor_e1)) * t31
+            - k(2.0) * (t30 - t29) * t28;
+        let t34 = t20 * t27 + t23 * t25 - (t20 * t21 + t23 * t17);
+        let t35 = rotor_e0 * rotor_e2;
+        let t36 = rotor_e1 * rotor_e3;
+        let t37 = k(2.0) * (t30 + t29) * t31
+            - k(2.0) * (k(0.5) - (t32 + rotor_e2 * rotor_e2)) * t28;
+        let t38 = rotor_e0 * rotor_e1;
+        let t39 = rotor_e2 * rotor_e3;
+        let t40 = k(2.0) * (t36 - t35) * t31 + k(2.0) * (t39 + t38) * t28;
+        *out = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t1,
+            -t12,
+            -t13,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t14,
+            t15,
+            -t16,
+            k(2.0) * (t36 + t35) * t34 + t33,
+            k(2.0) * (t39 - t38) * t34 - t37,
+            -(k(2.0) * (k(0.5) - (t32 + rotor_e3 * rotor_e3)) * t34 + t40),
+            -(t6 * (t0 + t8 * t11) + t14),
+            t23 * t16 + t20 * t15 - rotor_wz * t10,
+            rotor_wy * t10 - (t20 * t16 - t23 * t15),
         ];
     }
 }

@@ -27,6 +27,12 @@
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
 //! | newton_step | dependent positions, one Newton step | 193 | 321 | 3 | 517 | 6 of 21 |
 //! | solve_velocities | dependent velocities, eq. (19) | 96 | 158 | 3 | 257 | 6 of 18 |
+//! | joint_accelerations | u̇ in joint coordinates | 12 | 18 | 2 | 32 | 0 of 3 |
+//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 |
+//! | to_maximal | (q, v) of a joint state | 24 | 57 | 0 | 81 | 16 of 39 |
+//! | to_joints | (x, u) of a maximal state | 63 | 72 | 0 | 135 | 0 of 6 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 21 | 29 | 2 | 52 | 0 of 3 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 63 | 97 | 2 | 162 | 6 of 18 |
 
 /// The mechanism `gyroscope_parameters`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -1023,6 +1029,101 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeParameters<T> {
         y[38] = rotor_wz + t73 * (t63 * t65) + t71 * (t62 * t65);
         Ok(())
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 72 operations (24 ±, 48 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_sx = y[21];
+        let outer_ring_sy = y[22];
+        let outer_ring_sz = y[23];
+        let inner_ring_sx = y[27];
+        let inner_ring_sy = y[28];
+        let inner_ring_sz = y[29];
+        let rotor_sx = y[33];
+        let rotor_sy = y[34];
+        let rotor_sz = y[35];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        *dy = [
+            outer_ring_sx,
+            outer_ring_sy,
+            outer_ring_sz,
+            -(k(0.5)
+                * (outer_ring_e1 * outer_ring_wx + outer_ring_e2 * outer_ring_wy
+                    + outer_ring_e3 * outer_ring_wz)),
+            k(0.5)
+                * (outer_ring_e0 * outer_ring_wx - outer_ring_e3 * outer_ring_wy
+                    + outer_ring_e2 * outer_ring_wz),
+            k(0.5)
+                * (outer_ring_e3 * outer_ring_wx + outer_ring_e0 * outer_ring_wy
+                    - outer_ring_e1 * outer_ring_wz),
+            -(k(0.5)
+                * (outer_ring_e2 * outer_ring_wx - outer_ring_e1 * outer_ring_wy
+                    - outer_ring_e0 * outer_ring_wz)),
+            inner_ring_sx,
+            inner_ring_sy,
+            inner_ring_sz,
+            -(k(0.5)
+                * (inner_ring_e1 * inner_ring_wx + inner_ring_e2 * inner_ring_wy
+                    + inner_ring_e3 * inner_ring_wz)),
+            k(0.5)
+                * (inner_ring_e0 * inner_ring_wx - inner_ring_e3 * inner_ring_wy
+                    + inner_ring_e2 * inner_ring_wz),
+            k(0.5)
+                * (inner_ring_e3 * inner_ring_wx + inner_ring_e0 * inner_ring_wy
+                    - inner_ring_e1 * inner_ring_wz),
+            -(k(0.5)
+                * (inner_ring_e2 * inner_ring_wx - inner_ring_e1 * inner_ring_wy
+                    - inner_ring_e0 * inner_ring_wz)),
+            rotor_sx,
+            rotor_sy,
+            rotor_sz,
+            -(k(0.5)
+                * (rotor_e1 * rotor_wx + rotor_e2 * rotor_wy + rotor_e3 * rotor_wz)),
+            k(0.5) * (rotor_e0 * rotor_wx - rotor_e3 * rotor_wy + rotor_e2 * rotor_wz),
+            k(0.5) * (rotor_e3 * rotor_wx + rotor_e0 * rotor_wy - rotor_e1 * rotor_wz),
+            -(k(0.5)
+                * (rotor_e2 * rotor_wx - rotor_e1 * rotor_wy - rotor_e0 * rotor_wz)),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            accelerations[6],
+            accelerations[7],
+            accelerations[8],
+            accelerations[9],
+            accelerations[10],
+            accelerations[11],
+            accelerations[12],
+            accelerations[13],
+            accelerations[14],
+            accelerations[15],
+            accelerations[16],
+            accelerations[17],
+        ];
+    }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeParameters<T> {
     type Velocities = [T; 18];
@@ -1989,6 +2090,356 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeParameters<T> {
             -t4,
             t62 * t82 * t30 + t28 * (t60 * t82),
             t53 * t82 * t30 + t28 * (t51 * t82),
+        ];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
+    type Joints = [T; 6];
+    type Rates = [T; 3];
+    fn joint_start(&self) -> Self::Joints {
+        let k = T::constant;
+        [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(100.0)]
+    }
+    fn rates(&self) -> Self::Rates {
+        [T::constant(0.0); 3]
+    }
+    /// Writes u̇: 32 operations (12 ±, 18 ×, 2 ÷) and 2 functions.
+    fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
+        let k = T::constant;
+        let x1 = x[1];
+        let u0 = x[3];
+        let u1 = x[4];
+        let u2 = x[5];
+        let t0 = x1.cos();
+        let t1 = k(1e-5) * (u1 * t0);
+        let t2 = x1.sin();
+        let t3 = u0 * t2;
+        let t4 = self.rotor_offset * self.rotor_mass;
+        let t5 = self.rotor_offset * t4;
+        let t6 = self.ring_axial_inertia + t5;
+        let t7 = self.ring_diametral_inertia - t6;
+        let t8 = self.ring_diametral_inertia + k(5e-6);
+        let t9 = (u2 + k(200000.0) * (t7 * t3)) * t1
+            / (t8 + (t6 - (k(5e-6) - t7) * (t2 * t2)));
+        let t10 = self.gravity * t4 - u0 * (k(1e-5) * u2 + (k(5e-6) + t7) * t3);
+        *out = [-t9, -(t0 * t10 / (t5 + t8)), t2 * t9 - k(100000.0) * (u0 * t1)];
+    }
+    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
+    fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
+        let mut rates = gyro_sim::JointSpace::rates(self);
+        gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
+        let u0 = x[3];
+        let u1 = x[4];
+        let u2 = x[5];
+        *dx = [u0, u1, u2, rates[0], rates[1], rates[2]];
+    }
+    /// Writes the maximal state of a joint state: 81 operations (24 ±, 57 ×, 0 ÷) and 6 functions.
+    fn to_maximal(&self, _t: T, x: &Self::Joints, y: &mut Self::State) {
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let u0 = x[3];
+        let u1 = x[4];
+        let u2 = x[5];
+        let t0 = k(0.5) * x0;
+        let t1 = t0.cos();
+        let t2 = t0.sin();
+        let t3 = k(0.5) * x1;
+        let t4 = t3.cos();
+        let t5 = t1 * t4;
+        let t6 = t3.sin();
+        let t7 = t2 * t6;
+        let t8 = t2 * t4;
+        let t9 = t1 * t6;
+        let t10 = t5 * t5;
+        let t11 = t5 * t9;
+        let t12 = t7 * t8;
+        let t13 = t5 * t8;
+        let t14 = t7 * t9;
+        let t15 = k(0.5) * x2;
+        let t16 = t15.sin();
+        let t17 = t15.cos();
+        let t18 = k(2.0) * t6;
+        let t19 = u0 * (t4 * t18);
+        let t20 = u0 * (k(1.0) - t6 * t18);
+        let t21 = self.rotor_offset * t20;
+        let t22 = self.rotor_offset * u1;
+        let t23 = k(2.0) * (t12 - t11) * t22 - k(2.0) * (t14 + t13) * t21;
+        let t24 = t5 * t7;
+        let t25 = t8 * t9;
+        let t26 = k(2.0) * (k(0.5) - (t10 + t8 * t8)) * t22 + k(2.0) * (t25 - t24) * t21;
+        let t27 = k(2.0) * (t25 + t24) * t22 + k(2.0) * (k(0.5) - (t10 + t9 * t9)) * t21;
+        let t28 = k(2.0) * t16;
+        let t29 = k(1.0) - t16 * t28;
+        let t30 = t17 * t28;
+        *y = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t1,
+            k(0.0),
+            t2,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t5,
+            t7,
+            t8,
+            t9,
+            -(self.rotor_offset * (k(2.0) * (k(0.5) - (t10 + t7 * t7)))),
+            self.rotor_offset * (k(2.0) * (t12 + t11)),
+            self.rotor_offset * (k(2.0) * (t14 - t13)),
+            t5 * t17 - t7 * t16,
+            t7 * t17 + t5 * t16,
+            t8 * t17 + t9 * t16,
+            t9 * t17 - t8 * t16,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            u0,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t19,
+            t20,
+            u1,
+            t23,
+            -t26,
+            t27,
+            u2 + t19,
+            u1 * t30 + t29 * t20,
+            u1 * t29 - t30 * t20,
+        ];
+    }
+    /// Writes the joint state of a maximal state: 135 operations (63 ±, 72 ×, 0 ÷) and 9 functions.
+    fn to_joints(&self, _t: T, y: &Self::State, x: &mut Self::Joints) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let t0 = x0.sin();
+        let t1 = outer_ring_e0 * outer_ring_e2;
+        let t2 = outer_ring_e1 * outer_ring_e3;
+        let t3 = k(2.0) * (t2 + t1);
+        let t4 = x0.cos();
+        let t5 = outer_ring_e2 * outer_ring_e2;
+        let t6 = outer_ring_e0 * outer_ring_e0;
+        let t7 = t6 + outer_ring_e1 * outer_ring_e1;
+        let t8 = outer_ring_e3 * outer_ring_e3;
+        let t9 = k(1.0) - (t8 + (t7 + t5));
+        let t10 = k(2.0) * (k(0.5) - (t6 + t8)) - t9;
+        let t11 = (t10 * t0 + t3 * t4).atan2(t3 * t0 - t10 * t4);
+        let t12 = x1.sin();
+        let t13 = inner_ring_e0 * inner_ring_e2;
+        let t14 = inner_ring_e1 * inner_ring_e3;
+        let t15 = k(2.0) * (t14 - t13);
+        let t16 = inner_ring_e0 * inner_ring_e3;
+        let t17 = inner_ring_e1 * inner_ring_e2;
+        let t18 = k(2.0) * (t17 + t16);
+        let t19 = inner_ring_e2 * inner_ring_e2;
+        let t20 = inner_ring_e0 * inner_ring_e0;
+        let t21 = t20 + inner_ring_e1 * inner_ring_e1;
+        let t22 = inner_ring_e3 * inner_ring_e3;
+        let t23 = k(1.0) - (t22 + (t21 + t19));
+        let t24 = k(2.0) * (k(0.5) - t21) - t23;
+        let t25 = outer_ring_e0 * outer_ring_e3;
+        let t26 = outer_ring_e1 * outer_ring_e2;
+        let t27 = k(2.0) * (t26 - t25) * t24
+            + t18 * (k(2.0) * (k(0.5) - (t6 + t5)) - t9);
+        let t28 = t27
+            - k(2.0) * (outer_ring_e2 * outer_ring_e3 + outer_ring_e0 * outer_ring_e1)
+                * t15;
+        let t29 = x1.cos();
+        let t30 = (k(2.0) * (k(0.5) - t7) - t9) * t24 + k(2.0) * (t26 + t25) * t18;
+        let t31 = t30 + k(2.0) * (t2 - t1) * t15;
+        let t32 = -(t31 * t12 + t28 * t29).atan2(t31 * t29 - t28 * t12);
+        let t33 = x2.sin();
+        let t34 = k(2.0) * (rotor_e2 * rotor_e3 + rotor_e0 * rotor_e1);
+        let t35 = rotor_e2 * rotor_e2;
+        let t36 = rotor_e0 * rotor_e0;
+        let t37 = k(2.0) * (k(0.5) - (t36 + t35))
+            - (k(1.0) - (rotor_e3 * rotor_e3 + (t36 + rotor_e1 * rotor_e1 + t35)));
+        let t38 = inner_ring_e0 * inner_ring_e1;
+        let t39 = inner_ring_e2 * inner_ring_e3;
+        let t40 = k(2.0) * (rotor_e1 * rotor_e2 - rotor_e0 * rotor_e3);
+        let t41 = k(2.0) * (t14 + t13) * t40 - k(2.0) * (t39 - t38) * t37;
+        let t42 = t41 - t34 * (k(2.0) * (k(0.5) - (t20 + t22)) - t23);
+        let t43 = x2.cos();
+        let t44 = k(2.0) * (t17 - t16) * t40
+            + (k(2.0) * (k(0.5) - (t20 + t19)) - t23) * t37;
+        let t45 = t44 + k(2.0) * (t39 + t38) * t34;
+        let t46 = (t42 * t43 - t45 * t33).atan2(t45 * t43 + t42 * t33);
+        x[0] = x0 + t11;
+        x[1] = x1 + t32;
+        x[2] = x2 + t46;
+        x[3] = outer_ring_wy;
+        x[4] = inner_ring_wz - outer_ring_wz;
+        x[5] = rotor_wx - inner_ring_wx;
+    }
+    /// Writes u̇ at a state that satisfies the constraints: 52 operations (21 ±, 29 ×, 2 ÷).
+    fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let t0 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t1 = k(2.0) * t0;
+        let t2 = k(1.0) - t0 * t1;
+        let t3 = k(1e-5) * ((outer_ring_wz - inner_ring_wz) * t2);
+        let t4 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t5 = t4 * t1;
+        let t6 = outer_ring_wy * t5;
+        let t7 = self.rotor_offset * self.rotor_mass;
+        let t8 = self.rotor_offset * t7;
+        let t9 = self.ring_axial_inertia + t8;
+        let t10 = self.ring_diametral_inertia - t9;
+        let t11 = inner_ring_wx - rotor_wx;
+        let t12 = self.ring_diametral_inertia + k(5e-6);
+        let t13 = (t11 + k(200000.0) * (t10 * t6)) * t3
+            / (t12 + (t9 - (k(5e-6) - t10) * (t5 * t5)));
+        let t14 = self.gravity * t7
+            + outer_ring_wy * ((k(5e-6) + t10) * t6 + k(1e-5) * t11);
+        *out = [
+            -t13,
+            -(t2 * t14 / (t8 + t12)),
+            k(100000.0) * (outer_ring_wy * t3) - t5 * t13,
+        ];
+    }
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 162 operations (63 ±, 97 ×, 2 ÷).
+    fn corrected_accelerations(
+        &self,
+        _t: T,
+        y: &Self::State,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        let t0 = outer_ring_wy * outer_ring_wz;
+        let t1 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t2 = k(2.0) * t1;
+        let t3 = k(1.0) - t1 * t2;
+        let t4 = outer_ring_wz - inner_ring_wz;
+        let t5 = k(1e-5) * (t4 * t3);
+        let t6 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t7 = t6 * t2;
+        let t8 = outer_ring_wy * t7;
+        let t9 = self.rotor_offset * self.rotor_mass;
+        let t10 = self.rotor_offset * t9;
+        let t11 = self.ring_axial_inertia + t10;
+        let t12 = self.ring_diametral_inertia - t11;
+        let t13 = inner_ring_wx - rotor_wx;
+        let t14 = self.ring_diametral_inertia + k(5e-6);
+        let t15 = (t13 + k(200000.0) * (t12 * t8)) * t5
+            / (t14 + (t11 - (k(5e-6) - t12) * (t7 * t7)));
+        let t16 = outer_ring_wx * outer_ring_wy;
+        let t17 = t7 * t15;
+        let t18 = inner_ring_wy * t4 - (t17 - t0 * t3);
+        let t19 = inner_ring_wx * t4 - (t0 * t7 + t3 * t15);
+        let t20 = self.gravity * t9
+            + outer_ring_wy * ((k(5e-6) + t12) * t8 + k(1e-5) * t13);
+        let t21 = t16 - t3 * t20 / (t10 + t14);
+        let t22 = self.rotor_offset * t21;
+        let t23 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t24 = k(2.0) * t23;
+        let t25 = k(1.0) - t23 * t24;
+        let t26 = self.rotor_offset * t19;
+        let t27 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t28 = t27 * t24;
+        let t29 = inner_ring_wy * self.rotor_offset;
+        let t30 = inner_ring_wx * t29;
+        let t31 = inner_ring_wz * self.rotor_offset;
+        let t32 = inner_ring_wx * t31;
+        let t33 = t28 * t32 - t25 * t30 - (t28 * t26 + t25 * t22);
+        let t34 = rotor_e0 * rotor_e3;
+        let t35 = rotor_e1 * rotor_e2;
+        let t36 = inner_ring_wy * t29 + inner_ring_wz * t31;
+        let t37 = rotor_e0 * rotor_e0;
+        let t38 = k(2.0) * (k(0.5) - (t37 + rotor_e1 * rotor_e1)) * t36
+            - k(2.0) * (t35 - t34) * t33;
+        let t39 = t25 * t32 + t28 * t30 - (t25 * t26 - t28 * t22);
+        let t40 = rotor_e0 * rotor_e2;
+        let t41 = rotor_e1 * rotor_e3;
+        let t42 = k(2.0) * (t35 + t34) * t36
+            - k(2.0) * (k(0.5) - (t37 + rotor_e2 * rotor_e2)) * t33;
+        let t43 = rotor_e0 * rotor_e1;
+        let t44 = rotor_e2 * rotor_e3;
+        let t45 = k(2.0) * (t41 - t40) * t36 + k(2.0) * (t44 + t43) * t33;
+        *out = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t0,
+            -t15,
+            t16,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t18,
+            t19,
+            t21,
+            k(2.0) * (t41 + t40) * t39 + t38,
+            k(2.0) * (t44 - t43) * t39 - t42,
+            -(k(2.0) * (k(0.5) - (t37 + rotor_e3 * rotor_e3)) * t39 + t45),
+            -(t17 - k(100000.0) * (outer_ring_wy * t5) + t18),
+            -(rotor_wz * t13 + (t28 * t21 - t25 * t19)),
+            rotor_wy * t13 + (t25 * t21 + t28 * t19),
         ];
     }
 }

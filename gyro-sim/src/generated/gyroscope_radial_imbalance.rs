@@ -27,6 +27,12 @@
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
 //! | newton_step | dependent positions, one Newton step | 193 | 323 | 3 | 519 | 6 of 21 |
 //! | solve_velocities | dependent velocities, eq. (19) | 96 | 158 | 3 | 257 | 6 of 18 |
+//! | joint_accelerations | u̇ in joint coordinates | 19 | 42 | 2 | 63 | 0 of 3 |
+//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 |
+//! | to_maximal | (q, v) of a joint state | 24 | 54 | 0 | 78 | 16 of 39 |
+//! | to_joints | (x, u) of a maximal state | 63 | 72 | 0 | 135 | 0 of 6 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 35 | 64 | 2 | 101 | 0 of 3 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 66 | 113 | 2 | 181 | 6 of 18 |
 
 /// The mechanism `gyroscope_radial_imbalance`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -990,6 +996,101 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeRadialImbalance<T> {
         y[37] = rotor_wy - t73 * (t56 * t65) - t71 * (t64 * t65);
         y[38] = t74;
         Ok(())
+    }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 72 operations (24 ±, 48 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_sx = y[21];
+        let outer_ring_sy = y[22];
+        let outer_ring_sz = y[23];
+        let inner_ring_sx = y[27];
+        let inner_ring_sy = y[28];
+        let inner_ring_sz = y[29];
+        let rotor_sx = y[33];
+        let rotor_sy = y[34];
+        let rotor_sz = y[35];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        *dy = [
+            outer_ring_sx,
+            outer_ring_sy,
+            outer_ring_sz,
+            -(k(0.5)
+                * (outer_ring_e1 * outer_ring_wx + outer_ring_e2 * outer_ring_wy
+                    + outer_ring_e3 * outer_ring_wz)),
+            k(0.5)
+                * (outer_ring_e0 * outer_ring_wx - outer_ring_e3 * outer_ring_wy
+                    + outer_ring_e2 * outer_ring_wz),
+            k(0.5)
+                * (outer_ring_e3 * outer_ring_wx + outer_ring_e0 * outer_ring_wy
+                    - outer_ring_e1 * outer_ring_wz),
+            -(k(0.5)
+                * (outer_ring_e2 * outer_ring_wx - outer_ring_e1 * outer_ring_wy
+                    - outer_ring_e0 * outer_ring_wz)),
+            inner_ring_sx,
+            inner_ring_sy,
+            inner_ring_sz,
+            -(k(0.5)
+                * (inner_ring_e1 * inner_ring_wx + inner_ring_e2 * inner_ring_wy
+                    + inner_ring_e3 * inner_ring_wz)),
+            k(0.5)
+                * (inner_ring_e0 * inner_ring_wx - inner_ring_e3 * inner_ring_wy
+                    + inner_ring_e2 * inner_ring_wz),
+            k(0.5)
+                * (inner_ring_e3 * inner_ring_wx + inner_ring_e0 * inner_ring_wy
+                    - inner_ring_e1 * inner_ring_wz),
+            -(k(0.5)
+                * (inner_ring_e2 * inner_ring_wx - inner_ring_e1 * inner_ring_wy
+                    - inner_ring_e0 * inner_ring_wz)),
+            rotor_sx,
+            rotor_sy,
+            rotor_sz,
+            -(k(0.5)
+                * (rotor_e1 * rotor_wx + rotor_e2 * rotor_wy + rotor_e3 * rotor_wz)),
+            k(0.5) * (rotor_e0 * rotor_wx - rotor_e3 * rotor_wy + rotor_e2 * rotor_wz),
+            k(0.5) * (rotor_e3 * rotor_wx + rotor_e0 * rotor_wy - rotor_e1 * rotor_wz),
+            -(k(0.5)
+                * (rotor_e2 * rotor_wx - rotor_e1 * rotor_wy - rotor_e0 * rotor_wz)),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            accelerations[6],
+            accelerations[7],
+            accelerations[8],
+            accelerations[9],
+            accelerations[10],
+            accelerations[11],
+            accelerations[12],
+            accelerations[13],
+            accelerations[14],
+            accelerations[15],
+            accelerations[16],
+            accelerations[17],
+        ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
@@ -1964,6 +2065,399 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
             -t4,
             t35 * (t66 * t87) - t68 * t87 * t38,
             t35 * (t58 * t87) - t60 * t87 * t38,
+        ];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
+    type Joints = [T; 6];
+    type Rates = [T; 3];
+    fn joint_start(&self) -> Self::Joints {
+        let k = T::constant;
+        [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(100.0)]
+    }
+    fn rates(&self) -> Self::Rates {
+        [T::constant(0.0); 3]
+    }
+    /// Writes u̇: 63 operations (19 ±, 42 ×, 2 ÷) and 4 functions.
+    fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
+        let k = T::constant;
+        let x1 = x[1];
+        let x2 = x[2];
+        let u0 = x[3];
+        let u1 = x[4];
+        let u2 = x[5];
+        let t0 = x1.sin();
+        let t1 = u0 * t0;
+        let t2 = k(6.4e-9) * u2;
+        let t3 = t2 + k(3.2e-9) * t1;
+        let t4 = x2.cos();
+        let t5 = x1.cos();
+        let t6 = u0 * t5;
+        let t7 = x2.sin();
+        let t8 = t2 * (u1 * t7) - k(0.00016) * t0;
+        let t9 = t7 * (t8 + t6 * (t4 * t3)) + k(1e-5) * (u1 * (u2 - k(0.2) * t1));
+        let t10 = t7 * t7;
+        let t11 = t6 * (t10 * t3 - k(1.00064e-5) * (u2 + k(0.4000639590661976) * t1))
+            - t4 * t8;
+        let t12 = k(3.2e-9) * t5;
+        let t13 = t7 * t4;
+        let t14 = t13 * t12;
+        let t15 = k(1.0) / (k(6.0032e-6) - k(3.2e-9) * t10);
+        let t16 = t15 * t14;
+        let t17 = (t16 * t11 + t5 * t9)
+            / (t14 * t16 - (k(2e-6) + t12 * (t5 * (k(1875.0) + t10))));
+        let t18 = k(0.00016) * (t5 * (t7 + k(4e-5) * (u0 * u1 * (k(1563.5) - t10))));
+        let t19 = k(99968.01023672425) * (k(3.2e-9) * (t13 * (u1 * u1 - t6 * t6)) + t18);
+        *out = [t17, t16 * t17 - t15 * t11, -(t0 * t17 + t19)];
+    }
+    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
+    fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
+        let mut rates = gyro_sim::JointSpace::rates(self);
+        gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
+        let u0 = x[3];
+        let u1 = x[4];
+        let u2 = x[5];
+        *dx = [u0, u1, u2, rates[0], rates[1], rates[2]];
+    }
+    /// Writes the maximal state of a joint state: 78 operations (24 ±, 54 ×, 0 ÷) and 6 functions.
+    fn to_maximal(&self, _t: T, x: &Self::Joints, y: &mut Self::State) {
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let u0 = x[3];
+        let u1 = x[4];
+        let u2 = x[5];
+        let t0 = k(0.5) * x0;
+        let t1 = t0.cos();
+        let t2 = t0.sin();
+        let t3 = k(0.5) * x1;
+        let t4 = t3.cos();
+        let t5 = t1 * t4;
+        let t6 = t3.sin();
+        let t7 = t2 * t6;
+        let t8 = t2 * t4;
+        let t9 = t1 * t6;
+        let t10 = k(0.5) * x2;
+        let t11 = t10.sin();
+        let t12 = t10.cos();
+        let t13 = t9 * t12 - t8 * t11;
+        let t14 = t5 * t12 - t7 * t11;
+        let t15 = t14 * t13;
+        let t16 = t8 * t12 + t9 * t11;
+        let t17 = t7 * t12 + t5 * t11;
+        let t18 = t17 * t16;
+        let t19 = t14 * t14;
+        let t20 = t14 * t17;
+        let t21 = t16 * t13;
+        let t22 = k(2.0) * t6;
+        let t23 = u0 * (t4 * t22);
+        let t24 = u0 * (k(1.0) - t6 * t22);
+        let t25 = k(2.0) * t11;
+        let t26 = t12 * t25;
+        let t27 = k(1.0) - t11 * t25;
+        let t28 = u1 * t27 - t26 * t24;
+        let t29 = k(0.0002) * t28;
+        let t30 = u2 + t23;
+        let t31 = k(0.0002) * t30;
+        let t32 = t14 * t16;
+        let t33 = t17 * t13;
+        let t34 = k(2.0) * (t33 + t32) * t31
+            + k(2.0) * (k(0.5) - (t19 + t17 * t17)) * t29;
+        let t35 = k(2.0) * (t21 - t20) * t31 - k(2.0) * (t18 + t15) * t29;
+        let t36 = k(2.0) * (k(0.5) - (t19 + t13 * t13)) * t31
+            + k(2.0) * (t33 - t32) * t29;
+        *y = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t1,
+            k(0.0),
+            t2,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t5,
+            t7,
+            t8,
+            t9,
+            -(k(0.0004) * (t18 - t15)),
+            k(0.0004) * (k(0.5) - (t19 + t16 * t16)),
+            -(k(0.0004) * (t21 + t20)),
+            t14,
+            t17,
+            t16,
+            t13,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            u0,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t23,
+            t24,
+            u1,
+            -t34,
+            -t35,
+            t36,
+            t30,
+            u1 * t26 + t27 * t24,
+            t28,
+        ];
+    }
+    /// Writes the joint state of a maximal state: 135 operations (63 ±, 72 ×, 0 ÷) and 9 functions.
+    fn to_joints(&self, _t: T, y: &Self::State, x: &mut Self::Joints) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let t0 = x0.sin();
+        let t1 = outer_ring_e0 * outer_ring_e2;
+        let t2 = outer_ring_e1 * outer_ring_e3;
+        let t3 = k(2.0) * (t2 + t1);
+        let t4 = x0.cos();
+        let t5 = outer_ring_e2 * outer_ring_e2;
+        let t6 = outer_ring_e0 * outer_ring_e0;
+        let t7 = t6 + outer_ring_e1 * outer_ring_e1;
+        let t8 = outer_ring_e3 * outer_ring_e3;
+        let t9 = k(1.0) - (t8 + (t7 + t5));
+        let t10 = k(2.0) * (k(0.5) - (t6 + t8)) - t9;
+        let t11 = (t10 * t0 + t3 * t4).atan2(t3 * t0 - t10 * t4);
+        let t12 = x1.sin();
+        let t13 = inner_ring_e0 * inner_ring_e2;
+        let t14 = inner_ring_e1 * inner_ring_e3;
+        let t15 = k(2.0) * (t14 - t13);
+        let t16 = inner_ring_e0 * inner_ring_e3;
+        let t17 = inner_ring_e1 * inner_ring_e2;
+        let t18 = k(2.0) * (t17 + t16);
+        let t19 = inner_ring_e2 * inner_ring_e2;
+        let t20 = inner_ring_e0 * inner_ring_e0;
+        let t21 = t20 + inner_ring_e1 * inner_ring_e1;
+        let t22 = inner_ring_e3 * inner_ring_e3;
+        let t23 = k(1.0) - (t22 + (t21 + t19));
+        let t24 = k(2.0) * (k(0.5) - t21) - t23;
+        let t25 = outer_ring_e0 * outer_ring_e3;
+        let t26 = outer_ring_e1 * outer_ring_e2;
+        let t27 = k(2.0) * (t26 - t25) * t24
+            + t18 * (k(2.0) * (k(0.5) - (t6 + t5)) - t9);
+        let t28 = t27
+            - k(2.0) * (outer_ring_e2 * outer_ring_e3 + outer_ring_e0 * outer_ring_e1)
+                * t15;
+        let t29 = x1.cos();
+        let t30 = (k(2.0) * (k(0.5) - t7) - t9) * t24 + k(2.0) * (t26 + t25) * t18;
+        let t31 = t30 + k(2.0) * (t2 - t1) * t15;
+        let t32 = -(t31 * t12 + t28 * t29).atan2(t31 * t29 - t28 * t12);
+        let t33 = x2.sin();
+        let t34 = k(2.0) * (rotor_e2 * rotor_e3 + rotor_e0 * rotor_e1);
+        let t35 = rotor_e2 * rotor_e2;
+        let t36 = rotor_e0 * rotor_e0;
+        let t37 = k(2.0) * (k(0.5) - (t36 + t35))
+            - (k(1.0) - (rotor_e3 * rotor_e3 + (t36 + rotor_e1 * rotor_e1 + t35)));
+        let t38 = inner_ring_e0 * inner_ring_e1;
+        let t39 = inner_ring_e2 * inner_ring_e3;
+        let t40 = k(2.0) * (rotor_e1 * rotor_e2 - rotor_e0 * rotor_e3);
+        let t41 = k(2.0) * (t14 + t13) * t40 - k(2.0) * (t39 - t38) * t37;
+        let t42 = t41 - t34 * (k(2.0) * (k(0.5) - (t20 + t22)) - t23);
+        let t43 = x2.cos();
+        let t44 = k(2.0) * (t17 - t16) * t40
+            + (k(2.0) * (k(0.5) - (t20 + t19)) - t23) * t37;
+        let t45 = t44 + k(2.0) * (t39 + t38) * t34;
+        let t46 = (t42 * t43 - t45 * t33).atan2(t45 * t43 + t42 * t33);
+        x[0] = x0 + t11;
+        x[1] = x1 + t32;
+        x[2] = x2 + t46;
+        x[3] = outer_ring_wy;
+        x[4] = inner_ring_wz - outer_ring_wz;
+        x[5] = rotor_wx - inner_ring_wx;
+    }
+    /// Writes u̇ at a state that satisfies the constraints: 101 operations (35 ±, 64 ×, 2 ÷).
+    fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let t0 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t1 = k(2.0) * t0;
+        let t2 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t3 = t2 * t1;
+        let t4 = outer_ring_wy * t3;
+        let t5 = inner_ring_wx - rotor_wx;
+        let t6 = outer_ring_wz - inner_ring_wz;
+        let t7 = k(6.4e-9) * t5;
+        let t8 = k(3.2e-9) * t4 + t7;
+        let t9 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t10 = k(2.0) * t9;
+        let t11 = k(1.0) - t9 * t10;
+        let t12 = k(1.0) - t0 * t1;
+        let t13 = outer_ring_wy * t12;
+        let t14 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t15 = t14 * t10;
+        let t16 = t6 * t15 * t7 - k(0.00016) * t3;
+        let t17 = t15 * (t16 + t13 * (t11 * t8)) + k(1e-5) * (t6 * (t5 - k(0.2) * t4));
+        let t18 = t15 * t15;
+        let t19 = t13 * (t18 * t8 - k(1.00064e-5) * (t5 + k(0.4000639590661976) * t4))
+            - t11 * t16;
+        let t20 = k(3.2e-9) * t12;
+        let t21 = t15 * t11;
+        let t22 = t21 * t20;
+        let t23 = k(1.0) / (k(6.0032e-6) - k(3.2e-9) * t18);
+        let t24 = t23 * t22;
+        let t25 = (t24 * t19 + t12 * t17)
+            / (t22 * t24 - (k(2e-6) + t20 * (t12 * (k(1875.0) + t18))));
+        let t26 = k(0.00016)
+            * (t12 * (t15 + k(4e-5) * ((k(1563.5) - t18) * (outer_ring_wy * t6))));
+        let t27 = k(99968.01023672425)
+            * (k(3.2e-9) * (t21 * (t6 * t6 - t13 * t13)) + t26);
+        *out = [t25, t23 * t19 - t24 * t25, t3 * t25 + t27];
+    }
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 181 operations (66 ±, 113 ×, 2 ÷).
+    fn corrected_accelerations(
+        &self,
+        _t: T,
+        y: &Self::State,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        let t0 = outer_ring_wy * outer_ring_wz;
+        let t1 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t2 = k(2.0) * t1;
+        let t3 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t4 = t3 * t2;
+        let t5 = outer_ring_wy * t4;
+        let t6 = inner_ring_wx - rotor_wx;
+        let t7 = outer_ring_wz - inner_ring_wz;
+        let t8 = k(6.4e-9) * t6;
+        let t9 = k(3.2e-9) * t5 + t8;
+        let t10 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t11 = k(2.0) * t10;
+        let t12 = k(1.0) - t10 * t11;
+        let t13 = k(1.0) - t1 * t2;
+        let t14 = outer_ring_wy * t13;
+        let t15 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t16 = t15 * t11;
+        let t17 = t7 * t16 * t8 - k(0.00016) * t4;
+        let t18 = t16 * (t17 + t14 * (t12 * t9)) + k(1e-5) * (t7 * (t6 - k(0.2) * t5));
+        let t19 = t16 * t16;
+        let t20 = t14 * (t19 * t9 - k(1.00064e-5) * (t6 + k(0.4000639590661976) * t5))
+            - t12 * t17;
+        let t21 = k(3.2e-9) * t13;
+        let t22 = t16 * t12;
+        let t23 = t22 * t21;
+        let t24 = k(1.0) / (k(6.0032e-6) - k(3.2e-9) * t19);
+        let t25 = t24 * t23;
+        let t26 = (t25 * t20 + t13 * t18)
+            / (t23 * t25 - (k(2e-6) + t21 * (t13 * (k(1875.0) + t19))));
+        let t27 = outer_ring_wx * outer_ring_wy;
+        let t28 = t4 * t26;
+        let t29 = inner_ring_wy * t7 + (t28 + t0 * t13);
+        let t30 = inner_ring_wx * t7 - (t0 * t4 - t13 * t26);
+        let t31 = t27 - (t25 * t26 - t24 * t20);
+        let t32 = rotor_wy * t6 + (t12 * t31 + t16 * t30);
+        let t33 = k(0.0002) * rotor_wx;
+        let t34 = rotor_wy * t33 - k(0.0002) * t32;
+        let t35 = rotor_e0 * rotor_e0;
+        let t36 = k(0.0002) * rotor_wz;
+        let t37 = rotor_wz * t36 + rotor_wx * t33;
+        let t38 = rotor_e0 * rotor_e3;
+        let t39 = rotor_e1 * rotor_e2;
+        let t40 = k(2.0) * (t39 - t38) * t37
+            + k(2.0) * (k(0.5) - (t35 + rotor_e1 * rotor_e1)) * t34;
+        let t41 = k(0.00016)
+            * (t13 * (t16 + k(4e-5) * ((k(1563.5) - t19) * (outer_ring_wy * t7))));
+        let t42 = k(99968.01023672425)
+            * (k(3.2e-9) * (t22 * (t7 * t7 - t14 * t14)) + t41);
+        let t43 = t28 + t42 - t29;
+        let t44 = rotor_wy * t36 + k(0.0002) * t43;
+        let t45 = rotor_e0 * rotor_e2;
+        let t46 = rotor_e1 * rotor_e3;
+        let t47 = k(2.0) * (k(0.5) - (t35 + rotor_e2 * rotor_e2)) * t37
+            + k(2.0) * (t39 + t38) * t34;
+        let t48 = rotor_e0 * rotor_e1;
+        let t49 = rotor_e2 * rotor_e3;
+        let t50 = k(2.0) * (t49 + t48) * t37 - k(2.0) * (t46 - t45) * t34;
+        *out = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t0,
+            t26,
+            t27,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t29,
+            t30,
+            t31,
+            t40 - k(2.0) * (t46 + t45) * t44,
+            -(k(2.0) * (t49 - t48) * t44 + t47),
+            k(2.0) * (k(0.5) - (t35 + rotor_e3 * rotor_e3)) * t44 + t50,
+            t43,
+            -(rotor_wz * t6 + (t16 * t31 - t12 * t30)),
+            t32,
         ];
     }
 }

@@ -27,6 +27,12 @@
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 4 |
 //! | newton_step | dependent positions, one Newton step | 15 | 22 | 1 | 38 | 0 of 7 |
 //! | solve_velocities | dependent velocities, eq. (19) | 11 | 24 | 0 | 35 | 0 of 6 |
+//! | joint_accelerations | u̇ in joint coordinates | 4 | 9 | 0 | 13 | 1 of 3 |
+//! | joint_derivative | ẋ but for u̇ | 8 | 16 | 0 | 24 | 0 of 4 |
+//! | to_maximal | (q, v) of a joint state | 15 | 27 | 0 | 42 | 0 of 13 |
+//! | to_joints | (x, u) of a maximal state | 0 | 0 | 0 | 0 | 0 of 7 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 4 | 9 | 0 | 13 | 1 of 3 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 23 | 41 | 0 | 64 | 1 of 6 |
 
 /// The mechanism `heavy_top`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -329,6 +335,37 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for HeavyTop<T> {
         y[9] = -(k(0.04) * t5);
         Ok(())
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let top_e0 = y[3];
+        let top_e1 = y[4];
+        let top_e2 = y[5];
+        let top_e3 = y[6];
+        let top_sx = y[7];
+        let top_sy = y[8];
+        let top_sz = y[9];
+        let top_wx = y[10];
+        let top_wy = y[11];
+        let top_wz = y[12];
+        *dy = [
+            top_sx,
+            top_sy,
+            top_sz,
+            -(k(0.5) * (top_e1 * top_wx + top_e2 * top_wy + top_e3 * top_wz)),
+            k(0.5) * (top_e0 * top_wx - top_e3 * top_wy + top_e2 * top_wz),
+            k(0.5) * (top_e3 * top_wx + top_e0 * top_wy - top_e1 * top_wz),
+            -(k(0.5) * (top_e2 * top_wx - top_e1 * top_wy - top_e0 * top_wz)),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+        ];
+    }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for HeavyTop<T> {
     type Velocities = [T; 6];
@@ -539,6 +576,183 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for HeavyTop<T> {
             -(k(0.5) * top_dsx),
             -(k(0.5) * top_dsy),
             -(k(4.905) + k(0.5) * top_dsz),
+        ];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for HeavyTop<T> {
+    type Joints = [T; 7];
+    type Rates = [T; 3];
+    fn joint_start(&self) -> Self::Joints {
+        let k = T::constant;
+        [
+            k(0.9486832980505139),
+            k(0.316227766016838),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.1982587525585533),
+            k(200.0),
+        ]
+    }
+    fn rates(&self) -> Self::Rates {
+        [T::constant(0.0); 3]
+    }
+    /// Writes u̇: 13 operations (4 ±, 9 ×, 0 ÷).
+    fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let x3 = x[3];
+        let u0 = x[4];
+        let u1 = x[5];
+        let u2 = x[6];
+        let t0 = k(0.5454545454545454) * u2;
+        *out = [
+            k(356.72727272727275) * (x2 * x3 + x0 * x1) + u1 * t0,
+            -(k(356.72727272727275) * (x1 * x3 - x0 * x2) + u0 * t0),
+            k(0.0),
+        ];
+    }
+    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
+    fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
+        let mut rates = gyro_sim::JointSpace::rates(self);
+        gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let x3 = x[3];
+        let u0 = x[4];
+        let u1 = x[5];
+        let u2 = x[6];
+        *dx = [
+            -(k(0.5) * (x1 * u0 + x2 * u1 + x3 * u2)),
+            k(0.5) * (x0 * u0 - x3 * u1 + x2 * u2),
+            k(0.5) * (x3 * u0 + x0 * u1 - x1 * u2),
+            -(k(0.5) * (x2 * u0 - x1 * u1 - x0 * u2)),
+            rates[0],
+            rates[1],
+            rates[2],
+        ];
+    }
+    /// Writes the maximal state of a joint state: 42 operations (15 ±, 27 ×, 0 ÷).
+    fn to_maximal(&self, _t: T, x: &Self::Joints, y: &mut Self::State) {
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let x3 = x[3];
+        let u0 = x[4];
+        let u1 = x[5];
+        let u2 = x[6];
+        let t0 = x0 * x2;
+        let t1 = x1 * x3;
+        let t2 = x0 * x1;
+        let t3 = x2 * x3;
+        let t4 = x0 * x0;
+        let t5 = k(0.04) * u0;
+        let t6 = x0 * x3;
+        let t7 = x1 * x2;
+        let t8 = k(0.04) * u1;
+        let t9 = k(2.0) * (k(0.5) - (t4 + x1 * x1)) * t8 + k(2.0) * (t7 - t6) * t5;
+        let t10 = k(2.0) * (t7 + t6) * t8 + k(2.0) * (k(0.5) - (t4 + x2 * x2)) * t5;
+        let t11 = k(2.0) * (t1 - t0) * t8 - k(2.0) * (t3 + t2) * t5;
+        *y = [
+            k(0.08) * (t1 + t0),
+            k(0.08) * (t3 - t2),
+            -(k(0.08) * (k(0.5) - (t4 + x3 * x3))),
+            x0,
+            x1,
+            x2,
+            x3,
+            -t9,
+            t10,
+            t11,
+            u0,
+            u1,
+            u2,
+        ];
+    }
+    /// Writes the joint state of a maximal state: 0 operations (0 ±, 0 ×, 0 ÷).
+    fn to_joints(&self, _t: T, y: &Self::State, x: &mut Self::Joints) {
+        let top_e0 = y[3];
+        let top_e1 = y[4];
+        let top_e2 = y[5];
+        let top_e3 = y[6];
+        let top_wx = y[10];
+        let top_wy = y[11];
+        let top_wz = y[12];
+        x[0] = top_e0;
+        x[1] = top_e1;
+        x[2] = top_e2;
+        x[3] = top_e3;
+        x[4] = top_wx;
+        x[5] = top_wy;
+        x[6] = top_wz;
+    }
+    /// Writes u̇ at a state that satisfies the constraints: 13 operations (4 ±, 9 ×, 0 ÷).
+    fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
+        let k = T::constant;
+        let top_e0 = y[3];
+        let top_e1 = y[4];
+        let top_e2 = y[5];
+        let top_e3 = y[6];
+        let top_wx = y[10];
+        let top_wy = y[11];
+        let top_wz = y[12];
+        let t0 = k(0.5454545454545454) * top_wz;
+        *out = [
+            top_wy * t0 + k(356.72727272727275) * (top_e2 * top_e3 + top_e0 * top_e1),
+            -(top_wx * t0 + k(356.72727272727275) * (top_e1 * top_e3 - top_e0 * top_e2)),
+            k(0.0),
+        ];
+    }
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 64 operations (23 ±, 41 ×, 0 ÷).
+    fn corrected_accelerations(
+        &self,
+        _t: T,
+        y: &Self::State,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let top_e0 = y[3];
+        let top_e1 = y[4];
+        let top_e2 = y[5];
+        let top_e3 = y[6];
+        let top_wx = y[10];
+        let top_wy = y[11];
+        let top_wz = y[12];
+        let t0 = top_e0 * top_e2;
+        let t1 = top_e1 * top_e3;
+        let t2 = t1 - t0;
+        let t3 = k(0.5454545454545454) * top_wz;
+        let t4 = top_wx * t3 + k(356.72727272727275) * t2;
+        let t5 = k(0.04) * top_wx;
+        let t6 = top_wz * t5 - k(0.04) * t4;
+        let t7 = top_e0 * top_e0;
+        let t8 = top_e0 * top_e1;
+        let t9 = top_e2 * top_e3;
+        let t10 = t9 + t8;
+        let t11 = top_wy * t3 + k(356.72727272727275) * t10;
+        let t12 = k(0.04) * top_wy;
+        let t13 = top_wz * t12 - k(0.04) * t11;
+        let t14 = top_e0 * top_e3;
+        let t15 = top_e1 * top_e2;
+        let t16 = k(2.0) * (t15 - t14) * t13
+            - k(2.0) * (k(0.5) - (t7 + top_e1 * top_e1)) * t6;
+        let t17 = top_wx * t5 + top_wy * t12;
+        let t18 = k(2.0) * (k(0.5) - (t7 + top_e2 * top_e2)) * t13
+            - k(2.0) * (t15 + t14) * t6;
+        let t19 = k(2.0) * (k(0.5) - (t7 + top_e3 * top_e3)) * t17
+            + (k(2.0) * t10 * t13 + k(2.0) * t2 * t6);
+        *out = [
+            t16 - k(2.0) * (t1 + t0) * t17,
+            -(k(2.0) * (t9 - t8) * t17 + t18),
+            t19,
+            t11,
+            -t4,
+            k(0.0),
         ];
     }
 }

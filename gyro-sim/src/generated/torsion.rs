@@ -27,6 +27,12 @@
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 4 |
 //! | newton_step | dependent positions, one Newton step | 47 | 80 | 1 | 128 | 3 of 7 |
 //! | solve_velocities | dependent velocities, eq. (19) | 13 | 23 | 1 | 37 | 3 of 6 |
+//! | joint_accelerations | u̇ in joint coordinates | 1 | 2 | 0 | 3 | 0 of 1 |
+//! | joint_derivative | ẋ but for u̇ | 0 | 2 | 0 | 2 | 0 of 2 |
+//! | to_maximal | (q, v) of a joint state | 0 | 1 | 0 | 1 | 10 of 14 |
+//! | to_joints | (x, u) of a maximal state | 10 | 12 | 0 | 22 | 0 of 2 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 7 | 12 | 0 | 19 | 0 of 1 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 7 | 14 | 0 | 21 | 3 of 6 |
 
 /// The mechanism `torsion`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -383,6 +389,39 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Torsion<T> {
         y[11] = disc_wy - t9 * (t5 * t7) + t8 * (t3 * t7);
         Ok(())
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 26 operations (8 ±, 18 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let disc_e0 = y[3];
+        let disc_e1 = y[4];
+        let disc_e2 = y[5];
+        let disc_e3 = y[6];
+        let disc_sx = y[7];
+        let disc_sy = y[8];
+        let disc_sz = y[9];
+        let disc_wx = y[10];
+        let disc_wy = y[11];
+        let disc_wz = y[12];
+        *dy = [
+            disc_sx,
+            disc_sy,
+            disc_sz,
+            -(k(0.5) * (disc_e1 * disc_wx + disc_e2 * disc_wy + disc_e3 * disc_wz)),
+            k(0.5) * (disc_e0 * disc_wx - disc_e3 * disc_wy + disc_e2 * disc_wz),
+            k(0.5) * (disc_e3 * disc_wx + disc_e0 * disc_wy - disc_e1 * disc_wz),
+            -(k(0.5) * (disc_e2 * disc_wx - disc_e1 * disc_wy - disc_e0 * disc_wz)),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            -(disc_wz * (k(0.01) * disc_wz)),
+            disc_wz,
+        ];
+    }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for Torsion<T> {
     type Velocities = [T; 6];
@@ -606,6 +645,122 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Torsion<T> {
             -(k(4.0) * disc_dsz),
             -(t5 * t7 * t9 + t8 * (t2 * t7)),
             -(t3 * t7 * t9 + t8 * (t6 * t7)),
+        ];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Torsion<T> {
+    type Joints = [T; 3];
+    type Rates = [T; 1];
+    fn joint_start(&self) -> Self::Joints {
+        let k = T::constant;
+        [k(20.420352248333657), k(0.0), k(0.0)]
+    }
+    fn rates(&self) -> Self::Rates {
+        [T::constant(0.0); 1]
+    }
+    /// Writes u̇: 3 operations (1 ±, 2 ×, 0 ÷).
+    fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
+        let k = T::constant;
+        let x0 = x[0];
+        let u0 = x[1];
+        *out = [-(k(0.5) * u0 + k(25.0) * x0)];
+    }
+    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 2 operations (0 ±, 2 ×, 0 ÷).
+    fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
+        let mut rates = gyro_sim::JointSpace::rates(self);
+        gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
+        let k = T::constant;
+        let u0 = x[1];
+        *dx = [u0, rates[0], -(u0 * (k(0.01) * u0))];
+    }
+    /// Writes the maximal state of a joint state: 1 operations (0 ±, 1 ×, 0 ÷) and 2 functions.
+    fn to_maximal(&self, _t: T, x: &Self::Joints, y: &mut Self::State) {
+        let k = T::constant;
+        let x0 = x[0];
+        let u0 = x[1];
+        let t0 = k(0.5) * x0;
+        *y = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t0.cos(),
+            k(0.0),
+            k(0.0),
+            t0.sin(),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            u0,
+            x[2],
+            x0,
+        ];
+    }
+    /// Writes the joint state of a maximal state: 22 operations (10 ±, 12 ×, 0 ÷) and 3 functions.
+    fn to_joints(&self, _t: T, y: &Self::State, x: &mut Self::Joints) {
+        let k = T::constant;
+        let disc_e0 = y[3];
+        let disc_e1 = y[4];
+        let disc_e2 = y[5];
+        let disc_e3 = y[6];
+        let disc_wz = y[12];
+        let x0 = x[0];
+        let t0 = x0.sin();
+        let t1 = k(2.0) * (disc_e1 * disc_e2 + disc_e0 * disc_e3);
+        let t2 = x0.cos();
+        let t3 = disc_e0 * disc_e0 + disc_e1 * disc_e1;
+        let t4 = k(2.0) * (k(0.5) - t3)
+            - (k(1.0) - (disc_e3 * disc_e3 + (t3 + disc_e2 * disc_e2)));
+        let t5 = (t4 * t0 + t1 * t2).atan2(t1 * t0 - t4 * t2);
+        x[0] = x0 + t5;
+        x[1] = disc_wz;
+        x[2] = y[13];
+    }
+    /// Writes u̇ at a state that satisfies the constraints: 19 operations (7 ±, 12 ×, 0 ÷) and 3 functions.
+    fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
+        let k = T::constant;
+        let disc_e0 = y[3];
+        let disc_e1 = y[4];
+        let disc_e2 = y[5];
+        let disc_e3 = y[6];
+        let disc_wz = y[12];
+        let turn0 = y[14];
+        let t0 = turn0.cos();
+        let t1 = k(2.0) * (k(0.5) - (disc_e0 * disc_e0 + disc_e1 * disc_e1));
+        let t2 = turn0.sin();
+        let t3 = k(2.0) * (disc_e1 * disc_e2 + disc_e0 * disc_e3);
+        let t4 = (t3 * t0 + t1 * t2).atan2(t3 * t2 - t1 * t0);
+        *out = [-(k(25.0) * (turn0 + t4) + k(0.5) * disc_wz)];
+    }
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 21 operations (7 ±, 14 ×, 0 ÷) and 3 functions.
+    fn corrected_accelerations(
+        &self,
+        _t: T,
+        y: &Self::State,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let disc_e0 = y[3];
+        let disc_e1 = y[4];
+        let disc_e2 = y[5];
+        let disc_e3 = y[6];
+        let disc_wx = y[10];
+        let disc_wy = y[11];
+        let disc_wz = y[12];
+        let turn0 = y[14];
+        let t0 = turn0.cos();
+        let t1 = k(2.0) * (k(0.5) - (disc_e0 * disc_e0 + disc_e1 * disc_e1));
+        let t2 = turn0.sin();
+        let t3 = k(2.0) * (disc_e1 * disc_e2 + disc_e0 * disc_e3);
+        let t4 = (t3 * t0 + t1 * t2).atan2(t3 * t2 - t1 * t0);
+        *out = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            disc_wy * disc_wz,
+            -(disc_wx * disc_wz),
+            -(k(25.0) * (turn0 + t4) + k(0.5) * disc_wz),
         ];
     }
 }

@@ -17,9 +17,9 @@
 //! | nu | ν | 0 | 2 | 0 | 2 | 39 of 40 |
 //! | gamma | γ | 1092 | 1437 | 4 | 2533 | 0 of 40 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 679 | 854 | 4 | 1537 | 0 of 40 |
-//! | applied_force | (f, n' − w̃'J'w') | 302 | 425 | 2 | 729 | 6 of 42 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 4847 | 5977 | 29 | 10853 | 0 of 51 |
-//! | multipliers | λ, the accelerations being known | 1185 | 1646 | 12 | 2843 | 0 of 40 |
+//! | applied_force | (f, n' − w̃'J'w') | 304 | 425 | 2 | 731 | 6 of 42 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 4849 | 5977 | 29 | 10855 | 0 of 51 |
+//! | multipliers | λ, the accelerations being known | 1187 | 1646 | 12 | 2845 | 0 of 40 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 275 | 405 | 2 | 682 | 0 of 54 |
 //! | energy | T and V | 109 | 169 | 0 | 278 | 0 of 2 |
 //! | read_joints | joint coordinates and rates | 438 | 543 | 0 | 981 | 0 of 35 |
@@ -260,182 +260,181 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for AllJoints<T> {
         let puck_wy = y[89];
         let puck_wz = y[90];
         let closing8 = accelerations[50];
-        let t0 = slide_e0 * slide_e2;
-        let t1 = slide_e1 * slide_e3;
-        let t2 = slide_e0 * slide_e1;
-        let t3 = slide_e2 * slide_e3;
-        let t4 = k(2.0) * (t3 + t2);
-        let t5 = slide_e0 * slide_e0;
-        let t6 = k(2.0) * (k(0.5) - (t5 + slide_e3 * slide_e3)) * slide_wy
-            + t4 * slide_wz;
-        let t7 = k(0.1) * (t6 - (t4 * slide_wx - k(2.0) * (t1 - t0) * slide_wy));
-        let t8 = slide_e0 * slide_e3;
-        let t9 = slide_e1 * slide_e2;
-        let t10 = k(2.0) * (k(0.5) - (t5 + slide_e2 * slide_e2));
-        let t11 = k(2.0) * (t3 - t2) * slide_wy + t10 * slide_wz
-            - (t10 * slide_wx + k(2.0) * (t9 + t8) * slide_wy);
-        let t12 = k(2.0) * (t9 - t8);
-        let t13 = t12 * slide_wx
-            + k(2.0) * (k(0.5) - (t5 + slide_e1 * slide_e1)) * slide_wy;
-        let t14 = k(0.1) * (k(2.0) * (t1 + t0) * slide_wy - t12 * slide_wz + t13);
-        let t15 = k(0.23570226039551584) * (slide_sx + t14 - (slide_sy + k(0.1) * t11))
-            + k(0.9428090415820634) * (slide_sz - t7);
-        let t16 = shaft_e0 * shaft_e2;
-        let t17 = shaft_e1 * shaft_e3;
-        let t18 = t17 - t16;
-        let t19 = shaft_e0 * shaft_e1;
-        let t20 = shaft_e2 * shaft_e3;
-        let t21 = t20 + t19;
-        let t22 = shaft_e0 * shaft_e0;
-        let t23 = k(0.5) - (t22 + shaft_e3 * shaft_e3);
-        let t24 = k(0.6030226891555273) * t23
-            + (k(0.6030226891555273) * t21 + k(1.8090680674665818) * t18);
-        let t25 = sleeve_e0 * sleeve_e2;
-        let t26 = sleeve_e1 * sleeve_e3;
-        let t27 = t26 - t25;
-        let t28 = k(2.0) * t27;
-        let t29 = sleeve_e0 * sleeve_e1;
-        let t30 = sleeve_e2 * sleeve_e3;
-        let t31 = t30 + t29;
+        let t0 = k(0.1) * (puck_wy - puck_wz);
+        let t1 = puck_e0 * puck_e0;
+        let t2 = k(0.1) * puck_wx;
+        let t3 = puck_e0 * puck_e3;
+        let t4 = puck_e1 * puck_e2;
+        let t5 = t4 - t3;
+        let t6 = k(2.0) * t5 * t2 + k(2.0) * (k(0.5) - (t1 + puck_e1 * puck_e1)) * t0;
+        let t7 = puck_e0 * puck_e2;
+        let t8 = puck_e1 * puck_e3;
+        let t9 = t8 + t7;
+        let t10 = k(1.2) - (puck_rx + k(0.2) * (t5 + t9));
+        let t11 = puck_e0 * puck_e1;
+        let t12 = puck_e2 * puck_e3;
+        let t13 = t12 - t11;
+        let t14 = k(0.5) - (t1 + puck_e2 * puck_e2);
+        let t15 = k(1.0) - (puck_ry + k(0.2) * (t13 - t14));
+        let t16 = k(0.5) - (t1 + puck_e3 * puck_e3);
+        let t17 = t12 + t11;
+        let t18 = k(1.0) - (puck_rz + k(0.2) * (t17 - t16));
+        let t19 = k(1.0) / (t18 * t18 + (t15 * t15 + t10 * t10)).sqrt();
+        let t20 = k(2.0) * t13 * t2 + (k(2.0) * t14 * t2 + k(2.0) * (t4 + t3) * t0);
+        let t21 = t15 * t19 * (puck_sy + t20)
+            + t10 * t19 * (puck_sx + (k(2.0) * t9 * t2 - t6));
+        let t22 = k(2.0) * t16 * t2 + (k(2.0) * t17 * t2 - k(2.0) * (t8 - t7) * t0);
+        let t23 = t18 * t19 * (puck_sz - t22) + t21;
+        let t24 = k(0.05) * sleeve_wy;
+        let t25 = sleeve_e0 * sleeve_e0;
+        let t26 = k(0.5) - (t25 + sleeve_e1 * sleeve_e1);
+        let t27 = k(2.0) * t26;
+        let t28 = k(0.05) * sleeve_wx;
+        let t29 = sleeve_e0 * sleeve_e3;
+        let t30 = sleeve_e1 * sleeve_e2;
+        let t31 = t30 - t29;
         let t32 = k(2.0) * t31;
-        let t33 = sleeve_e0 * sleeve_e0;
-        let t34 = k(0.5) - (t33 + sleeve_e3 * sleeve_e3);
-        let t35 = k(2.0) * t34;
-        let t36 = k(0.1) * (t35 * sleeve_wy + t32 * sleeve_wz)
-            - k(0.05) * (t35 * sleeve_wx + t28 * sleeve_wz);
-        let t37 = k(2.0) * t18;
-        let t38 = k(2.0) * t21;
-        let t39 = t38 * shaft_wx - t37 * shaft_wy;
-        let t40 = k(2.0) * t23;
-        let t41 = t40 * shaft_wy + t38 * shaft_wz;
-        let t42 = t40 * shaft_wx + t37 * shaft_wz;
-        let t43 = shaft_sz - (k(0.05) * t42 - k(0.2) * t41 - k(0.05) * t39)
-            - (sleeve_sz - (t36 + k(0.05) * (t32 * sleeve_wx - t28 * sleeve_wy)));
-        let t44 = sleeve_rz - (k(0.1) * t34 + (k(0.1) * t31 + k(0.2) * t27))
-            - (shaft_rz + (k(0.1) * t23 + (k(0.4) * t18 + k(0.1) * t21)));
-        let t45 = t44
-            * (k(0.9045340337332909) * t41 - k(0.30151134457776363) * t42
-                + k(0.30151134457776363) * t39) - t43 * t24;
-        let t46 = shaft_e0 * shaft_e3;
-        let t47 = shaft_e1 * shaft_e2;
-        let t48 = t47 + t46;
-        let t49 = k(0.5) - (t22 + shaft_e2 * shaft_e2);
-        let t50 = t20 - t19;
-        let t51 = k(0.6030226891555273) * t50
-            + (k(0.6030226891555273) * t49 - k(1.8090680674665818) * t48);
-        let t52 = sleeve_e0 * sleeve_e3;
-        let t53 = sleeve_e1 * sleeve_e2;
-        let t54 = t53 + t52;
-        let t55 = k(2.0) * t54;
-        let t56 = k(0.5) - (t33 + sleeve_e2 * sleeve_e2);
-        let t57 = k(2.0) * t56;
-        let t58 = t30 - t29;
-        let t59 = k(2.0) * t58;
-        let t60 = k(0.1) * (t59 * sleeve_wy + t57 * sleeve_wz)
-            - k(0.05) * (t59 * sleeve_wx - t55 * sleeve_wz);
-        let t61 = k(2.0) * t48;
-        let t62 = k(2.0) * t49;
-        let t63 = t62 * shaft_wx + t61 * shaft_wy;
-        let t64 = k(2.0) * t50;
-        let t65 = t64 * shaft_wy + t62 * shaft_wz;
-        let t66 = t64 * shaft_wx - t61 * shaft_wz;
-        let t67 = shaft_sy + (k(0.05) * t66 - k(0.2) * t65 - k(0.05) * t63)
-            - (sleeve_sy + (t60 + k(0.05) * (t57 * sleeve_wx + t55 * sleeve_wy)));
-        let t68 = sleeve_ry + (k(0.1) * t58 + (k(0.1) * t56 - k(0.2) * t54))
-            - (shaft_ry - (k(0.1) * t50 - (k(0.4) * t48 - k(0.1) * t49)));
-        let t69 = t68
-            * (k(0.9045340337332909) * t65 - k(0.30151134457776363) * t66
-                + k(0.30151134457776363) * t63) - t67 * t51;
-        let t70 = k(0.5) - (t22 + shaft_e1 * shaft_e1);
-        let t71 = t47 - t46;
-        let t72 = t17 + t16;
-        let t73 = k(0.6030226891555273) * t72
-            - (k(0.6030226891555273) * t71 - k(1.8090680674665818) * t70);
-        let t74 = k(0.5) - (t33 + sleeve_e1 * sleeve_e1);
-        let t75 = k(2.0) * t74;
-        let t76 = t53 - t52;
-        let t77 = k(2.0) * t76;
-        let t78 = t26 + t25;
-        let t79 = k(2.0) * t78;
-        let t80 = k(0.1) * (t79 * sleeve_wy - t77 * sleeve_wz)
-            - k(0.05) * (t79 * sleeve_wx + t75 * sleeve_wz);
-        let t81 = k(2.0) * t70;
-        let t82 = k(2.0) * t71;
-        let t83 = t82 * shaft_wx + t81 * shaft_wy;
-        let t84 = k(2.0) * t72;
-        let t85 = t84 * shaft_wy - t82 * shaft_wz;
-        let t86 = t84 * shaft_wx + t81 * shaft_wz;
-        let t87 = shaft_sx + (k(0.05) * t86 - k(0.2) * t85 + k(0.05) * t83)
-            - (sleeve_sx + (t80 - k(0.05) * (t77 * sleeve_wx + t75 * sleeve_wy)));
-        let t88 = sleeve_rx + (k(0.1) * t78 - (k(0.1) * t76 - k(0.2) * t74))
-            - (shaft_rx - (k(0.1) * t72 + (k(0.4) * t70 - k(0.1) * t71)));
-        let t89 = t88
-            * (k(0.9045340337332909) * t85 - k(0.30151134457776363) * t86
-                - k(0.30151134457776363) * t83) - t87 * t73;
-        let t90 = t89 + t69 - t45;
-        let t91 = k(0.19245008972987526) * (puck_wx + puck_wy)
+        let t33 = t30 + t29;
+        let t34 = k(2.0) * t33;
+        let t35 = k(0.5) - (t25 + sleeve_e2 * sleeve_e2);
+        let t36 = k(2.0) * t35;
+        let t37 = k(0.1) * (sleeve_sy + (t36 * t28 + t34 * t24))
+            - k(0.2) * (sleeve_sx - (t32 * t28 + t27 * t24));
+        let t38 = sleeve_e0 * sleeve_e2;
+        let t39 = sleeve_e1 * sleeve_e3;
+        let t40 = t39 - t38;
+        let t41 = sleeve_e0 * sleeve_e1;
+        let t42 = sleeve_e2 * sleeve_e3;
+        let t43 = t42 + t41;
+        let t44 = k(0.5) - (t25 + sleeve_e3 * sleeve_e3);
+        let t45 = sleeve_wz * (k(0.02) * t44)
+            - (sleeve_wy * (k(0.02) * t43) + sleeve_wx * (k(0.02) * t40));
+        let t46 = slide_e0 * slide_e2;
+        let t47 = slide_e1 * slide_e3;
+        let t48 = slide_e0 * slide_e1;
+        let t49 = slide_e2 * slide_e3;
+        let t50 = k(2.0) * (t49 + t48);
+        let t51 = slide_e0 * slide_e0;
+        let t52 = k(2.0) * (k(0.5) - (t51 + slide_e3 * slide_e3)) * slide_wy
+            + t50 * slide_wz;
+        let t53 = k(0.1) * (t52 - (t50 * slide_wx - k(2.0) * (t47 - t46) * slide_wy));
+        let t54 = slide_e0 * slide_e3;
+        let t55 = slide_e1 * slide_e2;
+        let t56 = k(2.0) * (k(0.5) - (t51 + slide_e2 * slide_e2));
+        let t57 = k(2.0) * (t49 - t48) * slide_wy + t56 * slide_wz
+            - (t56 * slide_wx + k(2.0) * (t55 + t54) * slide_wy);
+        let t58 = k(2.0) * (t55 - t54);
+        let t59 = t58 * slide_wx
+            + k(2.0) * (k(0.5) - (t51 + slide_e1 * slide_e1)) * slide_wy;
+        let t60 = k(0.1) * (k(2.0) * (t47 + t46) * slide_wy - t58 * slide_wz + t59);
+        let t61 = k(0.23570226039551584) * (slide_sx + t60 - (slide_sy + k(0.1) * t57))
+            + k(0.9428090415820634) * (slide_sz - t53);
+        let t62 = shaft_e0 * shaft_e2;
+        let t63 = shaft_e1 * shaft_e3;
+        let t64 = t63 - t62;
+        let t65 = shaft_e0 * shaft_e1;
+        let t66 = shaft_e2 * shaft_e3;
+        let t67 = t66 + t65;
+        let t68 = shaft_e0 * shaft_e0;
+        let t69 = k(0.5) - (t68 + shaft_e3 * shaft_e3);
+        let t70 = k(0.6030226891555273) * t69
+            + (k(0.6030226891555273) * t67 + k(1.8090680674665818) * t64);
+        let t71 = k(2.0) * t40;
+        let t72 = k(2.0) * t43;
+        let t73 = k(2.0) * t44;
+        let t74 = k(0.1) * (t73 * sleeve_wy + t72 * sleeve_wz)
+            - k(0.05) * (t73 * sleeve_wx + t71 * sleeve_wz);
+        let t75 = k(2.0) * t64;
+        let t76 = k(2.0) * t67;
+        let t77 = t76 * shaft_wx - t75 * shaft_wy;
+        let t78 = k(2.0) * t69;
+        let t79 = t78 * shaft_wy + t76 * shaft_wz;
+        let t80 = t78 * shaft_wx + t75 * shaft_wz;
+        let t81 = shaft_sz - (k(0.05) * t80 - k(0.2) * t79 - k(0.05) * t77)
+            - (sleeve_sz - (t74 + k(0.05) * (t72 * sleeve_wx - t71 * sleeve_wy)));
+        let t82 = sleeve_rz - (k(0.1) * t44 + (k(0.1) * t43 + k(0.2) * t40))
+            - (shaft_rz + (k(0.1) * t69 + (k(0.4) * t64 + k(0.1) * t67)));
+        let t83 = t82
+            * (k(0.9045340337332909) * t79 - k(0.30151134457776363) * t80
+                + k(0.30151134457776363) * t77) - t81 * t70;
+        let t84 = shaft_e0 * shaft_e3;
+        let t85 = shaft_e1 * shaft_e2;
+        let t86 = t85 + t84;
+        let t87 = k(0.5) - (t68 + shaft_e2 * shaft_e2);
+        let t88 = t66 - t65;
+        let t89 = k(0.6030226891555273) * t88
+            + (k(0.6030226891555273) * t87 - k(1.8090680674665818) * t86);
+        let t90 = t42 - t41;
+        let t91 = k(2.0) * t90;
+        let t92 = k(0.1) * (t91 * sleeve_wy + t36 * sleeve_wz)
+            - k(0.05) * (t91 * sleeve_wx - t34 * sleeve_wz);
+        let t93 = k(2.0) * t86;
+        let t94 = k(2.0) * t87;
+        let t95 = t94 * shaft_wx + t93 * shaft_wy;
+        let t96 = k(2.0) * t88;
+        let t97 = t96 * shaft_wy + t94 * shaft_wz;
+        let t98 = t96 * shaft_wx - t93 * shaft_wz;
+        let t99 = shaft_sy + (k(0.05) * t98 - k(0.2) * t97 - k(0.05) * t95)
+            - (sleeve_sy + (t92 + k(0.05) * (t36 * sleeve_wx + t34 * sleeve_wy)));
+        let t100 = sleeve_ry + (k(0.1) * t90 + (k(0.1) * t35 - k(0.2) * t33))
+            - (shaft_ry - (k(0.1) * t88 - (k(0.4) * t86 - k(0.1) * t87)));
+        let t101 = t100
+            * (k(0.9045340337332909) * t97 - k(0.30151134457776363) * t98
+                + k(0.30151134457776363) * t95) - t99 * t89;
+        let t102 = k(0.5) - (t68 + shaft_e1 * shaft_e1);
+        let t103 = t85 - t84;
+        let t104 = t63 + t62;
+        let t105 = k(0.6030226891555273) * t104
+            - (k(0.6030226891555273) * t103 - k(1.8090680674665818) * t102);
+        let t106 = t39 + t38;
+        let t107 = k(2.0) * t106;
+        let t108 = k(0.1) * (t107 * sleeve_wy - t32 * sleeve_wz)
+            - k(0.05) * (t107 * sleeve_wx + t27 * sleeve_wz);
+        let t109 = k(2.0) * t102;
+        let t110 = k(2.0) * t103;
+        let t111 = t110 * shaft_wx + t109 * shaft_wy;
+        let t112 = k(2.0) * t104;
+        let t113 = t112 * shaft_wy - t110 * shaft_wz;
+        let t114 = t112 * shaft_wx + t109 * shaft_wz;
+        let t115 = shaft_sx + (k(0.05) * t114 - k(0.2) * t113 + k(0.05) * t111)
+            - (sleeve_sx + (t108 - k(0.05) * (t32 * sleeve_wx + t27 * sleeve_wy)));
+        let t116 = sleeve_rx + (k(0.1) * t106 - (k(0.1) * t31 - k(0.2) * t26))
+            - (shaft_rx - (k(0.1) * t104 + (k(0.4) * t102 - k(0.1) * t103)));
+        let t117 = t116
+            * (k(0.9045340337332909) * t113 - k(0.30151134457776363) * t114
+                - k(0.30151134457776363) * t111) - t115 * t105;
+        let t118 = t117 + t101 - t83;
+        let t119 = t118 * (k(3.0) * t118)
+            + (t61 * (k(0.5) * t61) + (t45 + t37 + t23 * t23));
+        let t120 = k(0.19245008972987526) * (puck_wx + puck_wy)
             + k(0.9622504486493763) * puck_wz;
-        let t92 = t91 * (k(0.05) * (k(10.0) * t91).tanh())
-            + (t90 * (k(3.0) * t90) + t15 * (k(0.5) * t15));
-        let t93 = k(0.05) - (t44 * t24 - (t68 * t51 + t88 * t73));
-        let t94 = (k(0.0001) + t93 * t93).sqrt();
-        let t95 = (k(1.0) - t93 / t94) * t90 + k(250.0) * (t93 - t94);
-        let t96 = k(0.6666666666666666) * slide_wx - k(0.3333333333333333) * slide_wy
+        let t121 = k(0.05) - (t82 * t70 - (t100 * t89 + t116 * t105));
+        let t122 = (k(0.0001) + t121 * t121).sqrt();
+        let t123 = (k(1.0) - t121 / t122) * t118 + k(250.0) * (t121 - t122);
+        let t124 = t118 * t123 + (t120 * (k(0.05) * (k(10.0) * t120).tanh()) + t119);
+        let t125 = k(0.6666666666666666) * slide_wx - k(0.3333333333333333) * slide_wy
             + k(0.6666666666666666) * slide_wz
             - (k(0.6666666666666666) * nut_wx - k(0.3333333333333333) * nut_wy
                 + k(0.6666666666666666) * nut_wz);
-        let t97 = k(0.1) * (puck_wy - puck_wz);
-        let t98 = puck_e0 * puck_e0;
-        let t99 = k(0.1) * puck_wx;
-        let t100 = puck_e0 * puck_e3;
-        let t101 = puck_e1 * puck_e2;
-        let t102 = t101 - t100;
-        let t103 = k(2.0) * t102 * t99
-            + k(2.0) * (k(0.5) - (t98 + puck_e1 * puck_e1)) * t97;
-        let t104 = puck_e0 * puck_e2;
-        let t105 = puck_e1 * puck_e3;
-        let t106 = t105 + t104;
-        let t107 = k(1.2) - (puck_rx + k(0.2) * (t102 + t106));
-        let t108 = puck_e0 * puck_e1;
-        let t109 = puck_e2 * puck_e3;
-        let t110 = t109 - t108;
-        let t111 = k(0.5) - (t98 + puck_e2 * puck_e2);
-        let t112 = k(1.0) - (puck_ry + k(0.2) * (t110 - t111));
-        let t113 = k(0.5) - (t98 + puck_e3 * puck_e3);
-        let t114 = t109 + t108;
-        let t115 = k(1.0) - (puck_rz + k(0.2) * (t114 - t113));
-        let t116 = k(1.0) / (t115 * t115 + (t112 * t112 + t107 * t107)).sqrt();
-        let t117 = k(2.0) * t110 * t99
-            + (k(2.0) * t111 * t99 + k(2.0) * (t101 + t100) * t97);
-        let t118 = t112 * t116 * (puck_sy + t117)
-            + t107 * t116 * (puck_sx + (k(2.0) * t106 * t99 - t103));
-        let t119 = k(2.0) * t113 * t99
-            + (k(2.0) * t114 * t99 - k(2.0) * (t105 - t104) * t97);
-        let t120 = t115 * t116 * (puck_sz - t119) + t118;
-        let t121 = k(0.05) * sleeve_wy;
-        let t122 = k(0.05) * sleeve_wx;
-        let t123 = k(0.1) * (sleeve_sy + (t57 * t122 + t55 * t121))
-            - k(0.2) * (sleeve_sx - (t77 * t122 + t75 * t121));
-        let t124 = sleeve_wz * (k(0.02) * t34)
-            - (sleeve_wy * (k(0.02) * t31) + sleeve_wx * (k(0.02) * t27));
-        let t125 = t124 + t123 + (t120 * t120 + (self.motor * t96 + (t90 * t95 + t92)));
-        let t126 = carrier_e0 * carrier_e0;
-        let t127 = carrier_e0 * carrier_e3;
-        let t128 = carrier_e1 * carrier_e2;
-        let t129 = k(2.0) * (t128 + t127) * t61
-            + k(2.0) * (k(0.5) - (t126 + carrier_e1 * carrier_e1)) * t81;
-        let t130 = carrier_e0 * carrier_e2;
-        let t131 = carrier_e1 * carrier_e3;
-        let t132 = k(2.0) * (k(0.5) - (t126 + carrier_e2 * carrier_e2)) * t61
-            + k(2.0) * (t128 - t127) * t81;
-        let t133 = carrier_e0 * carrier_e1;
-        let t134 = carrier_e2 * carrier_e3;
-        let t135 = carrier_wy * (k(2.0) * (t134 + t133) * t37 - t132)
-            + carrier_wx * (k(2.0) * (t131 - t130) * t37 + t129);
-        let t136 = k(2.0) * (t134 - t133) * t61 - k(2.0) * (t131 + t130) * t81;
-        let t137 = carrier_wz
-            * (k(2.0) * (k(0.5) - (t126 + carrier_e3 * carrier_e3)) * t37 - t136);
-        let t138 = k(0.9045340337332909) * shaft_wx + k(0.30151134457776363) * shaft_wy
+        let t126 = k(0.9424777960769379) * (k(9.42477796076938) * t).cos() * closing8
+            + (self.motor * t125 + t124);
+        let t127 = carrier_e0 * carrier_e0;
+        let t128 = carrier_e0 * carrier_e3;
+        let t129 = carrier_e1 * carrier_e2;
+        let t130 = k(2.0) * (t129 + t128) * t93
+            + k(2.0) * (k(0.5) - (t127 + carrier_e1 * carrier_e1)) * t109;
+        let t131 = carrier_e0 * carrier_e2;
+        let t132 = carrier_e1 * carrier_e3;
+        let t133 = k(2.0) * (k(0.5) - (t127 + carrier_e2 * carrier_e2)) * t93
+            + k(2.0) * (t129 - t128) * t109;
+        let t134 = carrier_e0 * carrier_e1;
+        let t135 = carrier_e2 * carrier_e3;
+        let t136 = carrier_wy * (k(2.0) * (t135 + t134) * t75 - t133)
+            + carrier_wx * (k(2.0) * (t132 - t131) * t75 + t130);
+        let t137 = k(2.0) * (t135 - t134) * t93 - k(2.0) * (t132 + t131) * t109;
+        let t138 = carrier_wz
+            * (k(2.0) * (k(0.5) - (t127 + carrier_e3 * carrier_e3)) * t75 - t137);
+        let t139 = k(0.9045340337332909) * shaft_wx + k(0.30151134457776363) * shaft_wy
             - k(0.30151134457776363) * shaft_wz
             - (k(0.9045340337332909) * sleeve_wx + k(0.30151134457776363) * sleeve_wy
                 - k(0.30151134457776363) * sleeve_wz);
@@ -551,12 +550,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for AllJoints<T> {
             accelerations[39],
             accelerations[40],
             accelerations[41],
-            -(k(0.9424777960769379) * (k(9.42477796076938) * t).cos() * closing8 + t125),
+            -t126,
             k(0.3333333333333333) * carrier_wx + k(0.6666666666666666) * carrier_wy
                 + k(0.6666666666666666) * carrier_wz,
-            shaft_wx + (t137 - t135),
-            -t138,
-            -t96,
+            shaft_wx + (t138 - t136),
+            -t139,
+            -t125,
         ];
     }
 }
@@ -2380,49 +2379,49 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for AllJoints<T> {
                 * (carrier_sx * carrier_sx + carrier_sy * carrier_sy
                     + carrier_sz * carrier_sz);
         let t15 = k(0.5) * (t14 + t12 + t9 + t7 + t5 + t3 + t1);
-        let t16 = shaft_e0 * shaft_e1;
-        let t17 = shaft_e2 * shaft_e3;
-        let t18 = k(2.0) * (t17 - t16);
-        let t19 = carrier_e0 * carrier_e0;
-        let t20 = k(2.0) * (k(0.5) - (t19 + carrier_e2 * carrier_e2));
-        let t21 = k(2.0) * (shaft_e1 * shaft_e3 + shaft_e0 * shaft_e2);
-        let t22 = k(2.0) * (carrier_e1 * carrier_e2 - carrier_e0 * carrier_e3);
-        let t23 = shaft_e0 * shaft_e0;
-        let t24 = k(2.0) * (k(0.5) - (t23 + shaft_e3 * shaft_e3));
-        let t25 = carrier_e0 * carrier_e1;
-        let t26 = carrier_e2 * carrier_e3;
-        let t27 = k(2.0) * (t26 + t25);
-        let t28 = t27 * t24 - (t22 * t21 - t20 * t18);
-        let t29 = k(2.0) * (k(0.5) - (t23 + shaft_e2 * shaft_e2));
-        let t30 = k(2.0) * (shaft_e1 * shaft_e2 - shaft_e0 * shaft_e3);
-        let t31 = k(2.0) * (t17 + t16);
-        let t32 = t27 * t31 + (t22 * t30 + t20 * t29);
-        let t33 = k(2.0) * (t26 - t25);
-        let t34 = k(2.0) * (carrier_e1 * carrier_e3 + carrier_e0 * carrier_e2);
-        let t35 = k(2.0) * (k(0.5) - (t19 + carrier_e3 * carrier_e3));
-        let t36 = t35 * t31 - (t34 * t30 - t33 * t29);
-        let t37 = t34 * t21 + t33 * t18 + t35 * t24;
-        let t38 = k(0.8) * (k(0.8) * t37 - k(0.6) * t36)
-            + k(0.6) * (k(0.6) * t32 - k(0.8) * t28);
-        let t39 = turn1.cos();
-        let t40 = k(0.8) * (k(0.8) * t36 + k(0.6) * t37)
-            - k(0.6) * (k(0.6) * t28 + k(0.8) * t32);
-        let t41 = turn1.sin();
-        let t42 = -(t39 * t40 + t41 * t38).atan2(t39 * t38 - t41 * t40);
-        let t43 = k(0.1) - (turn1 + t42);
-        let t44 = puck_e1 * puck_e2 - puck_e0 * puck_e3
+        let t16 = puck_e1 * puck_e2 - puck_e0 * puck_e3
             + (puck_e1 * puck_e3 + puck_e0 * puck_e2);
-        let t45 = k(1.2) - (puck_rx + k(0.2) * t44);
-        let t46 = puck_e0 * puck_e1;
-        let t47 = puck_e2 * puck_e3;
-        let t48 = puck_e0 * puck_e0;
-        let t49 = puck_ry + k(0.2) * (t47 - t46 - (k(0.5) - (t48 + puck_e2 * puck_e2)));
-        let t50 = k(1.0) - t49;
-        let t51 = puck_rz + k(0.2) * (t47 + t46 - (k(0.5) - (t48 + puck_e3 * puck_e3)));
-        let t52 = k(1.0) - t51;
-        let t53 = k(0.6) - (t52 * t52 + (t50 * t50 + t45 * t45)).sqrt();
+        let t17 = k(1.2) - (puck_rx + k(0.2) * t16);
+        let t18 = puck_e0 * puck_e1;
+        let t19 = puck_e2 * puck_e3;
+        let t20 = puck_e0 * puck_e0;
+        let t21 = puck_ry + k(0.2) * (t19 - t18 - (k(0.5) - (t20 + puck_e2 * puck_e2)));
+        let t22 = k(1.0) - t21;
+        let t23 = puck_rz + k(0.2) * (t19 + t18 - (k(0.5) - (t20 + puck_e3 * puck_e3)));
+        let t24 = k(1.0) - t23;
+        let t25 = k(0.6) - (t24 * t24 + (t22 * t22 + t17 * t17)).sqrt();
+        let t26 = shaft_e0 * shaft_e1;
+        let t27 = shaft_e2 * shaft_e3;
+        let t28 = k(2.0) * (t27 - t26);
+        let t29 = carrier_e0 * carrier_e0;
+        let t30 = k(2.0) * (k(0.5) - (t29 + carrier_e2 * carrier_e2));
+        let t31 = k(2.0) * (shaft_e1 * shaft_e3 + shaft_e0 * shaft_e2);
+        let t32 = k(2.0) * (carrier_e1 * carrier_e2 - carrier_e0 * carrier_e3);
+        let t33 = shaft_e0 * shaft_e0;
+        let t34 = k(2.0) * (k(0.5) - (t33 + shaft_e3 * shaft_e3));
+        let t35 = carrier_e0 * carrier_e1;
+        let t36 = carrier_e2 * carrier_e3;
+        let t37 = k(2.0) * (t36 + t35);
+        let t38 = t37 * t34 - (t32 * t31 - t30 * t28);
+        let t39 = k(2.0) * (k(0.5) - (t33 + shaft_e2 * shaft_e2));
+        let t40 = k(2.0) * (shaft_e1 * shaft_e2 - shaft_e0 * shaft_e3);
+        let t41 = k(2.0) * (t27 + t26);
+        let t42 = t37 * t41 + (t32 * t40 + t30 * t39);
+        let t43 = k(2.0) * (t36 - t35);
+        let t44 = k(2.0) * (carrier_e1 * carrier_e3 + carrier_e0 * carrier_e2);
+        let t45 = k(2.0) * (k(0.5) - (t29 + carrier_e3 * carrier_e3));
+        let t46 = t45 * t41 - (t44 * t40 - t43 * t39);
+        let t47 = t44 * t31 + t43 * t28 + t45 * t34;
+        let t48 = k(0.8) * (k(0.8) * t47 - k(0.6) * t46)
+            + k(0.6) * (k(0.6) * t42 - k(0.8) * t38);
+        let t49 = turn1.cos();
+        let t50 = k(0.8) * (k(0.8) * t46 + k(0.6) * t47)
+            - k(0.6) * (k(0.6) * t38 + k(0.8) * t42);
+        let t51 = turn1.sin();
+        let t52 = -(t49 * t50 + t51 * t48).atan2(t49 * t48 - t51 * t50);
+        let t53 = k(0.1) - (turn1 + t52);
         let t54 = carrier_rz * (k(1.5) * self.gravity)
-            + k(0.5) * (t53 * (k(30.0) * t53) + t43 * (k(2.0) * t43));
+            + k(0.5) * (t53 * (k(2.0) * t53) + t25 * (k(30.0) * t25));
         let t55 = slide_rz * (k(0.8) * self.gravity)
             + (sleeve_rz * (k(0.4) * self.gravity)
                 + (shaft_rz * (k(0.5) * self.gravity) + t54));
@@ -9835,7 +9834,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t599 * t606 - t600 - k(8.882643960980422) * (k(9.42477796076938) * t).sin(),
         ];
     }
-    /// Writes (f, n' − w̃'J'w'): 729 operations (302 ±, 425 ×, 2 ÷) and 6 functions.
+    /// Writes (f, n' − w̃'J'w'): 731 operations (304 ±, 425 ×, 2 ÷) and 6 functions.
     fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
         let k = T::constant;
         let shaft_rx = y[7];
@@ -9906,32 +9905,36 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t50,
             t51,
             t106,
-            t109,
+            t107,
             t110,
             t111,
             t112,
-            t123,
+            t113,
+            t114,
             t125,
-            t128,
-            t129,
+            t127,
             t130,
-            t134,
-            t137,
+            t131,
+            t132,
+            t135,
+            t136,
+            t138,
             t139,
-            t162,
-            t163,
+            t141,
             t164,
             t165,
             t166,
             t167,
             t168,
             t169,
+            t170,
             t171,
-            t172,
-            t176,
+            t173,
+            t174,
+            t178,
+            t179,
             t180,
-            t187,
-            t188,
+            t182,
             t189,
             t190,
             t191,
@@ -10072,146 +10075,149 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                     - k(0.30151134457776363) * t98) - t101 * t90;
             let t105 = t104 + t89 - t71;
             let t106 = k(3.0) * t105;
-            let t107 = k(0.05) - (t70 * t52 - (t88 * t72 + t103 * t90));
-            let t108 = (k(0.0001) + t107 * t107).sqrt();
-            let t109 = (k(1.0) - t107 / t108) * t105 + k(250.0) * (t107 - t108);
-            let t110 = t90 * t109 + t90 * t106;
-            let t111 = t72 * t109 + t72 * t106;
-            let t112 = t52 * t109 + t52 * t106;
-            let t113 = shaft_rx - t102;
-            let t114 = shaft_ry - t87;
-            let t115 = shaft_rz - t69;
-            let t116 = t27 * t115 - (t21 * t114 - t25 * t113);
-            let t117 = t15 * t115 - (t3 * t114 + t9 * t113);
-            let t118 = k(0.30151134457776363) * (t117 - t116);
-            let t119 = k(0.0002) * shaft_wz;
-            let t120 = k(0.0001) * shaft_wy;
-            let t121 = shaft_wy * shaft_wy;
-            let t122 = shaft_wz * shaft_wz;
-            let t123 = k(0.0003) * (t122 - t121) + shaft_wx * (t120 + t119)
-                + (t109 * t118 + (t41 + t106 * t118));
-            let t124 = k(0.30151134457776363) * (t48 * t115 + (t45 * t114 - t43 * t113));
-            let t125 = k(0.9045340337332909) * t117 - t124;
-            let t126 = shaft_wx * shaft_wx;
-            let t127 = k(0.0003) * shaft_wx;
-            let t128 = shaft_wy * (t119 - t127)
-                - (k(0.005) * (shaft_wx * shaft_wz) + k(0.0001) * (t122 - t126));
-            let t129 = t124 - k(0.9045340337332909) * t116;
-            let t130 = shaft_wz * (t120 + t127)
-                + (k(0.005) * (shaft_wx * shaft_wy) - k(0.0002) * (t121 - t126));
-            let t131 = t60 * t52 + (t78 * t72 - t94 * t90);
-            let t132 = t63 * t52 + (t80 * t72 + t96 * t90);
-            let t133 = k(0.05) * (t132 - t131);
-            let t134 = k(0.05) * (k(0.4) * t93 + k(0.2) * t77) - k(0.02) * t55
-                - (t109 * t133 + t106 * t133);
-            let t135 = k(0.05) * (t56 * t52 - (t76 * t72 - t92 * t90));
-            let t136 = k(0.1) * t132 - t135;
-            let t137 = k(0.05) * (t86 + k(0.4) * t91) - k(0.02) * t59
-                + (t109 * t136 + t106 * t136);
-            let t138 = t135 - k(0.1) * t131;
-            let t139 = k(0.001) * (sleeve_wx * sleeve_wy)
-                - (k(0.02) * t62 - (t109 * t138 + t106 * t138));
-            let t140 = slide_e0 * slide_e2;
-            let t141 = slide_e1 * slide_e3;
-            let t142 = t141 - t140;
-            let t143 = slide_e0 * slide_e1;
-            let t144 = slide_e2 * slide_e3;
-            let t145 = t144 + t143;
-            let t146 = k(2.0) * t145;
-            let t147 = slide_e0 * slide_e0;
-            let t148 = k(0.5) - (t147 + slide_e3 * slide_e3);
-            let t149 = k(2.0) * t148 * slide_wy + t146 * slide_wz
-                - (t146 * slide_wx - k(2.0) * t142 * slide_wy);
-            let t150 = slide_e0 * slide_e3;
-            let t151 = slide_e1 * slide_e2;
-            let t152 = t151 + t150;
-            let t153 = k(0.5) - (t147 + slide_e2 * slide_e2);
-            let t154 = k(2.0) * t153;
-            let t155 = t144 - t143;
-            let t156 = k(2.0) * t155 * slide_wy + t154 * slide_wz
-                - (t154 * slide_wx + k(2.0) * t152 * slide_wy);
-            let t157 = k(0.5) - (t147 + slide_e1 * slide_e1);
-            let t158 = t151 - t150;
-            let t159 = k(2.0) * t158;
-            let t160 = t141 + t140;
-            let t161 = k(2.0) * t160 * slide_wy - t159 * slide_wz
-                + (t159 * slide_wx + k(2.0) * t157 * slide_wy);
-            let t162 = k(0.23570226039551584)
-                * (slide_sx + k(0.1) * t161 - (slide_sy + k(0.1) * t156))
-                + k(0.9428090415820634) * (slide_sz - k(0.1) * t149);
-            let t163 = k(0.11785113019775792) * t162;
-            let t164 = k(0.5) * t162;
-            let t165 = k(0.1)
-                * (k(1.8856180831641267) * t145 + k(0.4714045207910317) * (t158 + t153))
-                * t164;
-            let t166 = k(0.6666666666666666) * self.motor;
-            let t167 = k(1.8856180831641267) * t148
-                - k(0.4714045207910317) * (t160 - t155)
-                + (k(1.8856180831641267) * t142
-                    + k(0.4714045207910317) * -(t157 + t152));
-            let t168 = k(0.3333333333333333) * self.motor;
-            let t169 = k(0.1) * (puck_wy - puck_wz);
-            let t170 = puck_e0 * puck_e0;
-            let t171 = k(2.0) * (k(0.5) - (t170 + puck_e1 * puck_e1));
-            let t172 = k(0.1) * puck_wx;
-            let t173 = puck_e0 * puck_e3;
-            let t174 = puck_e1 * puck_e2;
-            let t175 = t174 - t173;
-            let t176 = k(2.0) * t175;
-            let t177 = puck_e0 * puck_e2;
-            let t178 = puck_e1 * puck_e3;
-            let t179 = t178 + t177;
-            let t180 = k(2.0) * t179;
-            let t181 = k(1.2) - (puck_rx + k(0.2) * (t175 + t179));
-            let t182 = puck_e0 * puck_e1;
-            let t183 = puck_e2 * puck_e3;
-            let t184 = t183 - t182;
-            let t185 = k(0.5) - (t170 + puck_e2 * puck_e2);
-            let t186 = k(1.0) - (puck_ry + k(0.2) * (t184 - t185));
-            let t187 = k(0.5) - (t170 + puck_e3 * puck_e3);
-            let t188 = t183 + t182;
-            let t189 = k(1.0) - (puck_rz + k(0.2) * (t188 - t187));
-            let t190 = (t189 * t189 + (t186 * t186 + t181 * t181)).sqrt();
-            let t191 = k(1.0) / t190;
-            let t192 = t181 * t191;
-            let t193 = t192 * (puck_sx + (t180 * t172 - (t176 * t172 + t171 * t169)));
-            let t194 = k(2.0) * (t174 + t173);
-            let t195 = k(2.0) * t185;
-            let t196 = k(2.0) * t184;
-            let t197 = t186 * t191;
-            let t198 = t197 * (puck_sy + (t196 * t172 + (t195 * t172 + t194 * t169)));
-            let t199 = k(2.0) * (t178 - t177);
+            let t107 = t90 * t106;
+            let t108 = k(0.05) - (t70 * t52 - (t88 * t72 + t103 * t90));
+            let t109 = (k(0.0001) + t108 * t108).sqrt();
+            let t110 = (k(1.0) - t108 / t109) * t105 + k(250.0) * (t108 - t109);
+            let t111 = t90 * t110;
+            let t112 = t72 * t106;
+            let t113 = t72 * t110;
+            let t114 = t52 * t110 + t52 * t106;
+            let t115 = shaft_rx - t102;
+            let t116 = shaft_ry - t87;
+            let t117 = shaft_rz - t69;
+            let t118 = t27 * t117 - (t21 * t116 - t25 * t115);
+            let t119 = t15 * t117 - (t3 * t116 + t9 * t115);
+            let t120 = k(0.30151134457776363) * (t119 - t118);
+            let t121 = k(0.0002) * shaft_wz;
+            let t122 = k(0.0001) * shaft_wy;
+            let t123 = shaft_wy * shaft_wy;
+            let t124 = shaft_wz * shaft_wz;
+            let t125 = k(0.0003) * (t124 - t123) + shaft_wx * (t122 + t121)
+                + (t110 * t120 + (t41 + t106 * t120));
+            let t126 = k(0.30151134457776363) * (t48 * t117 + (t45 * t116 - t43 * t115));
+            let t127 = k(0.9045340337332909) * t119 - t126;
+            let t128 = shaft_wx * shaft_wx;
+            let t129 = k(0.0003) * shaft_wx;
+            let t130 = shaft_wy * (t121 - t129)
+                - (k(0.005) * (shaft_wx * shaft_wz) + k(0.0001) * (t124 - t128));
+            let t131 = t126 - k(0.9045340337332909) * t118;
+            let t132 = shaft_wz * (t122 + t129)
+                + (k(0.005) * (shaft_wx * shaft_wy) - k(0.0002) * (t123 - t128));
+            let t133 = t60 * t52 + (t78 * t72 - t94 * t90);
+            let t134 = t63 * t52 + (t80 * t72 + t96 * t90);
+            let t135 = k(0.05) * (t134 - t133);
+            let t136 = t106 * t135
+                - (k(0.05) * (k(0.4) * t93 + k(0.2) * t77) - k(0.02) * t55);
+            let t137 = k(0.05) * (t56 * t52 - (t76 * t72 - t92 * t90));
+            let t138 = k(0.1) * t134 - t137;
+            let t139 = t106 * t138 + (k(0.05) * (t86 + k(0.4) * t91) - k(0.02) * t59);
+            let t140 = t137 - k(0.1) * t133;
+            let t141 = k(0.001) * (sleeve_wx * sleeve_wy)
+                + (t110 * t140 + (t106 * t140 - k(0.02) * t62));
+            let t142 = slide_e0 * slide_e2;
+            let t143 = slide_e1 * slide_e3;
+            let t144 = t143 - t142;
+            let t145 = slide_e0 * slide_e1;
+            let t146 = slide_e2 * slide_e3;
+            let t147 = t146 + t145;
+            let t148 = k(2.0) * t147;
+            let t149 = slide_e0 * slide_e0;
+            let t150 = k(0.5) - (t149 + slide_e3 * slide_e3);
+            let t151 = k(2.0) * t150 * slide_wy + t148 * slide_wz
+                - (t148 * slide_wx - k(2.0) * t144 * slide_wy);
+            let t152 = slide_e0 * slide_e3;
+            let t153 = slide_e1 * slide_e2;
+            let t154 = t153 + t152;
+            let t155 = k(0.5) - (t149 + slide_e2 * slide_e2);
+            let t156 = k(2.0) * t155;
+            let t157 = t146 - t145;
+            let t158 = k(2.0) * t157 * slide_wy + t156 * slide_wz
+                - (t156 * slide_wx + k(2.0) * t154 * slide_wy);
+            let t159 = k(0.5) - (t149 + slide_e1 * slide_e1);
+            let t160 = t153 - t152;
+            let t161 = k(2.0) * t160;
+            let t162 = t143 + t142;
+            let t163 = k(2.0) * t162 * slide_wy - t161 * slide_wz
+                + (t161 * slide_wx + k(2.0) * t159 * slide_wy);
+            let t164 = k(0.23570226039551584)
+                * (slide_sx + k(0.1) * t163 - (slide_sy + k(0.1) * t158))
+                + k(0.9428090415820634) * (slide_sz - k(0.1) * t151);
+            let t165 = k(0.11785113019775792) * t164;
+            let t166 = k(0.5) * t164;
+            let t167 = k(0.1)
+                * (k(1.8856180831641267) * t147 + k(0.4714045207910317) * (t160 + t155))
+                * t166;
+            let t168 = k(0.6666666666666666) * self.motor;
+            let t169 = k(1.8856180831641267) * t150
+                - k(0.4714045207910317) * (t162 - t157)
+                + (k(1.8856180831641267) * t144
+                    + k(0.4714045207910317) * -(t159 + t154));
+            let t170 = k(0.3333333333333333) * self.motor;
+            let t171 = k(0.1) * (puck_wy - puck_wz);
+            let t172 = puck_e0 * puck_e0;
+            let t173 = k(2.0) * (k(0.5) - (t172 + puck_e1 * puck_e1));
+            let t174 = k(0.1) * puck_wx;
+            let t175 = puck_e0 * puck_e3;
+            let t176 = puck_e1 * puck_e2;
+            let t177 = t176 - t175;
+            let t178 = k(2.0) * t177;
+            let t179 = puck_e0 * puck_e2;
+            let t180 = puck_e1 * puck_e3;
+            let t181 = t180 + t179;
+            let t182 = k(2.0) * t181;
+            let t183 = k(1.2) - (puck_rx + k(0.2) * (t177 + t181));
+            let t184 = puck_e0 * puck_e1;
+            let t185 = puck_e2 * puck_e3;
+            let t186 = t185 - t184;
+            let t187 = k(0.5) - (t172 + puck_e2 * puck_e2);
+            let t188 = k(1.0) - (puck_ry + k(0.2) * (t186 - t187));
+            let t189 = k(0.5) - (t172 + puck_e3 * puck_e3);
+            let t190 = t185 + t184;
+            let t191 = k(1.0) - (puck_rz + k(0.2) * (t190 - t189));
+            let t192 = (t191 * t191 + (t188 * t188 + t183 * t183)).sqrt();
+            let t193 = k(1.0) / t192;
+            let t194 = t183 * t193;
+            let t195 = t194 * (puck_sx + (t182 * t174 - (t178 * t174 + t173 * t171)));
+            let t196 = k(2.0) * (t176 + t175);
+            let t197 = k(2.0) * t187;
+            let t198 = k(2.0) * t186;
+            let t199 = t188 * t193;
             (
                 t49,
                 t50,
                 t51,
                 t106,
-                t109,
+                t107,
                 t110,
                 t111,
                 t112,
-                t123,
+                t113,
+                t114,
                 t125,
-                t128,
-                t129,
+                t127,
                 t130,
-                t134,
-                t137,
+                t131,
+                t132,
+                t135,
+                t136,
+                t138,
                 t139,
-                t162,
-                t163,
+                t141,
                 t164,
                 t165,
                 t166,
                 t167,
                 t168,
                 t169,
+                t170,
                 t171,
-                t172,
-                t176,
+                t173,
+                t174,
+                t178,
+                t179,
                 t180,
-                t187,
-                t188,
+                t182,
                 t189,
                 t190,
                 t191,
@@ -10225,24 +10231,26 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 t199,
             )
         };
-        let (t205, t206, t207, t208, t209, t210, t211) = {
-            let t200 = k(2.0) * t188;
-            let t201 = k(2.0) * t187;
-            let t202 = t189 * t191;
-            let t203 = t202 * (puck_sz - (t201 * t172 + (t200 * t172 - t199 * t169)));
-            let t204 = k(30.0) * (k(0.6) - t190) + (t203 + (t198 + t193));
-            let t205 = t192 * t204;
-            let t206 = t197 * t204;
-            let t207 = t202 * t204;
-            let t208 = t201 * t207 - (t196 * t206 + t180 * t205)
-                + (t200 * t207 - (t195 * t206 - t176 * t205));
-            let t209 = (k(10.0)
+        let (t207, t208, t209, t210, t211, t212, t213) = {
+            let t200 = t199 * (puck_sy + (t198 * t174 + (t197 * t174 + t196 * t171)));
+            let t201 = k(2.0) * (t180 - t179);
+            let t202 = k(2.0) * t190;
+            let t203 = k(2.0) * t189;
+            let t204 = t191 * t193;
+            let t205 = t204 * (puck_sz - (t203 * t174 + (t202 * t174 - t201 * t171)));
+            let t206 = k(30.0) * (k(0.6) - t192) + (t205 + (t200 + t195));
+            let t207 = t194 * t206;
+            let t208 = t199 * t206;
+            let t209 = t204 * t206;
+            let t210 = t203 * t209 - (t198 * t208 + t182 * t207)
+                + (t202 * t209 - (t197 * t208 - t178 * t207));
+            let t211 = (k(10.0)
                 * (k(0.19245008972987526) * (puck_wx + puck_wy)
                     + k(0.9622504486493763) * puck_wz))
                 .tanh();
-            let t210 = k(0.009622504486493762) * t209;
-            let t211 = k(0.1) * (t199 * t207 + (t194 * t206 - t171 * t205));
-            (t205, t206, t207, t208, t209, t210, t211)
+            let t212 = k(0.009622504486493762) * t211;
+            let t213 = k(0.1) * (t201 * t209 + (t196 * t208 - t173 * t207));
+            (t207, t208, t209, t210, t211, t212, t213)
         };
         *out = [
             k(0.0),
@@ -10251,45 +10259,45 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t49,
             t50,
             -t51,
-            t110,
-            t111,
-            -(k(0.5) * self.gravity + t112),
-            t123,
-            -(t128 + (t109 * t125 + t106 * t125)),
-            t109 * t129 + t106 * t129 - t130,
-            k(0.2) - t110,
-            -(k(0.1) + t111),
-            t112 - k(0.4) * self.gravity,
-            -(k(0.002) * (sleeve_wy * sleeve_wz) + t134),
-            k(0.001) * (sleeve_wx * sleeve_wz) - t137,
-            t139,
-            -t163,
-            t163,
-            -(k(0.8) * self.gravity + k(0.4714045207910317) * t162),
-            -(k(0.002) * (slide_wy * slide_wz) + (t166 + t165)),
-            k(0.001) * (slide_wx * slide_wz) + (t168 + t164 * (k(0.1) * t167)),
-            k(0.001) * (slide_wx * slide_wy) - (t166 - t165),
+            t111 + t107,
+            t113 + t112,
+            -(k(0.5) * self.gravity + t114),
+            t125,
+            -(t130 + (t110 * t127 + t106 * t127)),
+            t110 * t131 + t106 * t131 - t132,
+            k(0.2) - t107 - t111,
+            -(t113 + (k(0.1) + t112)),
+            t114 - k(0.4) * self.gravity,
+            t110 * t135 + t136 - k(0.002) * (sleeve_wy * sleeve_wz),
+            k(0.001) * (sleeve_wx * sleeve_wz) - (t110 * t138 + t139),
+            t141,
+            -t165,
+            t165,
+            -(k(0.8) * self.gravity + k(0.4714045207910317) * t164),
+            -(k(0.002) * (slide_wy * slide_wz) + (t168 + t167)),
+            k(0.001) * (slide_wx * slide_wz) + (t170 + t166 * (k(0.1) * t169)),
+            k(0.001) * (slide_wx * slide_wy) - (t168 - t167),
             k(0.0),
             k(0.0),
             -(k(0.3) * self.gravity),
-            t166 - k(0.0005) * (nut_wy * nut_wz),
-            k(0.001) * (nut_wx * nut_wz) - t168,
-            t166 - k(0.0005) * (nut_wx * nut_wy),
+            t168 - k(0.0005) * (nut_wy * nut_wz),
+            k(0.001) * (nut_wx * nut_wz) - t170,
+            t168 - k(0.0005) * (nut_wx * nut_wy),
             k(0.0),
             k(0.0),
             -(k(0.2) * self.gravity),
             -(k(0.0005) * (lid_wy * lid_wz)),
             k(0.001) * (lid_wx * lid_wz),
             -(k(0.0005) * (lid_wx * lid_wy)),
-            -t205,
-            -t206,
-            -(self.gravity * self.puck_mass + t207),
-            k(0.002) * (puck_wy * puck_wz) - (t210 - k(0.1) * t208),
-            -(k(0.001) * (puck_wx * puck_wz) + (t210 + t211)),
-            -(k(0.001) * (puck_wx * puck_wy) + (k(0.048112522432468816) * t209 - t211)),
+            -t207,
+            -t208,
+            -(self.gravity * self.puck_mass + t209),
+            k(0.002) * (puck_wy * puck_wz) - (t212 - k(0.1) * t210),
+            -(k(0.001) * (puck_wx * puck_wz) + (t212 + t213)),
+            -(k(0.001) * (puck_wx * puck_wy) + (k(0.048112522432468816) * t211 - t213)),
         ];
     }
-    /// Solves eq. (17): 10853 operations (4847 ±, 5977 ×, 29 ÷) and 7 functions.
+    /// Solves eq. (17): 10855 operations (4849 ±, 5977 ×, 29 ÷) and 7 functions.
     fn accelerations(&self, t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let carrier_rx = y[0];
@@ -10443,6 +10451,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t85,
             t87,
             t88,
+            t89,
+            t90,
             t91,
             t92,
             t95,
@@ -10473,18 +10483,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t134,
             t135,
             t136,
+            t137,
+            t138,
             t139,
             t140,
             t143,
             t144,
-            t145,
-            t146,
             t147,
+            t148,
             t149,
+            t150,
             t151,
-            t152,
             t153,
-            t154,
             t155,
             t156,
             t157,
@@ -10505,12 +10515,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t172,
             t173,
             t174,
+            t175,
+            t176,
             t177,
             t178,
-            t180,
             t181,
             t182,
-            t183,
             t184,
             t185,
             t186,
@@ -10674,80 +10684,80 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t127 = t96 * t51 - (t88 * t64 + t92 * t77);
             let t128 = t107 * t51 - (t101 * t64 - t105 * t77);
             let t129 = k(0.8) * t128 - k(0.6) * t127;
-            let t130 = t72 * t121 + t72 * t85;
-            let t131 = k(0.4) * t37;
-            let t132 = t59 * t121 + t59 * t85;
-            let t133 = k(0.4) * t39;
-            let t134 = t46 * t121 + t46 * t85;
-            let t135 = k(0.5) * self.gravity + t134;
-            let t136 = k(0.4) * t41;
-            let t137 = k(0.30151134457776363) * (t51 * t29 + (t64 * t21 - t77 * t9));
-            let t138 = k(0.9045340337332909) * t43 - t137;
-            let t139 = shaft_wx * shaft_wx;
-            let t140 = shaft_wx * shaft_wz;
-            let t141 = k(0.0003) * shaft_wx;
-            let t142 = shaft_wy * (t122 - t141)
-                - (k(0.005) * t140 + k(0.0001) * (t125 - t139));
-            let t143 = t142 + (t121 * t138 + t85 * t138)
-                + (t136 * t135 + (t133 * t132 + t131 * t130));
-            let t144 = t99 - t114;
-            let t145 = k(0.4) * t12;
-            let t146 = k(0.4) * t23;
-            let t147 = k(0.4) * t32;
-            let t148 = t137 - k(0.9045340337332909) * t34;
-            let t149 = shaft_wx * shaft_wy;
-            let t150 = shaft_wz * (t123 + t141)
-                + (k(0.005) * t149 - k(0.0002) * (t124 - t139));
-            let t151 = t150 - (t121 * t148 + t85 * t148)
-                + (t147 * t135 + (t146 * t132 - t145 * t130));
-            let t152 = t110 - t113;
-            let t153 = t152 * t151 + (t144 * t143 + t129 * t126);
-            let t154 = k(0.0001) * t152 - (k(0.0002) * t144 - k(0.001) * t129);
-            let t155 = k(0.0003) * t152 + (k(0.026) * t144 - k(0.0002) * t129);
-            let t156 = k(0.026) * t152 + (k(0.0003) * t144 + k(0.0001) * t129);
-            let t157 = k(1.0) / (t152 * t156 + (t144 * t155 + t129 * t154));
-            let t158 = t157 * t153;
-            let t159 = t126 - t154 * t158;
-            let t160 = t154 * t157;
-            let t161 = k(0.001) - t154 * t160;
-            let t162 = k(1.0) / t161;
-            let t163 = t162 * t159;
-            let t164 = k(0.2) * t37;
-            let t165 = k(0.2) * t12;
-            let t166 = t152 * t165 - t144 * t164;
-            let t167 = t157 * t166;
-            let t168 = t154 * t167;
-            let t169 = t162 * t168;
-            let t170 = t168 - t161 * t169;
-            let t171 = carrier_wx * carrier_wz;
-            let t172 = k(0.5) - (t86 + carrier_e1 * carrier_e1);
-            let t173 = k(2.0) * t172;
-            let t174 = carrier_wy * carrier_wz;
-            let t175 = carrier_wx * carrier_wx;
-            let t176 = carrier_wy * carrier_wy;
-            let t177 = t176 + t175;
-            let t178 = t105 * t177 - (t92 * t174 - t173 * t171);
-            let t179 = carrier_wz * carrier_wz;
-            let t180 = t179 + t176;
-            let t181 = carrier_wx * carrier_wy;
-            let t182 = t105 * t171 + (t92 * t181 + t173 * t180);
-            let t183 = t179 + t175;
-            let t184 = t105 * t174 - (t92 * t183 + t173 * t181);
-            let t185 = t184 + t182;
-            let t186 = t125 + t124;
-            let t187 = t38 * t140 + (t13 * t149 + t77 * t186);
-            let t188 = k(0.2) * t187;
-            let t189 = t188 + k(0.1) * (t185 - t178);
-            let t190 = k(0.2) * t39;
-            let t191 = k(0.2) * t23;
-            let t192 = t152 * t191 + t144 * t190;
-            let t193 = t157 * t192;
-            let t194 = t154 * t193;
-            let t195 = t162 * t194;
-            let t196 = t194 - t161 * t195;
-            let t197 = t90 + t89;
-            let t198 = k(2.0) * t197;
-            let t199 = t101 * t177 + (t88 * t174 - t198 * t171);
+            let t130 = t72 * t85;
+            let t131 = t72 * t121;
+            let t132 = t131 + t130;
+            let t133 = k(0.4) * t37;
+            let t134 = t59 * t85;
+            let t135 = t59 * t121;
+            let t136 = t135 + t134;
+            let t137 = k(0.4) * t39;
+            let t138 = t46 * t121 + t46 * t85;
+            let t139 = k(0.5) * self.gravity + t138;
+            let t140 = k(0.4) * t41;
+            let t141 = k(0.30151134457776363) * (t51 * t29 + (t64 * t21 - t77 * t9));
+            let t142 = k(0.9045340337332909) * t43 - t141;
+            let t143 = shaft_wx * shaft_wx;
+            let t144 = shaft_wx * shaft_wz;
+            let t145 = k(0.0003) * shaft_wx;
+            let t146 = shaft_wy * (t122 - t145)
+                - (k(0.005) * t144 + k(0.0001) * (t125 - t143));
+            let t147 = t146 + (t121 * t142 + t85 * t142)
+                + (t140 * t139 + (t137 * t136 + t133 * t132));
+            let t148 = t99 - t114;
+            let t149 = k(0.4) * t12;
+            let t150 = k(0.4) * t23;
+            let t151 = k(0.4) * t32;
+            let t152 = t141 - k(0.9045340337332909) * t34;
+            let t153 = shaft_wx * shaft_wy;
+            let t154 = shaft_wz * (t123 + t145)
+                + (k(0.005) * t153 - k(0.0002) * (t124 - t143));
+            let t155 = t154 - (t121 * t152 + t85 * t152)
+                + (t151 * t139 + (t150 * t136 - t149 * t132));
+            let t156 = t110 - t113;
+            let t157 = t156 * t155 + (t148 * t147 + t129 * t126);
+            let t158 = k(0.0001) * t156 - (k(0.0002) * t148 - k(0.001) * t129);
+            let t159 = k(0.0003) * t156 + (k(0.026) * t148 - k(0.0002) * t129);
+            let t160 = k(0.026) * t156 + (k(0.0003) * t148 + k(0.0001) * t129);
+            let t161 = k(1.0) / (t156 * t160 + (t148 * t159 + t129 * t158));
+            let t162 = t161 * t157;
+            let t163 = t126 - t158 * t162;
+            let t164 = t158 * t161;
+            let t165 = k(0.001) - t158 * t164;
+            let t166 = k(1.0) / t165;
+            let t167 = t166 * t163;
+            let t168 = k(0.2) * t37;
+            let t169 = k(0.2) * t12;
+            let t170 = t156 * t169 - t148 * t168;
+            let t171 = t161 * t170;
+            let t172 = t158 * t171;
+            let t173 = t166 * t172;
+            let t174 = t172 - t165 * t173;
+            let t175 = carrier_wx * carrier_wz;
+            let t176 = k(0.5) - (t86 + carrier_e1 * carrier_e1);
+            let t177 = k(2.0) * t176;
+            let t178 = carrier_wy * carrier_wz;
+            let t179 = carrier_wx * carrier_wx;
+            let t180 = carrier_wy * carrier_wy;
+            let t181 = t180 + t179;
+            let t182 = t105 * t181 - (t92 * t178 - t177 * t175);
+            let t183 = carrier_wz * carrier_wz;
+            let t184 = t183 + t180;
+            let t185 = carrier_wx * carrier_wy;
+            let t186 = t105 * t175 + (t92 * t185 + t177 * t184);
+            let t187 = t183 + t179;
+            let t188 = t105 * t178 - (t92 * t187 + t177 * t185);
+            let t189 = t188 + t186;
+            let t190 = t125 + t124;
+            let t191 = t38 * t144 + (t13 * t153 + t77 * t190);
+            let t192 = k(0.2) * t191;
+            let t193 = t192 + k(0.1) * (t189 - t182);
+            let t194 = k(0.2) * t39;
+            let t195 = k(0.2) * t23;
+            let t196 = t156 * t195 + t148 * t194;
+            let t197 = t161 * t196;
+            let t198 = t158 * t197;
+            let t199 = t166 * t198;
             (
                 t1,
                 t4,
@@ -10807,6 +10817,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 t85,
                 t87,
                 t88,
+                t89,
+                t90,
                 t91,
                 t92,
                 t95,
@@ -10837,18 +10849,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 t134,
                 t135,
                 t136,
+                t137,
+                t138,
                 t139,
                 t140,
                 t143,
                 t144,
-                t145,
-                t146,
                 t147,
+                t148,
                 t149,
+                t150,
                 t151,
-                t152,
                 t153,
-                t154,
                 t155,
                 t156,
                 t157,
@@ -10869,12 +10881,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 t172,
                 t173,
                 t174,
+                t175,
+                t176,
                 t177,
                 t178,
-                t180,
                 t181,
                 t182,
-                t183,
                 t184,
                 t185,
                 t186,
@@ -10894,416 +10906,438 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             )
         };
         let (
-            t200,
             t201,
+            t202,
             t203,
             t204,
             t205,
+            t207,
             t208,
-            t210,
-            t213,
+            t209,
+            t212,
             t214,
-            t215,
-            t216,
             t217,
+            t218,
             t219,
             t220,
             t221,
             t223,
             t224,
-            t229,
-            t230,
-            t237,
+            t225,
+            t227,
+            t228,
+            t233,
+            t234,
             t241,
-            t242,
-            t258,
-            t264,
-            t269,
-            t271,
-            t272,
-            t274,
-            t277,
-            t279,
+            t244,
+            t245,
+            t246,
+            t247,
+            t253,
+            t262,
+            t268,
+            t273,
+            t275,
+            t276,
+            t278,
             t281,
             t283,
             t285,
             t287,
             t289,
-            t292,
-            t294,
-            t303,
-            t304,
-            t305,
+            t291,
+            t293,
+            t296,
+            t298,
             t306,
+            t307,
             t308,
-            t317,
-            t318,
-            t319,
+            t309,
+            t310,
+            t312,
             t320,
+            t321,
             t322,
-            t331,
-            t332,
-            t333,
+            t323,
+            t324,
+            t326,
             t334,
             t335,
             t336,
+            t337,
             t338,
             t339,
-            t341,
+            t340,
             t342,
+            t343,
             t345,
-            t347,
+            t346,
             t349,
+            t351,
+            t353,
             t360,
-            t362,
+            t361,
+            t363,
             t364,
+            t366,
             t368,
-            t384,
-            t385,
-            t387,
+            t370,
+            t371,
+            t372,
+            t378,
+            t381,
+            t382,
+            t388,
+            t389,
+            t390,
+            t391,
             t395,
-            t396,
-            t397,
-            t398,
             t399,
         ) = {
-            let t200 = t101 * t171 - (t88 * t181 + t198 * t180);
-            let t201 = t101 * t174 + (t88 * t183 + t198 * t181);
-            let t202 = t201 + t200;
-            let t203 = t40 * t140 - (t24 * t149 + t64 * t186);
-            let t204 = k(0.2) * t203;
-            let t205 = t204 + k(0.1) * (t202 - t199);
-            let t206 = k(0.2) * t41;
-            let t207 = k(0.2) * t32;
-            let t208 = t152 * t207 + t144 * t206;
-            let t209 = t157 * t208;
-            let t210 = t154 * t209;
-            let t211 = t162 * t210;
-            let t212 = t210 - t161 * t211;
-            let t213 = t103 - t102;
-            let t214 = k(2.0) * t213;
-            let t215 = t107 * t177 + (t96 * t174 + t214 * t171);
-            let t216 = t107 * t171 - (t96 * t181 - t214 * t180);
-            let t217 = t107 * t174 + (t96 * t183 - t214 * t181);
-            let t218 = t217 + t216;
-            let t219 = t42 * t140 - (t33 * t149 - t51 * t186);
-            let t220 = k(0.2) * t219;
-            let t221 = t220 + k(0.1) * (t218 - t215);
-            let t222 = t221 * t212 + (t205 * t196 - t189 * t170) + (t159 - t161 * t163);
-            let t223 = t214 * t51 + (t198 * t64 + t173 * t77);
-            let t224 = k(0.0002) + t155 * t160;
-            let t225 = t224 * t169 + (t164 + t155 * t167);
-            let t226 = t224 * t195 - (t190 - t155 * t193);
-            let t227 = t224 * t211 - (t206 - t155 * t209);
-            let t228 = k(1.0) / (t144 * t144 + t152 * t152);
-            let t229 = t214 * t33 - (t198 * t24 + t173 * t13);
-            let t230 = t214 * t42 - (t198 * t40 - t173 * t38);
-            let t231 = shaft_wy * t230 + shaft_wz * t229;
-            let t232 = k(2.0)
-                * (carrier_wx * (shaft_wy * t109 + shaft_wz * t108) + carrier_wz * t231);
-            let t233 = t140 * t97 - (t149 * t98 - t186 * t127) + t232
-                + (t174 * t128 + (t183 * t127 - t181 * t223));
-            let t234 = k(2.0)
-                * (carrier_wx * (shaft_wy * t97 + shaft_wz * t98) - carrier_wy * t231);
-            let t235 = t140 * t109 - (t149 * t108 - t186 * t128) - t234
-                + (t177 * t128 + (t174 * t127 + t171 * t223));
-            let t236 = k(0.8) * t235 - k(0.6) * t233;
-            let t237 = t236 * (t152 * t228);
-            let t238 = t155 * t157;
-            let t239 = t162 * t224;
-            let t240 = t224 * t239 - (k(0.026) - t155 * t238);
-            let t241 = t236 * (t144 * t228);
-            let t242 = k(0.0001) - t156 * t160;
-            let t243 = t242 * t239 + (k(0.0003) - t156 * t238);
-            let t244 = t243 * t241 + t240 * t237
-                - (t221 * t227 + (t205 * t226 - t189 * t225));
-            let t245 = t244 - (t224 * t163 + (t143 - t155 * t158));
-            let t246 = t242 * t169 + (t165 - t156 * t167);
-            let t247 = t242 * t195 + (t191 - t156 * t193);
-            let t248 = t242 * t211 + (t207 - t156 * t209);
-            let t249 = t242 * (t162 * t242) - (k(0.026) - t156 * (t156 * t157));
-            let t250 = t249 * t241 + t243 * t237
-                - (t221 * t248 + (t205 * t247 - t189 * t246));
-            let t251 = t250 - (t242 * t163 - (t151 - t156 * t158));
-            let t252 = t168 * t169 + t166 * t167;
-            let t253 = t194 * t169 + t192 * t167;
-            let t254 = t210 * t169 + t208 * t167;
-            let t255 = t221 * t254 + (t205 * t253 - t189 * t252) + k(0.5) * t189;
-            let t256 = t246 * t241 + t225 * t237 - t255
-                - (t168 * t163 - (t130 + t166 * t158));
-            let t257 = t91 - t104;
-            let t258 = k(0.2) * t257;
-            let t259 = t194 * t195 + t192 * t193;
-            let t260 = t210 * t195 + t208 * t193;
-            let t261 = t221 * t260 + (t205 * t259 - t189 * t253) - k(0.5) * t205;
-            let t262 = t247 * t241 + t226 * t237 - t261
-                - (t194 * t163 + (t132 - t192 * t158));
-            let t263 = t87 + t100;
-            let t264 = k(0.2) * -t263;
-            let t265 = t210 * t211 + t208 * t209;
-            let t266 = t221 * t265 + (t205 * t260 - t189 * t254) - k(0.5) * t221;
-            let t267 = t248 * t241 + t227 * t237 - t266
-                - (t210 * t163 + (t135 - t208 * t158));
-            let t268 = t95 + t106;
-            let t269 = k(0.2) * t268;
-            let t270 = t269 * t267 - (t264 * t262 - t258 * t256)
-                - (t230 * t251 + (t229 * t245 + t223 * t222));
-            let t271 = k(0.2) * t104;
-            let t272 = k(0.2) * t100;
-            let t273 = k(1.5) * self.gravity - t267;
-            let t274 = k(0.2) * t106;
-            let t275 = t274 * t273 - (t272 * t262 - t271 * t256);
-            let t276 = t172 + t104;
-            let t277 = k(0.2) * -t276;
-            let t278 = t197 - t100;
-            let t279 = k(0.2) * t278;
-            let t280 = t213 + t106;
-            let t281 = k(0.2) * t280;
-            let t282 = t281 * t267 - (t279 * t262 - t277 * t256)
-                + (t97 * t251 + (t98 * t245 + t127 * t222));
-            let t283 = k(0.6666666666666666)
-                * (t275 - (k(0.005) * t171 - t127 * t118 + t282))
-                - k(0.3333333333333333)
-                    * (t275 + (k(0.005) * t174 - t223 * t118 - t270));
-            let t284 = t213 - t95;
+            let t200 = t198 - t165 * t199;
+            let t201 = t90 + t89;
+            let t202 = k(2.0) * t201;
+            let t203 = t101 * t181 + (t88 * t178 - t202 * t175);
+            let t204 = t101 * t175 - (t88 * t185 + t202 * t184);
+            let t205 = t101 * t178 + (t88 * t187 + t202 * t185);
+            let t206 = t205 + t204;
+            let t207 = t40 * t144 - (t24 * t153 + t64 * t190);
+            let t208 = k(0.2) * t207;
+            let t209 = t208 + k(0.1) * (t206 - t203);
+            let t210 = k(0.2) * t41;
+            let t211 = k(0.2) * t32;
+            let t212 = t156 * t211 + t148 * t210;
+            let t213 = t161 * t212;
+            let t214 = t158 * t213;
+            let t215 = t166 * t214;
+            let t216 = t214 - t165 * t215;
+            let t217 = t103 - t102;
+            let t218 = k(2.0) * t217;
+            let t219 = t107 * t181 + (t96 * t178 + t218 * t175);
+            let t220 = t107 * t175 - (t96 * t185 - t218 * t184);
+            let t221 = t107 * t178 + (t96 * t187 - t218 * t185);
+            let t222 = t221 + t220;
+            let t223 = t42 * t144 - (t33 * t153 - t51 * t190);
+            let t224 = k(0.2) * t223;
+            let t225 = t224 + k(0.1) * (t222 - t219);
+            let t226 = t225 * t216 + (t209 * t200 - t193 * t174) + (t163 - t165 * t167);
+            let t227 = t218 * t51 + (t202 * t64 + t177 * t77);
+            let t228 = k(0.0002) + t159 * t164;
+            let t229 = t228 * t173 + (t168 + t159 * t171);
+            let t230 = t228 * t199 - (t194 - t159 * t197);
+            let t231 = t228 * t215 - (t210 - t159 * t213);
+            let t232 = k(1.0) / (t148 * t148 + t156 * t156);
+            let t233 = t218 * t33 - (t202 * t24 + t177 * t13);
+            let t234 = t218 * t42 - (t202 * t40 - t177 * t38);
+            let t235 = shaft_wy * t234 + shaft_wz * t233;
+            let t236 = k(2.0)
+                * (carrier_wx * (shaft_wy * t109 + shaft_wz * t108) + carrier_wz * t235);
+            let t237 = t144 * t97 - (t153 * t98 - t190 * t127) + t236
+                + (t178 * t128 + (t187 * t127 - t185 * t227));
+            let t238 = k(2.0)
+                * (carrier_wx * (shaft_wy * t97 + shaft_wz * t98) - carrier_wy * t235);
+            let t239 = t144 * t109 - (t153 * t108 - t190 * t128) - t238
+                + (t181 * t128 + (t178 * t127 + t175 * t227));
+            let t240 = k(0.8) * t239 - k(0.6) * t237;
+            let t241 = t240 * (t156 * t232);
+            let t242 = t159 * t161;
+            let t243 = t166 * t228;
+            let t244 = t228 * t243 - (k(0.026) - t159 * t242);
+            let t245 = t240 * (t148 * t232);
+            let t246 = k(0.0001) - t160 * t164;
+            let t247 = t246 * t243 + (k(0.0003) - t160 * t242);
+            let t248 = t247 * t245 + t244 * t241
+                - (t225 * t231 + (t209 * t230 - t193 * t229));
+            let t249 = t248 - (t228 * t167 + (t147 - t159 * t162));
+            let t250 = t246 * t173 + (t169 - t160 * t171);
+            let t251 = t246 * t199 + (t195 - t160 * t197);
+            let t252 = t246 * t215 + (t211 - t160 * t213);
+            let t253 = t246 * (t166 * t246) - (k(0.026) - t160 * (t160 * t161));
+            let t254 = t253 * t245 + t247 * t241
+                - (t225 * t252 + (t209 * t251 - t193 * t250));
+            let t255 = t254 - (t246 * t167 - (t155 - t160 * t162));
+            let t256 = t172 * t173 + t170 * t171;
+            let t257 = t198 * t173 + t196 * t171;
+            let t258 = t214 * t173 + t212 * t171;
+            let t259 = t225 * t258 + (t209 * t257 - t193 * t256) + k(0.5) * t193;
+            let t260 = t250 * t245 + t229 * t241 - t259
+                - (t172 * t167 - (t132 + t170 * t162));
+            let t261 = t91 - t104;
+            let t262 = k(0.2) * t261;
+            let t263 = t198 * t199 + t196 * t197;
+            let t264 = t214 * t199 + t212 * t197;
+            let t265 = t225 * t264 + (t209 * t263 - t193 * t257) - k(0.5) * t209;
+            let t266 = t251 * t245 + t230 * t241 - t265
+                - (t198 * t167 + (t136 - t196 * t162));
+            let t267 = t87 + t100;
+            let t268 = k(0.2) * -t267;
+            let t269 = t214 * t215 + t212 * t213;
+            let t270 = t225 * t269 + (t209 * t264 - t193 * t258) - k(0.5) * t225;
+            let t271 = t252 * t245 + t231 * t241 - t270
+                - (t214 * t167 + (t139 - t212 * t162));
+            let t272 = t95 + t106;
+            let t273 = k(0.2) * t272;
+            let t274 = t273 * t271 - (t268 * t266 - t262 * t260)
+                - (t234 * t255 + (t233 * t249 + t227 * t226));
+            let t275 = k(0.2) * t104;
+            let t276 = k(0.2) * t100;
+            let t277 = k(1.5) * self.gravity - t271;
+            let t278 = k(0.2) * t106;
+            let t279 = t278 * t277 - (t276 * t266 - t275 * t260);
+            let t280 = t176 + t104;
+            let t281 = k(0.2) * -t280;
+            let t282 = t201 - t100;
+            let t283 = k(0.2) * t282;
+            let t284 = t217 + t106;
             let t285 = k(0.2) * t284;
-            let t286 = t172 + t91;
-            let t287 = k(0.2) * -t286;
-            let t288 = t197 + t87;
+            let t286 = t285 * t271 - (t283 * t266 - t281 * t260)
+                + (t97 * t255 + (t98 * t249 + t127 * t226));
+            let t287 = k(0.6666666666666666)
+                * (t279 - (k(0.005) * t175 - t127 * t118 + t286))
+                - k(0.3333333333333333)
+                    * (t279 + (k(0.005) * t178 - t227 * t118 - t274));
+            let t288 = t217 - t95;
             let t289 = k(0.2) * t288;
-            let t290 = t289 * t262 - t287 * t256;
-            let t291 = t290 - t285 * t267 - (t109 * t251 + (t108 * t245 + t128 * t222));
-            let t292 = t285 * t273 + t290 - (k(0.01) * t181 - t128 * t118 - t291);
-            let t293 = t274 * t254 + (t272 * t253 - t271 * t252);
-            let t294 = k(0.4) * t104;
-            let t295 = t294 + t293;
-            let t296 = t230 * t246 + (t229 * t225 - t223 * t170);
-            let t297 = t269 * t254 - (t264 * t253 - t258 * t252);
-            let t298 = t297 - k(0.1) * t257 - t296;
-            let t299 = t97 * t246 + (t98 * t225 - t127 * t170);
-            let t300 = t281 * t254 - (t279 * t253 - t277 * t252);
-            let t301 = t300 - k(0.1) * -t276 + t299;
-            let t302 = t285 * t254 - (t289 * t253 - t287 * t252);
-            let t303 = t109 * t246 + (t108 * t225 - t128 * t170);
-            let t304 = t302 - k(0.1) * -t286 + t303;
-            let t305 = k(0.6666666666666666) * (t304 + (t302 - k(0.4) * -t286))
-                - (k(0.6666666666666666) * (t301 + t295)
-                    - k(0.3333333333333333) * (t298 + t295));
-            let t306 = k(0.1) * t185;
-            let t307 = t274 * t260 + (t272 * t259 - t271 * t253);
-            let t308 = k(0.4) * t100;
-            let t309 = t308 - t307;
-            let t310 = t230 * t247 + (t229 * t226 - t223 * t196);
-            let t311 = t269 * t260 - (t264 * t259 - t258 * t253);
-            let t312 = t311 + k(0.1) * -t263 - t310;
-            let t313 = t97 * t247 + (t98 * t226 - t127 * t196);
-            let t314 = t281 * t260 - (t279 * t259 - t277 * t253);
-            let t315 = t314 + k(0.1) * t278 + t313;
-            let t316 = t285 * t260 - (t289 * t259 - t287 * t253);
-            let t317 = t109 * t247 + (t108 * t226 - t128 * t196);
-            let t318 = t316 + k(0.1) * t288 + t317;
-            let t319 = k(0.6666666666666666) * (t318 + (t316 + k(0.4) * t288))
-                - (k(0.6666666666666666) * (t315 - t309)
-                    - k(0.3333333333333333) * (t312 - t309));
-            let t320 = k(0.1) * t202;
-            let t321 = t274 * t265 + (t272 * t260 - t271 * t254);
-            let t322 = k(0.4) * t106;
-            let t323 = t322 - t321;
-            let t324 = t230 * t248 + (t229 * t227 - t223 * t212);
-            let t325 = t269 * t265 - (t264 * t260 - t258 * t254);
-            let t326 = t325 - k(0.1) * t268 - t324;
-            let t327 = t97 * t248 + (t98 * t227 - t127 * t212);
-            let t328 = t281 * t265 - (t279 * t260 - t277 * t254);
-            let t329 = t328 - k(0.1) * t280 + t327;
-            let t330 = t285 * t265 - (t289 * t260 - t287 * t254);
-            let t331 = t109 * t248 + (t108 * t227 - t128 * t212);
-            let t332 = t330 - k(0.1) * t284 + t331;
-            let t333 = k(0.6666666666666666) * (t332 + (t330 - k(0.4) * t284))
-                - (k(0.6666666666666666) * (t329 - t323)
-                    - k(0.3333333333333333) * (t326 - t323));
-            let t334 = k(0.1) * t218;
-            let t335 = k(0.6666666666666666) * t95;
-            let t336 = k(1.3333333333333333) * t213;
-            let t337 = t336 - t335;
-            let t338 = k(0.6666666666666666) * t87;
-            let t339 = k(1.3333333333333333) * t197;
-            let t340 = t339 + t338;
-            let t341 = k(1.3333333333333333) * t172;
-            let t342 = k(0.6666666666666666) * t91;
-            let t343 = t342 + t341;
-            let t344 = k(0.6666666666666666) * (t343 + t340)
-                - k(0.3333333333333333) * t337;
-            let t345 = k(0.6666666666666666) * t106;
-            let t346 = t336 + t345;
-            let t347 = k(0.6666666666666666) * t100;
-            let t348 = t339 - t347;
-            let t349 = k(0.6666666666666666) * t104;
-            let t350 = t341 + t349;
-            let t351 = k(0.6666666666666666) * (t350 + t348)
-                - k(0.3333333333333333) * t346;
-            let t352 = k(0.6666666666666666) * (t351 + t344);
-            let t353 = k(0.8888888888888888) * t257 + k(0.4444444444444444) * -t263
-                - k(0.8888888888888888) * t268;
-            let t354 = k(0.6666666666666666)
-                * (k(0.8888888888888888) * -(t257 + t263)
-                    - k(0.4444444444444444) * t268);
-            let t355 = t354 - k(0.3333333333333333) * t344;
-            let t356 = k(0.6666666666666666) * t350 - k(0.3333333333333333) * t348
-                + k(0.6666666666666666) * t346;
-            let t357 = k(0.3333333333333333) * t351 + t354;
-            let t358 = k(0.6666666666666666) * t343 - k(0.3333333333333333) * t340
-                + k(0.6666666666666666) * t337;
-            let t359 = k(1.0) / (t358 * t357 + (t356 * t355 + t353 * t352));
-            let t360 = k(0.6666666666666666) * t178;
-            let t361 = k(0.6666666666666666) * t184 + k(0.3333333333333333) * t182
-                - t360;
-            let t362 = k(0.6666666666666666) * t199;
-            let t363 = k(0.6666666666666666) * t201 + k(0.3333333333333333) * t200
-                - t362;
-            let t364 = k(0.6666666666666666) * t215;
-            let t365 = k(0.6666666666666666) * t217 + k(0.3333333333333333) * t216
+            let t290 = t176 + t91;
+            let t291 = k(0.2) * -t290;
+            let t292 = t201 + t87;
+            let t293 = k(0.2) * t292;
+            let t294 = t293 * t266 - t291 * t260;
+            let t295 = t294 - t289 * t271 - (t109 * t255 + (t108 * t249 + t128 * t226));
+            let t296 = t289 * t277 + t294 - (k(0.01) * t185 - t128 * t118 - t295);
+            let t297 = t278 * t258 + (t276 * t257 - t275 * t256);
+            let t298 = k(0.4) * t104;
+            let t299 = t298 + t297;
+            let t300 = t234 * t250 + (t233 * t229 - t227 * t174);
+            let t301 = t273 * t258 - (t268 * t257 - t262 * t256);
+            let t302 = t301 - k(0.1) * t261 - t300;
+            let t303 = t97 * t250 + (t98 * t229 - t127 * t174);
+            let t304 = t285 * t258 - (t283 * t257 - t281 * t256);
+            let t305 = t304 - k(0.1) * -t280 + t303;
+            let t306 = t289 * t258 - (t293 * t257 - t291 * t256);
+            let t307 = t109 * t250 + (t108 * t229 - t128 * t174);
+            let t308 = t306 - k(0.1) * -t290 + t307;
+            let t309 = k(0.6666666666666666) * (t308 + (t306 - k(0.4) * -t290))
+                - (k(0.6666666666666666) * (t305 + t299)
+                    - k(0.3333333333333333) * (t302 + t299));
+            let t310 = k(0.1) * t189;
+            let t311 = t278 * t264 + (t276 * t263 - t275 * t257);
+            let t312 = k(0.4) * t100;
+            let t313 = t312 - t311;
+            let t314 = t234 * t251 + (t233 * t230 - t227 * t200);
+            let t315 = t273 * t264 - (t268 * t263 - t262 * t257);
+            let t316 = t315 + k(0.1) * -t267 - t314;
+            let t317 = t97 * t251 + (t98 * t230 - t127 * t200);
+            let t318 = t285 * t264 - (t283 * t263 - t281 * t257);
+            let t319 = t318 + k(0.1) * t282 + t317;
+            let t320 = t289 * t264 - (t293 * t263 - t291 * t257);
+            let t321 = t109 * t251 + (t108 * t230 - t128 * t200);
+            let t322 = t320 + k(0.1) * t292 + t321;
+            let t323 = k(0.6666666666666666) * (t322 + (t320 + k(0.4) * t292))
+                - (k(0.6666666666666666) * (t319 - t313)
+                    - k(0.3333333333333333) * (t316 - t313));
+            let t324 = k(0.1) * t206;
+            let t325 = t278 * t269 + (t276 * t264 - t275 * t258);
+            let t326 = k(0.4) * t106;
+            let t327 = t326 - t325;
+            let t328 = t234 * t252 + (t233 * t231 - t227 * t216);
+            let t329 = t273 * t269 - (t268 * t264 - t262 * t258);
+            let t330 = t329 - k(0.1) * t272 - t328;
+            let t331 = t97 * t252 + (t98 * t231 - t127 * t216);
+            let t332 = t285 * t269 - (t283 * t264 - t281 * t258);
+            let t333 = t332 - k(0.1) * t284 + t331;
+            let t334 = t289 * t269 - (t293 * t264 - t291 * t258);
+            let t335 = t109 * t252 + (t108 * t231 - t128 * t216);
+            let t336 = t334 - k(0.1) * t288 + t335;
+            let t337 = k(0.6666666666666666) * (t336 + (t334 - k(0.4) * t288))
+                - (k(0.6666666666666666) * (t333 - t327)
+                    - k(0.3333333333333333) * (t330 - t327));
+            let t338 = k(0.1) * t222;
+            let t339 = k(0.6666666666666666) * t95;
+            let t340 = k(1.3333333333333333) * t217;
+            let t341 = t340 - t339;
+            let t342 = k(0.6666666666666666) * t87;
+            let t343 = k(1.3333333333333333) * t201;
+            let t344 = t343 + t342;
+            let t345 = k(1.3333333333333333) * t176;
+            let t346 = k(0.6666666666666666) * t91;
+            let t347 = t346 + t345;
+            let t348 = k(0.6666666666666666) * (t347 + t344)
+                - k(0.3333333333333333) * t341;
+            let t349 = k(0.6666666666666666) * t106;
+            let t350 = t340 + t349;
+            let t351 = k(0.6666666666666666) * t100;
+            let t352 = t343 - t351;
+            let t353 = k(0.6666666666666666) * t104;
+            let t354 = t345 + t353;
+            let t355 = k(0.6666666666666666) * (t354 + t352)
+                - k(0.3333333333333333) * t350;
+            let t356 = k(0.6666666666666666) * (t355 + t348);
+            let t357 = k(0.8888888888888888) * t261 + k(0.4444444444444444) * -t267
+                - k(0.8888888888888888) * t272;
+            let t358 = k(0.6666666666666666)
+                * (k(0.8888888888888888) * -(t261 + t267)
+                    - k(0.4444444444444444) * t272);
+            let t359 = t358 - k(0.3333333333333333) * t348;
+            let t360 = k(0.6666666666666666) * t354 - k(0.3333333333333333) * t352
+                + k(0.6666666666666666) * t350;
+            let t361 = k(0.3333333333333333) * t355 + t358;
+            let t362 = k(0.6666666666666666) * t347 - k(0.3333333333333333) * t344
+                + k(0.6666666666666666) * t341;
+            let t363 = k(1.0) / (t362 * t361 + (t360 * t359 + t357 * t356));
+            let t364 = k(0.6666666666666666) * t182;
+            let t365 = k(0.6666666666666666) * t188 + k(0.3333333333333333) * t186
                 - t364;
-            let t366 = k(0.6666666666666666) * t365
-                + (k(0.3333333333333333) * t363 + k(0.6666666666666666) * t361);
-            let t367 = k(0.3333333333333333) * t365
-                + k(0.6666666666666666) * (t363 - t361);
-            let t368 = t367 * (t359 * (k(0.6666666666666666) * (t356 + t358)))
-                + t366 * (t352 * t359);
-            let t369 = t230 * t243 + t229 * t240;
-            let t370 = t230 * t249 + t229 * t243;
-            let t371 = k(2.0) * (t269 * t324 - (t264 * t310 - t258 * t296))
-                - (t269 * t325 - (t264 * t311 - t258 * t297));
-            let t372 = k(0.02)
-                + (k(0.02) + (t371 + (k(0.01) - (t230 * t370 + t229 * t369))));
-            let t373 = t274 * t326 + (t272 * t312 - t271 * t298);
-            let t374 = t274 * t321 + (t272 * t307 - t271 * t293);
-            let t375 = t281 * t324 - (t279 * t310 - t277 * t296)
-                - (t269 * t327 - (t264 * t313 - t258 * t299));
-            let t376 = t375 - (t269 * t328 - (t264 * t314 - t258 * t300))
-                + (k(0.005) + (t97 * t370 + t98 * t369));
-            let t377 = t274 * t329 + (t272 * t315 - t271 * t301);
-            let t378 = t374 + (t377 + t373) - (k(0.02) + t376);
-            let t379 = t285 * t324 - (t289 * t310 - t287 * t296)
-                - (t269 * t331 - (t264 * t317 - t258 * t303));
-            let t380 = t379 - (t269 * t330 - (t264 * t316 - t258 * t302))
-                - (k(0.005) - (t109 * t370 + t108 * t369));
-            let t381 = t274 * t330 + (t272 * t316 - t271 * t302);
-            let t382 = t274 * t332 + (t272 * t318 - t271 * t304);
-            let t383 = t285 * t326 - (t289 * t312 - t287 * t298) + t382 + t381;
-            let t384 = t383 - t380;
-            let t385 = k(0.6666666666666666) * t384
-                - (k(0.6666666666666666) * t378
-                    - k(0.3333333333333333) * (t374 + k(2.0) * t373 - t372));
-            let t386 = k(0.6666666666666666) * t353;
-            let t387 = t367 * (t359 * (t386 + k(0.3333333333333333) * t358))
-                - t366 * (t355 * t359);
-            let t388 = t97 * t243 + t98 * t240;
-            let t389 = t97 * t249 + t98 * t243;
-            let t390 = k(2.0) * (t281 * t327 - (t279 * t313 - t277 * t299))
-                + (t281 * t328 - (t279 * t314 - t277 * t300));
-            let t391 = k(0.02)
-                + (k(0.03) - (t390 - (k(0.01) - (t97 * t389 + t98 * t388))));
-            let t392 = t285 * t327 - (t289 * t313 - t287 * t299)
-                + (t281 * t331 - (t279 * t317 - t277 * t303));
-            let t393 = t392 + (t281 * t330 - (t279 * t316 - t277 * t302))
-                - (k(0.005) - (t109 * t389 + t108 * t388));
-            let t394 = t381 + (t382 + (t285 * t329 - (t289 * t315 - t287 * t301)));
-            let t395 = k(0.6666666666666666) * (t394 + t393);
-            let t396 = t395
-                - (k(0.6666666666666666) * (k(2.0) * t377 + t374 - t391)
-                    - k(0.3333333333333333) * t378);
-            let t397 = t367 * (t359 * (k(0.3333333333333333) * t356 - t386))
-                + t366 * (t357 * t359);
-            let t398 = t109 * (t109 * t249 + t108 * t243)
-                + t108 * (t109 * t243 + t108 * t240);
-            let t399 = t285 * t330 - (t289 * t316 - t287 * t302);
+            let t366 = k(0.6666666666666666) * t203;
+            let t367 = k(0.6666666666666666) * t205 + k(0.3333333333333333) * t204
+                - t366;
+            let t368 = k(0.6666666666666666) * t219;
+            let t369 = k(0.6666666666666666) * t221 + k(0.3333333333333333) * t220
+                - t368;
+            let t370 = k(0.6666666666666666) * t369
+                + (k(0.3333333333333333) * t367 + k(0.6666666666666666) * t365);
+            let t371 = k(0.3333333333333333) * t369
+                + k(0.6666666666666666) * (t367 - t365);
+            let t372 = t371 * (t363 * (k(0.6666666666666666) * (t360 + t362)))
+                + t370 * (t356 * t363);
+            let t373 = t234 * t247 + t233 * t244;
+            let t374 = t234 * t253 + t233 * t247;
+            let t375 = k(2.0) * (t273 * t328 - (t268 * t314 - t262 * t300))
+                - (t273 * t329 - (t268 * t315 - t262 * t301));
+            let t376 = k(0.02)
+                + (k(0.02) + (t375 + (k(0.01) - (t234 * t374 + t233 * t373))));
+            let t377 = t278 * t330 + (t276 * t316 - t275 * t302);
+            let t378 = t278 * t325 + (t276 * t311 - t275 * t297);
+            let t379 = t285 * t328 - (t283 * t314 - t281 * t300)
+                - (t273 * t331 - (t268 * t317 - t262 * t303));
+            let t380 = t379 - (t273 * t332 - (t268 * t318 - t262 * t304))
+                + (k(0.005) + (t97 * t374 + t98 * t373));
+            let t381 = t278 * t333 + (t276 * t319 - t275 * t305);
+            let t382 = t378 + (t381 + t377) - (k(0.02) + t380);
+            let t383 = t289 * t328 - (t293 * t314 - t291 * t300)
+                - (t273 * t335 - (t268 * t321 - t262 * t307));
+            let t384 = t383 - (t273 * t334 - (t268 * t320 - t262 * t306))
+                - (k(0.005) - (t109 * t374 + t108 * t373));
+            let t385 = t278 * t334 + (t276 * t320 - t275 * t306);
+            let t386 = t278 * t336 + (t276 * t322 - t275 * t308);
+            let t387 = t289 * t330 - (t293 * t316 - t291 * t302) + t386 + t385;
+            let t388 = t387 - t384;
+            let t389 = k(0.6666666666666666) * t388
+                - (k(0.6666666666666666) * t382
+                    - k(0.3333333333333333) * (t378 + k(2.0) * t377 - t376));
+            let t390 = k(0.6666666666666666) * t357;
+            let t391 = t371 * (t363 * (t390 + k(0.3333333333333333) * t362))
+                - t370 * (t359 * t363);
+            let t392 = t97 * t247 + t98 * t244;
+            let t393 = t97 * t253 + t98 * t247;
+            let t394 = k(2.0) * (t285 * t331 - (t283 * t317 - t281 * t303))
+                + (t285 * t332 - (t283 * t318 - t281 * t304));
+            let t395 = k(0.02)
+                + (k(0.03) - (t394 - (k(0.01) - (t97 * t393 + t98 * t392))));
+            let t396 = t289 * t331 - (t293 * t317 - t291 * t303)
+                + (t285 * t335 - (t283 * t321 - t281 * t307));
+            let t397 = t396 + (t285 * t334 - (t283 * t320 - t281 * t306))
+                - (k(0.005) - (t109 * t393 + t108 * t392));
+            let t398 = t385 + (t386 + (t289 * t333 - (t293 * t319 - t291 * t305)));
+            let t399 = k(0.6666666666666666) * (t398 + t397);
             (
-                t200,
                 t201,
+                t202,
                 t203,
                 t204,
                 t205,
+                t207,
                 t208,
-                t210,
-                t213,
+                t209,
+                t212,
                 t214,
-                t215,
-                t216,
                 t217,
+                t218,
                 t219,
                 t220,
                 t221,
                 t223,
                 t224,
-                t229,
-                t230,
-                t237,
+                t225,
+                t227,
+                t228,
+                t233,
+                t234,
                 t241,
-                t242,
-                t258,
-                t264,
-                t269,
-                t271,
-                t272,
-                t274,
-                t277,
-                t279,
+                t244,
+                t245,
+                t246,
+                t247,
+                t253,
+                t262,
+                t268,
+                t273,
+                t275,
+                t276,
+                t278,
                 t281,
                 t283,
                 t285,
                 t287,
                 t289,
-                t292,
-                t294,
-                t303,
-                t304,
-                t305,
+                t291,
+                t293,
+                t296,
+                t298,
                 t306,
+                t307,
                 t308,
-                t317,
-                t318,
-                t319,
+                t309,
+                t310,
+                t312,
                 t320,
+                t321,
                 t322,
-                t331,
-                t332,
-                t333,
+                t323,
+                t324,
+                t326,
                 t334,
                 t335,
                 t336,
+                t337,
                 t338,
                 t339,
-                t341,
+                t340,
                 t342,
+                t343,
                 t345,
-                t347,
+                t346,
                 t349,
+                t351,
+                t353,
                 t360,
-                t362,
+                t361,
+                t363,
                 t364,
+                t366,
                 t368,
-                t384,
-                t385,
-                t387,
+                t370,
+                t371,
+                t372,
+                t378,
+                t381,
+                t382,
+                t388,
+                t389,
+                t390,
+                t391,
                 t395,
-                t396,
-                t397,
-                t398,
                 t399,
             )
         };
         let (
-            t404,
-            t406,
             t408,
-            t409,
-            t411,
-            t414,
-            t417,
-            t426,
-            t427,
-            t428,
-            t429,
+            t410,
+            t412,
+            t413,
+            t415,
+            t418,
+            t421,
             t430,
             t431,
             t432,
@@ -11315,49 +11349,49 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t438,
             t439,
             t440,
+            t441,
             t442,
+            t443,
             t444,
-            t447,
-            t450,
-            t452,
-            t453,
+            t446,
+            t448,
+            t451,
             t454,
-            t455,
             t456,
             t457,
             t458,
+            t459,
             t460,
             t461,
             t462,
+            t464,
             t465,
             t466,
-            t468,
+            t469,
+            t470,
             t472,
-            t473,
-            t474,
-            t475,
             t476,
             t477,
             t478,
+            t479,
+            t480,
             t481,
             t482,
-            t483,
-            t484,
             t485,
             t486,
             t487,
             t488,
             t489,
             t490,
+            t491,
             t492,
+            t493,
             t494,
             t496,
             t498,
-            t499,
-            t501,
+            t500,
             t502,
             t503,
-            t504,
             t505,
             t506,
             t507,
@@ -11374,45 +11408,50 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t518,
             t519,
             t520,
+            t521,
+            t522,
+            t523,
             t524,
-            t525,
+            t528,
             t529,
-            t530,
-            t531,
+            t533,
             t534,
             t535,
-            t536,
             t538,
+            t539,
             t540,
             t542,
             t544,
-            t549,
-            t550,
-            t552,
+            t546,
+            t547,
+            t548,
             t553,
             t554,
+            t555,
+            t556,
+            t557,
             t558,
-            t560,
-            t563,
+            t562,
+            t564,
             t565,
             t567,
             t569,
             t570,
             t571,
-            t572,
             t573,
             t574,
             t575,
+            t576,
             t577,
             t578,
             t579,
-            t580,
             t581,
             t582,
             t583,
             t584,
             t585,
             t586,
+            t587,
             t588,
             t589,
             t590,
@@ -11424,242 +11463,241 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t598,
             t599,
         ) = {
-            let t400 = t399 + k(2.0) * (t285 * t331 - (t289 * t317 - t287 * t303));
-            let t401 = k(2.0) * (t285 * t332 - (t289 * t318 - t287 * t304)) + t399;
-            let t402 = k(0.6666666666666666)
-                * (t401 - (k(0.04) + (k(0.025) - (t400 - (k(0.01) - t398)))))
-                + (k(0.3333333333333333) * t384 - t395);
-            let t403 = t402 * t397 - (t396 * t387 + t385 * t368)
-                - (t334 * t333 + (t320 * t319 - t306 * t305));
-            let t404 = k(1.0)
-                / (k(0.6666666666666666) * t402
-                    - (k(0.6666666666666666) * t396 - k(0.3333333333333333) * t385));
-            let t405 = t404 * (t403 - (k(0.6666666666666666) * t292 - t283));
-            let t406 = t368 + k(0.3333333333333333) * t405;
-            let t407 = k(0.6666666666666666) * t405;
-            let t408 = t387 - t407;
-            let t409 = t397 - t407;
-            let t410 = t287 * t409;
-            let t411 = t306 + (t410 + (t271 * t408 + t271 * t406));
-            let t412 = t189 - (t277 * t408 + t258 * t406 - t410 - t411);
-            let t413 = t289 * t409;
-            let t414 = t320 + (t413 + (t272 * t408 + t272 * t406));
-            let t415 = t205 - (t279 * t408 + t264 * t406 - t413 - t414);
-            let t416 = t285 * t409;
-            let t417 = t334 - (t416 - (t274 * t408 + t274 * t406));
-            let t418 = t221 + (t281 * t408 + t269 * t406 - t416 + t417);
-            let t419 = t128 * t409 - (t127 * t408 - t223 * t406);
-            let t420 = t237 + (t108 * t409 - (t98 * t408 - t229 * t406));
-            let t421 = t241 + (t109 * t409 - (t97 * t408 - t230 * t406));
-            let t422 = t242 * t421 + (t224 * t420 + t161 * t419)
-                - (t210 * t418 + (t194 * t415 - t168 * t412));
-            let t423 = t419 + t162 * (t159 - t422);
-            let t424 = t156 * t421 - (t155 * t420 - t154 * t423)
-                + (t208 * t418 + (t192 * t415 - t166 * t412));
-            let t425 = t157 * (t153 - t424);
-            let t426 = t420 - t144 * t425;
-            let t427 = t421 + t152 * t425;
-            let t428 = t412 - (t145 * t427 + t131 * t426);
-            let t429 = t12 + t37;
-            let t430 = k(1.4142135623730951) * t429;
-            let t431 = t415 + (t146 * t427 - t133 * t426);
-            let t432 = t23 - t39;
-            let t433 = k(1.4142135623730951) * -t432;
-            let t434 = t418 + (t147 * t427 - t136 * t426);
-            let t435 = t32 - t41;
-            let t436 = k(1.4142135623730951) * t435;
-            let t437 = t423 + t129 * t425;
-            let t438 = k(0.1) * t435;
-            let t439 = k(0.1) * -t432;
-            let t440 = k(0.1) * t429;
-            let t441 = t82 * (k(1.4142135623730951) * (t12 - t37)) + t430 * t440
-                + (t69 * (k(1.4142135623730951) * -(t23 + t39)) + t433 * t439);
-            let t442 = t441
-                + (t56 * (k(1.4142135623730951) * (t32 + t41)) + t436 * t438);
-            let t443 = k(0.1) * t45;
-            let t444 = t136 - t443;
-            let t445 = t56 * (k(1.4142135623730951) * t45);
-            let t446 = k(0.1) * t58;
-            let t447 = t133 + t446;
-            let t448 = t69 * (k(1.4142135623730951) * t58);
-            let t449 = k(0.1) * t71;
-            let t450 = t131 - t449;
-            let t451 = t82 * (k(1.4142135623730951) * t71);
-            let t452 = t451 - t430 * t450 - (t448 + t433 * t447) - (t445 - t436 * t444);
-            let t453 = t147 - t443;
-            let t454 = t146 + t446;
-            let t455 = t145 + t449;
-            let t456 = t451 - t430 * t455 - (t448 - t433 * t454) - (t445 + t436 * t453);
-            let t457 = t456 * t427 + (t452 * t426 + t442 * t437)
-                - (t436 * t434 - (t433 * t431 + t430 * t428));
-            let t458 = puck_wx * puck_wz;
-            let t459 = puck_e0 * puck_e0;
-            let t460 = k(0.5) - (t459 + puck_e1 * puck_e1);
-            let t461 = k(2.0) * t460;
-            let t462 = puck_wy * puck_wz;
-            let t463 = puck_e0 * puck_e3;
-            let t464 = puck_e1 * puck_e2;
-            let t465 = t464 - t463;
-            let t466 = k(2.0) * t465;
-            let t467 = puck_wx * puck_wx;
-            let t468 = puck_wy * puck_wy;
-            let t469 = t468 + t467;
-            let t470 = puck_e0 * puck_e2;
-            let t471 = puck_e1 * puck_e3;
-            let t472 = t471 + t470;
-            let t473 = k(2.0) * t472;
-            let t474 = t473 * t469 - (t466 * t462 - t461 * t458);
-            let t475 = t464 + t463;
-            let t476 = k(2.0) * t475;
-            let t477 = k(0.5) - (t459 + puck_e2 * puck_e2);
-            let t478 = k(2.0) * t477;
-            let t479 = puck_e0 * puck_e1;
-            let t480 = puck_e2 * puck_e3;
-            let t481 = t480 - t479;
+            let t400 = t399
+                - (k(0.6666666666666666) * (k(2.0) * t381 + t378 - t395)
+                    - k(0.3333333333333333) * t382);
+            let t401 = t371 * (t363 * (k(0.3333333333333333) * t360 - t390))
+                + t370 * (t361 * t363);
+            let t402 = t109 * (t109 * t253 + t108 * t247)
+                + t108 * (t109 * t247 + t108 * t244);
+            let t403 = t289 * t334 - (t293 * t320 - t291 * t306);
+            let t404 = t403 + k(2.0) * (t289 * t335 - (t293 * t321 - t291 * t307));
+            let t405 = k(2.0) * (t289 * t336 - (t293 * t322 - t291 * t308)) + t403;
+            let t406 = k(0.6666666666666666)
+                * (t405 - (k(0.04) + (k(0.025) - (t404 - (k(0.01) - t402)))))
+                + (k(0.3333333333333333) * t388 - t399);
+            let t407 = t406 * t401 - (t400 * t391 + t389 * t372)
+                - (t338 * t337 + (t324 * t323 - t310 * t309));
+            let t408 = k(1.0)
+                / (k(0.6666666666666666) * t406
+                    - (k(0.6666666666666666) * t400 - k(0.3333333333333333) * t389));
+            let t409 = t408 * (t407 - (k(0.6666666666666666) * t296 - t287));
+            let t410 = t372 + k(0.3333333333333333) * t409;
+            let t411 = k(0.6666666666666666) * t409;
+            let t412 = t391 - t411;
+            let t413 = t401 - t411;
+            let t414 = t291 * t413;
+            let t415 = t310 + (t414 + (t275 * t412 + t275 * t410));
+            let t416 = t193 - (t281 * t412 + t262 * t410 - t414 - t415);
+            let t417 = t293 * t413;
+            let t418 = t324 + (t417 + (t276 * t412 + t276 * t410));
+            let t419 = t209 - (t283 * t412 + t268 * t410 - t417 - t418);
+            let t420 = t289 * t413;
+            let t421 = t338 - (t420 - (t278 * t412 + t278 * t410));
+            let t422 = t225 + (t285 * t412 + t273 * t410 - t420 + t421);
+            let t423 = t128 * t413 - (t127 * t412 - t227 * t410);
+            let t424 = t241 + (t108 * t413 - (t98 * t412 - t233 * t410));
+            let t425 = t245 + (t109 * t413 - (t97 * t412 - t234 * t410));
+            let t426 = t246 * t425 + (t228 * t424 + t165 * t423)
+                - (t214 * t422 + (t198 * t419 - t172 * t416));
+            let t427 = t423 + t166 * (t163 - t426);
+            let t428 = t160 * t425 - (t159 * t424 - t158 * t427)
+                + (t212 * t422 + (t196 * t419 - t170 * t416));
+            let t429 = t161 * (t157 - t428);
+            let t430 = t424 - t148 * t429;
+            let t431 = t425 + t156 * t429;
+            let t432 = t416 - (t149 * t431 + t133 * t430);
+            let t433 = t12 + t37;
+            let t434 = k(1.4142135623730951) * t433;
+            let t435 = t419 + (t150 * t431 - t137 * t430);
+            let t436 = t23 - t39;
+            let t437 = k(1.4142135623730951) * -t436;
+            let t438 = t422 + (t151 * t431 - t140 * t430);
+            let t439 = t32 - t41;
+            let t440 = k(1.4142135623730951) * t439;
+            let t441 = t427 + t129 * t429;
+            let t442 = k(0.1) * t439;
+            let t443 = k(0.1) * -t436;
+            let t444 = k(0.1) * t433;
+            let t445 = t82 * (k(1.4142135623730951) * (t12 - t37)) + t434 * t444
+                + (t69 * (k(1.4142135623730951) * -(t23 + t39)) + t437 * t443);
+            let t446 = t445
+                + (t56 * (k(1.4142135623730951) * (t32 + t41)) + t440 * t442);
+            let t447 = k(0.1) * t45;
+            let t448 = t140 - t447;
+            let t449 = t56 * (k(1.4142135623730951) * t45);
+            let t450 = k(0.1) * t58;
+            let t451 = t137 + t450;
+            let t452 = t69 * (k(1.4142135623730951) * t58);
+            let t453 = k(0.1) * t71;
+            let t454 = t133 - t453;
+            let t455 = t82 * (k(1.4142135623730951) * t71);
+            let t456 = t455 - t434 * t454 - (t452 + t437 * t451) - (t449 - t440 * t448);
+            let t457 = t151 - t447;
+            let t458 = t150 + t450;
+            let t459 = t149 + t453;
+            let t460 = t455 - t434 * t459 - (t452 - t437 * t458) - (t449 + t440 * t457);
+            let t461 = t460 * t431 + (t456 * t430 + t446 * t441)
+                - (t440 * t438 - (t437 * t435 + t434 * t432));
+            let t462 = puck_wx * puck_wz;
+            let t463 = puck_e0 * puck_e0;
+            let t464 = k(0.5) - (t463 + puck_e1 * puck_e1);
+            let t465 = k(2.0) * t464;
+            let t466 = puck_wy * puck_wz;
+            let t467 = puck_e0 * puck_e3;
+            let t468 = puck_e1 * puck_e2;
+            let t469 = t468 - t467;
+            let t470 = k(2.0) * t469;
+            let t471 = puck_wx * puck_wx;
+            let t472 = puck_wy * puck_wy;
+            let t473 = t472 + t471;
+            let t474 = puck_e0 * puck_e2;
+            let t475 = puck_e1 * puck_e3;
+            let t476 = t475 + t474;
+            let t477 = k(2.0) * t476;
+            let t478 = t477 * t473 - (t470 * t466 - t465 * t462);
+            let t479 = t468 + t467;
+            let t480 = k(2.0) * t479;
+            let t481 = k(0.5) - (t463 + puck_e2 * puck_e2);
             let t482 = k(2.0) * t481;
-            let t483 = t482 * t469 + (t478 * t462 - t476 * t458);
-            let t484 = t471 - t470;
-            let t485 = k(2.0) * t484;
-            let t486 = t480 + t479;
-            let t487 = k(2.0) * t486;
-            let t488 = k(0.5) - (t459 + puck_e3 * puck_e3);
+            let t483 = puck_e0 * puck_e1;
+            let t484 = puck_e2 * puck_e3;
+            let t485 = t484 - t483;
+            let t486 = k(2.0) * t485;
+            let t487 = t486 * t473 + (t482 * t466 - t480 * t462);
+            let t488 = t475 - t474;
             let t489 = k(2.0) * t488;
-            let t490 = t489 * t469 + (t487 * t462 + t485 * t458);
-            let t491 = k(0.09622504486493763) * t490
-                - k(0.019245008972987525) * (t483 + t474);
-            let t492 = k(0.19245008972987526) * t491;
-            let t493 = k(8.0) * t7;
-            let t494 = k(0.16) * t7;
-            let t495 = k(4.2105263157894735) * t7;
-            let t496 = k(0.016) * t7;
-            let t497 = k(0.4) * t1;
-            let t498 = k(0.2) * t4;
-            let t499 = t498 + t497;
-            let t500 = k(16.0) * t499;
-            let t501 = k(0.4) * t499;
-            let t502 = t501 * t500 + (t496 * t495 + t494 * t493);
-            let t503 = k(0.16) * t27;
-            let t504 = k(0.016) * t27;
-            let t505 = k(0.2) * t26;
-            let t506 = t505 - k(0.4) * t25;
-            let t507 = k(0.4) * t506;
-            let t508 = t507 * t500 - (t504 * t495 + t503 * t493);
-            let t509 = k(0.4) + self.puck_mass;
-            let t510 = k(0.9805806756909201) * t509
-                + (k(0.19611613513818404) * t508 - k(0.9805806756909201) * t502);
-            let t511 = t507 * (k(16.0) * t506)
-                + (t504 * (k(4.2105263157894735) * t27) + t503 * (k(8.0) * t27));
-            let t512 = k(0.19611613513818404) * t509
-                - (k(0.19611613513818404) * t511 - k(0.9805806756909201) * t508);
-            let t513 = k(1.0)
-                / (k(0.19611613513818404) * t512 + k(0.9805806756909201) * t510);
-            let t514 = t510 * t513;
-            let t515 = k(0.16) * t19;
-            let t516 = k(0.016) * t19;
-            let t517 = k(0.2) * t16;
-            let t518 = t517 + k(0.4) * t14;
-            let t519 = k(0.4) * t518;
-            let t520 = t500 * t519 - (t495 * t516 + t493 * t515);
-            let t521 = k(8.0) * t19;
-            let t522 = k(4.2105263157894735) * t19;
-            let t523 = k(16.0) * t518;
-            let t524 = t507 * t523 + (t504 * t522 + t503 * t521);
-            let t525 = k(0.19611613513818404) * t524 - k(0.9805806756909201) * t520;
-            let t526 = t520 + t525 * t514;
-            let t527 = t508 - t512 * t514;
-            let t528 = k(0.1887128390240993) * t527
-                + (k(0.9813067629253163) * t526
-                    + k(0.03774256780481986) * (t502 + t510 * t514));
-            let t529 = k(0.03774256780481986) * t509 - t528;
-            let t530 = t523 * t519 + (t522 * t516 + t521 * t515);
-            let t531 = t513 * t525;
-            let t532 = t524 - t512 * t531;
-            let t533 = k(0.1887128390240993) * t532
-                + (k(0.9813067629253163) * (t525 * t531 + t530)
-                    + k(0.03774256780481986) * t526);
-            let t534 = k(0.9813067629253163) * t509 - t533;
-            let t535 = k(0.9622504486493763) * t491;
-            let t536 = t512 * t513;
-            let t537 = k(0.1887128390240993) * (t511 + t512 * t536)
-                + (k(0.9813067629253163) * t532 + k(0.03774256780481986) * t527);
-            let t538 = k(0.1887128390240993) * t509 - t537;
-            let t539 = k(0.2) - t130;
-            let t540 = k(0.4) * t7;
-            let t541 = k(0.1) + t132;
-            let t542 = k(0.4) * t19;
-            let t543 = k(0.4) * self.gravity - t134;
-            let t544 = k(0.4) * t27;
-            let t545 = t48 * t46 + (t61 * t59 - t74 * t72);
-            let t546 = t49 * t46 + (t62 * t59 + t75 * t72);
-            let t547 = k(0.05) * (t546 - t545);
-            let t548 = k(0.05) * (k(0.4) * t4 + t517) - k(0.02) * t25
-                - (t121 * t547 + t85 * t547);
-            let t549 = sleeve_wy * sleeve_wz;
-            let t550 = k(0.002) * t549 + t548
-                + (t544 * t543 - (t542 * t541 - t540 * t539));
-            let t551 = k(50.0) * t550;
-            let t552 = k(0.2) * t7;
-            let t553 = k(0.2) * t19;
-            let t554 = k(0.2) * t27;
-            let t555 = k(0.05) * (t47 * t46 - (t60 * t59 - t73 * t72));
-            let t556 = k(0.1) * t546 - t555;
-            let t557 = k(0.05) * (t15 + t497) - k(0.02) * t26
-                + (t121 * t556 + t85 * t556);
-            let t558 = sleeve_wx * sleeve_wz;
-            let t559 = k(0.001) * t558 - t557
-                + (t554 * t543 - (t553 * t541 - t552 * t539));
-            let t560 = k(0.4) * t550 - t559;
-            let t561 = k(263.1578947368421) * t560;
-            let t562 = t555 - k(0.1) * t545;
-            let t563 = sleeve_wx * sleeve_wy;
-            let t564 = k(0.001) * t563 - (k(0.02) * t27 - (t121 * t562 + t85 * t562));
-            let t565 = t564 + (t506 * t543 - (t518 * t541 + t499 * t539));
-            let t566 = k(40.0) * t565;
-            let t567 = sleeve_wx * sleeve_wx;
-            let t568 = sleeve_wz * sleeve_wz;
-            let t569 = t568 + t567;
-            let t570 = t75 * t549 - (t74 * t569 + t73 * t563);
-            let t571 = sleeve_wy * sleeve_wy;
-            let t572 = t568 + t571;
-            let t573 = k(0.1) * (t75 * t558 + (t74 * t563 + t73 * t572));
-            let t574 = puck_wx * puck_wy;
-            let t575 = puck_wz * puck_wz;
-            let t576 = t575 + t467;
-            let t577 = t473 * t462 - (t466 * t576 + t461 * t574);
-            let t578 = k(0.2) * t577 + k(0.1) * t474 + (t573 + k(0.2) * t570);
-            let t579 = t62 * t549 + (t61 * t569 + t60 * t563);
-            let t580 = k(0.1) * (t62 * t558 - (t61 * t563 + t60 * t572));
-            let t581 = t482 * t462 + (t478 * t576 + t476 * t574);
-            let t582 = k(0.2) * t581 + k(0.1) * t483 + (t580 + k(0.2) * t579);
-            let t583 = t49 * t549 + (t48 * t569 - t47 * t563);
-            let t584 = k(0.1) * (t49 * t558 - (t48 * t563 - t47 * t572));
-            let t585 = t489 * t462 + (t487 * t576 - t485 * t574);
-            let t586 = k(0.2) * t585 + k(0.1) * t490 + (t584 + k(0.2) * t583);
-            let t587 = t586 * t508 + (t582 * t520 - t578 * t502) + k(0.4) * t578;
-            let t588 = t587 + (t501 * t566 + (t496 * t561 + (t539 - t494 * t551)));
-            let t589 = k(0.2) * t465;
-            let t590 = k(0.4) * t472 + t589;
-            let t591 = t586 * t524 + (t582 * t530 - t578 * t520) - k(0.4) * t582;
-            let t592 = t591 + (t519 * t566 - (t516 * t561 - (t541 + t515 * t551)));
-            let t593 = k(0.2) * t477;
-            let t594 = k(0.4) * t481 - t593;
-            let t595 = t586 * t511 + (t582 * t524 - t578 * t508) - k(0.4) * t586;
-            let t596 = t595 + (t507 * t566 - (t504 * t561 + (t543 - t503 * t551)));
-            let t597 = k(0.2) * t486;
-            let t598 = k(0.4) * t488 - t597;
-            let t599 = k(0.1) * (puck_wy - puck_wz);
+            let t490 = t484 + t483;
+            let t491 = k(2.0) * t490;
+            let t492 = k(0.5) - (t463 + puck_e3 * puck_e3);
+            let t493 = k(2.0) * t492;
+            let t494 = t493 * t473 + (t491 * t466 + t489 * t462);
+            let t495 = k(0.09622504486493763) * t494
+                - k(0.019245008972987525) * (t487 + t478);
+            let t496 = k(0.19245008972987526) * t495;
+            let t497 = k(8.0) * t7;
+            let t498 = k(0.16) * t7;
+            let t499 = k(4.2105263157894735) * t7;
+            let t500 = k(0.016) * t7;
+            let t501 = k(0.4) * t1;
+            let t502 = k(0.2) * t4;
+            let t503 = t502 + t501;
+            let t504 = k(16.0) * t503;
+            let t505 = k(0.4) * t503;
+            let t506 = t505 * t504 + (t500 * t499 + t498 * t497);
+            let t507 = k(0.16) * t27;
+            let t508 = k(0.016) * t27;
+            let t509 = k(0.2) * t26;
+            let t510 = t509 - k(0.4) * t25;
+            let t511 = k(0.4) * t510;
+            let t512 = t511 * t504 - (t508 * t499 + t507 * t497);
+            let t513 = k(0.4) + self.puck_mass;
+            let t514 = k(0.9805806756909201) * t513
+                + (k(0.19611613513818404) * t512 - k(0.9805806756909201) * t506);
+            let t515 = t511 * (k(16.0) * t510)
+                + (t508 * (k(4.2105263157894735) * t27) + t507 * (k(8.0) * t27));
+            let t516 = k(0.19611613513818404) * t513
+                - (k(0.19611613513818404) * t515 - k(0.9805806756909201) * t512);
+            let t517 = k(1.0)
+                / (k(0.19611613513818404) * t516 + k(0.9805806756909201) * t514);
+            let t518 = t514 * t517;
+            let t519 = k(0.16) * t19;
+            let t520 = k(0.016) * t19;
+            let t521 = k(0.2) * t16;
+            let t522 = t521 + k(0.4) * t14;
+            let t523 = k(0.4) * t522;
+            let t524 = t504 * t523 - (t499 * t520 + t497 * t519);
+            let t525 = k(8.0) * t19;
+            let t526 = k(4.2105263157894735) * t19;
+            let t527 = k(16.0) * t522;
+            let t528 = t511 * t527 + (t508 * t526 + t507 * t525);
+            let t529 = k(0.19611613513818404) * t528 - k(0.9805806756909201) * t524;
+            let t530 = t524 + t529 * t518;
+            let t531 = t512 - t516 * t518;
+            let t532 = k(0.1887128390240993) * t531
+                + (k(0.9813067629253163) * t530
+                    + k(0.03774256780481986) * (t506 + t514 * t518));
+            let t533 = k(0.03774256780481986) * t513 - t532;
+            let t534 = t527 * t523 + (t526 * t520 + t525 * t519);
+            let t535 = t517 * t529;
+            let t536 = t528 - t516 * t535;
+            let t537 = k(0.1887128390240993) * t536
+                + (k(0.9813067629253163) * (t529 * t535 + t534)
+                    + k(0.03774256780481986) * t530);
+            let t538 = k(0.9813067629253163) * t513 - t537;
+            let t539 = k(0.9622504486493763) * t495;
+            let t540 = t516 * t517;
+            let t541 = k(0.1887128390240993) * (t515 + t516 * t540)
+                + (k(0.9813067629253163) * t536 + k(0.03774256780481986) * t531);
+            let t542 = k(0.1887128390240993) * t513 - t541;
+            let t543 = t131 - (k(0.2) - t130);
+            let t544 = k(0.4) * t7;
+            let t545 = t135 + (k(0.1) + t134);
+            let t546 = k(0.4) * t19;
+            let t547 = k(0.4) * self.gravity - t138;
+            let t548 = k(0.4) * t27;
+            let t549 = t48 * t46 + (t61 * t59 - t74 * t72);
+            let t550 = t49 * t46 + (t62 * t59 + t75 * t72);
+            let t551 = k(0.05) * (t550 - t549);
+            let t552 = t85 * t551 - (k(0.05) * (k(0.4) * t4 + t521) - k(0.02) * t25);
+            let t553 = sleeve_wy * sleeve_wz;
+            let t554 = k(0.002) * t553 - (t121 * t551 + t552)
+                + (t548 * t547 - (t546 * t545 + t544 * t543));
+            let t555 = k(50.0) * t554;
+            let t556 = k(0.2) * t7;
+            let t557 = k(0.2) * t19;
+            let t558 = k(0.2) * t27;
+            let t559 = k(0.05) * (t47 * t46 - (t60 * t59 - t73 * t72));
+            let t560 = k(0.1) * t550 - t559;
+            let t561 = t121 * t560
+                + (t85 * t560 + (k(0.05) * (t15 + t501) - k(0.02) * t26));
+            let t562 = sleeve_wx * sleeve_wz;
+            let t563 = k(0.001) * t562 - t561
+                + (t558 * t547 - (t557 * t545 + t556 * t543));
+            let t564 = k(0.4) * t554 - t563;
+            let t565 = k(263.1578947368421) * t564;
+            let t566 = t559 - k(0.1) * t549;
+            let t567 = sleeve_wx * sleeve_wy;
+            let t568 = k(0.001) * t567 + (t121 * t566 + (t85 * t566 - k(0.02) * t27));
+            let t569 = t568 + (t510 * t547 - (t522 * t545 - t503 * t543));
+            let t570 = k(40.0) * t569;
+            let t571 = sleeve_wx * sleeve_wx;
+            let t572 = sleeve_wz * sleeve_wz;
+            let t573 = t572 + t571;
+            let t574 = t75 * t553 - (t74 * t573 + t73 * t567);
+            let t575 = sleeve_wy * sleeve_wy;
+            let t576 = t572 + t575;
+            let t577 = k(0.1) * (t75 * t562 + (t74 * t567 + t73 * t576));
+            let t578 = puck_wx * puck_wy;
+            let t579 = puck_wz * puck_wz;
+            let t580 = t579 + t471;
+            let t581 = t477 * t466 - (t470 * t580 + t465 * t578);
+            let t582 = k(0.2) * t581 + k(0.1) * t478 + (t577 + k(0.2) * t574);
+            let t583 = t62 * t553 + (t61 * t573 + t60 * t567);
+            let t584 = k(0.1) * (t62 * t562 - (t61 * t567 + t60 * t576));
+            let t585 = t486 * t466 + (t482 * t580 + t480 * t578);
+            let t586 = k(0.2) * t585 + k(0.1) * t487 + (t584 + k(0.2) * t583);
+            let t587 = t49 * t553 + (t48 * t573 - t47 * t567);
+            let t588 = k(0.1) * (t49 * t562 - (t48 * t567 - t47 * t576));
+            let t589 = t493 * t466 + (t491 * t580 - t489 * t578);
+            let t590 = k(0.2) * t589 + k(0.1) * t494 + (t588 + k(0.2) * t587);
+            let t591 = t590 * t512 + (t586 * t524 - t582 * t506) + k(0.4) * t582;
+            let t592 = t591 + (t505 * t570 + (t500 * t565 - (t543 + t498 * t555)));
+            let t593 = k(0.2) * t469;
+            let t594 = k(0.4) * t476 + t593;
+            let t595 = t590 * t528 + (t586 * t534 - t582 * t524) - k(0.4) * t586;
+            let t596 = t595 + (t523 * t570 - (t520 * t565 - (t545 + t519 * t555)));
+            let t597 = k(0.2) * t481;
+            let t598 = k(0.4) * t485 - t597;
+            let t599 = t590 * t515 + (t586 * t528 - t582 * t512) - k(0.4) * t590;
             (
-                t404,
-                t406,
                 t408,
-                t409,
-                t411,
-                t414,
-                t417,
-                t426,
-                t427,
-                t428,
-                t429,
+                t410,
+                t412,
+                t413,
+                t415,
+                t418,
+                t421,
                 t430,
                 t431,
                 t432,
@@ -11671,49 +11709,49 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 t438,
                 t439,
                 t440,
+                t441,
                 t442,
+                t443,
                 t444,
-                t447,
-                t450,
-                t452,
-                t453,
+                t446,
+                t448,
+                t451,
                 t454,
-                t455,
                 t456,
                 t457,
                 t458,
+                t459,
                 t460,
                 t461,
                 t462,
+                t464,
                 t465,
                 t466,
-                t468,
+                t469,
+                t470,
                 t472,
-                t473,
-                t474,
-                t475,
                 t476,
                 t477,
                 t478,
+                t479,
+                t480,
                 t481,
                 t482,
-                t483,
-                t484,
                 t485,
                 t486,
                 t487,
                 t488,
                 t489,
                 t490,
+                t491,
                 t492,
+                t493,
                 t494,
                 t496,
                 t498,
-                t499,
-                t501,
+                t500,
                 t502,
                 t503,
-                t504,
                 t505,
                 t506,
                 t507,
@@ -11730,45 +11768,50 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 t518,
                 t519,
                 t520,
+                t521,
+                t522,
+                t523,
                 t524,
-                t525,
+                t528,
                 t529,
-                t530,
-                t531,
+                t533,
                 t534,
                 t535,
-                t536,
                 t538,
+                t539,
                 t540,
                 t542,
                 t544,
-                t549,
-                t550,
-                t552,
+                t546,
+                t547,
+                t548,
                 t553,
                 t554,
+                t555,
+                t556,
+                t557,
                 t558,
-                t560,
-                t563,
+                t562,
+                t564,
                 t565,
                 t567,
                 t569,
                 t570,
                 t571,
-                t572,
                 t573,
                 t574,
                 t575,
+                t576,
                 t577,
                 t578,
                 t579,
-                t580,
                 t581,
                 t582,
                 t583,
                 t584,
                 t585,
                 t586,
+                t587,
                 t588,
                 t589,
                 t590,
@@ -11782,348 +11825,350 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             )
         };
         let (
-            t633,
+            t601,
+            t602,
             t637,
-            t645,
-            t646,
-            t647,
-            t648,
-            t657,
-            t664,
-            t665,
-            t666,
-            t667,
-            t673,
-            t679,
-            t707,
-            t709,
+            t641,
+            t649,
+            t650,
+            t651,
+            t652,
+            t661,
+            t668,
+            t669,
+            t670,
+            t671,
+            t677,
+            t683,
+            t711,
             t713,
-            t743,
-            t746,
+            t717,
             t747,
-            t748,
-            t757,
-            t760,
-            t763,
-            t765,
-            t766,
+            t750,
+            t751,
+            t752,
+            t761,
+            t764,
             t767,
             t769,
             t770,
             t771,
+            t773,
             t774,
-            t776,
-            t777,
+            t775,
             t778,
-            t779,
+            t780,
+            t781,
             t782,
             t783,
-            t784,
-            t785,
             t786,
             t787,
             t788,
             t789,
+            t790,
             t791,
+            t792,
             t793,
+            t794,
             t795,
             t796,
             t797,
             t798,
             t799,
         ) = {
-            let t600 = k(0.1) * puck_wx;
-            let t601 = k(1.2) - (puck_rx + k(0.2) * (t465 + t472));
-            let t602 = k(1.0) - (puck_ry + k(0.2) * (t481 - t477));
-            let t603 = k(1.0) - (puck_rz + k(0.2) * (t486 - t488));
-            let t604 = (t603 * t603 + (t602 * t602 + t601 * t601)).sqrt();
-            let t605 = k(1.0) / t604;
-            let t606 = t601 * t605;
-            let t607 = t606 * (puck_sx + (t473 * t600 - (t466 * t600 + t461 * t599)));
-            let t608 = t602 * t605;
-            let t609 = t608 * (puck_sy + (t482 * t600 + (t478 * t600 + t476 * t599)));
-            let t610 = t603 * t605;
-            let t611 = t610 * (puck_sz - (t489 * t600 + (t487 * t600 - t485 * t599)));
-            let t612 = k(30.0) * (k(0.6) - t604) + (t611 + (t609 + t607));
-            let t613 = t606 * t612;
-            let t614 = t608 * t612;
-            let t615 = t610 * t612;
-            let t616 = t489 * t615 - (t482 * t614 + t473 * t613)
-                + (t487 * t615 - (t478 * t614 - t466 * t613));
-            let t617 = (k(10.0)
+            let t600 = t599 + (t511 * t570 - (t508 * t565 + (t547 - t507 * t555)));
+            let t601 = k(0.2) * t490;
+            let t602 = k(0.4) * t492 - t601;
+            let t603 = k(0.1) * (puck_wy - puck_wz);
+            let t604 = k(0.1) * puck_wx;
+            let t605 = k(1.2) - (puck_rx + k(0.2) * (t469 + t476));
+            let t606 = k(1.0) - (puck_ry + k(0.2) * (t485 - t481));
+            let t607 = k(1.0) - (puck_rz + k(0.2) * (t490 - t492));
+            let t608 = (t607 * t607 + (t606 * t606 + t605 * t605)).sqrt();
+            let t609 = k(1.0) / t608;
+            let t610 = t605 * t609;
+            let t611 = t610 * (puck_sx + (t477 * t604 - (t470 * t604 + t465 * t603)));
+            let t612 = t606 * t609;
+            let t613 = t612 * (puck_sy + (t486 * t604 + (t482 * t604 + t480 * t603)));
+            let t614 = t607 * t609;
+            let t615 = t614 * (puck_sz - (t493 * t604 + (t491 * t604 - t489 * t603)));
+            let t616 = k(30.0) * (k(0.6) - t608) + (t615 + (t613 + t611));
+            let t617 = t610 * t616;
+            let t618 = t612 * t616;
+            let t619 = t614 * t616;
+            let t620 = t493 * t619 - (t486 * t618 + t477 * t617)
+                + (t491 * t619 - (t482 * t618 - t470 * t617));
+            let t621 = (k(10.0)
                 * (k(0.19245008972987526) * (puck_wx + puck_wy)
                     + k(0.9622504486493763) * puck_wz))
                 .tanh();
-            let t618 = k(0.009622504486493762) * t617;
-            let t619 = k(0.002) * t462 - (t618 - k(0.1) * t616)
-                + (t598 * t596 + (t594 * t592 - t590 * t588));
-            let t620 = t613 - t588;
-            let t621 = t614 + t592;
-            let t622 = self.gravity * self.puck_mass + t615 - t596;
-            let t623 = k(0.19611613513818404) * t622 - k(0.9805806756909201) * t620;
-            let t624 = t513 * t623;
-            let t625 = t598 * t508 + (t594 * t520 - t590 * t502);
-            let t626 = t625 + k(0.4) * t590;
-            let t627 = t597 * t508 + (t593 * t520 + t589 * t502);
-            let t628 = t627 - t509 * t589 - t626;
-            let t629 = t598 * t511 + (t594 * t524 - t590 * t508);
-            let t630 = t629 - k(0.4) * t598;
-            let t631 = t597 * t511 + (t593 * t524 + t589 * t508);
-            let t632 = t631 - t509 * t597 - t630;
-            let t633 = k(0.19611613513818404) * t632 - k(0.9805806756909201) * t628;
-            let t634 = t633 * t624 + (t597 * t622 - (t593 * t621 - t589 * t620) + t619);
-            let t635 = k(0.9813067629253163) * (t525 * t624 - t621)
-                + k(0.03774256780481986) * (t620 + t510 * t624);
-            let t636 = k(0.1887128390240993) * (t622 - t512 * t624) + t635;
-            let t637 = k(1.0)
-                / (k(0.1887128390240993) * t538
-                    + (k(0.9813067629253163) * t534 + k(0.03774256780481986) * t529));
-            let t638 = t637 * t636;
-            let t639 = t628 + t514 * t633;
-            let t640 = t598 * t524 + (t594 * t530 - t590 * t520);
-            let t641 = t640 - k(0.4) * t594;
-            let t642 = t597 * t524 + (t593 * t530 + t589 * t520);
-            let t643 = t531 * t633 + (t642 - t509 * t593 - t641);
-            let t644 = t632 - t536 * t633;
-            let t645 = k(0.1887128390240993) * t644
-                + (k(0.9813067629253163) * t643 + k(0.03774256780481986) * t639);
-            let t646 = k(0.2) * t460;
-            let t647 = k(0.2) * t475;
-            let t648 = k(0.2) * t484;
-            let t649 = k(0.1) * (t485 * t615 + (t476 * t614 - t461 * t613));
-            let t650 = k(0.001) * t458 + (t618 + t649)
-                - (t648 * t596 - (t647 * t592 + t646 * t588));
-            let t651 = t648 * t508 - (t647 * t520 + t646 * t502);
-            let t652 = t651 + k(0.08) * t460;
-            let t653 = t509 * t646 + t651 + t652;
-            let t654 = t648 * t511 - (t647 * t524 + t646 * t508);
-            let t655 = t654 - k(0.08) * t484;
-            let t656 = t509 * t648 - t654 - t655;
-            let t657 = k(0.19611613513818404) * t656 + k(0.9805806756909201) * t653;
-            let t658 = t657 * t624 - (t648 * t622 + (t647 * t621 - t646 * t620) + t650);
-            let t659 = t653 - t514 * t657;
-            let t660 = t648 * t524 - (t647 * t530 + t646 * t520);
-            let t661 = t660 + k(0.08) * t475;
-            let t662 = t531 * t657 - (t509 * t647 + t660 + t661);
-            let t663 = t656 - t536 * t657;
-            let t664 = k(0.1887128390240993) * t663
-                + (k(0.9813067629253163) * t662 - k(0.03774256780481986) * t659);
-            let t665 = k(0.4) * t460;
-            let t666 = k(0.4) * t475;
-            let t667 = k(0.4) * t484;
-            let t668 = k(0.001) * t574 + (k(0.048112522432468816) * t617 - t649)
-                - (t667 * t596 - (t666 * t592 + t665 * t588));
-            let t669 = t667 * t508 - (t666 * t520 + t665 * t502);
-            let t670 = t669 + k(0.16) * t460;
-            let t671 = t667 * t511 - (t666 * t524 + t665 * t508);
-            let t672 = t671 - k(0.16) * t484;
-            let t673 = k(0.19611613513818404) * t672 - k(0.9805806756909201) * t670;
-            let t674 = t670 + t514 * t673;
-            let t675 = t667 * t524 - (t666 * t530 + t665 * t520);
-            let t676 = t675 + k(0.16) * t475;
-            let t677 = t531 * t673 + t676;
-            let t678 = t672 - t536 * t673;
-            let t679 = k(0.1887128390240993) * t678
-                + (k(0.9813067629253163) * t677 + k(0.03774256780481986) * t674);
-            let t680 = k(0.9622504486493763) * (t679 * t638 + (t673 * t624 + t668))
-                - k(0.19245008972987526) * (t664 * t638 + t658 + (t645 * t638 + t634));
-            let t681 = t529 * t637;
-            let t682 = k(0.9622504486493763) * (t674 - t679 * t681)
-                + k(0.19245008972987526) * (t659 + t664 * t681 - (t639 - t645 * t681));
-            let t683 = t534 * t637;
-            let t684 = k(0.9622504486493763) * (t677 - t679 * t683)
-                - k(0.19245008972987526) * (t662 - t664 * t683 + (t643 - t645 * t683));
-            let t685 = t538 * t637;
-            let t686 = k(0.9622504486493763) * (t678 - t679 * t685)
-                - k(0.19245008972987526) * (t663 - t664 * t685 + (t644 - t645 * t685));
-            let t687 = k(0.3849001794597505) * t488;
-            let t688 = t687 + k(1.9245008972987525) * t484;
-            let t689 = k(0.3849001794597505) * t481;
-            let t690 = k(0.3849001794597505) * t472;
-            let t691 = t690 + k(1.9245008972987525) * t460;
-            let t692 = k(0.03774256780481986) * t691
-                - k(0.9813067629253163) * (t689 - k(1.9245008972987525) * t475)
-                - k(0.1887128390240993) * t688;
-            let t693 = t484 - t486;
-            let t694 = t460 + t465;
-            let t695 = k(0.19245008972987526)
-                * (k(0.014527121121346966) * -t694
-                    - k(0.3777051491550211) * (t475 + t477)
-                    + k(0.07263560560673482) * t693);
-            let t696 = t695 - k(0.9622504486493763) * t692;
-            let t697 = t687 + k(1.9245008972987525) * t486;
-            let t698 = t690 - k(1.9245008972987525) * t465;
-            let t699 = k(0.9805806756909201) * t698 + k(0.19611613513818404) * t697;
-            let t700 = k(0.03774256780481986) * t698
-                - k(0.9813067629253163) * (t689 + k(1.9245008972987525) * t477)
-                - k(0.1887128390240993) * t697;
-            let t701 = k(0.9622504486493763) * t700 + t695;
-            let t702 = k(0.9805806756909201) * t691 + k(0.19611613513818404) * t688;
-            let t703 = k(0.19245008972987526) * (t700 + t692);
-            let t704 = k(0.3774256780481986) * -t694 - k(0.07548513560963972) * t693;
-            let t705 = k(1.0) / (t704 * t703 - (t702 * t701 + t699 * t696));
-            let t706 = t575 + t468;
-            let t707 = t473 * t458 + (t466 * t574 + t461 * t706);
-            let t708 = k(0.9622504486493763) * t474
-                - k(0.19245008972987526) * (t577 + t707);
-            let t709 = t489 * t458 - (t487 * t574 - t485 * t706);
-            let t710 = k(0.9622504486493763) * t490
-                - k(0.19245008972987526) * (t585 + t709);
-            let t711 = k(0.19611613513818404) * t710 + k(0.9805806756909201) * t708;
-            let t712 = k(0.19245008972987526) * t704;
-            let t713 = t482 * t458 - (t478 * t574 + t476 * t706);
-            let t714 = k(0.9813067629253163)
-                * (k(0.9622504486493763) * t483 - k(0.19245008972987526) * (t581 + t713))
-                - k(0.03774256780481986) * t708;
-            let t715 = k(0.1887128390240993) * t710 + t714;
-            let t716 = t715 * (t705 * (t712 - k(0.9622504486493763) * t702))
-                + t711 * (t696 * t705);
-            let t717 = k(0.004)
-                + (k(0.02) - (t598 * t629 + (t594 * t640 - t590 * t625)));
-            let t718 = k(0.01) * t509;
-            let t719 = k(2.0) * (t597 * t630 + (t593 * t641 + t589 * t626))
-                - (t597 * t631 + (t593 * t642 + t589 * t627));
-            let t720 = t513 * t633;
-            let t721 = t637 * t645;
-            let t722 = t648 * t630 - (t647 * t641 + t646 * t626)
-                - (t597 * t655 + (t593 * t661 + t589 * t652));
-            let t723 = t722 - (t597 * t654 + (t593 * t660 + t589 * t651))
-                + (t598 * t654 + (t594 * t660 - t590 * t651));
-            let t724 = t664 * t721 + (t657 * t720 + t723);
-            let t725 = t724 + (t645 * t721 + (t633 * t720 - (t719 + (t718 + t717))));
-            let t726 = t597 * t672 + (t593 * t676 + t589 * t670)
-                - (t598 * t671 + (t594 * t675 - t590 * t669));
-            let t727 = t679 * t721 + (t673 * t720 + t726);
-            let t728 = k(0.9622504486493763) * t727 - k(0.19245008972987526) * t725;
-            let t729 = t715 * (t705 * (k(0.9622504486493763) * t699 + t712))
-                + t711 * (t701 * t705);
-            let t730 = t648 * t654 - (t647 * t660 + t646 * t651);
-            let t731 = k(2.0) * (t648 * t655 - (t647 * t661 + t646 * t652)) + t730;
-            let t732 = t513 * t657;
-            let t733 = t637 * t664;
-            let t734 = t664 * t733
-                + (t657 * t732 + (t731 - (t718 + (k(0.005) + (k(0.004) - t730)))));
-            let t735 = t648 * t672 - (t647 * t676 + t646 * t670)
-                - (k(0.008) - (t648 * t671 - (t647 * t675 + t646 * t669)));
-            let t736 = t679 * t733 + (t673 * t732 - t735);
-            let t737 = k(0.9622504486493763) * t736
-                - k(0.19245008972987526) * (t734 + t724);
-            let t738 = t715 * (t705 * (k(0.19245008972987526) * (t699 + t702)))
-                + t711 * (t703 * t705);
-            let t739 = k(0.003)
-                + (k(0.016) - (t667 * t671 - (t666 * t675 + t665 * t669)));
-            let t740 = k(0.9622504486493763)
-                * (t679 * (t637 * t679) + (t673 * (t513 * t673) - t739));
-            let t741 = t740 - k(0.19245008972987526) * (t736 + t727);
-            let t742 = t741 * t738 + (t737 * t729 - t728 * t716)
-                - (t535 * t686 - (t492 * t684 - t492 * t682));
-            let t743 = k(1.0)
-                / (k(0.9622504486493763) * t741
-                    - k(0.19245008972987526) * (t737 + t728));
-            let t744 = t743 * (t742 + t680);
-            let t745 = k(0.19245008972987526) * t744;
-            let t746 = t716 - t745;
-            let t747 = t729 + t745;
-            let t748 = t738 - k(0.9622504486493763) * t744;
-            let t749 = t679 * t748 + (t664 * t747 - t645 * t746)
-                + (t538 * t535 - (t534 * t492 - t529 * t492));
-            let t750 = t637 * (t636 + t749);
-            let t751 = t492 - k(0.03774256780481986) * t750;
-            let t752 = t492 + k(0.9813067629253163) * t750;
-            let t753 = t535 - k(0.1887128390240993) * t750;
-            let t754 = t673 * t748 + (t657 * t747 - t633 * t746)
-                + (t512 * t753 + (t525 * t752 - t510 * t751));
-            let t755 = t513 * (t623 + t754);
-            let t756 = t646 * t747;
-            let t757 = t756 - t589 * t746 - (t751 + k(0.9805806756909201) * t755);
-            let t758 = t578 - (t665 * t748 + (t590 * t746 - t756) - t757);
-            let t759 = t647 * t747;
-            let t760 = t752 + (t759 - t593 * t746);
-            let t761 = t582 + (t666 * t748 - (t594 * t746 + t759) - t760);
-            let t762 = t648 * t747;
-            let t763 = t762 + t597 * t746 + (t753 - k(0.19611613513818404) * t755);
-            let t764 = t586 - (t667 * t748 + (t598 * t746 - t762) - t763);
-            let t765 = t47 * t485 + (t60 * t476 + t73 * t461);
-            let t766 = t47 * t487 - (t60 * t478 + t73 * t466);
-            let t767 = t47 * t489 - (t60 * t482 - t73 * t473);
-            let t768 = t767 * t748 + (t766 * t747 - t765 * t746);
-            let t769 = t48 * t485 - (t61 * t476 + t74 * t461);
-            let t770 = t48 * t487 + (t61 * t478 + t74 * t466);
-            let t771 = t48 * t489 + (t61 * t482 - t74 * t473);
-            let t772 = t771 * t748 + (t770 * t747 - t769 * t746);
-            let t773 = k(0.0038) * t772 - (t504 * t764 + (t516 * t761 + t496 * t758));
-            let t774 = t772 - k(263.1578947368421) * (t560 + t773);
-            let t775 = k(0.008) * t774 - k(0.02) * t768
-                - (t503 * t764 + (t515 * t761 + t494 * t758));
-            let t776 = t768 - k(50.0) * (t550 - t775);
-            let t777 = t49 * t485 - (t62 * t476 - t75 * t461);
-            let t778 = t49 * t487 + (t62 * t478 - t75 * t466);
-            let t779 = t49 * t489 + (t62 * t482 + t75 * t473);
-            let t780 = t779 * t748 + (t778 * t747 - t777 * t746);
-            let t781 = k(0.025) * t780 + (t507 * t764 + (t519 * t761 - t501 * t758));
-            let t782 = t780 - k(40.0) * (t565 + t781);
-            let t783 = t758 - (t499 * t782 + (t552 * t774 - t540 * t776));
-            let t784 = t761 + (t518 * t782 - (t553 * t774 - t542 * t776));
-            let t785 = t764 + (t506 * t782 - (t554 * t774 - t544 * t776));
-            let t786 = k(0.1) * (t26 - t27);
-            let t787 = k(0.1) * (t19 - t16);
-            let t788 = k(0.1) * (t4 + t7);
-            let t789 = t430 * t788 + t433 * t787 + t436 * t786;
-            let t790 = k(0.1) * t25;
-            let t791 = t554 - t790;
-            let t792 = k(0.1) * t14;
-            let t793 = t553 + t792;
-            let t794 = k(0.1) * t1;
-            let t795 = t552 - t794;
-            let t796 = t430 * t795 + t433 * t793 - t436 * t791;
-            let t797 = t790 - t505;
-            let t798 = t792 + t517;
-            let t799 = t794 + t498;
+            let t622 = k(0.009622504486493762) * t621;
+            let t623 = k(0.002) * t466 - (t622 - k(0.1) * t620)
+                + (t602 * t600 + (t598 * t596 - t594 * t592));
+            let t624 = t617 - t592;
+            let t625 = t618 + t596;
+            let t626 = self.gravity * self.puck_mass + t619 - t600;
+            let t627 = k(0.19611613513818404) * t626 - k(0.9805806756909201) * t624;
+            let t628 = t517 * t627;
+            let t629 = t602 * t512 + (t598 * t524 - t594 * t506);
+            let t630 = t629 + k(0.4) * t594;
+            let t631 = t601 * t512 + (t597 * t524 + t593 * t506);
+            let t632 = t631 - t513 * t593 - t630;
+            let t633 = t602 * t515 + (t598 * t528 - t594 * t512);
+            let t634 = t633 - k(0.4) * t602;
+            let t635 = t601 * t515 + (t597 * t528 + t593 * t512);
+            let t636 = t635 - t513 * t601 - t634;
+            let t637 = k(0.19611613513818404) * t636 - k(0.9805806756909201) * t632;
+            let t638 = t637 * t628 + (t601 * t626 - (t597 * t625 - t593 * t624) + t623);
+            let t639 = k(0.9813067629253163) * (t529 * t628 - t625)
+                + k(0.03774256780481986) * (t624 + t514 * t628);
+            let t640 = k(0.1887128390240993) * (t626 - t516 * t628) + t639;
+            let t641 = k(1.0)
+                / (k(0.1887128390240993) * t542
+                    + (k(0.9813067629253163) * t538 + k(0.03774256780481986) * t533));
+            let t642 = t641 * t640;
+            let t643 = t632 + t518 * t637;
+            let t644 = t602 * t528 + (t598 * t534 - t594 * t524);
+            let t645 = t644 - k(0.4) * t598;
+            let t646 = t601 * t528 + (t597 * t534 + t593 * t524);
+            let t647 = t535 * t637 + (t646 - t513 * t597 - t645);
+            let t648 = t636 - t540 * t637;
+            let t649 = k(0.1887128390240993) * t648
+                + (k(0.9813067629253163) * t647 + k(0.03774256780481986) * t643);
+            let t650 = k(0.2) * t464;
+            let t651 = k(0.2) * t479;
+            let t652 = k(0.2) * t488;
+            let t653 = k(0.1) * (t489 * t619 + (t480 * t618 - t465 * t617));
+            let t654 = k(0.001) * t462 + (t622 + t653)
+                - (t652 * t600 - (t651 * t596 + t650 * t592));
+            let t655 = t652 * t512 - (t651 * t524 + t650 * t506);
+            let t656 = t655 + k(0.08) * t464;
+            let t657 = t513 * t650 + t655 + t656;
+            let t658 = t652 * t515 - (t651 * t528 + t650 * t512);
+            let t659 = t658 - k(0.08) * t488;
+            let t660 = t513 * t652 - t658 - t659;
+            let t661 = k(0.19611613513818404) * t660 + k(0.9805806756909201) * t657;
+            let t662 = t661 * t628 - (t652 * t626 + (t651 * t625 - t650 * t624) + t654);
+            let t663 = t657 - t518 * t661;
+            let t664 = t652 * t528 - (t651 * t534 + t650 * t524);
+            let t665 = t664 + k(0.08) * t479;
+            let t666 = t535 * t661 - (t513 * t651 + t664 + t665);
+            let t667 = t660 - t540 * t661;
+            let t668 = k(0.1887128390240993) * t667
+                + (k(0.9813067629253163) * t666 - k(0.03774256780481986) * t663);
+            let t669 = k(0.4) * t464;
+            let t670 = k(0.4) * t479;
+            let t671 = k(0.4) * t488;
+            let t672 = k(0.001) * t578 + (k(0.048112522432468816) * t621 - t653)
+                - (t671 * t600 - (t670 * t596 + t669 * t592));
+            let t673 = t671 * t512 - (t670 * t524 + t669 * t506);
+            let t674 = t673 + k(0.16) * t464;
+            let t675 = t671 * t515 - (t670 * t528 + t669 * t512);
+            let t676 = t675 - k(0.16) * t488;
+            let t677 = k(0.19611613513818404) * t676 - k(0.9805806756909201) * t674;
+            let t678 = t674 + t518 * t677;
+            let t679 = t671 * t528 - (t670 * t534 + t669 * t524);
+            let t680 = t679 + k(0.16) * t479;
+            let t681 = t535 * t677 + t680;
+            let t682 = t676 - t540 * t677;
+            let t683 = k(0.1887128390240993) * t682
+                + (k(0.9813067629253163) * t681 + k(0.03774256780481986) * t678);
+            let t684 = k(0.9622504486493763) * (t683 * t642 + (t677 * t628 + t672))
+                - k(0.19245008972987526) * (t668 * t642 + t662 + (t649 * t642 + t638));
+            let t685 = t533 * t641;
+            let t686 = k(0.9622504486493763) * (t678 - t683 * t685)
+                + k(0.19245008972987526) * (t663 + t668 * t685 - (t643 - t649 * t685));
+            let t687 = t538 * t641;
+            let t688 = k(0.9622504486493763) * (t681 - t683 * t687)
+                - k(0.19245008972987526) * (t666 - t668 * t687 + (t647 - t649 * t687));
+            let t689 = t542 * t641;
+            let t690 = k(0.9622504486493763) * (t682 - t683 * t689)
+                - k(0.19245008972987526) * (t667 - t668 * t689 + (t648 - t649 * t689));
+            let t691 = k(0.3849001794597505) * t492;
+            let t692 = t691 + k(1.9245008972987525) * t488;
+            let t693 = k(0.3849001794597505) * t485;
+            let t694 = k(0.3849001794597505) * t476;
+            let t695 = t694 + k(1.9245008972987525) * t464;
+            let t696 = k(0.03774256780481986) * t695
+                - k(0.9813067629253163) * (t693 - k(1.9245008972987525) * t479)
+                - k(0.1887128390240993) * t692;
+            let t697 = t488 - t490;
+            let t698 = t464 + t469;
+            let t699 = k(0.19245008972987526)
+                * (k(0.014527121121346966) * -t698
+                    - k(0.3777051491550211) * (t479 + t481)
+                    + k(0.07263560560673482) * t697);
+            let t700 = t699 - k(0.9622504486493763) * t696;
+            let t701 = t691 + k(1.9245008972987525) * t490;
+            let t702 = t694 - k(1.9245008972987525) * t469;
+            let t703 = k(0.9805806756909201) * t702 + k(0.19611613513818404) * t701;
+            let t704 = k(0.03774256780481986) * t702
+                - k(0.9813067629253163) * (t693 + k(1.9245008972987525) * t481)
+                - k(0.1887128390240993) * t701;
+            let t705 = k(0.9622504486493763) * t704 + t699;
+            let t706 = k(0.9805806756909201) * t695 + k(0.19611613513818404) * t692;
+            let t707 = k(0.19245008972987526) * (t704 + t696);
+            let t708 = k(0.3774256780481986) * -t698 - k(0.07548513560963972) * t697;
+            let t709 = k(1.0) / (t708 * t707 - (t706 * t705 + t703 * t700));
+            let t710 = t579 + t472;
+            let t711 = t477 * t462 + (t470 * t578 + t465 * t710);
+            let t712 = k(0.9622504486493763) * t478
+                - k(0.19245008972987526) * (t581 + t711);
+            let t713 = t493 * t462 - (t491 * t578 - t489 * t710);
+            let t714 = k(0.9622504486493763) * t494
+                - k(0.19245008972987526) * (t589 + t713);
+            let t715 = k(0.19611613513818404) * t714 + k(0.9805806756909201) * t712;
+            let t716 = k(0.19245008972987526) * t708;
+            let t717 = t486 * t462 - (t482 * t578 + t480 * t710);
+            let t718 = k(0.9813067629253163)
+                * (k(0.9622504486493763) * t487 - k(0.19245008972987526) * (t585 + t717))
+                - k(0.03774256780481986) * t712;
+            let t719 = k(0.1887128390240993) * t714 + t718;
+            let t720 = t719 * (t709 * (t716 - k(0.9622504486493763) * t706))
+                + t715 * (t700 * t709);
+            let t721 = k(0.004)
+                + (k(0.02) - (t602 * t633 + (t598 * t644 - t594 * t629)));
+            let t722 = k(0.01) * t513;
+            let t723 = k(2.0) * (t601 * t634 + (t597 * t645 + t593 * t630))
+                - (t601 * t635 + (t597 * t646 + t593 * t631));
+            let t724 = t517 * t637;
+            let t725 = t641 * t649;
+            let t726 = t652 * t634 - (t651 * t645 + t650 * t630)
+                - (t601 * t659 + (t597 * t665 + t593 * t656));
+            let t727 = t726 - (t601 * t658 + (t597 * t664 + t593 * t655))
+                + (t602 * t658 + (t598 * t664 - t594 * t655));
+            let t728 = t668 * t725 + (t661 * t724 + t727);
+            let t729 = t728 + (t649 * t725 + (t637 * t724 - (t723 + (t722 + t721))));
+            let t730 = t601 * t676 + (t597 * t680 + t593 * t674)
+                - (t602 * t675 + (t598 * t679 - t594 * t673));
+            let t731 = t683 * t725 + (t677 * t724 + t730);
+            let t732 = k(0.9622504486493763) * t731 - k(0.19245008972987526) * t729;
+            let t733 = t719 * (t709 * (k(0.9622504486493763) * t703 + t716))
+                + t715 * (t705 * t709);
+            let t734 = t652 * t658 - (t651 * t664 + t650 * t655);
+            let t735 = k(2.0) * (t652 * t659 - (t651 * t665 + t650 * t656)) + t734;
+            let t736 = t517 * t661;
+            let t737 = t641 * t668;
+            let t738 = t668 * t737
+                + (t661 * t736 + (t735 - (t722 + (k(0.005) + (k(0.004) - t734)))));
+            let t739 = t652 * t676 - (t651 * t680 + t650 * t674)
+                - (k(0.008) - (t652 * t675 - (t651 * t679 + t650 * t673)));
+            let t740 = t683 * t737 + (t677 * t736 - t739);
+            let t741 = k(0.9622504486493763) * t740
+                - k(0.19245008972987526) * (t738 + t728);
+            let t742 = t719 * (t709 * (k(0.19245008972987526) * (t703 + t706)))
+                + t715 * (t707 * t709);
+            let t743 = k(0.003)
+                + (k(0.016) - (t671 * t675 - (t670 * t679 + t669 * t673)));
+            let t744 = k(0.9622504486493763)
+                * (t683 * (t641 * t683) + (t677 * (t517 * t677) - t743));
+            let t745 = t744 - k(0.19245008972987526) * (t740 + t731);
+            let t746 = t745 * t742 + (t741 * t733 - t732 * t720)
+                - (t539 * t690 - (t496 * t688 - t496 * t686));
+            let t747 = k(1.0)
+                / (k(0.9622504486493763) * t745
+                    - k(0.19245008972987526) * (t741 + t732));
+            let t748 = t747 * (t746 + t684);
+            let t749 = k(0.19245008972987526) * t748;
+            let t750 = t720 - t749;
+            let t751 = t733 + t749;
+            let t752 = t742 - k(0.9622504486493763) * t748;
+            let t753 = t683 * t752 + (t668 * t751 - t649 * t750)
+                + (t542 * t539 - (t538 * t496 - t533 * t496));
+            let t754 = t641 * (t640 + t753);
+            let t755 = t496 - k(0.03774256780481986) * t754;
+            let t756 = t496 + k(0.9813067629253163) * t754;
+            let t757 = t539 - k(0.1887128390240993) * t754;
+            let t758 = t677 * t752 + (t661 * t751 - t637 * t750)
+                + (t516 * t757 + (t529 * t756 - t514 * t755));
+            let t759 = t517 * (t627 + t758);
+            let t760 = t650 * t751;
+            let t761 = t760 - t593 * t750 - (t755 + k(0.9805806756909201) * t759);
+            let t762 = t582 - (t669 * t752 + (t594 * t750 - t760) - t761);
+            let t763 = t651 * t751;
+            let t764 = t756 + (t763 - t597 * t750);
+            let t765 = t586 + (t670 * t752 - (t598 * t750 + t763) - t764);
+            let t766 = t652 * t751;
+            let t767 = t766 + t601 * t750 + (t757 - k(0.19611613513818404) * t759);
+            let t768 = t590 - (t671 * t752 + (t602 * t750 - t766) - t767);
+            let t769 = t47 * t489 + (t60 * t480 + t73 * t465);
+            let t770 = t47 * t491 - (t60 * t482 + t73 * t470);
+            let t771 = t47 * t493 - (t60 * t486 - t73 * t477);
+            let t772 = t771 * t752 + (t770 * t751 - t769 * t750);
+            let t773 = t48 * t489 - (t61 * t480 + t74 * t465);
+            let t774 = t48 * t491 + (t61 * t482 + t74 * t470);
+            let t775 = t48 * t493 + (t61 * t486 - t74 * t477);
+            let t776 = t775 * t752 + (t774 * t751 - t773 * t750);
+            let t777 = k(0.0038) * t776 - (t508 * t768 + (t520 * t765 + t500 * t762));
+            let t778 = t776 - k(263.1578947368421) * (t564 + t777);
+            let t779 = k(0.008) * t778 - k(0.02) * t772
+                - (t507 * t768 + (t519 * t765 + t498 * t762));
+            let t780 = t772 - k(50.0) * (t554 - t779);
+            let t781 = t49 * t489 - (t62 * t480 - t75 * t465);
+            let t782 = t49 * t491 + (t62 * t482 - t75 * t470);
+            let t783 = t49 * t493 + (t62 * t486 + t75 * t477);
+            let t784 = t783 * t752 + (t782 * t751 - t781 * t750);
+            let t785 = k(0.025) * t784 + (t511 * t768 + (t523 * t765 - t505 * t762));
+            let t786 = t784 - k(40.0) * (t569 + t785);
+            let t787 = t762 - (t503 * t786 + (t556 * t778 - t544 * t780));
+            let t788 = t765 + (t522 * t786 - (t557 * t778 - t546 * t780));
+            let t789 = t768 + (t510 * t786 - (t558 * t778 - t548 * t780));
+            let t790 = k(0.1) * (t26 - t27);
+            let t791 = k(0.1) * (t19 - t16);
+            let t792 = k(0.1) * (t4 + t7);
+            let t793 = t434 * t792 + t437 * t791 + t440 * t790;
+            let t794 = k(0.1) * t25;
+            let t795 = t558 - t794;
+            let t796 = k(0.1) * t14;
+            let t797 = t557 + t796;
+            let t798 = k(0.1) * t1;
+            let t799 = t556 - t798;
             (
-                t633,
+                t601,
+                t602,
                 t637,
-                t645,
-                t646,
-                t647,
-                t648,
-                t657,
-                t664,
-                t665,
-                t666,
-                t667,
-                t673,
-                t679,
-                t707,
-                t709,
+                t641,
+                t649,
+                t650,
+                t651,
+                t652,
+                t661,
+                t668,
+                t669,
+                t670,
+                t671,
+                t677,
+                t683,
+                t711,
                 t713,
-                t743,
-                t746,
+                t717,
                 t747,
-                t748,
-                t757,
-                t760,
-                t763,
-                t765,
-                t766,
+                t750,
+                t751,
+                t752,
+                t761,
+                t764,
                 t767,
                 t769,
                 t770,
                 t771,
+                t773,
                 t774,
-                t776,
-                t777,
+                t775,
                 t778,
-                t779,
+                t780,
+                t781,
                 t782,
                 t783,
-                t784,
-                t785,
                 t786,
                 t787,
                 t788,
                 t789,
+                t790,
                 t791,
+                t792,
                 t793,
+                t794,
                 t795,
                 t796,
                 t797,
@@ -12132,52 +12177,48 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             )
         };
         let (
-            t802,
-            t803,
-            t805,
-            t808,
-            t824,
-            t844,
-            t845,
-            t847,
-            t850,
-            t853,
-            t862,
-            t863,
-            t864,
-            t865,
+            t806,
+            t807,
+            t809,
+            t812,
+            t828,
+            t848,
+            t849,
+            t851,
+            t854,
+            t857,
             t866,
             t867,
-            t888,
-            t889,
-            t897,
-            t900,
-            t903,
-            t908,
-            t910,
-            t913,
+            t868,
+            t869,
+            t870,
+            t871,
+            t892,
+            t893,
+            t901,
+            t904,
+            t907,
+            t912,
             t914,
-            t915,
-            t916,
+            t917,
             t918,
             t919,
             t920,
-            t921,
-            t932,
-            t933,
-            t934,
-            t945,
-            t946,
-            t947,
-            t967,
-            t968,
-            t970,
-            t973,
-            t976,
-            t985,
-            t986,
-            t987,
-            t988,
+            t922,
+            t923,
+            t924,
+            t925,
+            t936,
+            t937,
+            t938,
+            t949,
+            t950,
+            t951,
+            t971,
+            t972,
+            t974,
+            t977,
+            t980,
             t989,
             t990,
             t991,
@@ -12190,308 +12231,304 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t998,
             t999,
         ) = {
-            let t800 = t430 * t799 - t433 * t798 - t436 * t797;
-            let t801 = t800 * t782 + (t796 * t774 - t789 * t776)
-                + (t436 * t785 - (t433 * t784 + t430 * t783));
-            let t802 = t125 + t139;
-            let t803 = shaft_wy * shaft_wz;
-            let t804 = t38 * t803 - (t13 * t802 + t77 * t149);
-            let t805 = t124 + t139;
-            let t806 = t38 * t805 - (t13 * t803 - t77 * t140);
-            let t807 = t81 * (k(0.7071067811865476) * (t80 - t78));
-            let t808 = t571 + t567;
-            let t809 = k(0.05) * (t75 * t808 - (t74 * t549 - t73 * t558))
-                + (k(0.05) * t570 + t573);
-            let t810 = t809 + (k(0.05) * t806 + (t188 + k(0.05) * t804));
-            let t811 = t430 * t810 + t807
-                + (t807 + t82 * (k(0.7071067811865476) * (t806 - t804)));
-            let t812 = t40 * t803 + (t24 * t802 + t64 * t149);
-            let t813 = t40 * t805 + (t24 * t803 - t64 * t140);
-            let t814 = t68 * (k(0.7071067811865476) * (t67 + t65));
-            let t815 = k(0.05) * (t62 * t808 + (t61 * t549 - t60 * t558))
-                + (k(0.05) * t579 + t580);
-            let t816 = t815 + (k(0.05) * t813 + (t204 + k(0.05) * t812));
-            let t817 = t433 * t816 + t814
-                + (t814 + t69 * (k(0.7071067811865476) * (t813 - t812)));
-            let t818 = t42 * t803 + (t33 * t802 - t51 * t149);
-            let t819 = t42 * t805 + (t33 * t803 + t51 * t140);
-            let t820 = t55 * (k(0.7071067811865476) * (t54 + t52));
-            let t821 = k(0.05) * (t49 * t808 + (t48 * t549 + t47 * t558))
+            let t800 = t434 * t799 + t437 * t797 - t440 * t795;
+            let t801 = t794 - t509;
+            let t802 = t796 + t521;
+            let t803 = t798 + t502;
+            let t804 = t434 * t803 - t437 * t802 - t440 * t801;
+            let t805 = t804 * t786 + (t800 * t778 - t793 * t780)
+                + (t440 * t789 - (t437 * t788 + t434 * t787));
+            let t806 = t125 + t143;
+            let t807 = shaft_wy * shaft_wz;
+            let t808 = t38 * t807 - (t13 * t806 + t77 * t153);
+            let t809 = t124 + t143;
+            let t810 = t38 * t809 - (t13 * t807 - t77 * t144);
+            let t811 = t81 * (k(0.7071067811865476) * (t80 - t78));
+            let t812 = t575 + t571;
+            let t813 = k(0.05) * (t75 * t812 - (t74 * t553 - t73 * t562))
+                + (k(0.05) * t574 + t577);
+            let t814 = t813 + (k(0.05) * t810 + (t192 + k(0.05) * t808));
+            let t815 = t434 * t814 + t811
+                + (t811 + t82 * (k(0.7071067811865476) * (t810 - t808)));
+            let t816 = t40 * t807 + (t24 * t806 + t64 * t153);
+            let t817 = t40 * t809 + (t24 * t807 - t64 * t144);
+            let t818 = t68 * (k(0.7071067811865476) * (t67 + t65));
+            let t819 = k(0.05) * (t62 * t812 + (t61 * t553 - t60 * t562))
                 + (k(0.05) * t583 + t584);
-            let t822 = t821 + (k(0.05) * t819 + (t220 + k(0.05) * t818));
-            let t823 = t436 * t822 + t820
-                + (t820 + t56 * (k(0.7071067811865476) * (t819 - t818)));
-            let t824 = t823 - (t817 + t811) + (t801 - t457);
-            let t825 = t452 + (t436 * t136 - (t433 * t133 + t430 * t131));
-            let t826 = t456 - (t436 * t147 - (t433 * t146 - t430 * t145));
-            let t827 = t152 * t826 - (t144 * t825 - t129 * t442);
-            let t828 = t827 * t157;
-            let t829 = t442 - t154 * t828;
-            let t830 = t829 * t162;
-            let t831 = t829 - t161 * t830;
-            let t832 = t830 * t224 - (t825 + t155 * t828);
-            let t833 = t830 * t242 - (t826 - t156 * t828);
-            let t834 = t830 * t168 - (t430 + t828 * t166);
-            let t835 = t830 * t194 + (t433 - t828 * t192);
-            let t836 = t830 * t210 - (t436 + t828 * t208);
-            let t837 = t269 * t836 - (t264 * t835 - t258 * t834)
-                - (t230 * t833 + (t229 * t832 - t223 * t831));
-            let t838 = t274 * t836 + (t272 * t835 - t271 * t834);
-            let t839 = t281 * t836 - (t279 * t835 - t277 * t834)
-                + (t97 * t833 + (t98 * t832 - t127 * t831));
-            let t840 = t285 * t836 - (t289 * t835 - t287 * t834);
-            let t841 = t840 + (t840 + (t109 * t833 + (t108 * t832 - t128 * t831)));
-            let t842 = k(0.6666666666666666) * t841
-                - (k(0.6666666666666666) * (t838 + t839)
-                    - k(0.3333333333333333) * (t838 + t837));
-            let t843 = t842 * t404;
-            let t844 = k(0.3333333333333333) * t843;
-            let t845 = k(0.6666666666666666) * t843;
-            let t846 = t287 * t845;
-            let t847 = t846 + (t271 * t845 - t271 * t844);
-            let t848 = t277 * t845 - t258 * t844 - t846 - t847;
-            let t849 = t289 * t845;
-            let t850 = t849 + (t272 * t845 - t272 * t844);
-            let t851 = t279 * t845 - t264 * t844 - t849 - t850;
-            let t852 = t285 * t845;
-            let t853 = t852 - (t274 * t845 - t274 * t844);
-            let t854 = t281 * t845 - t269 * t844 - t852 - t853;
-            let t855 = t128 * t845 - (t127 * t845 + t223 * t844);
-            let t856 = t108 * t845 - (t98 * t845 + t229 * t844);
-            let t857 = t109 * t845 - (t97 * t845 + t230 * t844);
-            let t858 = t242 * t857 + (t224 * t856 + t161 * t855)
-                - (t210 * t854 - (t194 * t851 - t168 * t848));
-            let t859 = t855 + t162 * (t829 - t858);
-            let t860 = t156 * t857 - (t155 * t856 - t154 * t859)
-                + (t208 * t854 - (t192 * t851 - t166 * t848));
-            let t861 = t157 * (t827 - t860);
-            let t862 = t856 - t144 * t861;
-            let t863 = t857 + t152 * t861;
-            let t864 = t848 + (t145 * t863 + t131 * t862);
-            let t865 = t851 - (t146 * t863 - t133 * t862);
-            let t866 = t854 + (t147 * t863 - t136 * t862);
-            let t867 = t859 + t129 * t861;
-            let t868 = t456 * t863 + (t452 * t862 + t442 * t867)
-                - (t436 * t866 + (t433 * t865 + t430 * t864));
-            let t869 = t789 - (t436 * t544 - (t433 * t542 + t430 * t540));
-            let t870 = k(50.0) * t869;
-            let t871 = k(0.4) * t869
-                - (t796 - (t436 * t554 - (t433 * t553 + t430 * t552)));
-            let t872 = k(263.1578947368421) * t871;
-            let t873 = t800 + (t436 * t506 - (t433 * t518 - t430 * t499));
-            let t874 = k(40.0) * t873;
-            let t875 = t874 * t501 - (t872 * t496 + (t430 - t870 * t494));
-            let t876 = t874 * t519 + (t872 * t516 + (t433 - t870 * t515));
-            let t877 = t874 * t507 + (t872 * t504 - (t436 + t870 * t503));
-            let t878 = t597 * t877 + (t593 * t876 + t589 * t875)
-                - (t598 * t877 + (t594 * t876 - t590 * t875));
-            let t879 = k(0.19611613513818404) * t877 - k(0.9805806756909201) * t875;
-            let t880 = t879 * t513;
-            let t881 = k(0.9813067629253163) * (t880 * t525 + t876)
-                + k(0.03774256780481986) * (t875 + t510 * t880);
-            let t882 = k(0.1887128390240993) * (t877 - t512 * t880) + t881;
-            let t883 = t882 * t637;
-            let t884 = t880 * t657
-                - k(2.0) * (t648 * t877 - (t647 * t876 + t646 * t875));
-            let t885 = t883 * t664 + t884 + (t883 * t645 + (t880 * t633 + t878));
-            let t886 = t880 * t673 + (t667 * t877 - (t666 * t876 + t665 * t875));
-            let t887 = (k(0.9622504486493763) * (t883 * t679 + t886)
-                - k(0.19245008972987526) * t885) * t743;
-            let t888 = k(0.19245008972987526) * t887;
-            let t889 = k(0.9622504486493763) * t887;
-            let t890 = t637 * (t882 - (t679 * t889 - (t664 * t888 + t645 * t888)));
-            let t891 = k(0.03774256780481986) * t890;
-            let t892 = k(0.9813067629253163) * t890;
-            let t893 = k(0.1887128390240993) * t890;
-            let t894 = t673 * t889 - (t657 * t888 + t633 * t888)
-                + (t512 * t893 - (t525 * t892 + t510 * t891));
-            let t895 = t513 * (t879 - t894);
-            let t896 = t646 * t888;
-            let t897 = t896 + t589 * t888 + (t891 - k(0.9805806756909201) * t895);
-            let t898 = t665 * t889 + (t590 * t888 + t896) + t897;
-            let t899 = t647 * t888;
-            let t900 = t892 + (t899 + t593 * t888);
-            let t901 = t666 * t889 - (t594 * t888 - t899) + t900;
-            let t902 = t648 * t888;
-            let t903 = t902 - t597 * t888 - (t893 + k(0.19611613513818404) * t895);
-            let t904 = t667 * t889 + (t598 * t888 + t902) + t903;
-            let t905 = t889 * t767 - (t888 * t766 + t888 * t765);
-            let t906 = t889 * t771 - (t888 * t770 + t888 * t769);
-            let t907 = k(0.0038) * t906 + (t504 * t904 - (t516 * t901 - t496 * t898));
-            let t908 = t906 + k(263.1578947368421) * (t871 - t907);
-            let t909 = k(0.008) * t908 - k(0.02) * t905
-                + (t503 * t904 - (t515 * t901 - t494 * t898));
-            let t910 = t905 + k(50.0) * (t869 + t909);
-            let t911 = t889 * t779 - (t888 * t778 + t888 * t777);
-            let t912 = k(0.025) * t911 - (t507 * t904 - (t519 * t901 + t501 * t898));
-            let t913 = t911 - k(40.0) * (t873 + t912);
-            let t914 = t898 + (t499 * t913 + (t552 * t908 - t540 * t910));
-            let t915 = t901 + (t518 * t913 - (t553 * t908 - t542 * t910));
-            let t916 = t904 - (t506 * t913 - (t554 * t908 - t544 * t910));
-            let t917 = t800 * t913 + (t796 * t908 - t789 * t910)
-                - (t436 * t916 + (t433 * t915 - t430 * t914));
-            let t918 = k(1.0) / (t917 - t868);
-            let t919 = k(1.2792042981336627) * t37
+            let t820 = t819 + (k(0.05) * t817 + (t208 + k(0.05) * t816));
+            let t821 = t437 * t820 + t818
+                + (t818 + t69 * (k(0.7071067811865476) * (t817 - t816)));
+            let t822 = t42 * t807 + (t33 * t806 - t51 * t153);
+            let t823 = t42 * t809 + (t33 * t807 + t51 * t144);
+            let t824 = t55 * (k(0.7071067811865476) * (t54 + t52));
+            let t825 = k(0.05) * (t49 * t812 + (t48 * t553 + t47 * t562))
+                + (k(0.05) * t587 + t588);
+            let t826 = t825 + (k(0.05) * t823 + (t224 + k(0.05) * t822));
+            let t827 = t440 * t826 + t824
+                + (t824 + t56 * (k(0.7071067811865476) * (t823 - t822)));
+            let t828 = t827 - (t821 + t815) + (t805 - t461);
+            let t829 = t456 + (t440 * t140 - (t437 * t137 + t434 * t133));
+            let t830 = t460 - (t440 * t151 - (t437 * t150 - t434 * t149));
+            let t831 = t156 * t830 - (t148 * t829 - t129 * t446);
+            let t832 = t831 * t161;
+            let t833 = t446 - t158 * t832;
+            let t834 = t833 * t166;
+            let t835 = t833 - t165 * t834;
+            let t836 = t834 * t228 - (t829 + t159 * t832);
+            let t837 = t834 * t246 - (t830 - t160 * t832);
+            let t838 = t834 * t172 - (t434 + t832 * t170);
+            let t839 = t834 * t198 + (t437 - t832 * t196);
+            let t840 = t834 * t214 - (t440 + t832 * t212);
+            let t841 = t273 * t840 - (t268 * t839 - t262 * t838)
+                - (t234 * t837 + (t233 * t836 - t227 * t835));
+            let t842 = t278 * t840 + (t276 * t839 - t275 * t838);
+            let t843 = t285 * t840 - (t283 * t839 - t281 * t838)
+                + (t97 * t837 + (t98 * t836 - t127 * t835));
+            let t844 = t289 * t840 - (t293 * t839 - t291 * t838);
+            let t845 = t844 + (t844 + (t109 * t837 + (t108 * t836 - t128 * t835)));
+            let t846 = k(0.6666666666666666) * t845
+                - (k(0.6666666666666666) * (t842 + t843)
+                    - k(0.3333333333333333) * (t842 + t841));
+            let t847 = t846 * t408;
+            let t848 = k(0.3333333333333333) * t847;
+            let t849 = k(0.6666666666666666) * t847;
+            let t850 = t291 * t849;
+            let t851 = t850 + (t275 * t849 - t275 * t848);
+            let t852 = t281 * t849 - t262 * t848 - t850 - t851;
+            let t853 = t293 * t849;
+            let t854 = t853 + (t276 * t849 - t276 * t848);
+            let t855 = t283 * t849 - t268 * t848 - t853 - t854;
+            let t856 = t289 * t849;
+            let t857 = t856 - (t278 * t849 - t278 * t848);
+            let t858 = t285 * t849 - t273 * t848 - t856 - t857;
+            let t859 = t128 * t849 - (t127 * t849 + t227 * t848);
+            let t860 = t108 * t849 - (t98 * t849 + t233 * t848);
+            let t861 = t109 * t849 - (t97 * t849 + t234 * t848);
+            let t862 = t246 * t861 + (t228 * t860 + t165 * t859)
+                - (t214 * t858 - (t198 * t855 - t172 * t852));
+            let t863 = t859 + t166 * (t833 - t862);
+            let t864 = t160 * t861 - (t159 * t860 - t158 * t863)
+                + (t212 * t858 - (t196 * t855 - t170 * t852));
+            let t865 = t161 * (t831 - t864);
+            let t866 = t860 - t148 * t865;
+            let t867 = t861 + t156 * t865;
+            let t868 = t852 + (t149 * t867 + t133 * t866);
+            let t869 = t855 - (t150 * t867 - t137 * t866);
+            let t870 = t858 + (t151 * t867 - t140 * t866);
+            let t871 = t863 + t129 * t865;
+            let t872 = t460 * t867 + (t456 * t866 + t446 * t871)
+                - (t440 * t870 + (t437 * t869 + t434 * t868));
+            let t873 = t793 - (t440 * t548 - (t437 * t546 + t434 * t544));
+            let t874 = k(50.0) * t873;
+            let t875 = k(0.4) * t873
+                - (t800 - (t440 * t558 - (t437 * t557 + t434 * t556)));
+            let t876 = k(263.1578947368421) * t875;
+            let t877 = t804 + (t440 * t510 - (t437 * t522 - t434 * t503));
+            let t878 = k(40.0) * t877;
+            let t879 = t878 * t505 - (t876 * t500 + (t434 - t874 * t498));
+            let t880 = t878 * t523 + (t876 * t520 + (t437 - t874 * t519));
+            let t881 = t878 * t511 + (t876 * t508 - (t440 + t874 * t507));
+            let t882 = t601 * t881 + (t597 * t880 + t593 * t879)
+                - (t602 * t881 + (t598 * t880 - t594 * t879));
+            let t883 = k(0.19611613513818404) * t881 - k(0.9805806756909201) * t879;
+            let t884 = t883 * t517;
+            let t885 = k(0.9813067629253163) * (t884 * t529 + t880)
+                + k(0.03774256780481986) * (t879 + t514 * t884);
+            let t886 = k(0.1887128390240993) * (t881 - t516 * t884) + t885;
+            let t887 = t886 * t641;
+            let t888 = t884 * t661
+                - k(2.0) * (t652 * t881 - (t651 * t880 + t650 * t879));
+            let t889 = t887 * t668 + t888 + (t887 * t649 + (t884 * t637 + t882));
+            let t890 = t884 * t677 + (t671 * t881 - (t670 * t880 + t669 * t879));
+            let t891 = (k(0.9622504486493763) * (t887 * t683 + t890)
+                - k(0.19245008972987526) * t889) * t747;
+            let t892 = k(0.19245008972987526) * t891;
+            let t893 = k(0.9622504486493763) * t891;
+            let t894 = t641 * (t886 - (t683 * t893 - (t668 * t892 + t649 * t892)));
+            let t895 = k(0.03774256780481986) * t894;
+            let t896 = k(0.9813067629253163) * t894;
+            let t897 = k(0.1887128390240993) * t894;
+            let t898 = t677 * t893 - (t661 * t892 + t637 * t892)
+                + (t516 * t897 - (t529 * t896 + t514 * t895));
+            let t899 = t517 * (t883 - t898);
+            let t900 = t650 * t892;
+            let t901 = t900 + t593 * t892 + (t895 - k(0.9805806756909201) * t899);
+            let t902 = t669 * t893 + (t594 * t892 + t900) + t901;
+            let t903 = t651 * t892;
+            let t904 = t896 + (t903 + t597 * t892);
+            let t905 = t670 * t893 - (t598 * t892 - t903) + t904;
+            let t906 = t652 * t892;
+            let t907 = t906 - t601 * t892 - (t897 + k(0.19611613513818404) * t899);
+            let t908 = t671 * t893 + (t602 * t892 + t906) + t907;
+            let t909 = t893 * t771 - (t892 * t770 + t892 * t769);
+            let t910 = t893 * t775 - (t892 * t774 + t892 * t773);
+            let t911 = k(0.0038) * t910 + (t508 * t908 - (t520 * t905 - t500 * t902));
+            let t912 = t910 + k(263.1578947368421) * (t875 - t911);
+            let t913 = k(0.008) * t912 - k(0.02) * t909
+                + (t507 * t908 - (t519 * t905 - t498 * t902));
+            let t914 = t909 + k(50.0) * (t873 + t913);
+            let t915 = t893 * t783 - (t892 * t782 + t892 * t781);
+            let t916 = k(0.025) * t915 - (t511 * t908 - (t523 * t905 + t505 * t902));
+            let t917 = t915 - k(40.0) * (t877 + t916);
+            let t918 = t902 + (t503 * t917 + (t556 * t912 - t544 * t914));
+            let t919 = t905 + (t522 * t917 - (t557 * t912 - t546 * t914));
+            let t920 = t908 - (t510 * t917 - (t558 * t912 - t548 * t914));
+            let t921 = t804 * t917 + (t800 * t912 - t793 * t914)
+                - (t440 * t920 + (t437 * t919 - t434 * t918));
+            let t922 = k(1.0) / (t921 - t872);
+            let t923 = k(1.2792042981336627) * t37
                 - (k(1.2792042981336627) * t12 + k(0.8528028654224418) * t71);
-            let t920 = k(1.2792042981336627) * t39
+            let t924 = k(1.2792042981336627) * t39
                 + (k(1.2792042981336627) * t23 + k(0.8528028654224418) * t58);
-            let t921 = k(1.2792042981336627) * t41
+            let t925 = k(1.2792042981336627) * t41
                 + (k(1.2792042981336627) * t32 - k(0.8528028654224418) * t45);
-            let t922 = t82 * (k(1.2792042981336627) * t429) + t919 * t440
-                + (t69 * (k(1.2792042981336627) * -t432) + t920 * t439);
-            let t923 = t922 + (t56 * (k(1.2792042981336627) * t435) - t921 * t438);
-            let t924 = k(1.2792042981336627) * t45;
-            let t925 = k(1.2792042981336627) * t58;
-            let t926 = k(1.2792042981336627) * t71;
-            let t927 = t82 * (k(0.8528028654224418) * t37 + t926) - t919 * t450
-                + (t69 * (k(0.8528028654224418) * t39 - t925) - t920 * t447);
-            let t928 = t927 - (t56 * (k(0.8528028654224418) * t41 + t924) + t921 * t444);
-            let t929 = t82 * (t926 - k(0.8528028654224418) * t12) + t919 * t455
-                - (t69 * (t925 - k(0.8528028654224418) * t23) + t920 * t454);
-            let t930 = t929 - (t56 * (t924 + k(0.8528028654224418) * t32) + t921 * t453);
-            let t931 = t930 * t427 - (t928 * t426 + t923 * t437)
-                - (t921 * t434 + (t920 * t431 + t919 * t428));
-            let t932 = t919 * t788 + t920 * t787 - t921 * t786;
-            let t933 = t919 * t795 + t920 * t793 + t921 * t791;
-            let t934 = t919 * t799 - t920 * t798 + t921 * t797;
-            let t935 = t934 * t782 + (t933 * t774 - t932 * t776)
-                - (t921 * t785 + (t920 * t784 + t919 * t783));
-            let t936 = t81
+            let t926 = t82 * (k(1.2792042981336627) * t433) + t923 * t444
+                + (t69 * (k(1.2792042981336627) * -t436) + t924 * t443);
+            let t927 = t926 + (t56 * (k(1.2792042981336627) * t439) - t925 * t442);
+            let t928 = k(1.2792042981336627) * t45;
+            let t929 = k(1.2792042981336627) * t58;
+            let t930 = k(1.2792042981336627) * t71;
+            let t931 = t82 * (k(0.8528028654224418) * t37 + t930) - t923 * t454
+                + (t69 * (k(0.8528028654224418) * t39 - t929) - t924 * t451);
+            let t932 = t931 - (t56 * (k(0.8528028654224418) * t41 + t928) + t925 * t448);
+            let t933 = t82 * (t930 - k(0.8528028654224418) * t12) + t923 * t459
+                - (t69 * (t929 - k(0.8528028654224418) * t23) + t924 * t458);
+            let t934 = t933 - (t56 * (t928 + k(0.8528028654224418) * t32) + t925 * t457);
+            let t935 = t934 * t431 - (t932 * t430 + t927 * t441)
+                - (t925 * t438 + (t924 * t435 + t923 * t432));
+            let t936 = t923 * t792 + t924 * t791 - t925 * t790;
+            let t937 = t923 * t799 + t924 * t797 + t925 * t795;
+            let t938 = t923 * t803 - t924 * t802 + t925 * t801;
+            let t939 = t938 * t786 + (t937 * t778 - t936 * t780)
+                - (t925 * t789 + (t924 * t788 + t923 * t787));
+            let t940 = t81
                 * (k(0.4264014327112209) * t79 + k(0.6396021490668313) * t80
                     + k(0.6396021490668313) * t78);
-            let t937 = t936
+            let t941 = t940
                 - t82
-                    * (k(0.6396021490668313) * t806
-                        + (k(0.6396021490668313) * t804 - k(0.4264014327112209) * t187));
-            let t938 = t68
+                    * (k(0.6396021490668313) * t810
+                        + (k(0.6396021490668313) * t808 - k(0.4264014327112209) * t191));
+            let t942 = t68
                 * (k(0.4264014327112209) * t66 + k(0.6396021490668313) * t67
                     - k(0.6396021490668313) * t65);
-            let t939 = t938
+            let t943 = t942
                 - t69
-                    * (k(0.6396021490668313) * t813
-                        + (k(0.6396021490668313) * t812 - k(0.4264014327112209) * t203));
-            let t940 = t920 * t816 - t938 - t939 + (t919 * t810 - t936 - t937);
-            let t941 = t55
+                    * (k(0.6396021490668313) * t817
+                        + (k(0.6396021490668313) * t816 - k(0.4264014327112209) * t207));
+            let t944 = t924 * t820 - t942 - t943 + (t923 * t814 - t940 - t941);
+            let t945 = t55
                 * (k(0.4264014327112209) * t53 + k(0.6396021490668313) * t54
                     - k(0.6396021490668313) * t52);
-            let t942 = t941
+            let t946 = t945
                 - t56
-                    * (k(0.6396021490668313) * t819
-                        + (k(0.6396021490668313) * t818 - k(0.4264014327112209) * t219));
-            let t943 = t930 * t863 - (t928 * t862 + t923 * t867)
-                - (t921 * t866 - (t920 * t865 + t919 * t864));
-            let t944 = t934 * t913 + (t933 * t908 - t932 * t910)
-                + (t921 * t916 - (t920 * t915 - t919 * t914));
-            let t945 = t944 + t943;
-            let t946 = t918 * t945;
-            let t947 = t946 * t824 + (t921 * t822 + t941 + t942 + t940 - (t935 + t931));
-            let t948 = t928 - (t921 * t136 + (t920 * t133 + t919 * t131));
-            let t949 = t930 - (t921 * t147 + (t920 * t146 - t919 * t145));
-            let t950 = t152 * t949 + (t144 * t948 - t129 * t923);
-            let t951 = t157 * t950;
-            let t952 = t923 + t154 * t951;
-            let t953 = t162 * t952;
-            let t954 = t952 - t161 * t953;
-            let t955 = t224 * t953 - (t948 - t155 * t951);
-            let t956 = t242 * t953 + (t949 - t156 * t951);
-            let t957 = t168 * t953 - (t919 - t166 * t951);
-            let t958 = t194 * t953 + (t920 + t192 * t951);
-            let t959 = t210 * t953 + (t921 + t208 * t951);
-            let t960 = t269 * t959 - (t264 * t958 - t258 * t957)
-                - (t230 * t956 + (t229 * t955 - t223 * t954));
-            let t961 = t274 * t959 + (t272 * t958 - t271 * t957);
-            let t962 = t281 * t959 - (t279 * t958 - t277 * t957)
-                + (t97 * t956 + (t98 * t955 - t127 * t954));
-            let t963 = t285 * t959 - (t289 * t958 - t287 * t957);
-            let t964 = t963 + (t963 + (t109 * t956 + (t108 * t955 - t128 * t954)));
-            let t965 = k(0.6666666666666666) * t964
-                - (k(0.6666666666666666) * (t961 + t962)
-                    - k(0.3333333333333333) * (t961 + t960));
-            let t966 = t404 * t965;
-            let t967 = k(0.3333333333333333) * t966;
-            let t968 = k(0.6666666666666666) * t966;
-            let t969 = t287 * t968;
-            let t970 = t969 + (t271 * t968 - t271 * t967);
-            let t971 = t277 * t968 - t258 * t967 - t969 - t970;
-            let t972 = t289 * t968;
-            let t973 = t972 + (t272 * t968 - t272 * t967);
-            let t974 = t279 * t968 - t264 * t967 - t972 - t973;
-            let t975 = t285 * t968;
-            let t976 = t975 - (t274 * t968 - t274 * t967);
-            let t977 = t281 * t968 - t269 * t967 - t975 - t976;
-            let t978 = t128 * t968 - (t127 * t968 + t223 * t967);
-            let t979 = t108 * t968 - (t98 * t968 + t229 * t967);
-            let t980 = t109 * t968 - (t97 * t968 + t230 * t967);
-            let t981 = t242 * t980 + (t224 * t979 + t161 * t978)
-                - (t210 * t977 - (t194 * t974 - t168 * t971));
-            let t982 = t978 + t162 * (t952 - t981);
-            let t983 = t156 * t980 - (t155 * t979 - t154 * t982)
-                + (t208 * t977 - (t192 * t974 - t166 * t971));
-            let t984 = t157 * (t950 + t983);
-            let t985 = t979 + t144 * t984;
-            let t986 = t980 - t152 * t984;
-            let t987 = t971 + (t145 * t986 + t131 * t985);
-            let t988 = t974 - (t146 * t986 - t133 * t985);
-            let t989 = t977 + (t147 * t986 - t136 * t985);
-            let t990 = t982 - t129 * t984;
-            let t991 = t930 * t986 - (t928 * t985 + t923 * t990)
-                - (t921 * t989 - (t920 * t988 + t919 * t987));
-            let t992 = t932 + (t921 * t544 + (t920 * t542 + t919 * t540));
-            let t993 = k(50.0) * t992;
-            let t994 = k(0.4) * t992
-                - (t933 + (t921 * t554 + (t920 * t553 + t919 * t552)));
-            let t995 = k(263.1578947368421) * t994;
-            let t996 = t934 - (t921 * t506 + (t920 * t518 - t919 * t499));
-            let t997 = k(40.0) * t996;
-            let t998 = t501 * t997 - (t496 * t995 + (t919 - t494 * t993));
-            let t999 = t519 * t997 + (t516 * t995 + (t920 - t515 * t993));
+                    * (k(0.6396021490668313) * t823
+                        + (k(0.6396021490668313) * t822 - k(0.4264014327112209) * t223));
+            let t947 = t934 * t867 - (t932 * t866 + t927 * t871)
+                - (t925 * t870 - (t924 * t869 + t923 * t868));
+            let t948 = t938 * t917 + (t937 * t912 - t936 * t914)
+                + (t925 * t920 - (t924 * t919 - t923 * t918));
+            let t949 = t948 + t947;
+            let t950 = t922 * t949;
+            let t951 = t950 * t828 + (t925 * t826 + t945 + t946 + t944 - (t939 + t935));
+            let t952 = t932 - (t925 * t140 + (t924 * t137 + t923 * t133));
+            let t953 = t934 - (t925 * t151 + (t924 * t150 - t923 * t149));
+            let t954 = t156 * t953 + (t148 * t952 - t129 * t927);
+            let t955 = t161 * t954;
+            let t956 = t927 + t158 * t955;
+            let t957 = t166 * t956;
+            let t958 = t956 - t165 * t957;
+            let t959 = t228 * t957 - (t952 - t159 * t955);
+            let t960 = t246 * t957 + (t953 - t160 * t955);
+            let t961 = t172 * t957 - (t923 - t170 * t955);
+            let t962 = t198 * t957 + (t924 + t196 * t955);
+            let t963 = t214 * t957 + (t925 + t212 * t955);
+            let t964 = t273 * t963 - (t268 * t962 - t262 * t961)
+                - (t234 * t960 + (t233 * t959 - t227 * t958));
+            let t965 = t278 * t963 + (t276 * t962 - t275 * t961);
+            let t966 = t285 * t963 - (t283 * t962 - t281 * t961)
+                + (t97 * t960 + (t98 * t959 - t127 * t958));
+            let t967 = t289 * t963 - (t293 * t962 - t291 * t961);
+            let t968 = t967 + (t967 + (t109 * t960 + (t108 * t959 - t128 * t958)));
+            let t969 = k(0.6666666666666666) * t968
+                - (k(0.6666666666666666) * (t965 + t966)
+                    - k(0.3333333333333333) * (t965 + t964));
+            let t970 = t408 * t969;
+            let t971 = k(0.3333333333333333) * t970;
+            let t972 = k(0.6666666666666666) * t970;
+            let t973 = t291 * t972;
+            let t974 = t973 + (t275 * t972 - t275 * t971);
+            let t975 = t281 * t972 - t262 * t971 - t973 - t974;
+            let t976 = t293 * t972;
+            let t977 = t976 + (t276 * t972 - t276 * t971);
+            let t978 = t283 * t972 - t268 * t971 - t976 - t977;
+            let t979 = t289 * t972;
+            let t980 = t979 - (t278 * t972 - t278 * t971);
+            let t981 = t285 * t972 - t273 * t971 - t979 - t980;
+            let t982 = t128 * t972 - (t127 * t972 + t227 * t971);
+            let t983 = t108 * t972 - (t98 * t972 + t233 * t971);
+            let t984 = t109 * t972 - (t97 * t972 + t234 * t971);
+            let t985 = t246 * t984 + (t228 * t983 + t165 * t982)
+                - (t214 * t981 - (t198 * t978 - t172 * t975));
+            let t986 = t982 + t166 * (t956 - t985);
+            let t987 = t160 * t984 - (t159 * t983 - t158 * t986)
+                + (t212 * t981 - (t196 * t978 - t170 * t975));
+            let t988 = t161 * (t954 + t987);
+            let t989 = t983 + t148 * t988;
+            let t990 = t984 - t156 * t988;
+            let t991 = t975 + (t149 * t990 + t133 * t989);
+            let t992 = t978 - (t150 * t990 - t137 * t989);
+            let t993 = t981 + (t151 * t990 - t140 * t989);
+            let t994 = t986 - t129 * t988;
+            let t995 = t934 * t990 - (t932 * t989 + t927 * t994)
+                - (t925 * t993 - (t924 * t992 + t923 * t991));
+            let t996 = t936 + (t925 * t548 + (t924 * t546 + t923 * t544));
+            let t997 = k(50.0) * t996;
+            let t998 = k(0.4) * t996
+                - (t937 + (t925 * t558 + (t924 * t557 + t923 * t556)));
+            let t999 = k(263.1578947368421) * t998;
             (
-                t802,
-                t803,
-                t805,
-                t808,
-                t824,
-                t844,
-                t845,
-                t847,
-                t850,
-                t853,
-                t862,
-                t863,
-                t864,
-                t865,
+                t806,
+                t807,
+                t809,
+                t812,
+                t828,
+                t848,
+                t849,
+                t851,
+                t854,
+                t857,
                 t866,
                 t867,
-                t888,
-                t889,
-                t897,
-                t900,
-                t903,
-                t908,
-                t910,
-                t913,
+                t868,
+                t869,
+                t870,
+                t871,
+                t892,
+                t893,
+                t901,
+                t904,
+                t907,
+                t912,
                 t914,
-                t915,
-                t916,
+                t917,
                 t918,
                 t919,
                 t920,
-                t921,
-                t932,
-                t933,
-                t934,
-                t945,
-                t946,
-                t947,
-                t967,
-                t968,
-                t970,
-                t973,
-                t976,
-                t985,
-                t986,
-                t987,
-                t988,
+                t922,
+                t923,
+                t924,
+                t925,
+                t936,
+                t937,
+                t938,
+                t949,
+                t950,
+                t951,
+                t971,
+                t972,
+                t974,
+                t977,
+                t980,
                 t989,
                 t990,
                 t991,
@@ -12506,497 +12543,490 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             )
         };
         let (
-            t1011,
-            t1012,
-            t1020,
-            t1023,
-            t1026,
-            t1031,
-            t1033,
-            t1036,
+            t1015,
+            t1016,
+            t1024,
+            t1027,
+            t1030,
+            t1035,
             t1037,
-            t1038,
-            t1039,
+            t1040,
             t1041,
             t1042,
             t1043,
-            t1044,
+            t1045,
             t1046,
             t1047,
             t1048,
+            t1050,
+            t1051,
             t1052,
-            t1053,
+            t1055,
             t1056,
             t1057,
-            t1058,
-            t1074,
-            t1075,
-            t1077,
+            t1060,
+            t1061,
+            t1062,
             t1078,
             t1079,
             t1081,
+            t1082,
+            t1083,
+            t1085,
             t1086,
-            t1088,
-            t1089,
-            t1091,
+            t1090,
             t1092,
             t1093,
-            t1094,
+            t1095,
             t1096,
             t1097,
             t1098,
-            t1116,
-            t1117,
-            t1119,
+            t1100,
+            t1101,
+            t1102,
             t1120,
-            t1122,
+            t1121,
             t1123,
-            t1125,
+            t1124,
             t1126,
-            t1134,
-            t1135,
-            t1136,
-            t1154,
-            t1155,
-            t1163,
-            t1164,
-            t1166,
+            t1127,
+            t1129,
+            t1130,
+            t1138,
+            t1139,
+            t1140,
+            t1158,
+            t1159,
             t1167,
-            t1169,
+            t1168,
             t1170,
+            t1171,
+            t1173,
             t1174,
-            t1176,
-            t1179,
-            t1181,
-            t1182,
-            t1184,
+            t1178,
+            t1180,
+            t1183,
             t1185,
             t1186,
-            t1187,
             t1188,
             t1189,
             t1190,
             t1191,
+            t1192,
+            t1193,
+            t1194,
             t1195,
             t1197,
-            t1198,
             t1199,
         ) = {
-            let t1000 = t507 * t997 + (t504 * t995 + (t921 - t503 * t993));
-            let t1001 = t597 * t1000 + (t593 * t999 + t589 * t998)
-                - (t598 * t1000 + (t594 * t999 - t590 * t998));
-            let t1002 = k(0.19611613513818404) * t1000 - k(0.9805806756909201) * t998;
-            let t1003 = t513 * t1002;
-            let t1004 = k(0.9813067629253163) * (t525 * t1003 + t999)
-                + k(0.03774256780481986) * (t998 + t510 * t1003);
-            let t1005 = k(0.1887128390240993) * (t1000 - t512 * t1003) + t1004;
-            let t1006 = t637 * t1005;
-            let t1007 = t657 * t1003
-                - k(2.0) * (t648 * t1000 - (t647 * t999 + t646 * t998));
-            let t1008 = t664 * t1006 + t1007 + (t645 * t1006 + (t633 * t1003 + t1001));
-            let t1009 = t673 * t1003 + (t667 * t1000 - (t666 * t999 + t665 * t998));
-            let t1010 = t743
-                * (k(0.9622504486493763) * (t679 * t1006 + t1009)
-                    - k(0.19245008972987526) * t1008);
-            let t1011 = k(0.19245008972987526) * t1010;
-            let t1012 = k(0.9622504486493763) * t1010;
-            let t1013 = t637 * (t1005 - (t679 * t1012 - (t664 * t1011 + t645 * t1011)));
-            let t1014 = k(0.03774256780481986) * t1013;
-            let t1015 = k(0.9813067629253163) * t1013;
-            let t1016 = k(0.1887128390240993) * t1013;
-            let t1017 = t673 * t1012 - (t657 * t1011 + t633 * t1011)
-                + (t512 * t1016 - (t525 * t1015 + t510 * t1014));
-            let t1018 = t513 * (t1002 - t1017);
-            let t1019 = t646 * t1011;
-            let t1020 = t1019 + t589 * t1011 + (t1014 - k(0.9805806756909201) * t1018);
-            let t1021 = t665 * t1012 + (t590 * t1011 + t1019) + t1020;
-            let t1022 = t647 * t1011;
-            let t1023 = t1015 + (t1022 + t593 * t1011);
-            let t1024 = t666 * t1012 - (t594 * t1011 - t1022) + t1023;
-            let t1025 = t648 * t1011;
-            let t1026 = t1025 - t597 * t1011 - (t1016 + k(0.19611613513818404) * t1018);
-            let t1027 = t667 * t1012 + (t598 * t1011 + t1025) + t1026;
-            let t1028 = t767 * t1012 - (t766 * t1011 + t765 * t1011);
-            let t1029 = t771 * t1012 - (t770 * t1011 + t769 * t1011);
-            let t1030 = k(0.0038) * t1029
-                + (t504 * t1027 - (t516 * t1024 - t496 * t1021));
-            let t1031 = t1029 + k(263.1578947368421) * (t994 - t1030);
-            let t1032 = k(0.008) * t1031 - k(0.02) * t1028
-                + (t503 * t1027 - (t515 * t1024 - t494 * t1021));
-            let t1033 = t1028 + k(50.0) * (t992 + t1032);
-            let t1034 = t779 * t1012 - (t778 * t1011 + t777 * t1011);
-            let t1035 = k(0.025) * t1034
-                - (t507 * t1027 - (t519 * t1024 + t501 * t1021));
-            let t1036 = t1034 - k(40.0) * (t996 + t1035);
-            let t1037 = t1021 + (t499 * t1036 + (t552 * t1031 - t540 * t1033));
-            let t1038 = t1024 + (t518 * t1036 - (t553 * t1031 - t542 * t1033));
-            let t1039 = t1027 - (t506 * t1036 - (t554 * t1031 - t544 * t1033));
-            let t1040 = t934 * t1036 + (t933 * t1031 - t932 * t1033)
-                + (t921 * t1039 - (t920 * t1038 - t919 * t1037));
-            let t1041 = k(1.0) / (t945 * t946 - (t1040 + t991));
-            let t1042 = t33 * t47 - (t24 * t60 + t13 * t73);
-            let t1043 = t33 * t48 + (t13 * t74 + t24 * t61);
-            let t1044 = t33 * t49 - (t13 * t75 - t24 * t62);
-            let t1045 = k(0.30151134457776363) * t1044
-                + (k(0.30151134457776363) * t1043 + k(0.9045340337332909) * t1042);
-            let t1046 = t42 * t47 - (t40 * t60 - t38 * t73);
-            let t1047 = t42 * t48 - (t38 * t74 - t40 * t61);
-            let t1048 = t38 * t75 + t40 * t62 + t42 * t49;
+            let t1000 = t938 - (t925 * t510 + (t924 * t522 - t923 * t503));
+            let t1001 = k(40.0) * t1000;
+            let t1002 = t505 * t1001 - (t500 * t999 + (t923 - t498 * t997));
+            let t1003 = t523 * t1001 + (t520 * t999 + (t924 - t519 * t997));
+            let t1004 = t511 * t1001 + (t508 * t999 + (t925 - t507 * t997));
+            let t1005 = t601 * t1004 + (t597 * t1003 + t593 * t1002)
+                - (t602 * t1004 + (t598 * t1003 - t594 * t1002));
+            let t1006 = k(0.19611613513818404) * t1004 - k(0.9805806756909201) * t1002;
+            let t1007 = t517 * t1006;
+            let t1008 = k(0.9813067629253163) * (t529 * t1007 + t1003)
+                + k(0.03774256780481986) * (t1002 + t514 * t1007);
+            let t1009 = k(0.1887128390240993) * (t1004 - t516 * t1007) + t1008;
+            let t1010 = t641 * t1009;
+            let t1011 = t661 * t1007
+                - k(2.0) * (t652 * t1004 - (t651 * t1003 + t650 * t1002));
+            let t1012 = t668 * t1010 + t1011 + (t649 * t1010 + (t637 * t1007 + t1005));
+            let t1013 = t677 * t1007 + (t671 * t1004 - (t670 * t1003 + t669 * t1002));
+            let t1014 = t747
+                * (k(0.9622504486493763) * (t683 * t1010 + t1013)
+                    - k(0.19245008972987526) * t1012);
+            let t1015 = k(0.19245008972987526) * t1014;
+            let t1016 = k(0.9622504486493763) * t1014;
+            let t1017 = t641 * (t1009 - (t683 * t1016 - (t668 * t1015 + t649 * t1015)));
+            let t1018 = k(0.03774256780481986) * t1017;
+            let t1019 = k(0.9813067629253163) * t1017;
+            let t1020 = k(0.1887128390240993) * t1017;
+            let t1021 = t677 * t1016 - (t661 * t1015 + t637 * t1015)
+                + (t516 * t1020 - (t529 * t1019 + t514 * t1018));
+            let t1022 = t517 * (t1006 - t1021);
+            let t1023 = t650 * t1015;
+            let t1024 = t1023 + t593 * t1015 + (t1018 - k(0.9805806756909201) * t1022);
+            let t1025 = t669 * t1016 + (t594 * t1015 + t1023) + t1024;
+            let t1026 = t651 * t1015;
+            let t1027 = t1019 + (t1026 + t597 * t1015);
+            let t1028 = t670 * t1016 - (t598 * t1015 - t1026) + t1027;
+            let t1029 = t652 * t1015;
+            let t1030 = t1029 - t601 * t1015 - (t1020 + k(0.19611613513818404) * t1022);
+            let t1031 = t671 * t1016 + (t602 * t1015 + t1029) + t1030;
+            let t1032 = t771 * t1016 - (t770 * t1015 + t769 * t1015);
+            let t1033 = t775 * t1016 - (t774 * t1015 + t773 * t1015);
+            let t1034 = k(0.0038) * t1033
+                + (t508 * t1031 - (t520 * t1028 - t500 * t1025));
+            let t1035 = t1033 + k(263.1578947368421) * (t998 - t1034);
+            let t1036 = k(0.008) * t1035 - k(0.02) * t1032
+                + (t507 * t1031 - (t519 * t1028 - t498 * t1025));
+            let t1037 = t1032 + k(50.0) * (t996 + t1036);
+            let t1038 = t783 * t1016 - (t782 * t1015 + t781 * t1015);
+            let t1039 = k(0.025) * t1038
+                - (t511 * t1031 - (t523 * t1028 + t505 * t1025));
+            let t1040 = t1038 - k(40.0) * (t1000 + t1039);
+            let t1041 = t1025 + (t503 * t1040 + (t556 * t1035 - t544 * t1037));
+            let t1042 = t1028 + (t522 * t1040 - (t557 * t1035 - t546 * t1037));
+            let t1043 = t1031 - (t510 * t1040 - (t558 * t1035 - t548 * t1037));
+            let t1044 = t938 * t1040 + (t937 * t1035 - t936 * t1037)
+                + (t925 * t1043 - (t924 * t1042 - t923 * t1041));
+            let t1045 = k(1.0) / (t949 * t950 - (t1044 + t995));
+            let t1046 = t33 * t47 - (t24 * t60 + t13 * t73);
+            let t1047 = t33 * t48 + (t13 * t74 + t24 * t61);
+            let t1048 = t33 * t49 - (t13 * t75 - t24 * t62);
             let t1049 = k(0.30151134457776363) * t1048
                 + (k(0.30151134457776363) * t1047 + k(0.9045340337332909) * t1046);
-            let t1050 = k(0.7071067811865476) * (t1049 + t1045);
-            let t1051 = t51 * t47 + (t64 * t60 + t77 * t73);
-            let t1052 = t51 * t48 - (t64 * t61 + t77 * t74);
-            let t1053 = t51 * t49 - (t64 * t62 - t77 * t75);
-            let t1054 = k(0.30151134457776363) * t1053
-                + (k(0.30151134457776363) * t1052 + k(0.9045340337332909) * t1051);
-            let t1055 = k(0.7071067811865476) * t1054;
-            let t1056 = t1044 - t1043;
-            let t1057 = t1048 - t1047;
-            let t1058 = t1057 - t1056;
-            let t1059 = k(0.21320071635561044) * t1058;
-            let t1060 = k(0.30151134457776363) * t1046;
-            let t1061 = k(0.9045340337332909) * t1048 - t1060;
-            let t1062 = k(0.30151134457776363) * t1042;
-            let t1063 = k(0.9045340337332909) * t1044 - t1062;
-            let t1064 = k(0.7071067811865476) * (t1063 - t1061);
-            let t1065 = t1060 - k(0.9045340337332909) * t1047;
-            let t1066 = t1062 - k(0.9045340337332909) * t1043;
-            let t1067 = t1066 - t1065;
-            let t1068 = k(0.7071067811865476) * t1067;
-            let t1069 = t1068 * t782 + (t1064 * t774 + t1059 * t776)
-                + (t1055 * t427 + (t1055 * t426 - t1050 * t437));
-            let t1070 = sleeve_wy * t1053 + sleeve_wz * t1052;
-            let t1071 = sleeve_wy * t1048 + sleeve_wz * t1047;
-            let t1072 = t558 * t1044 - (t563 * t1043 - t572 * t1042)
-                + k(2.0) * (shaft_wx * t1071 + shaft_wz * t1070);
-            let t1073 = k(0.9045340337332909)
-                * (t1072 + (t803 * t1046 + (t802 * t1042 - t149 * t1051)));
-            let t1074 = sleeve_wx * t1053 + sleeve_wz * t1051;
-            let t1075 = sleeve_wx * t1048 + sleeve_wz * t1046;
-            let t1076 = t549 * t1044 + (t569 * t1043 - t563 * t1042)
-                - k(2.0) * (shaft_wx * t1075 + shaft_wz * t1074);
-            let t1077 = t1076 + (t803 * t1047 + (t802 * t1043 - t149 * t1052));
-            let t1078 = sleeve_wx * t1052 - sleeve_wy * t1051;
-            let t1079 = sleeve_wx * t1047 - sleeve_wy * t1046;
-            let t1080 = t808 * t1044 + (t549 * t1043 + t558 * t1042)
-                + k(2.0) * (shaft_wx * t1079 + shaft_wz * t1078);
-            let t1081 = t1080 + (t803 * t1048 + (t802 * t1044 - t149 * t1053));
-            let t1082 = k(0.30151134457776363) * t1081
-                + (k(0.30151134457776363) * t1077 + t1073);
-            let t1083 = sleeve_wy * t1044 + sleeve_wz * t1043;
-            let t1084 = t558 * t1048 - (t563 * t1047 - t572 * t1046)
-                - k(2.0) * (shaft_wx * t1083 - shaft_wy * t1070);
-            let t1085 = k(0.9045340337332909)
-                * (t1084 + (t805 * t1046 + (t803 * t1042 + t140 * t1051)));
-            let t1086 = sleeve_wx * t1044 + sleeve_wz * t1042;
-            let t1087 = t549 * t1048 + (t569 * t1047 - t563 * t1046)
-                + k(2.0) * (shaft_wx * t1086 - shaft_wy * t1074);
-            let t1088 = t1087 + (t805 * t1047 + (t803 * t1043 + t140 * t1052));
-            let t1089 = sleeve_wx * t1043 - sleeve_wy * t1042;
-            let t1090 = t808 * t1048 + (t549 * t1047 + t558 * t1046)
-                - k(2.0) * (shaft_wx * t1089 - shaft_wy * t1078);
-            let t1091 = t1090 + (t805 * t1048 + (t803 * t1044 + t140 * t1053));
-            let t1092 = k(0.30151134457776363) * t1091
-                + (k(0.30151134457776363) * t1088 + t1085);
-            let t1093 = t1068 * t913 + (t1064 * t908 + t1059 * t910)
-                + (t1055 * t863 + (t1055 * t862 - t1050 * t867));
-            let t1094 = t918 * t1093;
-            let t1095 = t1068 * t1036 + (t1064 * t1031 + t1059 * t1033)
-                + (t1055 * t986 + (t1055 * t985 - t1050 * t990));
-            let t1096 = t945 * t1094 - t1095;
-            let t1097 = t1041 * t1096;
-            let t1098 = t1097 * t947
-                - (t1094 * t824 - (k(0.7071067811865476) * (t1092 - t1082) + t1069));
-            let t1099 = t152 * t1055 - (t144 * t1055 + t129 * t1050);
-            let t1100 = t157 * t1099;
-            let t1101 = t1050 + t154 * t1100;
-            let t1102 = t162 * t1101;
-            let t1103 = t1101 - t161 * t1102;
-            let t1104 = t224 * t1102 + (t1055 + t155 * t1100);
-            let t1105 = t242 * t1102 + (t1055 - t156 * t1100);
-            let t1106 = t168 * t1102 + t166 * t1100;
-            let t1107 = t194 * t1102 + t192 * t1100;
-            let t1108 = t210 * t1102 + t208 * t1100;
-            let t1109 = t269 * t1108 - (t264 * t1107 - t258 * t1106)
-                - (t230 * t1105 + (t229 * t1104 - t223 * t1103));
-            let t1110 = t274 * t1108 + (t272 * t1107 - t271 * t1106);
-            let t1111 = t281 * t1108 - (t279 * t1107 - t277 * t1106)
-                + (t97 * t1105 + (t98 * t1104 - t127 * t1103));
-            let t1112 = t285 * t1108 - (t289 * t1107 - t287 * t1106);
-            let t1113 = t1112 + (t1112 + (t109 * t1105 + (t108 * t1104 - t128 * t1103)));
-            let t1114 = k(0.6666666666666666) * t1113
-                - (k(0.6666666666666666) * (t1110 + t1111)
-                    - k(0.3333333333333333) * (t1110 + t1109));
-            let t1115 = t404 * t1114;
-            let t1116 = k(0.3333333333333333) * t1115;
-            let t1117 = k(0.6666666666666666) * t1115;
-            let t1118 = t287 * t1117;
-            let t1119 = t1118 + (t271 * t1117 - t271 * t1116);
-            let t1120 = t277 * t1117 - t258 * t1116 - t1118 - t1119;
-            let t1121 = t289 * t1117;
-            let t1122 = t1121 + (t272 * t1117 - t272 * t1116);
-            let t1123 = t279 * t1117 - t264 * t1116 - t1121 - t1122;
-            let t1124 = t285 * t1117;
-            let t1125 = t1124 - (t274 * t1117 - t274 * t1116);
-            let t1126 = t281 * t1117 - t269 * t1116 - t1124 - t1125;
-            let t1127 = t128 * t1117 - (t127 * t1117 + t223 * t1116);
-            let t1128 = t108 * t1117 - (t98 * t1117 + t229 * t1116);
-            let t1129 = t109 * t1117 - (t97 * t1117 + t230 * t1116);
-            let t1130 = t242 * t1129 + (t224 * t1128 + t161 * t1127)
-                - (t210 * t1126 - (t194 * t1123 - t168 * t1120));
-            let t1131 = t1127 + t162 * (t1101 - t1130);
-            let t1132 = t156 * t1129 - (t155 * t1128 - t154 * t1131)
-                + (t208 * t1126 - (t192 * t1123 - t166 * t1120));
-            let t1133 = t157 * (t1099 + t1132);
-            let t1134 = t1131 - t129 * t1133;
-            let t1135 = t1128 + t144 * t1133;
-            let t1136 = t1129 - t152 * t1133;
-            let t1137 = k(10.660035817780521) * t1058;
-            let t1138 = t1064 + k(0.08528028654224418) * t1058;
-            let t1139 = k(263.1578947368421) * t1138;
-            let t1140 = k(28.284271247461902) * t1067;
-            let t1141 = t501 * t1140 + (t496 * t1139 - t494 * t1137);
-            let t1142 = t519 * t1140 - (t516 * t1139 - t515 * t1137);
-            let t1143 = t507 * t1140 - (t504 * t1139 - t503 * t1137);
-            let t1144 = t597 * t1143 + (t593 * t1142 + t589 * t1141)
-                - (t598 * t1143 + (t594 * t1142 - t590 * t1141));
-            let t1145 = k(0.19611613513818404) * t1143 - k(0.9805806756909201) * t1141;
-            let t1146 = t513 * t1145;
-            let t1147 = k(0.9813067629253163) * (t525 * t1146 + t1142)
-                + k(0.03774256780481986) * (t1141 + t510 * t1146);
-            let t1148 = k(0.1887128390240993) * (t1143 - t512 * t1146) + t1147;
-            let t1149 = t637 * t1148;
-            let t1150 = t657 * t1146
-                - k(2.0) * (t648 * t1143 - (t647 * t1142 + t646 * t1141));
-            let t1151 = t664 * t1149 + t1150 + (t645 * t1149 + (t633 * t1146 + t1144));
-            let t1152 = t673 * t1146 + (t667 * t1143 - (t666 * t1142 + t665 * t1141));
-            let t1153 = t743
-                * (k(0.9622504486493763) * (t679 * t1149 + t1152)
-                    - k(0.19245008972987526) * t1151);
-            let t1154 = k(0.19245008972987526) * t1153;
-            let t1155 = k(0.9622504486493763) * t1153;
-            let t1156 = t637 * (t1148 - (t679 * t1155 - (t664 * t1154 + t645 * t1154)));
-            let t1157 = k(0.03774256780481986) * t1156;
-            let t1158 = k(0.9813067629253163) * t1156;
-            let t1159 = k(0.1887128390240993) * t1156;
-            let t1160 = t673 * t1155 - (t657 * t1154 + t633 * t1154)
-                + (t512 * t1159 - (t525 * t1158 + t510 * t1157));
-            let t1161 = t513 * (t1145 - t1160);
-            let t1162 = t646 * t1154;
-            let t1163 = t1162 + t589 * t1154 + (t1157 - k(0.9805806756909201) * t1161);
-            let t1164 = t665 * t1155 + (t590 * t1154 + t1162) + t1163;
-            let t1165 = t647 * t1154;
-            let t1166 = t1158 + (t1165 + t593 * t1154);
-            let t1167 = t666 * t1155 - (t594 * t1154 - t1165) + t1166;
-            let t1168 = t648 * t1154;
-            let t1169 = t1168 - t597 * t1154 - (t1159 + k(0.19611613513818404) * t1161);
-            let t1170 = t667 * t1155 + (t598 * t1154 + t1168) + t1169;
-            let t1171 = t767 * t1155 - (t766 * t1154 + t765 * t1154);
-            let t1172 = t771 * t1155 - (t770 * t1154 + t769 * t1154);
-            let t1173 = k(0.0038) * t1172
-                + (t504 * t1170 - (t516 * t1167 - t496 * t1164));
-            let t1174 = t1172 - k(263.1578947368421) * (t1138 + t1173);
-            let t1175 = k(0.008) * t1174 - k(0.02) * t1171
-                + (t503 * t1170 - (t515 * t1167 - t494 * t1164));
-            let t1176 = t1171 - k(50.0) * (t1059 - t1175);
-            let t1177 = t779 * t1155 - (t778 * t1154 + t777 * t1154);
-            let t1178 = k(0.025) * t1177
-                - (t507 * t1170 - (t519 * t1167 + t501 * t1164));
-            let t1179 = t1177 - k(40.0) * (t1068 + t1178);
-            let t1180 = t1068 * t1179 + (t1064 * t1174 + t1059 * t1176)
-                + (t1055 * t1136 + (t1055 * t1135 - t1050 * t1134));
-            let t1181 = k(1.0) / (t1096 * t1097 - (t1093 * t1094 - t1180));
-            let t1182 = k(0.6396021490668313) * (t1049 - t1045);
-            let t1183 = k(0.6396021490668313) * t1054;
-            let t1184 = k(0.4264014327112209) * t1049 + t1183;
-            let t1185 = t1183 + k(0.4264014327112209) * t1045;
-            let t1186 = t1053 - t1052;
-            let t1187 = k(0.128564869306645) * t1186 - k(0.19284730395996752) * t1056
-                - k(0.19284730395996752) * t1057;
-            let t1188 = k(0.30151134457776363) * t1051;
-            let t1189 = k(0.4264014327112209) * (k(0.9045340337332909) * t1053 - t1188)
-                - k(0.6396021490668313) * t1063 - k(0.6396021490668313) * t1061;
-            let t1190 = k(0.4264014327112209) * (t1188 - k(0.9045340337332909) * t1052)
-                - k(0.6396021490668313) * t1066 - k(0.6396021490668313) * t1065;
-            let t1191 = t1190 * t782 + (t1189 * t774 - t1187 * t776)
-                - (t1185 * t427 - (t1184 * t426 + t1182 * t437));
-            let t1192 = t558 * t1053 - (t563 * t1052 - t572 * t1051)
-                - k(2.0) * (shaft_wy * t1071 + shaft_wz * t1083);
-            let t1193 = k(0.9045340337332909)
-                * (t1192 + (t140 * t1046 - (t149 * t1042 - t186 * t1051)));
-            let t1194 = t549 * t1053 + (t569 * t1052 - t563 * t1051)
-                + k(2.0) * (shaft_wy * t1075 + shaft_wz * t1086);
-            let t1195 = t1194 + (t140 * t1047 - (t149 * t1043 - t186 * t1052));
-            let t1196 = t808 * t1053 + (t549 * t1052 + t558 * t1051)
-                - k(2.0) * (shaft_wy * t1079 + shaft_wz * t1089);
-            let t1197 = t1196 + (t140 * t1048 - (t149 * t1044 - t186 * t1053));
-            let t1198 = k(0.6396021490668313) * t1082
-                - k(0.4264014327112209)
-                    * (k(0.30151134457776363) * t1197
-                        + (k(0.30151134457776363) * t1195 + t1193));
-            let t1199 = t1190 * t913 + (t1189 * t908 - t1187 * t910)
-                - (t1185 * t863 - (t1184 * t862 + t1182 * t867));
+            let t1050 = t42 * t47 - (t40 * t60 - t38 * t73);
+            let t1051 = t42 * t48 - (t38 * t74 - t40 * t61);
+            let t1052 = t38 * t75 + t40 * t62 + t42 * t49;
+            let t1053 = k(0.30151134457776363) * t1052
+                + (k(0.30151134457776363) * t1051 + k(0.9045340337332909) * t1050);
+            let t1054 = k(0.7071067811865476) * (t1053 + t1049);
+            let t1055 = t51 * t47 + (t64 * t60 + t77 * t73);
+            let t1056 = t51 * t48 - (t64 * t61 + t77 * t74);
+            let t1057 = t51 * t49 - (t64 * t62 - t77 * t75);
+            let t1058 = k(0.30151134457776363) * t1057
+                + (k(0.30151134457776363) * t1056 + k(0.9045340337332909) * t1055);
+            let t1059 = k(0.7071067811865476) * t1058;
+            let t1060 = t1048 - t1047;
+            let t1061 = t1052 - t1051;
+            let t1062 = t1061 - t1060;
+            let t1063 = k(0.21320071635561044) * t1062;
+            let t1064 = k(0.30151134457776363) * t1050;
+            let t1065 = k(0.9045340337332909) * t1052 - t1064;
+            let t1066 = k(0.30151134457776363) * t1046;
+            let t1067 = k(0.9045340337332909) * t1048 - t1066;
+            let t1068 = k(0.7071067811865476) * (t1067 - t1065);
+            let t1069 = t1064 - k(0.9045340337332909) * t1051;
+            let t1070 = t1066 - k(0.9045340337332909) * t1047;
+            let t1071 = t1070 - t1069;
+            let t1072 = k(0.7071067811865476) * t1071;
+            let t1073 = t1072 * t786 + (t1068 * t778 + t1063 * t780)
+                + (t1059 * t431 + (t1059 * t430 - t1054 * t441));
+            let t1074 = sleeve_wy * t1057 + sleeve_wz * t1056;
+            let t1075 = sleeve_wy * t1052 + sleeve_wz * t1051;
+            let t1076 = t562 * t1048 - (t567 * t1047 - t576 * t1046)
+                + k(2.0) * (shaft_wx * t1075 + shaft_wz * t1074);
+            let t1077 = k(0.9045340337332909)
+                * (t1076 + (t807 * t1050 + (t806 * t1046 - t153 * t1055)));
+            let t1078 = sleeve_wx * t1057 + sleeve_wz * t1055;
+            let t1079 = sleeve_wx * t1052 + sleeve_wz * t1050;
+            let t1080 = t553 * t1048 + (t573 * t1047 - t567 * t1046)
+                - k(2.0) * (shaft_wx * t1079 + shaft_wz * t1078);
+            let t1081 = t1080 + (t807 * t1051 + (t806 * t1047 - t153 * t1056));
+            let t1082 = sleeve_wx * t1056 - sleeve_wy * t1055;
+            let t1083 = sleeve_wx * t1051 - sleeve_wy * t1050;
+            let t1084 = t812 * t1048 + (t553 * t1047 + t562 * t1046)
+                + k(2.0) * (shaft_wx * t1083 + shaft_wz * t1082);
+            let t1085 = t1084 + (t807 * t1052 + (t806 * t1048 - t153 * t1057));
+            let t1086 = k(0.30151134457776363) * t1085
+                + (k(0.30151134457776363) * t1081 + t1077);
+            let t1087 = sleeve_wy * t1048 + sleeve_wz * t1047;
+            let t1088 = t562 * t1052 - (t567 * t1051 - t576 * t1050)
+                - k(2.0) * (shaft_wx * t1087 - shaft_wy * t1074);
+            let t1089 = k(0.9045340337332909)
+                * (t1088 + (t809 * t1050 + (t807 * t1046 + t144 * t1055)));
+            let t1090 = sleeve_wx * t1048 + sleeve_wz * t1046;
+            let t1091 = t553 * t1052 + (t573 * t1051 - t567 * t1050)
+                + k(2.0) * (shaft_wx * t1090 - shaft_wy * t1078);
+            let t1092 = t1091 + (t809 * t1051 + (t807 * t1047 + t144 * t1056));
+            let t1093 = sleeve_wx * t1047 - sleeve_wy * t1046;
+            let t1094 = t812 * t1052 + (t553 * t1051 + t562 * t1050)
+                - k(2.0) * (shaft_wx * t1093 - shaft_wy * t1082);
+            let t1095 = t1094 + (t809 * t1052 + (t807 * t1048 + t144 * t1057));
+            let t1096 = k(0.30151134457776363) * t1095
+                + (k(0.30151134457776363) * t1092 + t1089);
+            let t1097 = t1072 * t917 + (t1068 * t912 + t1063 * t914)
+                + (t1059 * t867 + (t1059 * t866 - t1054 * t871));
+            let t1098 = t922 * t1097;
+            let t1099 = t1072 * t1040 + (t1068 * t1035 + t1063 * t1037)
+                + (t1059 * t990 + (t1059 * t989 - t1054 * t994));
+            let t1100 = t949 * t1098 - t1099;
+            let t1101 = t1045 * t1100;
+            let t1102 = t1101 * t951
+                - (t1098 * t828 - (k(0.7071067811865476) * (t1096 - t1086) + t1073));
+            let t1103 = t156 * t1059 - (t148 * t1059 + t129 * t1054);
+            let t1104 = t161 * t1103;
+            let t1105 = t1054 + t158 * t1104;
+            let t1106 = t166 * t1105;
+            let t1107 = t1105 - t165 * t1106;
+            let t1108 = t228 * t1106 + (t1059 + t159 * t1104);
+            let t1109 = t246 * t1106 + (t1059 - t160 * t1104);
+            let t1110 = t172 * t1106 + t170 * t1104;
+            let t1111 = t198 * t1106 + t196 * t1104;
+            let t1112 = t214 * t1106 + t212 * t1104;
+            let t1113 = t273 * t1112 - (t268 * t1111 - t262 * t1110)
+                - (t234 * t1109 + (t233 * t1108 - t227 * t1107));
+            let t1114 = t278 * t1112 + (t276 * t1111 - t275 * t1110);
+            let t1115 = t285 * t1112 - (t283 * t1111 - t281 * t1110)
+                + (t97 * t1109 + (t98 * t1108 - t127 * t1107));
+            let t1116 = t289 * t1112 - (t293 * t1111 - t291 * t1110);
+            let t1117 = t1116 + (t1116 + (t109 * t1109 + (t108 * t1108 - t128 * t1107)));
+            let t1118 = k(0.6666666666666666) * t1117
+                - (k(0.6666666666666666) * (t1114 + t1115)
+                    - k(0.3333333333333333) * (t1114 + t1113));
+            let t1119 = t408 * t1118;
+            let t1120 = k(0.3333333333333333) * t1119;
+            let t1121 = k(0.6666666666666666) * t1119;
+            let t1122 = t291 * t1121;
+            let t1123 = t1122 + (t275 * t1121 - t275 * t1120);
+            let t1124 = t281 * t1121 - t262 * t1120 - t1122 - t1123;
+            let t1125 = t293 * t1121;
+            let t1126 = t1125 + (t276 * t1121 - t276 * t1120);
+            let t1127 = t283 * t1121 - t268 * t1120 - t1125 - t1126;
+            let t1128 = t289 * t1121;
+            let t1129 = t1128 - (t278 * t1121 - t278 * t1120);
+            let t1130 = t285 * t1121 - t273 * t1120 - t1128 - t1129;
+            let t1131 = t128 * t1121 - (t127 * t1121 + t227 * t1120);
+            let t1132 = t108 * t1121 - (t98 * t1121 + t233 * t1120);
+            let t1133 = t109 * t1121 - (t97 * t1121 + t234 * t1120);
+            let t1134 = t246 * t1133 + (t228 * t1132 + t165 * t1131)
+                - (t214 * t1130 - (t198 * t1127 - t172 * t1124));
+            let t1135 = t1131 + t166 * (t1105 - t1134);
+            let t1136 = t160 * t1133 - (t159 * t1132 - t158 * t1135)
+                + (t212 * t1130 - (t196 * t1127 - t170 * t1124));
+            let t1137 = t161 * (t1103 + t1136);
+            let t1138 = t1135 - t129 * t1137;
+            let t1139 = t1132 + t148 * t1137;
+            let t1140 = t1133 - t156 * t1137;
+            let t1141 = k(10.660035817780521) * t1062;
+            let t1142 = t1068 + k(0.08528028654224418) * t1062;
+            let t1143 = k(263.1578947368421) * t1142;
+            let t1144 = k(28.284271247461902) * t1071;
+            let t1145 = t505 * t1144 + (t500 * t1143 - t498 * t1141);
+            let t1146 = t523 * t1144 - (t520 * t1143 - t519 * t1141);
+            let t1147 = t511 * t1144 - (t508 * t1143 - t507 * t1141);
+            let t1148 = t601 * t1147 + (t597 * t1146 + t593 * t1145)
+                - (t602 * t1147 + (t598 * t1146 - t594 * t1145));
+            let t1149 = k(0.19611613513818404) * t1147 - k(0.9805806756909201) * t1145;
+            let t1150 = t517 * t1149;
+            let t1151 = k(0.9813067629253163) * (t529 * t1150 + t1146)
+                + k(0.03774256780481986) * (t1145 + t514 * t1150);
+            let t1152 = k(0.1887128390240993) * (t1147 - t516 * t1150) + t1151;
+            let t1153 = t641 * t1152;
+            let t1154 = t661 * t1150
+                - k(2.0) * (t652 * t1147 - (t651 * t1146 + t650 * t1145));
+            let t1155 = t668 * t1153 + t1154 + (t649 * t1153 + (t637 * t1150 + t1148));
+            let t1156 = t677 * t1150 + (t671 * t1147 - (t670 * t1146 + t669 * t1145));
+            let t1157 = t747
+                * (k(0.9622504486493763) * (t683 * t1153 + t1156)
+                    - k(0.19245008972987526) * t1155);
+            let t1158 = k(0.19245008972987526) * t1157;
+            let t1159 = k(0.9622504486493763) * t1157;
+            let t1160 = t641 * (t1152 - (t683 * t1159 - (t668 * t1158 + t649 * t1158)));
+            let t1161 = k(0.03774256780481986) * t1160;
+            let t1162 = k(0.9813067629253163) * t1160;
+            let t1163 = k(0.1887128390240993) * t1160;
+            let t1164 = t677 * t1159 - (t661 * t1158 + t637 * t1158)
+                + (t516 * t1163 - (t529 * t1162 + t514 * t1161));
+            let t1165 = t517 * (t1149 - t1164);
+            let t1166 = t650 * t1158;
+            let t1167 = t1166 + t593 * t1158 + (t1161 - k(0.9805806756909201) * t1165);
+            let t1168 = t669 * t1159 + (t594 * t1158 + t1166) + t1167;
+            let t1169 = t651 * t1158;
+            let t1170 = t1162 + (t1169 + t597 * t1158);
+            let t1171 = t670 * t1159 - (t598 * t1158 - t1169) + t1170;
+            let t1172 = t652 * t1158;
+            let t1173 = t1172 - t601 * t1158 - (t1163 + k(0.19611613513818404) * t1165);
+            let t1174 = t671 * t1159 + (t602 * t1158 + t1172) + t1173;
+            let t1175 = t771 * t1159 - (t770 * t1158 + t769 * t1158);
+            let t1176 = t775 * t1159 - (t774 * t1158 + t773 * t1158);
+            let t1177 = k(0.0038) * t1176
+                + (t508 * t1174 - (t520 * t1171 - t500 * t1168));
+            let t1178 = t1176 - k(263.1578947368421) * (t1142 + t1177);
+            let t1179 = k(0.008) * t1178 - k(0.02) * t1175
+                + (t507 * t1174 - (t519 * t1171 - t498 * t1168));
+            let t1180 = t1175 - k(50.0) * (t1063 - t1179);
+            let t1181 = t783 * t1159 - (t782 * t1158 + t781 * t1158);
+            let t1182 = k(0.025) * t1181
+                - (t511 * t1174 - (t523 * t1171 + t505 * t1168));
+            let t1183 = t1181 - k(40.0) * (t1072 + t1182);
+            let t1184 = t1072 * t1183 + (t1068 * t1178 + t1063 * t1180)
+                + (t1059 * t1140 + (t1059 * t1139 - t1054 * t1138));
+            let t1185 = k(1.0) / (t1100 * t1101 - (t1097 * t1098 - t1184));
+            let t1186 = k(0.6396021490668313) * (t1053 - t1049);
+            let t1187 = k(0.6396021490668313) * t1058;
+            let t1188 = k(0.4264014327112209) * t1053 + t1187;
+            let t1189 = t1187 + k(0.4264014327112209) * t1049;
+            let t1190 = t1057 - t1056;
+            let t1191 = k(0.128564869306645) * t1190 - k(0.19284730395996752) * t1060
+                - k(0.19284730395996752) * t1061;
+            let t1192 = k(0.30151134457776363) * t1055;
+            let t1193 = k(0.4264014327112209) * (k(0.9045340337332909) * t1057 - t1192)
+                - k(0.6396021490668313) * t1067 - k(0.6396021490668313) * t1065;
+            let t1194 = k(0.4264014327112209) * (t1192 - k(0.9045340337332909) * t1056)
+                - k(0.6396021490668313) * t1070 - k(0.6396021490668313) * t1069;
+            let t1195 = t1194 * t786 + (t1193 * t778 - t1191 * t780)
+                - (t1189 * t431 - (t1188 * t430 + t1186 * t441));
+            let t1196 = t562 * t1057 - (t567 * t1056 - t576 * t1055)
+                - k(2.0) * (shaft_wy * t1075 + shaft_wz * t1087);
+            let t1197 = k(0.9045340337332909)
+                * (t1196 + (t144 * t1050 - (t153 * t1046 - t190 * t1055)));
+            let t1198 = t553 * t1057 + (t573 * t1056 - t567 * t1055)
+                + k(2.0) * (shaft_wy * t1079 + shaft_wz * t1090);
+            let t1199 = t1198 + (t144 * t1051 - (t153 * t1047 - t190 * t1056));
             (
-                t1011,
-                t1012,
-                t1020,
-                t1023,
-                t1026,
-                t1031,
-                t1033,
-                t1036,
+                t1015,
+                t1016,
+                t1024,
+                t1027,
+                t1030,
+                t1035,
                 t1037,
-                t1038,
-                t1039,
+                t1040,
                 t1041,
                 t1042,
                 t1043,
-                t1044,
+                t1045,
                 t1046,
                 t1047,
                 t1048,
+                t1050,
+                t1051,
                 t1052,
-                t1053,
+                t1055,
                 t1056,
                 t1057,
-                t1058,
-                t1074,
-                t1075,
-                t1077,
+                t1060,
+                t1061,
+                t1062,
                 t1078,
                 t1079,
                 t1081,
+                t1082,
+                t1083,
+                t1085,
                 t1086,
-                t1088,
-                t1089,
-                t1091,
+                t1090,
                 t1092,
                 t1093,
-                t1094,
+                t1095,
                 t1096,
                 t1097,
                 t1098,
-                t1116,
-                t1117,
-                t1119,
+                t1100,
+                t1101,
+                t1102,
                 t1120,
-                t1122,
+                t1121,
                 t1123,
-                t1125,
+                t1124,
                 t1126,
-                t1134,
-                t1135,
-                t1136,
-                t1154,
-                t1155,
-                t1163,
-                t1164,
-                t1166,
+                t1127,
+                t1129,
+                t1130,
+                t1138,
+                t1139,
+                t1140,
+                t1158,
+                t1159,
                 t1167,
-                t1169,
+                t1168,
                 t1170,
+                t1171,
+                t1173,
                 t1174,
-                t1176,
-                t1179,
-                t1181,
-                t1182,
-                t1184,
+                t1178,
+                t1180,
+                t1183,
                 t1185,
                 t1186,
-                t1187,
                 t1188,
                 t1189,
                 t1190,
                 t1191,
+                t1192,
+                t1193,
+                t1194,
                 t1195,
                 t1197,
-                t1198,
                 t1199,
             )
         };
         let (
-            t1200,
-            t1202,
+            t1201,
             t1203,
+            t1204,
             t1206,
             t1207,
-            t1208,
-            t1226,
-            t1227,
-            t1229,
+            t1210,
+            t1211,
+            t1212,
             t1230,
-            t1232,
+            t1231,
             t1233,
-            t1235,
+            t1234,
             t1236,
-            t1244,
-            t1245,
-            t1246,
-            t1264,
-            t1265,
-            t1273,
-            t1274,
-            t1276,
+            t1237,
+            t1239,
+            t1240,
+            t1248,
+            t1249,
+            t1250,
+            t1268,
+            t1269,
             t1277,
-            t1279,
+            t1278,
             t1280,
+            t1281,
+            t1283,
             t1284,
-            t1286,
-            t1289,
-            t1291,
-            t1292,
-            t1294,
+            t1288,
+            t1290,
+            t1293,
             t1295,
             t1296,
+            t1298,
             t1299,
             t1300,
             t1303,
-            t1306,
+            t1304,
             t1307,
-            t1308,
             t1310,
             t1311,
             t1312,
+            t1314,
             t1315,
-            t1317,
-            t1318,
+            t1316,
             t1319,
+            t1321,
             t1322,
             t1323,
-            t1324,
+            t1326,
             t1327,
             t1328,
-            t1329,
-            t1330,
+            t1331,
             t1332,
             t1333,
             t1334,
-            t1335,
             t1336,
             t1337,
             t1338,
             t1339,
             t1340,
             t1341,
+            t1342,
+            t1343,
             t1344,
             t1345,
-            t1346,
-            t1347,
             t1348,
             t1349,
             t1350,
             t1351,
             t1352,
             t1353,
+            t1354,
+            t1355,
             t1356,
             t1357,
-            t1358,
             t1360,
-            t1363,
+            t1361,
+            t1362,
             t1364,
-            t1365,
-            t1366,
             t1367,
             t1368,
             t1369,
@@ -13006,332 +13036,335 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t1373,
             t1374,
             t1375,
+            t1376,
+            t1377,
+            t1378,
             t1379,
-            t1382,
             t1383,
-            t1384,
-            t1385,
             t1386,
             t1387,
+            t1388,
             t1389,
+            t1390,
+            t1391,
             t1393,
-            t1394,
-            t1395,
-            t1396,
             t1397,
             t1398,
             t1399,
         ) = {
-            let t1200 = t918 * t1199;
-            let t1201 = t1190 * t1036 + (t1189 * t1031 - t1187 * t1033)
-                - (t1185 * t986 - (t1184 * t985 + t1182 * t990));
-            let t1202 = t945 * t1200 - t1201;
-            let t1203 = t1041 * t1202;
-            let t1204 = t1203 * t947
-                - (t1200 * t824 - (k(0.6396021490668313) * t1092 + t1198 + t1191));
-            let t1205 = t1190 * t1179 + (t1189 * t1174 - t1187 * t1176)
-                - (t1185 * t1136 - (t1184 * t1135 + t1182 * t1134));
-            let t1206 = t1096 * t1203 - (t1093 * t1200 - t1205);
-            let t1207 = t1181 * t1206;
-            let t1208 = t1207 * t1098 - t1204;
-            let t1209 = t152 * t1185 + (t144 * t1184 - t129 * t1182);
-            let t1210 = t157 * t1209;
-            let t1211 = t1182 + t154 * t1210;
-            let t1212 = t162 * t1211;
-            let t1213 = t1211 - t161 * t1212;
-            let t1214 = t224 * t1212 - (t1184 - t155 * t1210);
-            let t1215 = t242 * t1212 + (t1185 - t156 * t1210);
-            let t1216 = t168 * t1212 + t166 * t1210;
-            let t1217 = t194 * t1212 + t192 * t1210;
-            let t1218 = t210 * t1212 + t208 * t1210;
-            let t1219 = t269 * t1218 - (t264 * t1217 - t258 * t1216)
-                - (t230 * t1215 + (t229 * t1214 - t223 * t1213));
-            let t1220 = t274 * t1218 + (t272 * t1217 - t271 * t1216);
-            let t1221 = t281 * t1218 - (t279 * t1217 - t277 * t1216)
-                + (t97 * t1215 + (t98 * t1214 - t127 * t1213));
-            let t1222 = t285 * t1218 - (t289 * t1217 - t287 * t1216);
-            let t1223 = t1222 + (t1222 + (t109 * t1215 + (t108 * t1214 - t128 * t1213)));
-            let t1224 = k(0.6666666666666666) * t1223
-                - (k(0.6666666666666666) * (t1220 + t1221)
-                    - k(0.3333333333333333) * (t1220 + t1219));
-            let t1225 = t404 * t1224;
-            let t1226 = k(0.3333333333333333) * t1225;
-            let t1227 = k(0.6666666666666666) * t1225;
-            let t1228 = t287 * t1227;
-            let t1229 = t1228 + (t271 * t1227 - t271 * t1226);
-            let t1230 = t277 * t1227 - t258 * t1226 - t1228 - t1229;
-            let t1231 = t289 * t1227;
-            let t1232 = t1231 + (t272 * t1227 - t272 * t1226);
-            let t1233 = t279 * t1227 - t264 * t1226 - t1231 - t1232;
-            let t1234 = t285 * t1227;
-            let t1235 = t1234 - (t274 * t1227 - t274 * t1226);
-            let t1236 = t281 * t1227 - t269 * t1226 - t1234 - t1235;
-            let t1237 = t128 * t1227 - (t127 * t1227 + t223 * t1226);
-            let t1238 = t108 * t1227 - (t98 * t1227 + t229 * t1226);
-            let t1239 = t109 * t1227 - (t97 * t1227 + t230 * t1226);
-            let t1240 = t242 * t1239 + (t224 * t1238 + t161 * t1237)
-                - (t210 * t1236 - (t194 * t1233 - t168 * t1230));
-            let t1241 = t1237 + t162 * (t1211 - t1240);
-            let t1242 = t156 * t1239 - (t155 * t1238 - t154 * t1241)
-                + (t208 * t1236 - (t192 * t1233 - t166 * t1230));
-            let t1243 = t157 * (t1209 + t1242);
-            let t1244 = t1241 - t129 * t1243;
-            let t1245 = t1238 + t144 * t1243;
-            let t1246 = t1239 - t152 * t1243;
-            let t1247 = k(50.0) * t1187;
-            let t1248 = t1189 - k(0.4) * t1187;
-            let t1249 = k(263.1578947368421) * t1248;
-            let t1250 = k(40.0) * t1190;
-            let t1251 = t501 * t1250 + (t496 * t1249 + t494 * t1247);
-            let t1252 = t519 * t1250 - (t516 * t1249 + t515 * t1247);
-            let t1253 = t507 * t1250 - (t504 * t1249 + t503 * t1247);
-            let t1254 = t597 * t1253 + (t593 * t1252 + t589 * t1251)
-                - (t598 * t1253 + (t594 * t1252 - t590 * t1251));
-            let t1255 = k(0.19611613513818404) * t1253 - k(0.9805806756909201) * t1251;
-            let t1256 = t513 * t1255;
-            let t1257 = k(0.9813067629253163) * (t525 * t1256 + t1252)
-                + k(0.03774256780481986) * (t1251 + t510 * t1256);
-            let t1258 = k(0.1887128390240993) * (t1253 - t512 * t1256) + t1257;
-            let t1259 = t637 * t1258;
-            let t1260 = t657 * t1256
-                - k(2.0) * (t648 * t1253 - (t647 * t1252 + t646 * t1251));
-            let t1261 = t664 * t1259 + t1260 + (t645 * t1259 + (t633 * t1256 + t1254));
-            let t1262 = t673 * t1256 + (t667 * t1253 - (t666 * t1252 + t665 * t1251));
-            let t1263 = t743
-                * (k(0.9622504486493763) * (t679 * t1259 + t1262)
-                    - k(0.19245008972987526) * t1261);
-            let t1264 = k(0.19245008972987526) * t1263;
-            let t1265 = k(0.9622504486493763) * t1263;
-            let t1266 = t637 * (t1258 - (t679 * t1265 - (t664 * t1264 + t645 * t1264)));
-            let t1267 = k(0.03774256780481986) * t1266;
-            let t1268 = k(0.9813067629253163) * t1266;
-            let t1269 = k(0.1887128390240993) * t1266;
-            let t1270 = t673 * t1265 - (t657 * t1264 + t633 * t1264)
-                + (t512 * t1269 - (t525 * t1268 + t510 * t1267));
-            let t1271 = t513 * (t1255 - t1270);
-            let t1272 = t646 * t1264;
-            let t1273 = t1272 + t589 * t1264 + (t1267 - k(0.9805806756909201) * t1271);
-            let t1274 = t665 * t1265 + (t590 * t1264 + t1272) + t1273;
-            let t1275 = t647 * t1264;
-            let t1276 = t1268 + (t1275 + t593 * t1264);
-            let t1277 = t666 * t1265 - (t594 * t1264 - t1275) + t1276;
-            let t1278 = t648 * t1264;
-            let t1279 = t1278 - t597 * t1264 - (t1269 + k(0.19611613513818404) * t1271);
-            let t1280 = t667 * t1265 + (t598 * t1264 + t1278) + t1279;
-            let t1281 = t767 * t1265 - (t766 * t1264 + t765 * t1264);
-            let t1282 = t771 * t1265 - (t770 * t1264 + t769 * t1264);
-            let t1283 = k(0.0038) * t1282
-                + (t504 * t1280 - (t516 * t1277 - t496 * t1274));
-            let t1284 = t1282 - k(263.1578947368421) * (t1248 + t1283);
-            let t1285 = k(0.008) * t1284 - k(0.02) * t1281
-                + (t503 * t1280 - (t515 * t1277 - t494 * t1274));
-            let t1286 = t1281 + k(50.0) * (t1187 + t1285);
-            let t1287 = t779 * t1265 - (t778 * t1264 + t777 * t1264);
-            let t1288 = k(0.025) * t1287
-                - (t507 * t1280 - (t519 * t1277 + t501 * t1274));
-            let t1289 = t1287 - k(40.0) * (t1190 + t1288);
-            let t1290 = t1190 * t1289 + (t1189 * t1284 - t1187 * t1286)
-                + (t1185 * t1246 - (t1184 * t1245 + t1182 * t1244));
-            let t1291 = k(1.0)
-                / (t1206 * t1207 - (t1202 * t1203 - (t1199 * t1200 - t1290)));
-            let t1292 = nut_wx * nut_wz;
-            let t1293 = nut_e0 * nut_e0;
-            let t1294 = k(0.5) - (t1293 + nut_e1 * nut_e1);
-            let t1295 = k(2.0) * t1294;
-            let t1296 = nut_wy * nut_wz;
-            let t1297 = nut_e0 * nut_e3;
-            let t1298 = nut_e1 * nut_e2;
-            let t1299 = t1298 - t1297;
-            let t1300 = k(2.0) * t1299;
-            let t1301 = nut_wx * nut_wx;
-            let t1302 = nut_wy * nut_wy;
-            let t1303 = t1302 + t1301;
-            let t1304 = nut_e0 * nut_e2;
-            let t1305 = nut_e1 * nut_e3;
-            let t1306 = t1305 + t1304;
-            let t1307 = k(2.0) * t1306;
-            let t1308 = t1307 * t1303 - (t1300 * t1296 - t1295 * t1292);
-            let t1309 = nut_wz * nut_wz;
-            let t1310 = t1309 + t1302;
-            let t1311 = nut_wx * nut_wy;
-            let t1312 = t1307 * t1292 + (t1300 * t1311 + t1295 * t1310);
-            let t1313 = lid_wy * lid_wy;
-            let t1314 = lid_wz * lid_wz;
-            let t1315 = t1314 + t1313;
-            let t1316 = lid_e0 * lid_e0;
-            let t1317 = k(0.5) - (t1316 + lid_e1 * lid_e1);
-            let t1318 = k(2.0) * t1317;
-            let t1319 = lid_wx * lid_wy;
-            let t1320 = lid_e0 * lid_e3;
-            let t1321 = lid_e1 * lid_e2;
-            let t1322 = t1321 - t1320;
-            let t1323 = k(2.0) * t1322;
-            let t1324 = lid_wx * lid_wz;
-            let t1325 = lid_e0 * lid_e2;
-            let t1326 = lid_e1 * lid_e3;
-            let t1327 = t1326 + t1325;
-            let t1328 = k(2.0) * t1327;
-            let t1329 = t1328 * t1324 + (t1323 * t1319 + t1318 * t1315);
-            let t1330 = lid_wy * lid_wz;
-            let t1331 = lid_wx * lid_wx;
-            let t1332 = t1313 + t1331;
-            let t1333 = t1328 * t1332 - (t1323 * t1330 - t1318 * t1324);
-            let t1334 = k(0.1) * t1333;
-            let t1335 = t1334 - k(0.05) * t1329 - (k(0.05) * t1312 - k(0.1) * t1308);
-            let t1336 = t1321 + t1320;
-            let t1337 = k(2.0) * t1336;
-            let t1338 = k(0.5) - (t1293 + nut_e2 * nut_e2);
-            let t1339 = k(2.0) * t1338;
-            let t1340 = t1326 - t1325;
+            let t1200 = t812 * t1057 + (t553 * t1056 + t562 * t1055)
+                - k(2.0) * (shaft_wy * t1083 + shaft_wz * t1093);
+            let t1201 = t1200 + (t144 * t1052 - (t153 * t1048 - t190 * t1057));
+            let t1202 = k(0.6396021490668313) * t1086
+                - k(0.4264014327112209)
+                    * (k(0.30151134457776363) * t1201
+                        + (k(0.30151134457776363) * t1199 + t1197));
+            let t1203 = t1194 * t917 + (t1193 * t912 - t1191 * t914)
+                - (t1189 * t867 - (t1188 * t866 + t1186 * t871));
+            let t1204 = t922 * t1203;
+            let t1205 = t1194 * t1040 + (t1193 * t1035 - t1191 * t1037)
+                - (t1189 * t990 - (t1188 * t989 + t1186 * t994));
+            let t1206 = t949 * t1204 - t1205;
+            let t1207 = t1045 * t1206;
+            let t1208 = t1207 * t951
+                - (t1204 * t828 - (k(0.6396021490668313) * t1096 + t1202 + t1195));
+            let t1209 = t1194 * t1183 + (t1193 * t1178 - t1191 * t1180)
+                - (t1189 * t1140 - (t1188 * t1139 + t1186 * t1138));
+            let t1210 = t1100 * t1207 - (t1097 * t1204 - t1209);
+            let t1211 = t1185 * t1210;
+            let t1212 = t1211 * t1102 - t1208;
+            let t1213 = t156 * t1189 + (t148 * t1188 - t129 * t1186);
+            let t1214 = t161 * t1213;
+            let t1215 = t1186 + t158 * t1214;
+            let t1216 = t166 * t1215;
+            let t1217 = t1215 - t165 * t1216;
+            let t1218 = t228 * t1216 - (t1188 - t159 * t1214);
+            let t1219 = t246 * t1216 + (t1189 - t160 * t1214);
+            let t1220 = t172 * t1216 + t170 * t1214;
+            let t1221 = t198 * t1216 + t196 * t1214;
+            let t1222 = t214 * t1216 + t212 * t1214;
+            let t1223 = t273 * t1222 - (t268 * t1221 - t262 * t1220)
+                - (t234 * t1219 + (t233 * t1218 - t227 * t1217));
+            let t1224 = t278 * t1222 + (t276 * t1221 - t275 * t1220);
+            let t1225 = t285 * t1222 - (t283 * t1221 - t281 * t1220)
+                + (t97 * t1219 + (t98 * t1218 - t127 * t1217));
+            let t1226 = t289 * t1222 - (t293 * t1221 - t291 * t1220);
+            let t1227 = t1226 + (t1226 + (t109 * t1219 + (t108 * t1218 - t128 * t1217)));
+            let t1228 = k(0.6666666666666666) * t1227
+                - (k(0.6666666666666666) * (t1224 + t1225)
+                    - k(0.3333333333333333) * (t1224 + t1223));
+            let t1229 = t408 * t1228;
+            let t1230 = k(0.3333333333333333) * t1229;
+            let t1231 = k(0.6666666666666666) * t1229;
+            let t1232 = t291 * t1231;
+            let t1233 = t1232 + (t275 * t1231 - t275 * t1230);
+            let t1234 = t281 * t1231 - t262 * t1230 - t1232 - t1233;
+            let t1235 = t293 * t1231;
+            let t1236 = t1235 + (t276 * t1231 - t276 * t1230);
+            let t1237 = t283 * t1231 - t268 * t1230 - t1235 - t1236;
+            let t1238 = t289 * t1231;
+            let t1239 = t1238 - (t278 * t1231 - t278 * t1230);
+            let t1240 = t285 * t1231 - t273 * t1230 - t1238 - t1239;
+            let t1241 = t128 * t1231 - (t127 * t1231 + t227 * t1230);
+            let t1242 = t108 * t1231 - (t98 * t1231 + t233 * t1230);
+            let t1243 = t109 * t1231 - (t97 * t1231 + t234 * t1230);
+            let t1244 = t246 * t1243 + (t228 * t1242 + t165 * t1241)
+                - (t214 * t1240 - (t198 * t1237 - t172 * t1234));
+            let t1245 = t1241 + t166 * (t1215 - t1244);
+            let t1246 = t160 * t1243 - (t159 * t1242 - t158 * t1245)
+                + (t212 * t1240 - (t196 * t1237 - t170 * t1234));
+            let t1247 = t161 * (t1213 + t1246);
+            let t1248 = t1245 - t129 * t1247;
+            let t1249 = t1242 + t148 * t1247;
+            let t1250 = t1243 - t156 * t1247;
+            let t1251 = k(50.0) * t1191;
+            let t1252 = t1193 - k(0.4) * t1191;
+            let t1253 = k(263.1578947368421) * t1252;
+            let t1254 = k(40.0) * t1194;
+            let t1255 = t505 * t1254 + (t500 * t1253 + t498 * t1251);
+            let t1256 = t523 * t1254 - (t520 * t1253 + t519 * t1251);
+            let t1257 = t511 * t1254 - (t508 * t1253 + t507 * t1251);
+            let t1258 = t601 * t1257 + (t597 * t1256 + t593 * t1255)
+                - (t602 * t1257 + (t598 * t1256 - t594 * t1255));
+            let t1259 = k(0.19611613513818404) * t1257 - k(0.9805806756909201) * t1255;
+            let t1260 = t517 * t1259;
+            let t1261 = k(0.9813067629253163) * (t529 * t1260 + t1256)
+                + k(0.03774256780481986) * (t1255 + t514 * t1260);
+            let t1262 = k(0.1887128390240993) * (t1257 - t516 * t1260) + t1261;
+            let t1263 = t641 * t1262;
+            let t1264 = t661 * t1260
+                - k(2.0) * (t652 * t1257 - (t651 * t1256 + t650 * t1255));
+            let t1265 = t668 * t1263 + t1264 + (t649 * t1263 + (t637 * t1260 + t1258));
+            let t1266 = t677 * t1260 + (t671 * t1257 - (t670 * t1256 + t669 * t1255));
+            let t1267 = t747
+                * (k(0.9622504486493763) * (t683 * t1263 + t1266)
+                    - k(0.19245008972987526) * t1265);
+            let t1268 = k(0.19245008972987526) * t1267;
+            let t1269 = k(0.9622504486493763) * t1267;
+            let t1270 = t641 * (t1262 - (t683 * t1269 - (t668 * t1268 + t649 * t1268)));
+            let t1271 = k(0.03774256780481986) * t1270;
+            let t1272 = k(0.9813067629253163) * t1270;
+            let t1273 = k(0.1887128390240993) * t1270;
+            let t1274 = t677 * t1269 - (t661 * t1268 + t637 * t1268)
+                + (t516 * t1273 - (t529 * t1272 + t514 * t1271));
+            let t1275 = t517 * (t1259 - t1274);
+            let t1276 = t650 * t1268;
+            let t1277 = t1276 + t593 * t1268 + (t1271 - k(0.9805806756909201) * t1275);
+            let t1278 = t669 * t1269 + (t594 * t1268 + t1276) + t1277;
+            let t1279 = t651 * t1268;
+            let t1280 = t1272 + (t1279 + t597 * t1268);
+            let t1281 = t670 * t1269 - (t598 * t1268 - t1279) + t1280;
+            let t1282 = t652 * t1268;
+            let t1283 = t1282 - t601 * t1268 - (t1273 + k(0.19611613513818404) * t1275);
+            let t1284 = t671 * t1269 + (t602 * t1268 + t1282) + t1283;
+            let t1285 = t771 * t1269 - (t770 * t1268 + t769 * t1268);
+            let t1286 = t775 * t1269 - (t774 * t1268 + t773 * t1268);
+            let t1287 = k(0.0038) * t1286
+                + (t508 * t1284 - (t520 * t1281 - t500 * t1278));
+            let t1288 = t1286 - k(263.1578947368421) * (t1252 + t1287);
+            let t1289 = k(0.008) * t1288 - k(0.02) * t1285
+                + (t507 * t1284 - (t519 * t1281 - t498 * t1278));
+            let t1290 = t1285 + k(50.0) * (t1191 + t1289);
+            let t1291 = t783 * t1269 - (t782 * t1268 + t781 * t1268);
+            let t1292 = k(0.025) * t1291
+                - (t511 * t1284 - (t523 * t1281 + t505 * t1278));
+            let t1293 = t1291 - k(40.0) * (t1194 + t1292);
+            let t1294 = t1194 * t1293 + (t1193 * t1288 - t1191 * t1290)
+                + (t1189 * t1250 - (t1188 * t1249 + t1186 * t1248));
+            let t1295 = k(1.0)
+                / (t1210 * t1211 - (t1206 * t1207 - (t1203 * t1204 - t1294)));
+            let t1296 = nut_wx * nut_wz;
+            let t1297 = nut_e0 * nut_e0;
+            let t1298 = k(0.5) - (t1297 + nut_e1 * nut_e1);
+            let t1299 = k(2.0) * t1298;
+            let t1300 = nut_wy * nut_wz;
+            let t1301 = nut_e0 * nut_e3;
+            let t1302 = nut_e1 * nut_e2;
+            let t1303 = t1302 - t1301;
+            let t1304 = k(2.0) * t1303;
+            let t1305 = nut_wx * nut_wx;
+            let t1306 = nut_wy * nut_wy;
+            let t1307 = t1306 + t1305;
+            let t1308 = nut_e0 * nut_e2;
+            let t1309 = nut_e1 * nut_e3;
+            let t1310 = t1309 + t1308;
+            let t1311 = k(2.0) * t1310;
+            let t1312 = t1311 * t1307 - (t1304 * t1300 - t1299 * t1296);
+            let t1313 = nut_wz * nut_wz;
+            let t1314 = t1313 + t1306;
+            let t1315 = nut_wx * nut_wy;
+            let t1316 = t1311 * t1296 + (t1304 * t1315 + t1299 * t1314);
+            let t1317 = lid_wy * lid_wy;
+            let t1318 = lid_wz * lid_wz;
+            let t1319 = t1318 + t1317;
+            let t1320 = lid_e0 * lid_e0;
+            let t1321 = k(0.5) - (t1320 + lid_e1 * lid_e1);
+            let t1322 = k(2.0) * t1321;
+            let t1323 = lid_wx * lid_wy;
+            let t1324 = lid_e0 * lid_e3;
+            let t1325 = lid_e1 * lid_e2;
+            let t1326 = t1325 - t1324;
+            let t1327 = k(2.0) * t1326;
+            let t1328 = lid_wx * lid_wz;
+            let t1329 = lid_e0 * lid_e2;
+            let t1330 = lid_e1 * lid_e3;
+            let t1331 = t1330 + t1329;
+            let t1332 = k(2.0) * t1331;
+            let t1333 = t1332 * t1328 + (t1327 * t1323 + t1322 * t1319);
+            let t1334 = lid_wy * lid_wz;
+            let t1335 = lid_wx * lid_wx;
+            let t1336 = t1317 + t1335;
+            let t1337 = t1332 * t1336 - (t1327 * t1334 - t1322 * t1328);
+            let t1338 = k(0.1) * t1337;
+            let t1339 = t1338 - k(0.05) * t1333 - (k(0.05) * t1316 - k(0.1) * t1312);
+            let t1340 = t1325 + t1324;
             let t1341 = k(2.0) * t1340;
-            let t1342 = nut_e0 * nut_e1;
-            let t1343 = nut_e2 * nut_e3;
-            let t1344 = t1343 + t1342;
+            let t1342 = k(0.5) - (t1297 + nut_e2 * nut_e2);
+            let t1343 = k(2.0) * t1342;
+            let t1344 = t1330 - t1329;
             let t1345 = k(2.0) * t1344;
-            let t1346 = t1345 * t1341 - (t1339 * t1337 + t1300 * t1318);
-            let t1347 = t1298 + t1297;
-            let t1348 = k(2.0) * t1347;
-            let t1349 = t1305 - t1304;
-            let t1350 = k(2.0) * t1349;
-            let t1351 = t1350 * t1341 + (t1348 * t1337 + t1295 * t1318);
-            let t1352 = k(0.5) - (t1316 + lid_e2 * lid_e2);
-            let t1353 = k(2.0) * t1352;
-            let t1354 = lid_e0 * lid_e1;
-            let t1355 = lid_e2 * lid_e3;
-            let t1356 = t1355 + t1354;
+            let t1346 = nut_e0 * nut_e1;
+            let t1347 = nut_e2 * nut_e3;
+            let t1348 = t1347 + t1346;
+            let t1349 = k(2.0) * t1348;
+            let t1350 = t1349 * t1345 - (t1343 * t1341 + t1304 * t1322);
+            let t1351 = t1302 + t1301;
+            let t1352 = k(2.0) * t1351;
+            let t1353 = t1309 - t1308;
+            let t1354 = k(2.0) * t1353;
+            let t1355 = t1354 * t1345 + (t1352 * t1341 + t1299 * t1322);
+            let t1356 = k(0.5) - (t1320 + lid_e2 * lid_e2);
             let t1357 = k(2.0) * t1356;
-            let t1358 = t1345 * t1357 + (t1339 * t1353 + t1300 * t1323);
-            let t1359 = t1351 * t1358;
-            let t1360 = t1350 * t1357 - (t1348 * t1353 + t1295 * t1323);
-            let t1361 = t1360 * t1346 - t1359;
-            let t1362 = k(1.0) / (t1351 * t1361);
-            let t1363 = t1355 - t1354;
-            let t1364 = k(2.0) * t1363;
-            let t1365 = k(0.5) - (t1316 + lid_e3 * lid_e3);
-            let t1366 = k(2.0) * t1365;
-            let t1367 = t1350 * t1366 - (t1348 * t1364 - t1295 * t1328);
-            let t1368 = t1345 * t1366 + (t1339 * t1364 - t1300 * t1328);
-            let t1369 = t1343 - t1342;
+            let t1358 = lid_e0 * lid_e1;
+            let t1359 = lid_e2 * lid_e3;
+            let t1360 = t1359 + t1358;
+            let t1361 = k(2.0) * t1360;
+            let t1362 = t1349 * t1361 + (t1343 * t1357 + t1304 * t1327);
+            let t1363 = t1355 * t1362;
+            let t1364 = t1354 * t1361 - (t1352 * t1357 + t1299 * t1327);
+            let t1365 = t1364 * t1350 - t1363;
+            let t1366 = k(1.0) / (t1355 * t1365);
+            let t1367 = t1359 - t1358;
+            let t1368 = k(2.0) * t1367;
+            let t1369 = k(0.5) - (t1320 + lid_e3 * lid_e3);
             let t1370 = k(2.0) * t1369;
-            let t1371 = k(0.5) - (t1293 + nut_e3 * nut_e3);
-            let t1372 = k(2.0) * t1371;
-            let t1373 = t1372 * t1366 + (t1370 * t1364 + t1307 * t1328);
-            let t1374 = t1372 * t1341 - (t1370 * t1337 - t1307 * t1318);
-            let t1375 = t1372 * t1357 + (t1370 * t1353 - t1307 * t1323);
-            let t1376 = lid_wx * t1375 - lid_wy * t1374;
-            let t1377 = k(2.0)
-                * (nut_wy * t1376 + nut_wz * (lid_wx * t1358 - lid_wy * t1346));
-            let t1378 = t1332 * t1367 + (t1330 * t1360 + t1324 * t1351) - t1377
-                + (t1292 * t1373 - (t1311 * t1368 - t1310 * t1367));
-            let t1379 = t1309 + t1301;
-            let t1380 = k(2.0)
-                * (nut_wx * t1376 + nut_wz * (lid_wx * t1360 - lid_wy * t1351));
-            let t1381 = t1332 * t1368 + (t1330 * t1358 + t1324 * t1346) + t1380
-                + (t1296 * t1373 + (t1379 * t1368 - t1311 * t1367));
-            let t1382 = t1381 * (t1362 * (t1351 * t1351))
-                - t1378 * (t1362 * (t1351 * t1346));
-            let t1383 = k(0.04) * t1322;
-            let t1384 = t1381 * (t1362 * (t1360 * t1351)) - t1378 * (t1359 * t1362);
-            let t1385 = k(0.2) * t1317;
-            let t1386 = k(0.1) * t1327 + t1385;
-            let t1387 = k(0.2) * t1386;
-            let t1388 = nut_wy * (lid_wx * t1373 + lid_wz * t1374)
-                + nut_wz * (lid_wx * t1368 + lid_wz * t1346);
-            let t1389 = t1314 + t1331;
-            let t1390 = t1330 * t1367 + (t1389 * t1360 - t1319 * t1351) + k(2.0) * t1388;
-            let t1391 = (t1390 + (t1292 * t1375 - (t1311 * t1358 - t1310 * t1360)))
-                * (t1361 * t1362);
-            let t1392 = t1381 * (t1362 * (t1367 * t1351))
-                - t1378 * (t1362 * (t1367 * t1346));
-            let t1393 = t1392 - t1391;
-            let t1394 = k(0.02) * t1322;
-            let t1395 = t1394 * t1393 + (t1387 * t1384 + t1383 * t1382) - k(0.2) * t1335;
-            let t1396 = slide_e0 * slide_e0;
-            let t1397 = k(0.5) - (t1396 + slide_e2 * slide_e2);
-            let t1398 = k(2.0) * t1397;
-            let t1399 = slide_e0 * slide_e3;
+            let t1371 = t1354 * t1370 - (t1352 * t1368 - t1299 * t1332);
+            let t1372 = t1349 * t1370 + (t1343 * t1368 - t1304 * t1332);
+            let t1373 = t1347 - t1346;
+            let t1374 = k(2.0) * t1373;
+            let t1375 = k(0.5) - (t1297 + nut_e3 * nut_e3);
+            let t1376 = k(2.0) * t1375;
+            let t1377 = t1376 * t1370 + (t1374 * t1368 + t1311 * t1332);
+            let t1378 = t1376 * t1345 - (t1374 * t1341 - t1311 * t1322);
+            let t1379 = t1376 * t1361 + (t1374 * t1357 - t1311 * t1327);
+            let t1380 = lid_wx * t1379 - lid_wy * t1378;
+            let t1381 = k(2.0)
+                * (nut_wy * t1380 + nut_wz * (lid_wx * t1362 - lid_wy * t1350));
+            let t1382 = t1336 * t1371 + (t1334 * t1364 + t1328 * t1355) - t1381
+                + (t1296 * t1377 - (t1315 * t1372 - t1314 * t1371));
+            let t1383 = t1313 + t1305;
+            let t1384 = k(2.0)
+                * (nut_wx * t1380 + nut_wz * (lid_wx * t1364 - lid_wy * t1355));
+            let t1385 = t1336 * t1372 + (t1334 * t1362 + t1328 * t1350) + t1384
+                + (t1300 * t1377 + (t1383 * t1372 - t1315 * t1371));
+            let t1386 = t1385 * (t1366 * (t1355 * t1355))
+                - t1382 * (t1366 * (t1355 * t1350));
+            let t1387 = k(0.04) * t1326;
+            let t1388 = t1385 * (t1366 * (t1364 * t1355)) - t1382 * (t1363 * t1366);
+            let t1389 = k(0.2) * t1321;
+            let t1390 = k(0.1) * t1331 + t1389;
+            let t1391 = k(0.2) * t1390;
+            let t1392 = nut_wy * (lid_wx * t1377 + lid_wz * t1378)
+                + nut_wz * (lid_wx * t1372 + lid_wz * t1350);
+            let t1393 = t1318 + t1335;
+            let t1394 = t1334 * t1371 + (t1393 * t1364 - t1323 * t1355) + k(2.0) * t1392;
+            let t1395 = (t1394 + (t1296 * t1379 - (t1315 * t1362 - t1314 * t1364)))
+                * (t1365 * t1366);
+            let t1396 = t1385 * (t1366 * (t1371 * t1355))
+                - t1382 * (t1366 * (t1371 * t1350));
+            let t1397 = t1396 - t1395;
+            let t1398 = k(0.02) * t1326;
+            let t1399 = t1398 * t1397 + (t1391 * t1388 + t1387 * t1386) - k(0.2) * t1339;
             (
-                t1200,
-                t1202,
+                t1201,
                 t1203,
+                t1204,
                 t1206,
                 t1207,
-                t1208,
-                t1226,
-                t1227,
-                t1229,
+                t1210,
+                t1211,
+                t1212,
                 t1230,
-                t1232,
+                t1231,
                 t1233,
-                t1235,
+                t1234,
                 t1236,
-                t1244,
-                t1245,
-                t1246,
-                t1264,
-                t1265,
-                t1273,
-                t1274,
-                t1276,
+                t1237,
+                t1239,
+                t1240,
+                t1248,
+                t1249,
+                t1250,
+                t1268,
+                t1269,
                 t1277,
-                t1279,
+                t1278,
                 t1280,
+                t1281,
+                t1283,
                 t1284,
-                t1286,
-                t1289,
-                t1291,
-                t1292,
-                t1294,
+                t1288,
+                t1290,
+                t1293,
                 t1295,
                 t1296,
+                t1298,
                 t1299,
                 t1300,
                 t1303,
-                t1306,
+                t1304,
                 t1307,
-                t1308,
                 t1310,
                 t1311,
                 t1312,
+                t1314,
                 t1315,
-                t1317,
-                t1318,
+                t1316,
                 t1319,
+                t1321,
                 t1322,
                 t1323,
-                t1324,
+                t1326,
                 t1327,
                 t1328,
-                t1329,
-                t1330,
+                t1331,
                 t1332,
                 t1333,
                 t1334,
-                t1335,
                 t1336,
                 t1337,
                 t1338,
                 t1339,
                 t1340,
                 t1341,
+                t1342,
+                t1343,
                 t1344,
                 t1345,
-                t1346,
-                t1347,
                 t1348,
                 t1349,
                 t1350,
                 t1351,
                 t1352,
                 t1353,
+                t1354,
+                t1355,
                 t1356,
                 t1357,
-                t1358,
                 t1360,
-                t1363,
+                t1361,
+                t1362,
                 t1364,
-                t1365,
-                t1366,
                 t1367,
                 t1368,
                 t1369,
@@ -13341,18 +13374,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 t1373,
                 t1374,
                 t1375,
+                t1376,
+                t1377,
+                t1378,
                 t1379,
-                t1382,
                 t1383,
-                t1384,
-                t1385,
                 t1386,
                 t1387,
+                t1388,
                 t1389,
+                t1390,
+                t1391,
                 t1393,
-                t1394,
-                t1395,
-                t1396,
                 t1397,
                 t1398,
                 t1399,
@@ -13363,15 +13396,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t1402,
             t1405,
             t1406,
-            t1407,
-            t1408,
             t1409,
             t1410,
             t1411,
+            t1412,
+            t1413,
             t1414,
             t1415,
-            t1416,
-            t1417,
             t1418,
             t1419,
             t1420,
@@ -13389,26 +13420,26 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t1432,
             t1433,
             t1434,
+            t1435,
             t1436,
             t1437,
+            t1438,
             t1440,
+            t1441,
             t1444,
-            t1446,
-            t1447,
             t1448,
-            t1449,
             t1450,
             t1451,
             t1452,
             t1453,
             t1454,
             t1455,
+            t1456,
             t1457,
             t1458,
+            t1459,
             t1461,
             t1462,
-            t1463,
-            t1464,
             t1465,
             t1466,
             t1467,
@@ -13416,324 +13447,325 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t1469,
             t1470,
             t1471,
+            t1472,
             t1473,
             t1474,
-            t1480,
-            t1481,
-            t1482,
-            t1483,
-            t1488,
-            t1491,
+            t1475,
+            t1477,
+            t1478,
+            t1484,
+            t1485,
+            t1486,
+            t1487,
             t1492,
-            t1493,
-            t1498,
-            t1499,
-            t1500,
+            t1495,
+            t1496,
+            t1497,
+            t1502,
             t1503,
-            t1505,
+            t1504,
             t1507,
-            t1510,
+            t1509,
             t1511,
-            t1512,
             t1514,
-            t1517,
-            t1520,
-            t1523,
+            t1515,
+            t1516,
+            t1518,
+            t1521,
             t1524,
             t1527,
-            t1530,
-            t1533,
+            t1528,
+            t1531,
             t1534,
             t1537,
-            t1540,
-            t1543,
+            t1538,
+            t1541,
             t1544,
-            t1558,
-            t1566,
+            t1547,
+            t1548,
+            t1562,
             t1570,
-            t1572,
-            t1573,
+            t1574,
+            t1576,
+            t1577,
+            t1582,
             t1586,
-            t1591,
-            t1592,
+            t1590,
             t1593,
-            t1594,
             t1595,
             t1596,
             t1597,
             t1598,
             t1599,
         ) = {
-            let t1400 = slide_e1 * slide_e2;
-            let t1401 = t1400 - t1399;
+            let t1400 = slide_e0 * slide_e0;
+            let t1401 = k(0.5) - (t1400 + slide_e2 * slide_e2);
             let t1402 = k(2.0) * t1401;
-            let t1403 = slide_e0 * slide_e1;
-            let t1404 = slide_e2 * slide_e3;
-            let t1405 = t1404 + t1403;
+            let t1403 = slide_e0 * slide_e3;
+            let t1404 = slide_e1 * slide_e2;
+            let t1405 = t1404 - t1403;
             let t1406 = k(2.0) * t1405;
-            let t1407 = t1406 * t1372 - (t1402 * t1307 - t1398 * t1370);
-            let t1408 = k(0.5) - (t1396 + slide_e1 * slide_e1);
-            let t1409 = k(2.0) * t1408;
-            let t1410 = t1400 + t1399;
-            let t1411 = k(2.0) * t1410;
-            let t1412 = slide_e0 * slide_e2;
-            let t1413 = slide_e1 * slide_e3;
-            let t1414 = t1413 - t1412;
+            let t1407 = slide_e0 * slide_e1;
+            let t1408 = slide_e2 * slide_e3;
+            let t1409 = t1408 + t1407;
+            let t1410 = k(2.0) * t1409;
+            let t1411 = t1410 * t1376 - (t1406 * t1311 - t1402 * t1374);
+            let t1412 = k(0.5) - (t1400 + slide_e1 * slide_e1);
+            let t1413 = k(2.0) * t1412;
+            let t1414 = t1404 + t1403;
             let t1415 = k(2.0) * t1414;
-            let t1416 = t1415 * t1372 - (t1411 * t1370 - t1409 * t1307);
-            let t1417 = k(0.5) - (t1396 + slide_e3 * slide_e3);
-            let t1418 = k(2.0) * t1417;
-            let t1419 = t1404 - t1403;
-            let t1420 = k(2.0) * t1419;
-            let t1421 = t1413 + t1412;
+            let t1416 = slide_e0 * slide_e2;
+            let t1417 = slide_e1 * slide_e3;
+            let t1418 = t1417 - t1416;
+            let t1419 = k(2.0) * t1418;
+            let t1420 = t1419 * t1376 - (t1415 * t1374 - t1413 * t1311);
+            let t1421 = k(0.5) - (t1400 + slide_e3 * slide_e3);
             let t1422 = k(2.0) * t1421;
-            let t1423 = t1422 * t1307 + t1420 * t1370 + t1418 * t1372;
-            let t1424 = t1415 * t1350 + (t1411 * t1348 + t1409 * t1295);
-            let t1425 = t1415 * t1345 - (t1411 * t1339 + t1409 * t1300);
-            let t1426 = k(0.8944271909999159) * t1425 + k(0.4472135954999579) * t1424;
-            let t1427 = t1406 * t1350 - (t1398 * t1348 + t1402 * t1295);
-            let t1428 = t1406 * t1345 + (t1402 * t1300 + t1398 * t1339);
-            let t1429 = k(0.8944271909999159) * t1428 + k(0.4472135954999579) * t1427;
-            let t1430 = k(0.8944271909999159) * t1429 + k(0.4472135954999579) * t1426;
-            let t1431 = t1418 * t1350 - (t1420 * t1348 - t1422 * t1295);
-            let t1432 = t1418 * t1345 - (t1422 * t1300 - t1420 * t1339);
+            let t1423 = t1408 - t1407;
+            let t1424 = k(2.0) * t1423;
+            let t1425 = t1417 + t1416;
+            let t1426 = k(2.0) * t1425;
+            let t1427 = t1426 * t1311 + t1424 * t1374 + t1422 * t1376;
+            let t1428 = t1419 * t1354 + (t1415 * t1352 + t1413 * t1299);
+            let t1429 = t1419 * t1349 - (t1415 * t1343 + t1413 * t1304);
+            let t1430 = k(0.8944271909999159) * t1429 + k(0.4472135954999579) * t1428;
+            let t1431 = t1410 * t1354 - (t1402 * t1352 + t1406 * t1299);
+            let t1432 = t1410 * t1349 + (t1406 * t1304 + t1402 * t1343);
             let t1433 = k(0.8944271909999159) * t1432 + k(0.4472135954999579) * t1431;
-            let t1434 = k(0.7453559924999299) * t1433
-                - (k(0.29814239699997197) * t1429 - k(0.5962847939999439) * t1426);
-            let t1435 = t1434 * (k(0.4) * t1416 + k(0.8) * t1407)
-                - t1430
-                    * (k(0.6666666666666666) * t1423
-                        + (k(0.5333333333333333) * t1416
-                            - k(0.26666666666666666) * t1407));
-            let t1436 = k(1.0) / (t1434 * t1434 + t1430 * t1430);
-            let t1437 = t1436 * t1435;
-            let t1438 = k(0.3333333333333333) * t1423;
-            let t1439 = t1434 * (k(0.2) * t1416 + k(0.4) * t1407)
-                - t1430
-                    * (k(0.26666666666666666) * t1416 - k(0.13333333333333333) * t1407
-                        + t1438);
-            let t1440 = t1436 * t1439;
-            let t1441 = k(0.4472135954999579) * t1428 - k(0.8944271909999159) * t1427;
-            let t1442 = k(0.4472135954999579) * t1425 - k(0.8944271909999159) * t1424;
-            let t1443 = k(0.5962847939999439) * t1442 - k(0.29814239699997197) * t1441
+            let t1434 = k(0.8944271909999159) * t1433 + k(0.4472135954999579) * t1430;
+            let t1435 = t1422 * t1354 - (t1424 * t1352 - t1426 * t1299);
+            let t1436 = t1422 * t1349 - (t1426 * t1304 - t1424 * t1343);
+            let t1437 = k(0.8944271909999159) * t1436 + k(0.4472135954999579) * t1435;
+            let t1438 = k(0.7453559924999299) * t1437
+                - (k(0.29814239699997197) * t1433 - k(0.5962847939999439) * t1430);
+            let t1439 = t1438 * (k(0.4) * t1420 + k(0.8) * t1411)
+                - t1434
+                    * (k(0.6666666666666666) * t1427
+                        + (k(0.5333333333333333) * t1420
+                            - k(0.26666666666666666) * t1411));
+            let t1440 = k(1.0) / (t1438 * t1438 + t1434 * t1434);
+            let t1441 = t1440 * t1439;
+            let t1442 = k(0.3333333333333333) * t1427;
+            let t1443 = t1438 * (k(0.2) * t1420 + k(0.4) * t1411)
+                - t1434
+                    * (k(0.26666666666666666) * t1420 - k(0.13333333333333333) * t1411
+                        + t1442);
+            let t1444 = t1440 * t1443;
+            let t1445 = k(0.4472135954999579) * t1432 - k(0.8944271909999159) * t1431;
+            let t1446 = k(0.4472135954999579) * t1429 - k(0.8944271909999159) * t1428;
+            let t1447 = k(0.5962847939999439) * t1446 - k(0.29814239699997197) * t1445
                 + k(0.7453559924999299)
-                    * (k(0.4472135954999579) * t1432 - k(0.8944271909999159) * t1431);
-            let t1444 = t1436
-                * (t1434
-                    * (k(0.4472135954999579) * t1442 + k(0.8944271909999159) * t1441)
-                    - t1430 * t1443);
-            let t1445 = k(0.0021220659078919376) * t1444
-                - (k(0.0010610329539459688) * t1440 + k(0.0021220659078919376) * t1437);
-            let t1446 = k(0.6666666666666666) * t1401;
-            let t1447 = k(1.3333333333333333) * t1421;
-            let t1448 = t1447 - (t1446 + k(1.3333333333333333) * t1408);
-            let t1449 = t1448 * t1445;
-            let t1450 = t1370 * t1303 + (t1339 * t1296 - t1348 * t1292);
-            let t1451 = t1370 * t1292 - (t1339 * t1311 + t1348 * t1310);
-            let t1452 = t1364 * t1324 - (t1353 * t1319 + t1337 * t1315);
-            let t1453 = t1364 * t1332 + (t1353 * t1330 - t1337 * t1324);
-            let t1454 = k(0.1) * t1453;
-            let t1455 = t1454 - k(0.05) * t1452 - (k(0.05) * t1451 - k(0.1) * t1450);
-            let t1456 = k(0.04) * t1352;
-            let t1457 = k(0.2) * t1336;
-            let t1458 = k(0.1) * t1363 - t1457;
-            let t1459 = k(0.2) * t1458;
-            let t1460 = k(0.02) * t1352;
-            let t1461 = t1460 * t1393 - (t1459 * t1384 - t1456 * t1382) + k(0.2) * t1455;
-            let t1462 = k(0.6666666666666666) * t1397;
-            let t1463 = k(1.3333333333333333) * t1419;
-            let t1464 = t1463 + (t1462 + k(1.3333333333333333) * t1410);
-            let t1465 = t1464 * t1445;
-            let t1466 = t1372 * t1303 + (t1345 * t1296 + t1350 * t1292);
-            let t1467 = t1372 * t1292 - (t1345 * t1311 - t1350 * t1310);
-            let t1468 = t1366 * t1324 - (t1357 * t1319 - t1341 * t1315);
-            let t1469 = t1366 * t1332 + (t1357 * t1330 + t1341 * t1324);
-            let t1470 = k(0.1) * t1469;
-            let t1471 = t1470 - k(0.05) * t1468 - (k(0.05) * t1467 - k(0.1) * t1466);
-            let t1472 = k(0.04) * t1356;
-            let t1473 = k(0.2) * t1340;
-            let t1474 = k(0.1) * t1365 + t1473;
-            let t1475 = k(0.2) * t1474;
-            let t1476 = k(0.02) * t1356;
-            let t1477 = t1476 * t1393 - (t1475 * t1384 - t1472 * t1382) + k(0.2) * t1471;
-            let t1478 = k(0.2) * self.gravity;
-            let t1479 = t1478 + t1477;
-            let t1480 = k(0.3) * self.gravity + t1479;
-            let t1481 = k(1.3333333333333333) * t1417
-                + (k(0.6666666666666666) * t1405 - k(1.3333333333333333) * t1414);
-            let t1482 = t1481 * t1445;
-            let t1483 = k(0.2) * t1356;
-            let t1484 = k(0.001) * t1393 + k(0.003) * t1382
-                + (t1471 * t1472 + (t1455 * t1456 - t1335 * t1383));
-            let t1485 = t1484 - (k(0.0005) * t1330 - t1478 * t1483);
-            let t1486 = k(0.004) * t1384
-                - (t1471 * t1475 + (t1455 * t1459 + t1335 * t1387));
-            let t1487 = t1486 + (k(0.001) * t1324 - t1478 * t1474);
-            let t1488 = k(0.1) * t1356;
-            let t1489 = k(0.0025) * t1393 + k(0.001) * t1382
-                + (t1471 * t1476 + (t1455 * t1460 - t1335 * t1394));
-            let t1490 = t1489 + (k(0.0005) * t1319 + t1478 * t1488);
-            let t1491 = k(0.2) * t1344;
-            let t1492 = k(0.2) * t1299;
-            let t1493 = k(0.2) * t1338;
-            let t1494 = t1493 * t1461 + t1492 * t1395;
-            let t1495 = t1494 + t1491 * t1479
-                + (t1367 * t1490 + (t1360 * t1487 + t1351 * t1485));
-            let t1496 = k(0.6666666666666666) * self.motor;
-            let t1497 = t1491 * t1480 + t1494;
-            let t1498 = k(0.1) * t1306 + k(0.2) * t1294;
-            let t1499 = k(0.1) * t1369 - k(0.2) * t1347;
-            let t1500 = k(0.1) * t1371 + k(0.2) * t1349;
-            let t1501 = t1500 * t1479 + (t1499 * t1461 - t1498 * t1395)
-                - (t1368 * t1490 + (t1358 * t1487 + t1346 * t1485));
-            let t1502 = t1294 + t1306;
-            let t1503 = k(0.2) * -t1502;
-            let t1504 = t1347 - t1369;
-            let t1505 = k(0.2) * t1504;
-            let t1506 = t1349 + t1371;
-            let t1507 = k(0.2) * t1506;
-            let t1508 = t1507 * t1480 - (t1505 * t1461 - t1503 * t1395)
-                + (k(0.3333333333333333) * self.motor - k(0.001) * t1292 + t1501);
-            let t1509 = k(0.3333333333333333) * t1508
-                + k(0.6666666666666666) * (t1497 + (t1496 - k(0.0005) * t1296 + t1495));
-            let t1510 = k(0.1) * t1299;
-            let t1511 = k(0.1) * t1338;
-            let t1512 = k(0.1) * t1344;
-            let t1513 = t1512 * t1479 + (t1511 * t1461 + t1510 * t1395)
-                + (t1373 * t1490 + (t1375 * t1487 + t1374 * t1485));
-            let t1514 = k(0.6666666666666666)
-                * (t1497 - (t1496 - k(0.0005) * t1311 - t1513)) - t1509
-                - (t1482 * t1480 + (t1465 * t1461 - t1449 * t1395));
-            let t1515 = t1367 * t1394 + (t1360 * t1387 + t1351 * t1383);
-            let t1516 = t1515 + k(0.04) * t1299;
-            let t1517 = t1510 + t1516;
-            let t1518 = t1368 * t1394 + (t1358 * t1387 + t1346 * t1383);
-            let t1519 = k(0.2) * t1498 + t1518;
-            let t1520 = t1519 - k(0.1) * -t1502;
-            let t1521 = t1373 * t1394 + (t1375 * t1387 + t1374 * t1383);
-            let t1522 = t1521 + k(0.02) * t1299;
-            let t1523 = t1510 + t1522;
-            let t1524 = k(0.6666666666666666) * t1523
-                + (k(0.3333333333333333) * t1520 - k(0.6666666666666666) * t1517)
-                + k(0.5) * t1449;
-            let t1525 = t1367 * t1460 - (t1360 * t1459 - t1351 * t1456);
-            let t1526 = t1525 + k(0.04) * t1338;
-            let t1527 = t1511 + t1526;
-            let t1528 = t1368 * t1460 - (t1358 * t1459 - t1346 * t1456);
-            let t1529 = k(0.2) * t1499 - t1528;
-            let t1530 = t1529 - k(0.1) * t1504;
-            let t1531 = t1373 * t1460 - (t1375 * t1459 - t1374 * t1456);
-            let t1532 = t1531 + k(0.02) * t1338;
-            let t1533 = t1511 + t1532;
-            let t1534 = k(0.6666666666666666) * t1533
-                - (k(0.3333333333333333) * t1530 + k(0.6666666666666666) * t1527)
-                - k(0.5) * t1465;
-            let t1535 = t1367 * t1476 - (t1360 * t1475 - t1351 * t1472);
-            let t1536 = t1535 + k(0.04) * t1344;
-            let t1537 = t1512 + t1536;
-            let t1538 = t1368 * t1476 - (t1358 * t1475 - t1346 * t1472);
-            let t1539 = k(0.2) * t1500 - t1538;
-            let t1540 = t1539 + k(0.1) * t1506;
-            let t1541 = t1373 * t1476 - (t1375 * t1475 - t1374 * t1472);
-            let t1542 = t1541 + k(0.02) * t1344;
-            let t1543 = t1512 + t1542;
-            let t1544 = k(0.6666666666666666) * t1543
-                - (k(0.3333333333333333) * t1540 + k(0.6666666666666666) * t1537)
-                - k(0.5) * t1482;
-            let t1545 = t1491 * t1536 + (t1493 * t1526 + t1492 * t1516);
-            let t1546 = k(0.001) * t1367 + k(0.003) * t1351;
-            let t1547 = k(0.004) * t1360;
-            let t1548 = k(0.0025) * t1367 + k(0.001) * t1351;
-            let t1549 = k(0.002) + (t1367 * t1548 + (t1360 * t1547 + t1351 * t1546))
-                + k(2.0) * (t1491 * t1535 + (t1493 * t1525 + t1492 * t1515));
-            let t1550 = t1500 * t1535 + (t1499 * t1525 - t1498 * t1515)
-                - (t1491 * t1538 + (t1493 * t1528 + t1492 * t1518));
-            let t1551 = t1491 * t1539 + (t1493 * t1529 - t1492 * t1519);
-            let t1552 = t1551 + (t1507 * t1536 - (t1505 * t1526 - t1503 * t1516))
-                + (t1550 - (t1368 * t1548 + (t1358 * t1547 + t1346 * t1546)));
-            let t1553 = k(0.3333333333333333) * t1552
+                    * (k(0.4472135954999579) * t1436 - k(0.8944271909999159) * t1435);
+            let t1448 = t1440
+                * (t1438
+                    * (k(0.4472135954999579) * t1446 + k(0.8944271909999159) * t1445)
+                    - t1434 * t1447);
+            let t1449 = k(0.0021220659078919376) * t1448
+                - (k(0.0010610329539459688) * t1444 + k(0.0021220659078919376) * t1441);
+            let t1450 = k(0.6666666666666666) * t1405;
+            let t1451 = k(1.3333333333333333) * t1425;
+            let t1452 = t1451 - (t1450 + k(1.3333333333333333) * t1412);
+            let t1453 = t1452 * t1449;
+            let t1454 = t1374 * t1307 + (t1343 * t1300 - t1352 * t1296);
+            let t1455 = t1374 * t1296 - (t1343 * t1315 + t1352 * t1314);
+            let t1456 = t1368 * t1328 - (t1357 * t1323 + t1341 * t1319);
+            let t1457 = t1368 * t1336 + (t1357 * t1334 - t1341 * t1328);
+            let t1458 = k(0.1) * t1457;
+            let t1459 = t1458 - k(0.05) * t1456 - (k(0.05) * t1455 - k(0.1) * t1454);
+            let t1460 = k(0.04) * t1356;
+            let t1461 = k(0.2) * t1340;
+            let t1462 = k(0.1) * t1367 - t1461;
+            let t1463 = k(0.2) * t1462;
+            let t1464 = k(0.02) * t1356;
+            let t1465 = t1464 * t1397 - (t1463 * t1388 - t1460 * t1386) + k(0.2) * t1459;
+            let t1466 = k(0.6666666666666666) * t1401;
+            let t1467 = k(1.3333333333333333) * t1423;
+            let t1468 = t1467 + (t1466 + k(1.3333333333333333) * t1414);
+            let t1469 = t1468 * t1449;
+            let t1470 = t1376 * t1307 + (t1349 * t1300 + t1354 * t1296);
+            let t1471 = t1376 * t1296 - (t1349 * t1315 - t1354 * t1314);
+            let t1472 = t1370 * t1328 - (t1361 * t1323 - t1345 * t1319);
+            let t1473 = t1370 * t1336 + (t1361 * t1334 + t1345 * t1328);
+            let t1474 = k(0.1) * t1473;
+            let t1475 = t1474 - k(0.05) * t1472 - (k(0.05) * t1471 - k(0.1) * t1470);
+            let t1476 = k(0.04) * t1360;
+            let t1477 = k(0.2) * t1344;
+            let t1478 = k(0.1) * t1369 + t1477;
+            let t1479 = k(0.2) * t1478;
+            let t1480 = k(0.02) * t1360;
+            let t1481 = t1480 * t1397 - (t1479 * t1388 - t1476 * t1386) + k(0.2) * t1475;
+            let t1482 = k(0.2) * self.gravity;
+            let t1483 = t1482 + t1481;
+            let t1484 = k(0.3) * self.gravity + t1483;
+            let t1485 = k(1.3333333333333333) * t1421
+                + (k(0.6666666666666666) * t1409 - k(1.3333333333333333) * t1418);
+            let t1486 = t1485 * t1449;
+            let t1487 = k(0.2) * t1360;
+            let t1488 = k(0.001) * t1397 + k(0.003) * t1386
+                + (t1475 * t1476 + (t1459 * t1460 - t1339 * t1387));
+            let t1489 = t1488 - (k(0.0005) * t1334 - t1482 * t1487);
+            let t1490 = k(0.004) * t1388
+                - (t1475 * t1479 + (t1459 * t1463 + t1339 * t1391));
+            let t1491 = t1490 + (k(0.001) * t1328 - t1482 * t1478);
+            let t1492 = k(0.1) * t1360;
+            let t1493 = k(0.0025) * t1397 + k(0.001) * t1386
+                + (t1475 * t1480 + (t1459 * t1464 - t1339 * t1398));
+            let t1494 = t1493 + (k(0.0005) * t1323 + t1482 * t1492);
+            let t1495 = k(0.2) * t1348;
+            let t1496 = k(0.2) * t1303;
+            let t1497 = k(0.2) * t1342;
+            let t1498 = t1497 * t1465 + t1496 * t1399;
+            let t1499 = t1498 + t1495 * t1483
+                + (t1371 * t1494 + (t1364 * t1491 + t1355 * t1489));
+            let t1500 = k(0.6666666666666666) * self.motor;
+            let t1501 = t1495 * t1484 + t1498;
+            let t1502 = k(0.1) * t1310 + k(0.2) * t1298;
+            let t1503 = k(0.1) * t1373 - k(0.2) * t1351;
+            let t1504 = k(0.1) * t1375 + k(0.2) * t1353;
+            let t1505 = t1504 * t1483 + (t1503 * t1465 - t1502 * t1399)
+                - (t1372 * t1494 + (t1362 * t1491 + t1350 * t1489));
+            let t1506 = t1298 + t1310;
+            let t1507 = k(0.2) * -t1506;
+            let t1508 = t1351 - t1373;
+            let t1509 = k(0.2) * t1508;
+            let t1510 = t1353 + t1375;
+            let t1511 = k(0.2) * t1510;
+            let t1512 = t1511 * t1484 - (t1509 * t1465 - t1507 * t1399)
+                + (k(0.3333333333333333) * self.motor - k(0.001) * t1296 + t1505);
+            let t1513 = k(0.3333333333333333) * t1512
+                + k(0.6666666666666666) * (t1501 + (t1500 - k(0.0005) * t1300 + t1499));
+            let t1514 = k(0.1) * t1303;
+            let t1515 = k(0.1) * t1342;
+            let t1516 = k(0.1) * t1348;
+            let t1517 = t1516 * t1483 + (t1515 * t1465 + t1514 * t1399)
+                + (t1377 * t1494 + (t1379 * t1491 + t1378 * t1489));
+            let t1518 = k(0.6666666666666666)
+                * (t1501 - (t1500 - k(0.0005) * t1315 - t1517)) - t1513
+                - (t1486 * t1484 + (t1469 * t1465 - t1453 * t1399));
+            let t1519 = t1371 * t1398 + (t1364 * t1391 + t1355 * t1387);
+            let t1520 = t1519 + k(0.04) * t1303;
+            let t1521 = t1514 + t1520;
+            let t1522 = t1372 * t1398 + (t1362 * t1391 + t1350 * t1387);
+            let t1523 = k(0.2) * t1502 + t1522;
+            let t1524 = t1523 - k(0.1) * -t1506;
+            let t1525 = t1377 * t1398 + (t1379 * t1391 + t1378 * t1387);
+            let t1526 = t1525 + k(0.02) * t1303;
+            let t1527 = t1514 + t1526;
+            let t1528 = k(0.6666666666666666) * t1527
+                + (k(0.3333333333333333) * t1524 - k(0.6666666666666666) * t1521)
+                + k(0.5) * t1453;
+            let t1529 = t1371 * t1464 - (t1364 * t1463 - t1355 * t1460);
+            let t1530 = t1529 + k(0.04) * t1342;
+            let t1531 = t1515 + t1530;
+            let t1532 = t1372 * t1464 - (t1362 * t1463 - t1350 * t1460);
+            let t1533 = k(0.2) * t1503 - t1532;
+            let t1534 = t1533 - k(0.1) * t1508;
+            let t1535 = t1377 * t1464 - (t1379 * t1463 - t1378 * t1460);
+            let t1536 = t1535 + k(0.02) * t1342;
+            let t1537 = t1515 + t1536;
+            let t1538 = k(0.6666666666666666) * t1537
+                - (k(0.3333333333333333) * t1534 + k(0.6666666666666666) * t1531)
+                - k(0.5) * t1469;
+            let t1539 = t1371 * t1480 - (t1364 * t1479 - t1355 * t1476);
+            let t1540 = t1539 + k(0.04) * t1348;
+            let t1541 = t1516 + t1540;
+            let t1542 = t1372 * t1480 - (t1362 * t1479 - t1350 * t1476);
+            let t1543 = k(0.2) * t1504 - t1542;
+            let t1544 = t1543 + k(0.1) * t1510;
+            let t1545 = t1377 * t1480 - (t1379 * t1479 - t1378 * t1476);
+            let t1546 = t1545 + k(0.02) * t1348;
+            let t1547 = t1516 + t1546;
+            let t1548 = k(0.6666666666666666) * t1547
+                - (k(0.3333333333333333) * t1544 + k(0.6666666666666666) * t1541)
+                - k(0.5) * t1486;
+            let t1549 = t1495 * t1540 + (t1497 * t1530 + t1496 * t1520);
+            let t1550 = k(0.001) * t1371 + k(0.003) * t1355;
+            let t1551 = k(0.004) * t1364;
+            let t1552 = k(0.0025) * t1371 + k(0.001) * t1355;
+            let t1553 = k(0.002) + (t1371 * t1552 + (t1364 * t1551 + t1355 * t1550))
+                + k(2.0) * (t1495 * t1539 + (t1497 * t1529 + t1496 * t1519));
+            let t1554 = t1504 * t1539 + (t1503 * t1529 - t1502 * t1519)
+                - (t1495 * t1542 + (t1497 * t1532 + t1496 * t1522));
+            let t1555 = t1495 * t1543 + (t1497 * t1533 - t1496 * t1523);
+            let t1556 = t1555 + (t1511 * t1540 - (t1509 * t1530 - t1507 * t1520))
+                + (t1554 - (t1372 * t1552 + (t1362 * t1551 + t1350 * t1550)));
+            let t1557 = k(0.3333333333333333) * t1556
                 + k(0.6666666666666666)
-                    * (k(0.005) + (k(0.002) + t1549) + k(2.0) * t1545);
-            let t1554 = t1491 * t1542 + (t1493 * t1532 + t1492 * t1522);
-            let t1555 = t1512 * t1535 + (t1511 * t1525 + t1510 * t1515)
-                + (t1491 * t1541 + (t1493 * t1531 + t1492 * t1521));
-            let t1556 = k(0.001) + (t1373 * t1548 + (t1375 * t1547 + t1374 * t1546))
-                + t1555;
-            let t1557 = k(0.6666666666666666) * (k(0.005) + t1556 + (t1554 + t1545));
-            let t1558 = t1557 - t1553
-                - (t1482 * t1537 + (t1465 * t1527 - t1449 * t1517));
-            let t1559 = k(0.001) * t1368 + k(0.003) * t1346;
-            let t1560 = k(0.004) * t1358;
-            let t1561 = k(0.0025) * t1368 + k(0.001) * t1346;
-            let t1562 = k(0.0025) + (t1368 * t1561 + (t1358 * t1560 + t1346 * t1559))
-                - k(2.0) * (t1500 * t1538 + (t1499 * t1528 - t1498 * t1518));
-            let t1563 = k(0.01) + (k(0.0025) + t1562)
-                + k(2.0) * (t1507 * t1539 - (t1505 * t1529 + t1503 * t1519));
-            let t1564 = t1512 * t1538 + (t1511 * t1528 + t1510 * t1518)
-                - (t1500 * t1541 + (t1499 * t1531 - t1498 * t1521));
-            let t1565 = t1507 * t1542 - (t1505 * t1532 - t1503 * t1522) + t1551
-                - (t1564 + (t1373 * t1561 + (t1375 * t1560 + t1374 * t1559)));
-            let t1566 = k(0.6666666666666666) * t1565
-                - (k(0.3333333333333333) * t1563 + k(0.6666666666666666) * t1552)
-                - (t1482 * t1540 + (t1465 * t1530 + t1449 * t1520));
-            let t1567 = t1375 * (k(0.004) * t1375)
-                + t1374 * (k(0.001) * t1373 + k(0.003) * t1374);
-            let t1568 = k(0.0005)
-                + (t1373 * (k(0.0025) * t1373 + k(0.001) * t1374) + t1567)
-                + k(2.0) * (t1512 * t1541 + (t1511 * t1531 + t1510 * t1521));
-            let t1569 = k(0.6666666666666666)
-                * (k(0.005) + (k(0.003) + t1568) + k(2.0) * t1554)
-                - (k(0.3333333333333333) * t1565 + t1557);
-            let t1570 = t1569 - (t1482 * t1543 + (t1465 * t1533 - t1449 * t1523));
-            let t1571 = k(0.6666666666666666) * t1570
-                - (k(0.3333333333333333) * t1566 + k(0.6666666666666666) * t1558)
-                - (t1482 * t1544 + (t1465 * t1534 - t1449 * t1524));
-            let t1572 = k(1.0) / t1571;
-            let t1573 = t1572 * t1514;
-            let t1574 = k(0.6666666666666666) * t1428;
-            let t1575 = t1574 + k(0.3333333333333333) * t1427;
-            let t1576 = k(0.6666666666666666) * t1425;
-            let t1577 = t1576 + k(0.3333333333333333) * t1424;
-            let t1578 = k(0.4472135954999579) * t1577 + k(0.8944271909999159) * t1575;
-            let t1579 = t1427 + t1407;
-            let t1580 = t1424 + t1416;
-            let t1581 = k(0.29814239699997197) * t1580 + k(0.5962847939999439) * t1579;
-            let t1582 = k(0.6666666666666666) * t1581;
-            let t1583 = k(0.6666666666666666) * t1432;
-            let t1584 = k(0.5962847939999439) * t1577 - k(0.29814239699997197) * t1575
-                + k(0.7453559924999299) * (t1583 + k(0.3333333333333333) * t1431);
-            let t1585 = k(0.6666666666666666)
-                * (k(0.3975231959999626) * t1580 - k(0.1987615979999813) * t1579
-                    + k(0.49690399499995325) * (t1431 + t1423));
-            let t1586 = t1585 + k(0.3333333333333333) * t1584;
-            let t1587 = k(0.3333333333333333) * t1407 - t1574;
-            let t1588 = k(0.3333333333333333) * t1416 - t1576;
-            let t1589 = k(0.4472135954999579) * t1588 + k(0.8944271909999159) * t1587;
-            let t1590 = k(0.5962847939999439) * t1588 - k(0.29814239699997197) * t1587
-                + k(0.7453559924999299) * (t1438 - t1583);
-            let t1591 = k(0.6666666666666666) * (t1590 - t1584);
-            let t1592 = k(0.3333333333333333) * t1590 + t1585;
-            let t1593 = k(1.0) / (t1578 * t1592 + (t1581 * t1591 - t1589 * t1586));
-            let t1594 = t1593 * (t1582 + k(0.3333333333333333) * t1578);
-            let t1595 = k(0.0031830988618379067) * t1437;
-            let t1596 = t1593 * (k(0.6666666666666666) * (t1589 - t1578));
-            let t1597 = k(0.0031830988618379067) * t1440;
-            let t1598 = t1593 * (k(0.3333333333333333) * t1589 + t1582);
-            let t1599 = k(0.0031830988618379067) * t1444;
+                    * (k(0.005) + (k(0.002) + t1553) + k(2.0) * t1549);
+            let t1558 = t1495 * t1546 + (t1497 * t1536 + t1496 * t1526);
+            let t1559 = t1516 * t1539 + (t1515 * t1529 + t1514 * t1519)
+                + (t1495 * t1545 + (t1497 * t1535 + t1496 * t1525));
+            let t1560 = k(0.001) + (t1377 * t1552 + (t1379 * t1551 + t1378 * t1550))
+                + t1559;
+            let t1561 = k(0.6666666666666666) * (k(0.005) + t1560 + (t1558 + t1549));
+            let t1562 = t1561 - t1557
+                - (t1486 * t1541 + (t1469 * t1531 - t1453 * t1521));
+            let t1563 = k(0.001) * t1372 + k(0.003) * t1350;
+            let t1564 = k(0.004) * t1362;
+            let t1565 = k(0.0025) * t1372 + k(0.001) * t1350;
+            let t1566 = k(0.0025) + (t1372 * t1565 + (t1362 * t1564 + t1350 * t1563))
+                - k(2.0) * (t1504 * t1542 + (t1503 * t1532 - t1502 * t1522));
+            let t1567 = k(0.01) + (k(0.0025) + t1566)
+                + k(2.0) * (t1511 * t1543 - (t1509 * t1533 + t1507 * t1523));
+            let t1568 = t1516 * t1542 + (t1515 * t1532 + t1514 * t1522)
+                - (t1504 * t1545 + (t1503 * t1535 - t1502 * t1525));
+            let t1569 = t1511 * t1546 - (t1509 * t1536 - t1507 * t1526) + t1555
+                - (t1568 + (t1377 * t1565 + (t1379 * t1564 + t1378 * t1563)));
+            let t1570 = k(0.6666666666666666) * t1569
+                - (k(0.3333333333333333) * t1567 + k(0.6666666666666666) * t1556)
+                - (t1486 * t1544 + (t1469 * t1534 + t1453 * t1524));
+            let t1571 = t1379 * (k(0.004) * t1379)
+                + t1378 * (k(0.001) * t1377 + k(0.003) * t1378);
+            let t1572 = k(0.0005)
+                + (t1377 * (k(0.0025) * t1377 + k(0.001) * t1378) + t1571)
+                + k(2.0) * (t1516 * t1545 + (t1515 * t1535 + t1514 * t1525));
+            let t1573 = k(0.6666666666666666)
+                * (k(0.005) + (k(0.003) + t1572) + k(2.0) * t1558)
+                - (k(0.3333333333333333) * t1569 + t1561);
+            let t1574 = t1573 - (t1486 * t1547 + (t1469 * t1537 - t1453 * t1527));
+            let t1575 = k(0.6666666666666666) * t1574
+                - (k(0.3333333333333333) * t1570 + k(0.6666666666666666) * t1562)
+                - (t1486 * t1548 + (t1469 * t1538 - t1453 * t1528));
+            let t1576 = k(1.0) / t1575;
+            let t1577 = t1576 * t1518;
+            let t1578 = k(0.6666666666666666) * t1432;
+            let t1579 = t1578 + k(0.3333333333333333) * t1431;
+            let t1580 = k(0.6666666666666666) * t1429;
+            let t1581 = t1580 + k(0.3333333333333333) * t1428;
+            let t1582 = k(0.4472135954999579) * t1581 + k(0.8944271909999159) * t1579;
+            let t1583 = t1431 + t1411;
+            let t1584 = t1428 + t1420;
+            let t1585 = k(0.29814239699997197) * t1584 + k(0.5962847939999439) * t1583;
+            let t1586 = k(0.6666666666666666) * t1585;
+            let t1587 = k(0.6666666666666666) * t1436;
+            let t1588 = k(0.5962847939999439) * t1581 - k(0.29814239699997197) * t1579
+                + k(0.7453559924999299) * (t1587 + k(0.3333333333333333) * t1435);
+            let t1589 = k(0.6666666666666666)
+                * (k(0.3975231959999626) * t1584 - k(0.1987615979999813) * t1583
+                    + k(0.49690399499995325) * (t1435 + t1427));
+            let t1590 = t1589 + k(0.3333333333333333) * t1588;
+            let t1591 = k(0.3333333333333333) * t1411 - t1578;
+            let t1592 = k(0.3333333333333333) * t1420 - t1580;
+            let t1593 = k(0.4472135954999579) * t1592 + k(0.8944271909999159) * t1591;
+            let t1594 = k(0.5962847939999439) * t1592 - k(0.29814239699997197) * t1591
+                + k(0.7453559924999299) * (t1442 - t1587);
+            let t1595 = k(0.6666666666666666) * (t1594 - t1588);
+            let t1596 = k(0.3333333333333333) * t1594 + t1589;
+            let t1597 = k(1.0) / (t1582 * t1596 + (t1585 * t1595 - t1593 * t1590));
+            let t1598 = t1597 * (t1586 + k(0.3333333333333333) * t1582);
+            let t1599 = k(0.0031830988618379067) * t1441;
             (
                 t1401,
                 t1402,
                 t1405,
                 t1406,
-                t1407,
-                t1408,
                 t1409,
                 t1410,
                 t1411,
+                t1412,
+                t1413,
                 t1414,
                 t1415,
-                t1416,
-                t1417,
                 t1418,
                 t1419,
                 t1420,
@@ -13751,26 +13783,26 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 t1432,
                 t1433,
                 t1434,
+                t1435,
                 t1436,
                 t1437,
+                t1438,
                 t1440,
+                t1441,
                 t1444,
-                t1446,
-                t1447,
                 t1448,
-                t1449,
                 t1450,
                 t1451,
                 t1452,
                 t1453,
                 t1454,
                 t1455,
+                t1456,
                 t1457,
                 t1458,
+                t1459,
                 t1461,
                 t1462,
-                t1463,
-                t1464,
                 t1465,
                 t1466,
                 t1467,
@@ -13778,48 +13810,51 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 t1469,
                 t1470,
                 t1471,
+                t1472,
                 t1473,
                 t1474,
-                t1480,
-                t1481,
-                t1482,
-                t1483,
-                t1488,
-                t1491,
+                t1475,
+                t1477,
+                t1478,
+                t1484,
+                t1485,
+                t1486,
+                t1487,
                 t1492,
-                t1493,
-                t1498,
-                t1499,
-                t1500,
+                t1495,
+                t1496,
+                t1497,
+                t1502,
                 t1503,
-                t1505,
+                t1504,
                 t1507,
-                t1510,
+                t1509,
                 t1511,
-                t1512,
                 t1514,
-                t1517,
-                t1520,
-                t1523,
+                t1515,
+                t1516,
+                t1518,
+                t1521,
                 t1524,
                 t1527,
-                t1530,
-                t1533,
+                t1528,
+                t1531,
                 t1534,
                 t1537,
-                t1540,
-                t1543,
+                t1538,
+                t1541,
                 t1544,
-                t1558,
-                t1566,
+                t1547,
+                t1548,
+                t1562,
                 t1570,
-                t1572,
-                t1573,
+                t1574,
+                t1576,
+                t1577,
+                t1582,
                 t1586,
-                t1591,
-                t1592,
+                t1590,
                 t1593,
-                t1594,
                 t1595,
                 t1596,
                 t1597,
@@ -13828,45 +13863,43 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             )
         };
         let (
-            t1645,
-            t1646,
-            t1647,
+            t1649,
+            t1650,
+            t1651,
             t1652,
-            t1659,
-            t1660,
-            t1661,
+            t1656,
+            t1663,
+            t1664,
+            t1665,
             t1666,
-            t1674,
-            t1675,
-            t1676,
-            t1681,
-            t1699,
-            t1723,
-            t1725,
+            t1670,
+            t1678,
+            t1679,
+            t1680,
+            t1685,
+            t1703,
             t1727,
-            t1728,
-            t1730,
+            t1729,
             t1731,
-            t1733,
+            t1732,
             t1734,
             t1735,
-            t1736,
             t1737,
             t1738,
-            t1744,
-            t1745,
-            t1747,
+            t1739,
+            t1740,
+            t1741,
+            t1742,
             t1748,
             t1749,
+            t1751,
             t1752,
-            t1754,
-            t1755,
+            t1753,
             t1756,
             t1758,
-            t1764,
-            t1765,
-            t1766,
-            t1767,
+            t1759,
+            t1760,
+            t1762,
             t1768,
             t1769,
             t1770,
@@ -13877,384 +13910,383 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t1775,
             t1776,
             t1777,
+            t1778,
             t1779,
             t1780,
             t1781,
-            t1782,
             t1783,
+            t1784,
             t1785,
             t1786,
-            t1788,
+            t1787,
             t1789,
             t1790,
-            t1791,
+            t1792,
             t1793,
+            t1794,
             t1795,
             t1796,
             t1797,
             t1798,
             t1799,
         ) = {
-            let t1600 = t1599 * t1598 + (t1597 * t1596 + t1595 * t1594);
-            let t1601 = slide_wy * slide_wy;
-            let t1602 = slide_wz * slide_wz;
-            let t1603 = t1602 + t1601;
-            let t1604 = slide_wx * slide_wy;
-            let t1605 = slide_wx * slide_wz;
-            let t1606 = nut_wy * t1407 + nut_wz * t1428;
-            let t1607 = nut_wy * t1423 + nut_wz * t1432;
-            let t1608 = t1292 * t1416 - (t1311 * t1425 - t1310 * t1424)
-                - k(2.0) * (slide_wy * t1607 + slide_wz * t1606);
-            let t1609 = t1608 + (t1605 * t1431 - (t1604 * t1427 - t1603 * t1424));
-            let t1610 = nut_wx * t1407 + nut_wz * t1427;
-            let t1611 = nut_wx * t1423 + nut_wz * t1431;
-            let t1612 = t1296 * t1416 + (t1379 * t1425 - t1311 * t1424)
-                + k(2.0) * (slide_wy * t1611 + slide_wz * t1610);
-            let t1613 = t1612 + (t1605 * t1432 - (t1604 * t1428 - t1603 * t1425));
-            let t1614 = nut_wx * t1428 - nut_wy * t1427;
-            let t1615 = nut_wx * t1432 - nut_wy * t1431;
-            let t1616 = t1303 * t1416 + (t1296 * t1425 + t1292 * t1424)
-                - k(2.0) * (slide_wy * t1615 + slide_wz * t1614);
-            let t1617 = k(0.6666666666666666)
-                * (t1616 + (t1605 * t1423 - (t1604 * t1407 - t1603 * t1416)));
-            let t1618 = t1617
-                + (k(0.3333333333333333) * t1613 - k(0.6666666666666666) * t1609);
-            let t1619 = slide_wx * slide_wx;
-            let t1620 = t1602 + t1619;
-            let t1621 = slide_wy * slide_wz;
-            let t1622 = nut_wy * t1416 + nut_wz * t1425;
-            let t1623 = t1292 * t1407 - (t1311 * t1428 - t1310 * t1427)
-                + k(2.0) * (slide_wx * t1607 + slide_wz * t1622);
-            let t1624 = t1623 + (t1621 * t1431 + (t1620 * t1427 - t1604 * t1424));
-            let t1625 = nut_wx * t1416 + nut_wz * t1424;
-            let t1626 = t1296 * t1407 + (t1379 * t1428 - t1311 * t1427)
-                - k(2.0) * (slide_wx * t1611 + slide_wz * t1625);
-            let t1627 = t1626 + (t1621 * t1432 + (t1620 * t1428 - t1604 * t1425));
-            let t1628 = nut_wx * t1425 - nut_wy * t1424;
-            let t1629 = t1303 * t1407 + (t1296 * t1428 + t1292 * t1427)
-                + k(2.0) * (slide_wx * t1615 + slide_wz * t1628);
-            let t1630 = k(0.6666666666666666)
-                * (t1629 + (t1621 * t1423 + (t1620 * t1407 - t1604 * t1416)));
-            let t1631 = t1630
-                + (k(0.3333333333333333) * t1627 - k(0.6666666666666666) * t1624);
-            let t1632 = t1601 + t1619;
-            let t1633 = t1292 * t1423 - (t1311 * t1432 - t1310 * t1431)
-                - k(2.0) * (slide_wx * t1606 - slide_wy * t1622);
-            let t1634 = t1633 + (t1632 * t1431 + (t1621 * t1427 + t1605 * t1424));
-            let t1635 = t1296 * t1423 + (t1379 * t1432 - t1311 * t1431)
-                + k(2.0) * (slide_wx * t1610 - slide_wy * t1625);
-            let t1636 = t1635 + (t1632 * t1432 + (t1621 * t1428 + t1605 * t1425));
-            let t1637 = t1303 * t1423 + (t1296 * t1432 + t1292 * t1431)
-                - k(2.0) * (slide_wx * t1614 - slide_wy * t1628);
-            let t1638 = k(0.6666666666666666)
-                * (t1637 + (t1632 * t1423 + (t1621 * t1407 + t1605 * t1416)));
-            let t1639 = k(0.7453559924999299)
-                * (t1638
-                    + (k(0.3333333333333333) * t1636 - k(0.6666666666666666) * t1634))
-                - (k(0.29814239699997197) * t1631 - k(0.5962847939999439) * t1618);
-            let t1640 = t1586 * t1593;
-            let t1641 = t1591 * t1593;
-            let t1642 = t1592 * t1593;
-            let t1643 = t1599 * t1642 + (t1597 * t1641 + t1595 * t1640);
-            let t1644 = k(0.8944271909999159) * t1631 + k(0.4472135954999579) * t1618;
-            let t1645 = t1422 * t1605 + (t1402 * t1604 + t1409 * t1603);
-            let t1646 = t1422 * t1621 - (t1402 * t1620 + t1409 * t1604);
-            let t1647 = t1422 * t1632 - (t1402 * t1621 - t1409 * t1605);
-            let t1648 = t1408 - t1401;
-            let t1649 = nut_rx - k(0.2) * (t1306 - t1294);
-            let t1650 = t1649 - (slide_rx + k(0.2) * (t1421 - t1648));
-            let t1651 = t1402 * slide_wx + t1409 * slide_wy;
-            let t1652 = t1422 * slide_wx + t1409 * slide_wz;
-            let t1653 = t1422 * slide_wy - t1402 * slide_wz;
-            let t1654 = t1300 * nut_wx + t1295 * nut_wy
-                + (t1307 * nut_wy - t1300 * nut_wz);
-            let t1655 = slide_sx + k(0.1) * (t1652 - t1653 - t1651)
-                - (nut_sx + k(0.1) * t1654);
-            let t1656 = t1655
-                * (k(0.6666666666666666) * t1653 + k(0.3333333333333333) * t1652
-                    + k(0.6666666666666666) * t1651);
-            let t1657 = t1656
-                - t1650
-                    * (k(0.6666666666666666) * t1647
-                        + (k(0.3333333333333333) * t1646
-                            - k(0.6666666666666666) * t1645));
-            let t1658 = k(0.1) * (t1308 - t1312 + (t1647 - (t1645 + t1646)));
-            let t1659 = t1420 * t1605 - (t1398 * t1604 + t1411 * t1603);
-            let t1660 = t1420 * t1621 + (t1398 * t1620 + t1411 * t1604);
-            let t1661 = t1420 * t1632 + (t1398 * t1621 - t1411 * t1605);
-            let t1662 = t1410 - t1397;
-            let t1663 = nut_ry - k(0.2) * (t1347 + t1369);
-            let t1664 = t1663 - (slide_ry + k(0.2) * (t1419 + t1662));
-            let t1665 = t1398 * slide_wx + t1411 * slide_wy;
-            let t1666 = t1420 * slide_wx - t1411 * slide_wz;
-            let t1667 = t1420 * slide_wy + t1398 * slide_wz;
-            let t1668 = t1339 * nut_wx + t1348 * nut_wy
-                - (t1370 * nut_wy + t1339 * nut_wz);
-            let t1669 = slide_sy + k(0.1) * (t1666 - t1667 + t1665)
-                - (nut_sy - k(0.1) * t1668);
-            let t1670 = t1669
-                * (k(0.6666666666666666) * t1667 + k(0.3333333333333333) * t1666
-                    - k(0.6666666666666666) * t1665);
-            let t1671 = t1670
-                - t1664
-                    * (k(0.6666666666666666) * t1661
-                        + (k(0.3333333333333333) * t1660
-                            - k(0.6666666666666666) * t1659));
-            let t1672 = k(0.1) * (t1450 - t1451 + (t1661 - (t1659 + t1660)));
-            let t1673 = t1464 * t1672 + t1670 + t1671 + (t1448 * t1658 + t1656 + t1657);
-            let t1674 = t1418 * t1605 - (t1406 * t1604 - t1415 * t1603);
-            let t1675 = t1418 * t1621 + (t1406 * t1620 - t1415 * t1604);
-            let t1676 = t1418 * t1632 + (t1406 * t1621 + t1415 * t1605);
-            let t1677 = t1414 + t1405;
-            let t1678 = nut_rz - k(0.2) * (t1349 - t1371);
-            let t1679 = t1678 - (slide_rz + k(0.2) * (t1677 - t1417));
-            let t1680 = t1406 * slide_wx - t1415 * slide_wy;
-            let t1681 = t1418 * slide_wx + t1415 * slide_wz;
-            let t1682 = t1418 * slide_wy + t1406 * slide_wz;
-            let t1683 = t1345 * nut_wx - t1350 * nut_wy
-                - (t1372 * nut_wy + t1345 * nut_wz);
-            let t1684 = slide_sz - k(0.1) * (t1681 - t1682 + t1680)
-                - (nut_sz + k(0.1) * t1683);
-            let t1685 = t1684
-                * (k(0.6666666666666666) * t1682 + k(0.3333333333333333) * t1681
-                    - k(0.6666666666666666) * t1680);
-            let t1686 = t1685
-                - t1679
-                    * (k(0.6666666666666666) * t1676
-                        + (k(0.3333333333333333) * t1675
-                            - k(0.6666666666666666) * t1674));
-            let t1687 = k(0.1) * (t1466 - t1467 + (t1676 - (t1674 + t1675)));
-            let t1688 = k(0.4472135954999579)
-                * (t1607 + (slide_wx * t1427 - slide_wy * t1424))
+            let t1600 = t1597 * (k(0.6666666666666666) * (t1593 - t1582));
+            let t1601 = k(0.0031830988618379067) * t1444;
+            let t1602 = t1597 * (k(0.3333333333333333) * t1593 + t1586);
+            let t1603 = k(0.0031830988618379067) * t1448;
+            let t1604 = t1603 * t1602 + (t1601 * t1600 + t1599 * t1598);
+            let t1605 = slide_wy * slide_wy;
+            let t1606 = slide_wz * slide_wz;
+            let t1607 = t1606 + t1605;
+            let t1608 = slide_wx * slide_wy;
+            let t1609 = slide_wx * slide_wz;
+            let t1610 = nut_wy * t1411 + nut_wz * t1432;
+            let t1611 = nut_wy * t1427 + nut_wz * t1436;
+            let t1612 = t1296 * t1420 - (t1315 * t1429 - t1314 * t1428)
+                - k(2.0) * (slide_wy * t1611 + slide_wz * t1610);
+            let t1613 = t1612 + (t1609 * t1435 - (t1608 * t1431 - t1607 * t1428));
+            let t1614 = nut_wx * t1411 + nut_wz * t1431;
+            let t1615 = nut_wx * t1427 + nut_wz * t1435;
+            let t1616 = t1300 * t1420 + (t1383 * t1429 - t1315 * t1428)
+                + k(2.0) * (slide_wy * t1615 + slide_wz * t1614);
+            let t1617 = t1616 + (t1609 * t1436 - (t1608 * t1432 - t1607 * t1429));
+            let t1618 = nut_wx * t1432 - nut_wy * t1431;
+            let t1619 = nut_wx * t1436 - nut_wy * t1435;
+            let t1620 = t1307 * t1420 + (t1300 * t1429 + t1296 * t1428)
+                - k(2.0) * (slide_wy * t1619 + slide_wz * t1618);
+            let t1621 = k(0.6666666666666666)
+                * (t1620 + (t1609 * t1427 - (t1608 * t1411 - t1607 * t1420)));
+            let t1622 = t1621
+                + (k(0.3333333333333333) * t1617 - k(0.6666666666666666) * t1613);
+            let t1623 = slide_wx * slide_wx;
+            let t1624 = t1606 + t1623;
+            let t1625 = slide_wy * slide_wz;
+            let t1626 = nut_wy * t1420 + nut_wz * t1429;
+            let t1627 = t1296 * t1411 - (t1315 * t1432 - t1314 * t1431)
+                + k(2.0) * (slide_wx * t1611 + slide_wz * t1626);
+            let t1628 = t1627 + (t1625 * t1435 + (t1624 * t1431 - t1608 * t1428));
+            let t1629 = nut_wx * t1420 + nut_wz * t1428;
+            let t1630 = t1300 * t1411 + (t1383 * t1432 - t1315 * t1431)
+                - k(2.0) * (slide_wx * t1615 + slide_wz * t1629);
+            let t1631 = t1630 + (t1625 * t1436 + (t1624 * t1432 - t1608 * t1429));
+            let t1632 = nut_wx * t1429 - nut_wy * t1428;
+            let t1633 = t1307 * t1411 + (t1300 * t1432 + t1296 * t1431)
+                + k(2.0) * (slide_wx * t1619 + slide_wz * t1632);
+            let t1634 = k(0.6666666666666666)
+                * (t1633 + (t1625 * t1427 + (t1624 * t1411 - t1608 * t1420)));
+            let t1635 = t1634
+                + (k(0.3333333333333333) * t1631 - k(0.6666666666666666) * t1628);
+            let t1636 = t1605 + t1623;
+            let t1637 = t1296 * t1427 - (t1315 * t1436 - t1314 * t1435)
+                - k(2.0) * (slide_wx * t1610 - slide_wy * t1626);
+            let t1638 = t1637 + (t1636 * t1435 + (t1625 * t1431 + t1609 * t1428));
+            let t1639 = t1300 * t1427 + (t1383 * t1436 - t1315 * t1435)
+                + k(2.0) * (slide_wx * t1614 - slide_wy * t1629);
+            let t1640 = t1639 + (t1636 * t1436 + (t1625 * t1432 + t1609 * t1429));
+            let t1641 = t1307 * t1427 + (t1300 * t1436 + t1296 * t1435)
+                - k(2.0) * (slide_wx * t1618 - slide_wy * t1632);
+            let t1642 = k(0.6666666666666666)
+                * (t1641 + (t1636 * t1427 + (t1625 * t1411 + t1609 * t1420)));
+            let t1643 = k(0.7453559924999299)
+                * (t1642
+                    + (k(0.3333333333333333) * t1640 - k(0.6666666666666666) * t1638))
+                - (k(0.29814239699997197) * t1635 - k(0.5962847939999439) * t1622);
+            let t1644 = t1590 * t1597;
+            let t1645 = t1595 * t1597;
+            let t1646 = t1596 * t1597;
+            let t1647 = t1603 * t1646 + (t1601 * t1645 + t1599 * t1644);
+            let t1648 = k(0.8944271909999159) * t1635 + k(0.4472135954999579) * t1622;
+            let t1649 = t1426 * t1609 + (t1406 * t1608 + t1413 * t1607);
+            let t1650 = t1426 * t1625 - (t1406 * t1624 + t1413 * t1608);
+            let t1651 = t1426 * t1636 - (t1406 * t1625 - t1413 * t1609);
+            let t1652 = t1412 - t1405;
+            let t1653 = nut_rx - k(0.2) * (t1310 - t1298);
+            let t1654 = t1653 - (slide_rx + k(0.2) * (t1425 - t1652));
+            let t1655 = t1406 * slide_wx + t1413 * slide_wy;
+            let t1656 = t1426 * slide_wx + t1413 * slide_wz;
+            let t1657 = t1426 * slide_wy - t1406 * slide_wz;
+            let t1658 = t1304 * nut_wx + t1299 * nut_wy
+                + (t1311 * nut_wy - t1304 * nut_wz);
+            let t1659 = slide_sx + k(0.1) * (t1656 - t1657 - t1655)
+                - (nut_sx + k(0.1) * t1658);
+            let t1660 = t1659
+                * (k(0.6666666666666666) * t1657 + k(0.3333333333333333) * t1656
+                    + k(0.6666666666666666) * t1655);
+            let t1661 = t1660
+                - t1654
+                    * (k(0.6666666666666666) * t1651
+                        + (k(0.3333333333333333) * t1650
+                            - k(0.6666666666666666) * t1649));
+            let t1662 = k(0.1) * (t1312 - t1316 + (t1651 - (t1649 + t1650)));
+            let t1663 = t1424 * t1609 - (t1402 * t1608 + t1415 * t1607);
+            let t1664 = t1424 * t1625 + (t1402 * t1624 + t1415 * t1608);
+            let t1665 = t1424 * t1636 + (t1402 * t1625 - t1415 * t1609);
+            let t1666 = t1414 - t1401;
+            let t1667 = nut_ry - k(0.2) * (t1351 + t1373);
+            let t1668 = t1667 - (slide_ry + k(0.2) * (t1423 + t1666));
+            let t1669 = t1402 * slide_wx + t1415 * slide_wy;
+            let t1670 = t1424 * slide_wx - t1415 * slide_wz;
+            let t1671 = t1424 * slide_wy + t1402 * slide_wz;
+            let t1672 = t1343 * nut_wx + t1352 * nut_wy
+                - (t1374 * nut_wy + t1343 * nut_wz);
+            let t1673 = slide_sy + k(0.1) * (t1670 - t1671 + t1669)
+                - (nut_sy - k(0.1) * t1672);
+            let t1674 = t1673
+                * (k(0.6666666666666666) * t1671 + k(0.3333333333333333) * t1670
+                    - k(0.6666666666666666) * t1669);
+            let t1675 = t1674
+                - t1668
+                    * (k(0.6666666666666666) * t1665
+                        + (k(0.3333333333333333) * t1664
+                            - k(0.6666666666666666) * t1663));
+            let t1676 = k(0.1) * (t1454 - t1455 + (t1665 - (t1663 + t1664)));
+            let t1677 = t1468 * t1676 + t1674 + t1675 + (t1452 * t1662 + t1660 + t1661);
+            let t1678 = t1422 * t1609 - (t1410 * t1608 - t1419 * t1607);
+            let t1679 = t1422 * t1625 + (t1410 * t1624 - t1419 * t1608);
+            let t1680 = t1422 * t1636 + (t1410 * t1625 + t1419 * t1609);
+            let t1681 = t1418 + t1409;
+            let t1682 = nut_rz - k(0.2) * (t1353 - t1375);
+            let t1683 = t1682 - (slide_rz + k(0.2) * (t1681 - t1421));
+            let t1684 = t1410 * slide_wx - t1419 * slide_wy;
+            let t1685 = t1422 * slide_wx + t1419 * slide_wz;
+            let t1686 = t1422 * slide_wy + t1410 * slide_wz;
+            let t1687 = t1349 * nut_wx - t1354 * nut_wy
+                - (t1376 * nut_wy + t1349 * nut_wz);
+            let t1688 = slide_sz - k(0.1) * (t1685 - t1686 + t1684)
+                - (nut_sz + k(0.1) * t1687);
+            let t1689 = t1688
+                * (k(0.6666666666666666) * t1686 + k(0.3333333333333333) * t1685
+                    - k(0.6666666666666666) * t1684);
+            let t1690 = t1689
+                - t1683
+                    * (k(0.6666666666666666) * t1680
+                        + (k(0.3333333333333333) * t1679
+                            - k(0.6666666666666666) * t1678));
+            let t1691 = k(0.1) * (t1470 - t1471 + (t1680 - (t1678 + t1679)));
+            let t1692 = k(0.4472135954999579)
+                * (t1611 + (slide_wx * t1431 - slide_wy * t1428))
                 - k(0.8944271909999159)
-                    * (t1611 - (slide_wx * t1428 - slide_wy * t1425));
-            let t1689 = k(0.4472135954999579)
-                * (t1606 - (slide_wx * t1431 + slide_wz * t1424))
+                    * (t1615 - (slide_wx * t1432 - slide_wy * t1429));
+            let t1693 = k(0.4472135954999579)
+                * (t1610 - (slide_wx * t1435 + slide_wz * t1428))
                 - k(0.8944271909999159)
-                    * (t1610 + (slide_wx * t1432 + slide_wz * t1425));
-            let t1690 = k(0.4472135954999579)
-                * (t1622 + (slide_wy * t1431 + slide_wz * t1427))
+                    * (t1614 + (slide_wx * t1436 + slide_wz * t1429));
+            let t1694 = k(0.4472135954999579)
+                * (t1626 + (slide_wy * t1435 + slide_wz * t1431))
                 - k(0.8944271909999159)
-                    * (t1625 - (slide_wy * t1432 + slide_wz * t1428));
-            let t1691 = k(0.5962847939999439) * t1690 - k(0.29814239699997197) * t1689
-                + k(0.7453559924999299) * t1688;
-            let t1692 = k(0.4472135954999579) * t1690 + k(0.8944271909999159) * t1689;
-            let t1693 = t1436 * t1436 * (k(2.0) * (t1430 * t1692 + t1434 * t1691))
-                * (t1434 * t1692 - t1430 * t1691);
-            let t1694 = k(0.8944271909999159) * t1613 + k(0.4472135954999579) * t1609;
-            let t1695 = k(0.8944271909999159) * t1627 + k(0.4472135954999579) * t1624;
-            let t1696 = t1692 * t1691;
-            let t1697 = k(0.7453559924999299)
-                * (k(0.8944271909999159) * t1636 + k(0.4472135954999579) * t1634)
-                - (k(0.29814239699997197) * t1695 - k(0.5962847939999439) * t1694);
-            let t1698 = t1430 * t1697 - t1696
-                + (t1696
-                    - t1434
-                        * (k(0.8944271909999159) * t1695
-                            + k(0.4472135954999579) * t1694));
-            let t1699 = t1436 * t1698 - t1693;
-            let t1700 = k(0.0031830988618379067) * t1699
-                - (t1481 * t1687 - t1685 - t1686 + t1673);
-            let t1701 = t1655
-                * (k(0.4472135954999579) * t1653 - k(0.8944271909999159) * t1652);
-            let t1702 = k(1.7888543819998317) * t1401 - k(0.8944271909999159) * t1408;
-            let t1703 = t1702 * t1658 + t1701
-                + (t1701
-                    + t1650
-                        * (k(0.8944271909999159) * t1646
-                            + k(0.4472135954999579) * t1645));
-            let t1704 = t1669
-                * (k(0.4472135954999579) * t1667 - k(0.8944271909999159) * t1666);
-            let t1705 = k(1.7888543819998317) * t1397 - k(0.8944271909999159) * t1410;
-            let t1706 = t1705 * t1672 - t1704
-                - (t1704
-                    + t1664
-                        * (k(0.8944271909999159) * t1660
-                            + k(0.4472135954999579) * t1659));
-            let t1707 = t1684
-                * (k(0.4472135954999579) * t1682 - k(0.8944271909999159) * t1681);
-            let t1708 = k(1.7888543819998317) * t1405 + k(0.8944271909999159) * t1414;
-            let t1709 = t1708 * t1687 + t1707
-                + (t1707
-                    + t1679
-                        * (k(0.8944271909999159) * t1675
-                            + k(0.4472135954999579) * t1674));
-            let t1710 = t1709 + (t1706 - t1703);
-            let t1711 = t1655
-                * (k(0.5962847939999439) * t1653 + k(0.29814239699997197) * t1652
-                    - k(0.7453559924999299) * t1651);
-            let t1712 = t1711
-                + t1650
-                    * (k(0.7453559924999299) * t1647
-                        - (k(0.29814239699997197) * t1646
-                            - k(0.5962847939999439) * t1645));
-            let t1713 = k(1.4907119849998598) * t1421
-                + (k(0.5962847939999439) * t1401 + k(1.1925695879998879) * t1408);
-            let t1714 = t1669
-                * (k(0.5962847939999439) * t1667 + k(0.29814239699997197) * t1666
-                    + k(0.7453559924999299) * t1665);
-            let t1715 = t1714
-                + t1664
-                    * (k(0.7453559924999299) * t1661
-                        - (k(0.29814239699997197) * t1660
-                            - k(0.5962847939999439) * t1659));
-            let t1716 = k(1.4907119849998598) * t1419
-                - (k(0.5962847939999439) * t1397 + k(1.1925695879998879) * t1410);
-            let t1717 = t1716 * t1672 - t1714 - t1715 + (t1713 * t1658 - t1711 - t1712);
-            let t1718 = t1684
-                * (k(0.5962847939999439) * t1682 + k(0.29814239699997197) * t1681
-                    + k(0.7453559924999299) * t1680);
+                    * (t1629 - (slide_wy * t1436 + slide_wz * t1432));
+            let t1695 = k(0.5962847939999439) * t1694 - k(0.29814239699997197) * t1693
+                + k(0.7453559924999299) * t1692;
+            let t1696 = k(0.4472135954999579) * t1694 + k(0.8944271909999159) * t1693;
+            let t1697 = t1440 * t1440 * (k(2.0) * (t1434 * t1696 + t1438 * t1695))
+                * (t1438 * t1696 - t1434 * t1695);
+            let t1698 = k(0.8944271909999159) * t1617 + k(0.4472135954999579) * t1613;
+            let t1699 = k(0.8944271909999159) * t1631 + k(0.4472135954999579) * t1628;
+            let t1700 = t1696 * t1695;
+            let t1701 = k(0.7453559924999299)
+                * (k(0.8944271909999159) * t1640 + k(0.4472135954999579) * t1638)
+                - (k(0.29814239699997197) * t1699 - k(0.5962847939999439) * t1698);
+            let t1702 = t1434 * t1701 - t1700
+                + (t1700
+                    - t1438
+                        * (k(0.8944271909999159) * t1699
+                            + k(0.4472135954999579) * t1698));
+            let t1703 = t1440 * t1702 - t1697;
+            let t1704 = k(0.0031830988618379067) * t1703
+                - (t1485 * t1691 - t1689 - t1690 + t1677);
+            let t1705 = t1659
+                * (k(0.4472135954999579) * t1657 - k(0.8944271909999159) * t1656);
+            let t1706 = k(1.7888543819998317) * t1405 - k(0.8944271909999159) * t1412;
+            let t1707 = t1706 * t1662 + t1705
+                + (t1705
+                    + t1654
+                        * (k(0.8944271909999159) * t1650
+                            + k(0.4472135954999579) * t1649));
+            let t1708 = t1673
+                * (k(0.4472135954999579) * t1671 - k(0.8944271909999159) * t1670);
+            let t1709 = k(1.7888543819998317) * t1401 - k(0.8944271909999159) * t1414;
+            let t1710 = t1709 * t1676 - t1708
+                - (t1708
+                    + t1668
+                        * (k(0.8944271909999159) * t1664
+                            + k(0.4472135954999579) * t1663));
+            let t1711 = t1688
+                * (k(0.4472135954999579) * t1686 - k(0.8944271909999159) * t1685);
+            let t1712 = k(1.7888543819998317) * t1409 + k(0.8944271909999159) * t1418;
+            let t1713 = t1712 * t1691 + t1711
+                + (t1711
+                    + t1683
+                        * (k(0.8944271909999159) * t1679
+                            + k(0.4472135954999579) * t1678));
+            let t1714 = t1713 + (t1710 - t1707);
+            let t1715 = t1659
+                * (k(0.5962847939999439) * t1657 + k(0.29814239699997197) * t1656
+                    - k(0.7453559924999299) * t1655);
+            let t1716 = t1715
+                + t1654
+                    * (k(0.7453559924999299) * t1651
+                        - (k(0.29814239699997197) * t1650
+                            - k(0.5962847939999439) * t1649));
+            let t1717 = k(1.4907119849998598) * t1425
+                + (k(0.5962847939999439) * t1405 + k(1.1925695879998879) * t1412);
+            let t1718 = t1673
+                * (k(0.5962847939999439) * t1671 + k(0.29814239699997197) * t1670
+                    + k(0.7453559924999299) * t1669);
             let t1719 = t1718
-                + t1679
-                    * (k(0.7453559924999299) * t1676
-                        - (k(0.29814239699997197) * t1675
-                            - k(0.5962847939999439) * t1674));
-            let t1720 = k(1.4907119849998598) * t1417
-                - (k(0.5962847939999439) * t1405 - k(1.1925695879998879) * t1414);
-            let t1721 = t1720 * t1687 + t1718 + t1719 + t1717;
-            let t1722 = t1713 * t1721 - t1702 * t1710 - t1448 * t1700
-                + t1644 * (t1448 * t1643);
-            let t1723 = t1722 - t1639 * (t1448 * t1600);
-            let t1724 = t1524 * t1572;
-            let t1725 = t1524 * t1724;
-            let t1726 = t1716 * t1721 + t1705 * t1710 - t1464 * t1700
-                + t1644 * (t1464 * t1643);
-            let t1727 = t1726 - t1639 * (t1464 * t1600);
-            let t1728 = t1534 * t1724;
-            let t1729 = t1720 * t1721 + t1708 * t1710 - t1481 * t1700
-                + t1644 * (t1481 * t1643);
-            let t1730 = t1729 - t1639 * (t1481 * t1600);
-            let t1731 = t1544 * t1724;
-            let t1732 = t1731 * t1730 + (t1728 * t1727 - t1725 * t1723) + k(0.5) * t1723;
-            let t1733 = t1517 - t1558 * t1724;
-            let t1734 = t1639 * t1594 - t1644 * t1640;
-            let t1735 = t1520 + t1566 * t1724;
-            let t1736 = t1639 * t1596 - t1644 * t1641;
-            let t1737 = t1523 - t1570 * t1724;
-            let t1738 = t1639 * t1598 - t1644 * t1642;
-            let t1739 = t1738 * t1737 - (t1736 * t1735 - t1734 * t1733) - t1732
-                + (t1395 - t1524 * t1573);
-            let t1740 = slide_sx + k(0.1) * (t1653 + t1651)
-                - (slide_sy + k(0.1) * (t1667 - t1665));
-            let t1741 = k(0.23570226039551584) * t1740
-                + k(0.9428090415820634) * (slide_sz - k(0.1) * (t1682 - t1680));
-            let t1742 = k(0.11785113019775792) * t1741;
-            let t1743 = t1534 * t1572;
-            let t1744 = t1534 * t1743;
-            let t1745 = t1544 * t1743;
-            let t1746 = t1745 * t1730 + (t1744 * t1727 - t1728 * t1723) - k(0.5) * t1727;
-            let t1747 = t1527 - t1558 * t1743;
-            let t1748 = t1530 - t1566 * t1743;
-            let t1749 = t1533 - t1570 * t1743;
-            let t1750 = t1738 * t1749 + (t1736 * t1748 + t1734 * t1747) - t1746
-                + (t1461 - t1534 * t1573);
-            let t1751 = t1544 * t1572;
-            let t1752 = t1544 * t1751;
-            let t1753 = t1752 * t1730 + (t1745 * t1727 - t1731 * t1723) - k(0.5) * t1730;
-            let t1754 = t1537 - t1558 * t1751;
-            let t1755 = t1540 - t1566 * t1751;
-            let t1756 = t1543 - t1570 * t1751;
-            let t1757 = t1738 * t1756 + (t1736 * t1755 + t1734 * t1754) - t1753
-                + (t1480 - t1544 * t1573);
-            let t1758 = k(0.9428090415820634)
-                * (k(0.8) * self.gravity + k(0.4714045207910317) * t1741 + t1757)
-                + k(0.23570226039551584) * (t1742 + t1750 + (t1742 + t1739));
-            let t1759 = t1647 - t1645;
-            let t1760 = t1661 - t1659;
-            let t1761 = k(0.05) * (t1760 + t1759);
-            let t1762 = k(0.03333333333333333) * (t1676 - t1674)
-                - k(0.06666666666666667) * (t1760 - t1759);
-            let t1763 = k(0.6666666666666666) * t1762;
-            let t1764 = t1763 + t1761;
-            let t1765 = k(0.3064129385141706)
-                - (k(0.9428090415820634) * t1731
-                    + k(0.23570226039551584) * (t1728 + t1725));
-            let t1766 = t1763 - t1761;
-            let t1767 = k(0.3064129385141706)
-                - (k(0.9428090415820634) * t1745
-                    + k(0.23570226039551584) * (t1744 + t1728));
-            let t1768 = k(0.3333333333333333) * t1762;
-            let t1769 = k(1.2256517540566825)
-                - (k(0.9428090415820634) * t1752
-                    + k(0.23570226039551584) * (t1745 + t1731));
-            let t1770 = slide_rx - t1649;
-            let t1771 = slide_ry - t1663;
-            let t1772 = slide_rz - t1678;
-            let t1773 = t1418 * t1772 - (t1420 * t1771 + t1422 * t1770);
-            let t1774 = t1406 * t1772 - (t1398 * t1771 - t1402 * t1770);
-            let t1775 = t1422 * t1774 + t1402 * t1773;
-            let t1776 = t1420 * t1774 - t1398 * t1773;
-            let t1777 = t1418 * t1774 - t1406 * t1773;
-            let t1778 = t1731 * t1777 + (t1728 * t1776 - t1725 * t1775) + k(0.5) * t1775;
-            let t1779 = k(0.2) * t1401;
-            let t1780 = k(0.2) * t1397;
-            let t1781 = k(0.2) * t1405;
-            let t1782 = t1781 * t1731 + (t1780 * t1728 + t1779 * t1725)
-                - k(0.26) * t1401;
-            let t1783 = t1782
-                - (t1778 + (t1416 * t1737 + (t1425 * t1735 + t1424 * t1733)));
-            let t1784 = t1745 * t1777 + (t1744 * t1776 - t1728 * t1775) - k(0.5) * t1776;
-            let t1785 = t1781 * t1745 + (t1780 * t1744 + t1779 * t1728)
-                - k(0.26) * t1397;
-            let t1786 = t1785
-                - (t1784 + (t1416 * t1749 - (t1425 * t1748 - t1424 * t1747)));
-            let t1787 = t1752 * t1777 + (t1745 * t1776 - t1731 * t1775) - k(0.5) * t1777;
-            let t1788 = t1781 * t1752 + (t1780 * t1745 + t1779 * t1731)
+                + t1668
+                    * (k(0.7453559924999299) * t1665
+                        - (k(0.29814239699997197) * t1664
+                            - k(0.5962847939999439) * t1663));
+            let t1720 = k(1.4907119849998598) * t1423
+                - (k(0.5962847939999439) * t1401 + k(1.1925695879998879) * t1414);
+            let t1721 = t1720 * t1676 - t1718 - t1719 + (t1717 * t1662 - t1715 - t1716);
+            let t1722 = t1688
+                * (k(0.5962847939999439) * t1686 + k(0.29814239699997197) * t1685
+                    + k(0.7453559924999299) * t1684);
+            let t1723 = t1722
+                + t1683
+                    * (k(0.7453559924999299) * t1680
+                        - (k(0.29814239699997197) * t1679
+                            - k(0.5962847939999439) * t1678));
+            let t1724 = k(1.4907119849998598) * t1421
+                - (k(0.5962847939999439) * t1409 - k(1.1925695879998879) * t1418);
+            let t1725 = t1724 * t1691 + t1722 + t1723 + t1721;
+            let t1726 = t1717 * t1725 - t1706 * t1714 - t1452 * t1704
+                + t1648 * (t1452 * t1647);
+            let t1727 = t1726 - t1643 * (t1452 * t1604);
+            let t1728 = t1528 * t1576;
+            let t1729 = t1528 * t1728;
+            let t1730 = t1720 * t1725 + t1709 * t1714 - t1468 * t1704
+                + t1648 * (t1468 * t1647);
+            let t1731 = t1730 - t1643 * (t1468 * t1604);
+            let t1732 = t1538 * t1728;
+            let t1733 = t1724 * t1725 + t1712 * t1714 - t1485 * t1704
+                + t1648 * (t1485 * t1647);
+            let t1734 = t1733 - t1643 * (t1485 * t1604);
+            let t1735 = t1548 * t1728;
+            let t1736 = t1735 * t1734 + (t1732 * t1731 - t1729 * t1727) + k(0.5) * t1727;
+            let t1737 = t1521 - t1562 * t1728;
+            let t1738 = t1643 * t1598 - t1648 * t1644;
+            let t1739 = t1524 + t1570 * t1728;
+            let t1740 = t1643 * t1600 - t1648 * t1645;
+            let t1741 = t1527 - t1574 * t1728;
+            let t1742 = t1643 * t1602 - t1648 * t1646;
+            let t1743 = t1742 * t1741 - (t1740 * t1739 - t1738 * t1737) - t1736
+                + (t1399 - t1528 * t1577);
+            let t1744 = slide_sx + k(0.1) * (t1657 + t1655)
+                - (slide_sy + k(0.1) * (t1671 - t1669));
+            let t1745 = k(0.23570226039551584) * t1744
+                + k(0.9428090415820634) * (slide_sz - k(0.1) * (t1686 - t1684));
+            let t1746 = k(0.11785113019775792) * t1745;
+            let t1747 = t1538 * t1576;
+            let t1748 = t1538 * t1747;
+            let t1749 = t1548 * t1747;
+            let t1750 = t1749 * t1734 + (t1748 * t1731 - t1732 * t1727) - k(0.5) * t1731;
+            let t1751 = t1531 - t1562 * t1747;
+            let t1752 = t1534 - t1570 * t1747;
+            let t1753 = t1537 - t1574 * t1747;
+            let t1754 = t1742 * t1753 + (t1740 * t1752 + t1738 * t1751) - t1750
+                + (t1465 - t1538 * t1577);
+            let t1755 = t1548 * t1576;
+            let t1756 = t1548 * t1755;
+            let t1757 = t1756 * t1734 + (t1749 * t1731 - t1735 * t1727) - k(0.5) * t1734;
+            let t1758 = t1541 - t1562 * t1755;
+            let t1759 = t1544 - t1570 * t1755;
+            let t1760 = t1547 - t1574 * t1755;
+            let t1761 = t1742 * t1760 + (t1740 * t1759 + t1738 * t1758) - t1757
+                + (t1484 - t1548 * t1577);
+            let t1762 = k(0.9428090415820634)
+                * (k(0.8) * self.gravity + k(0.4714045207910317) * t1745 + t1761)
+                + k(0.23570226039551584) * (t1746 + t1754 + (t1746 + t1743));
+            let t1763 = t1651 - t1649;
+            let t1764 = t1665 - t1663;
+            let t1765 = k(0.05) * (t1764 + t1763);
+            let t1766 = k(0.03333333333333333) * (t1680 - t1678)
+                - k(0.06666666666666667) * (t1764 - t1763);
+            let t1767 = k(0.6666666666666666) * t1766;
+            let t1768 = t1767 + t1765;
+            let t1769 = k(0.3064129385141706)
+                - (k(0.9428090415820634) * t1735
+                    + k(0.23570226039551584) * (t1732 + t1729));
+            let t1770 = t1767 - t1765;
+            let t1771 = k(0.3064129385141706)
+                - (k(0.9428090415820634) * t1749
+                    + k(0.23570226039551584) * (t1748 + t1732));
+            let t1772 = k(0.3333333333333333) * t1766;
+            let t1773 = k(1.2256517540566825)
+                - (k(0.9428090415820634) * t1756
+                    + k(0.23570226039551584) * (t1749 + t1735));
+            let t1774 = slide_rx - t1653;
+            let t1775 = slide_ry - t1667;
+            let t1776 = slide_rz - t1682;
+            let t1777 = t1422 * t1776 - (t1424 * t1775 + t1426 * t1774);
+            let t1778 = t1410 * t1776 - (t1402 * t1775 - t1406 * t1774);
+            let t1779 = t1426 * t1778 + t1406 * t1777;
+            let t1780 = t1424 * t1778 - t1402 * t1777;
+            let t1781 = t1422 * t1778 - t1410 * t1777;
+            let t1782 = t1735 * t1781 + (t1732 * t1780 - t1729 * t1779) + k(0.5) * t1779;
+            let t1783 = k(0.2) * t1405;
+            let t1784 = k(0.2) * t1401;
+            let t1785 = k(0.2) * t1409;
+            let t1786 = t1785 * t1735 + (t1784 * t1732 + t1783 * t1729)
                 - k(0.26) * t1405;
-            let t1789 = t1788
-                - (t1787 + (t1416 * t1756 - (t1425 * t1755 - t1424 * t1754)));
-            let t1790 = k(0.31426968052735443) * -(t1662 + t1648)
-                - k(0.15713484026367722) * t1677;
-            let t1791 = k(0.4714045207910317) * t1419;
-            let t1792 = t1791 - k(1.8856180831641267) * t1410;
-            let t1793 = k(0.4714045207910317) * t1421;
-            let t1794 = t1793 + k(1.8856180831641267) * t1408;
-            let t1795 = k(0.7071067811865476) * (t1794 + t1792);
-            let t1796 = k(0.4714045207910317) * t1417;
-            let t1797 = k(0.6666666666666666) * (t1794 - t1792)
-                + k(0.3333333333333333) * (t1796 + k(1.8856180831641267) * t1414);
-            let t1798 = t1662 - t1648;
-            let t1799 = k(0.3333333333333333) * t1798;
+            let t1787 = t1786
+                - (t1782 + (t1420 * t1741 + (t1429 * t1739 + t1428 * t1737)));
+            let t1788 = t1749 * t1781 + (t1748 * t1780 - t1732 * t1779) - k(0.5) * t1780;
+            let t1789 = t1785 * t1749 + (t1784 * t1748 + t1783 * t1732)
+                - k(0.26) * t1401;
+            let t1790 = t1789
+                - (t1788 + (t1420 * t1753 - (t1429 * t1752 - t1428 * t1751)));
+            let t1791 = t1756 * t1781 + (t1749 * t1780 - t1735 * t1779) - k(0.5) * t1781;
+            let t1792 = t1785 * t1756 + (t1784 * t1749 + t1783 * t1735)
+                - k(0.26) * t1409;
+            let t1793 = t1792
+                - (t1791 + (t1420 * t1760 - (t1429 * t1759 - t1428 * t1758)));
+            let t1794 = k(0.31426968052735443) * -(t1666 + t1652)
+                - k(0.15713484026367722) * t1681;
+            let t1795 = k(0.4714045207910317) * t1423;
+            let t1796 = t1795 - k(1.8856180831641267) * t1414;
+            let t1797 = k(0.4714045207910317) * t1425;
+            let t1798 = t1797 + k(1.8856180831641267) * t1412;
+            let t1799 = k(0.7071067811865476) * (t1798 + t1796);
             (
-                t1645,
-                t1646,
-                t1647,
+                t1649,
+                t1650,
+                t1651,
                 t1652,
-                t1659,
-                t1660,
-                t1661,
+                t1656,
+                t1663,
+                t1664,
+                t1665,
                 t1666,
-                t1674,
-                t1675,
-                t1676,
-                t1681,
-                t1699,
-                t1723,
-                t1725,
+                t1670,
+                t1678,
+                t1679,
+                t1680,
+                t1685,
+                t1703,
                 t1727,
-                t1728,
-                t1730,
+                t1729,
                 t1731,
-                t1733,
+                t1732,
                 t1734,
                 t1735,
-                t1736,
                 t1737,
                 t1738,
-                t1744,
-                t1745,
-                t1747,
+                t1739,
+                t1740,
+                t1741,
+                t1742,
                 t1748,
                 t1749,
+                t1751,
                 t1752,
-                t1754,
-                t1755,
+                t1753,
                 t1756,
                 t1758,
-                t1764,
-                t1765,
-                t1766,
-                t1767,
+                t1759,
+                t1760,
+                t1762,
                 t1768,
                 t1769,
                 t1770,
@@ -14265,18 +14297,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 t1775,
                 t1776,
                 t1777,
+                t1778,
                 t1779,
                 t1780,
                 t1781,
-                t1782,
                 t1783,
+                t1784,
                 t1785,
                 t1786,
-                t1788,
+                t1787,
                 t1789,
                 t1790,
-                t1791,
+                t1792,
                 t1793,
+                t1794,
                 t1795,
                 t1796,
                 t1797,
@@ -14285,1433 +14319,1417 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             )
         };
         let (
-            t1820,
-            t1841,
-            t1853,
-            t1855,
-            t1858,
-            t1860,
+            t1824,
+            t1845,
+            t1857,
+            t1859,
             t1862,
-            t1869,
-            t1871,
+            t1864,
+            t1866,
             t1873,
-            t1874,
             t1875,
-            t1876,
             t1877,
             t1878,
             t1879,
             t1880,
             t1881,
+            t1882,
             t1883,
             t1884,
             t1885,
-            t1886,
             t1887,
+            t1888,
             t1889,
             t1890,
             t1891,
             t1893,
+            t1894,
             t1895,
             t1897,
-            t1900,
+            t1899,
             t1901,
-            t1902,
+            t1904,
             t1905,
             t1906,
-            t1907,
+            t1909,
+            t1910,
             t1911,
-            t1912,
-            t1913,
-            t1914,
             t1915,
+            t1916,
             t1917,
             t1918,
             t1919,
-            t1920,
             t1921,
+            t1922,
             t1923,
+            t1924,
             t1925,
-            t1926,
             t1927,
-            t1928,
             t1929,
+            t1930,
             t1931,
+            t1932,
             t1933,
-            t1934,
             t1935,
-            t1936,
             t1937,
+            t1938,
             t1939,
+            t1940,
             t1941,
-            t1942,
-            t1944,
+            t1943,
             t1945,
+            t1946,
             t1948,
             t1949,
-            t1951,
             t1952,
             t1953,
-            t1966,
-            t1967,
-            t1969,
+            t1955,
+            t1956,
+            t1957,
             t1970,
-            t1972,
+            t1971,
             t1973,
             t1974,
-            t1975,
             t1976,
+            t1977,
             t1978,
             t1979,
-            t1981,
+            t1980,
             t1982,
             t1983,
-            t1984,
-            t1993,
-            t1994,
-            t1996,
+            t1985,
+            t1986,
+            t1987,
+            t1988,
             t1997,
             t1998,
             t1999,
         ) = {
-            let t1800 = t1799 * t1797 - t1795 * t1790;
-            let t1801 = k(0.7071067811865476) * (t1447 - t1446 + (t1463 + t1462));
-            let t1802 = t1791 - k(1.8856180831641267) * t1397;
-            let t1803 = t1793 + k(1.8856180831641267) * t1401;
-            let t1804 = k(0.6666666666666666) * (t1803 - t1802)
-                + k(0.3333333333333333) * (t1796 - k(1.8856180831641267) * t1405);
-            let t1805 = k(0.7071067811865476) * (t1803 + t1802);
-            let t1806 = t1805 * t1790 - t1799 * t1804;
-            let t1807 = k(0.7071067811865476)
-                * (t1447 - k(0.6666666666666666) * t1408
-                    + (t1463 + k(0.6666666666666666) * t1410));
-            let t1808 = t1795 * t1804 - t1805 * t1797;
-            let t1809 = k(0.9428090415820634) * t1798;
-            let t1810 = k(1.0) / (t1809 * t1808 + (t1807 * t1806 + t1801 * t1800));
-            let t1811 = t1645 - t1646;
-            let t1812 = t1659 - t1660;
-            let t1813 = k(0.3333333333333333) * t1661 + k(0.6666666666666666) * t1812
-                + (k(0.3333333333333333) * t1647 + k(0.6666666666666666) * t1811);
-            let t1814 = k(0.7071067811865476) * t1813;
-            let t1815 = k(0.9428090415820634) * t1647 - k(0.23570226039551584) * t1811;
-            let t1816 = k(0.9428090415820634) * t1661 - k(0.23570226039551584) * t1812;
-            let t1817 = k(0.7071067811865476) * (t1816 + t1815);
-            let t1818 = k(0.3333333333333333)
-                * (k(0.9428090415820634) * t1676
-                    - k(0.23570226039551584) * (t1674 - t1675))
-                - k(0.6666666666666666) * (t1816 - t1815);
-            let t1819 = t1818 * (t1810 * (t1795 * t1809 - t1799 * t1807))
-                + t1817 * (t1810 * (t1790 * t1807 - t1797 * t1809));
-            let t1820 = t1819 - t1814 * (t1800 * t1810);
-            let t1821 = t1415 * t1772 + (t1411 * t1771 - t1409 * t1770);
-            let t1822 = t1422 * t1821 - t1409 * t1773;
-            let t1823 = t1420 * t1821 + t1411 * t1773;
-            let t1824 = t1418 * t1821 - t1415 * t1773;
-            let t1825 = t1731 * t1824 + (t1728 * t1823 - t1725 * t1822) + k(0.5) * t1822;
-            let t1826 = t1408 + t1421;
-            let t1827 = k(0.2) * -t1826;
-            let t1828 = t1410 - t1419;
-            let t1829 = k(0.2) * t1828;
-            let t1830 = t1414 + t1417;
-            let t1831 = k(0.2) * t1830;
-            let t1832 = t1831 * t1731 - (t1829 * t1728 - t1827 * t1725)
-                - k(0.26) * -t1826;
-            let t1833 = t1832
-                - (t1825 - (t1407 * t1737 + (t1428 * t1735 + t1427 * t1733)));
-            let t1834 = t1745 * t1824 + (t1744 * t1823 - t1728 * t1822) - k(0.5) * t1823;
-            let t1835 = t1831 * t1745 - (t1829 * t1744 - t1827 * t1728)
-                + k(0.26) * t1828;
-            let t1836 = t1835
-                - (t1834 - (t1407 * t1749 - (t1428 * t1748 - t1427 * t1747)));
-            let t1837 = t1752 * t1824 + (t1745 * t1823 - t1731 * t1822) - k(0.5) * t1824;
-            let t1838 = t1831 * t1752 - (t1829 * t1745 - t1827 * t1731)
-                - k(0.26) * t1830;
-            let t1839 = t1838
-                - (t1837 - (t1407 * t1756 - (t1428 * t1755 - t1427 * t1754)));
-            let t1840 = t1818 * (t1810 * (t1799 * t1801 - t1805 * t1809))
-                + t1817 * (t1810 * (t1804 * t1809 - t1790 * t1801));
-            let t1841 = t1840 - t1814 * (t1806 * t1810);
-            let t1842 = t1841
-                * (k(0.9428090415820634) * t1839
-                    + k(0.23570226039551584) * (t1836 + t1833))
-                - t1820
-                    * (k(0.9428090415820634) * t1789
-                        + k(0.23570226039551584) * (t1786 + t1783));
-            let t1843 = t1402 * t1821 + t1409 * t1774;
-            let t1844 = t1398 * t1821 + t1411 * t1774;
-            let t1845 = t1406 * t1821 - t1415 * t1774;
-            let t1846 = t1731 * t1845 + (t1728 * t1844 + t1725 * t1843) - k(0.5) * t1843;
-            let t1847 = t1782
-                - (t1846 + (t1423 * t1737 + (t1432 * t1735 + t1431 * t1733)));
-            let t1848 = t1745 * t1845 + (t1744 * t1844 + t1728 * t1843) - k(0.5) * t1844;
-            let t1849 = t1785
-                - (t1848 + (t1423 * t1749 - (t1432 * t1748 - t1431 * t1747)));
-            let t1850 = t1752 * t1845 + (t1745 * t1844 + t1731 * t1843) - k(0.5) * t1845;
-            let t1851 = t1788
-                - (t1850 + (t1423 * t1756 - (t1432 * t1755 - t1431 * t1754)));
-            let t1852 = t1818 * (t1810 * (t1805 * t1807 - t1795 * t1801))
-                + t1817 * (t1810 * (t1797 * t1801 - t1804 * t1807));
-            let t1853 = t1852 - t1814 * (t1808 * t1810);
-            let t1854 = t1853
-                * (k(0.9428090415820634) * t1851
-                    + k(0.23570226039551584) * (t1849 + t1847)) - t1842
-                - (t1769 * t1768 - (t1767 * t1766 + t1765 * t1764));
-            let t1855 = k(1.0)
-                / (k(0.9428090415820634) * t1769
-                    + k(0.23570226039551584) * (t1767 + t1765));
-            let t1856 = t1855 * (t1854 - t1758);
-            let t1857 = k(0.23570226039551584) * t1856;
-            let t1858 = t1779 * t1853 - (t1827 * t1841 - t1779 * t1820)
-                - (t1764 - t1857);
-            let t1859 = t1723
-                + (t1853 * t1843 + (t1841 * t1822 - t1820 * t1775) - t1858);
-            let t1860 = t1780 * t1853 + (t1829 * t1841 + t1780 * t1820)
-                - (t1766 - t1857);
-            let t1861 = t1727
-                - (t1853 * t1844 - (t1841 * t1823 - t1820 * t1776) - t1860);
-            let t1862 = t1781 * t1853 - (t1831 * t1841 - t1781 * t1820)
-                + (t1768 + k(0.9428090415820634) * t1856);
-            let t1863 = t1730
-                - (t1853 * t1845 - (t1841 * t1824 - t1820 * t1777) - t1862);
-            let t1864 = t1431 * t1853 + (t1427 * t1841 + t1424 * t1820) + t1734;
-            let t1865 = t1432 * t1853 + (t1428 * t1841 + t1425 * t1820) - t1736;
-            let t1866 = t1423 * t1853 + (t1407 * t1841 + t1416 * t1820) + t1738;
-            let t1867 = t1570 * t1866 - (t1566 * t1865 - t1558 * t1864)
-                + (t1544 * t1863 + (t1534 * t1861 - t1524 * t1859));
-            let t1868 = t1572 * (t1514 + t1867);
-            let t1869 = t1865 - k(0.3333333333333333) * t1868;
-            let t1870 = k(0.6666666666666666) * t1868;
-            let t1871 = t1864 + t1870;
-            let t1872 = t1492 * t1871;
-            let t1873 = t1866 - t1870;
-            let t1874 = t1492 * t1873 + (t1872 - t1503 * t1869)
-                - (t1859 + t1449 * t1868);
-            let t1875 = t1382 + (t1374 * t1873 + (t1346 * t1869 + t1351 * t1871));
-            let t1876 = k(0.2) * t1322;
-            let t1877 = t1384 + (t1375 * t1873 + (t1358 * t1869 + t1360 * t1871));
-            let t1878 = t1393 + (t1373 * t1873 + (t1368 * t1869 + t1367 * t1871));
-            let t1879 = k(0.1) * t1322;
-            let t1880 = t1879 * t1878 + (t1386 * t1877 + t1876 * t1875)
-                - (t1335 - (t1510 * t1873 + (t1498 * t1869 + t1872) + t1874));
-            let t1881 = k(1.7888543819998317) * t1322 - k(0.8944271909999159) * t1317;
-            let t1882 = t1493 * t1871;
-            let t1883 = t1493 * t1873 + (t1882 + t1505 * t1869)
-                + (t1861 + t1465 * t1868);
-            let t1884 = k(0.2) * t1352;
-            let t1885 = k(0.1) * t1352;
-            let t1886 = t1885 * t1878 - (t1458 * t1877 - t1884 * t1875)
-                + (t1455 + (t1511 * t1873 - (t1499 * t1869 - t1882) + t1883));
-            let t1887 = k(1.7888543819998317) * t1352 - k(0.8944271909999159) * t1336;
-            let t1888 = t1491 * t1871;
-            let t1889 = t1491 * t1873 + (t1888 - t1507 * t1869)
-                + (t1863 + t1482 * t1868);
-            let t1890 = t1488 * t1878 - (t1474 * t1877 - t1483 * t1875)
-                + (t1471 + (t1512 * t1873 - (t1500 * t1869 - t1888) + t1889));
-            let t1891 = k(1.7888543819998317) * t1356 + k(0.8944271909999159) * t1340;
-            let t1892 = t1891 * t1483;
-            let t1893 = puck_rz - t648 - (lid_rz + (k(0.2) * t1365 + k(0.4) * t1340));
-            let t1894 = t1887 * t1884;
-            let t1895 = puck_ry - t647 - (lid_ry - (k(0.2) * t1363 - k(0.4) * t1336));
-            let t1896 = t1881 * t1876;
-            let t1897 = puck_rx + t646 - (lid_rx - (k(0.2) * t1327 + k(0.4) * t1317));
-            let t1898 = t1897 * (k(1.7888543819998317) * t1327) - t1896
-                + (t1895 * (k(1.7888543819998317) * t1363) - t1894);
-            let t1899 = t1898 - (t1893 * (k(1.7888543819998317) * t1365) + t1892);
-            let t1900 = t1473 - k(0.4) * t1365;
-            let t1901 = t1457 + k(0.4) * t1363;
-            let t1902 = t1385 - k(0.4) * t1327;
-            let t1903 = t1897 * (k(0.8944271909999159) * t1327) + t1881 * t1902
-                + (t1895 * (k(0.8944271909999159) * t1363) + t1887 * t1901);
-            let t1904 = t1903
-                - (t1893 * (k(0.8944271909999159) * t1365) + t1891 * t1900);
-            let t1905 = k(0.4) * t1356;
-            let t1906 = k(0.4) * t1352;
-            let t1907 = k(0.4) * t1322;
-            let t1908 = t1897
-                * (k(0.8944271909999159) * t1322 + k(1.7888543819998317) * t1317)
-                - t1881 * t1907
-                - (t1895
-                    * (k(0.8944271909999159) * t1352 + k(1.7888543819998317) * t1336)
-                    + t1887 * t1906);
-            let t1909 = t1908
-                + (t1893
-                    * (k(0.8944271909999159) * t1356 - k(1.7888543819998317) * t1340)
-                    - t1891 * t1905);
-            let t1910 = t1909 * t1878 + (t1904 * t1877 - t1899 * t1875)
-                - (t1891 * t1890 + (t1887 * t1886 + t1881 * t1880));
-            let t1911 = k(0.2) * t488;
-            let t1912 = k(0.2) * t481;
-            let t1913 = k(0.2) * t472;
-            let t1914 = t1913 * t1881 - t1912 * t1887 - t1911 * t1891;
-            let t1915 = t1881 * t589 + t1887 * t593 + t1891 * t597;
-            let t1916 = t1915 * t748 + t1914 * t747
-                + (t1891 * t763 - (t1887 * t760 + t1881 * t757));
-            let t1917 = t1328 * t1330 - (t1323 * t1389 + t1318 * t1319);
-            let t1918 = t1328 * lid_wx + t1318 * lid_wz;
-            let t1919 = t1328 * lid_wy - t1323 * lid_wz;
-            let t1920 = t1323 * lid_wx + t1318 * lid_wy;
-            let t1921 = lid_sx - (k(0.2) * t1919 - k(0.1) * t1920)
-                - (puck_sx + k(0.1) * (t473 * puck_wy - t466 * puck_wz));
-            let t1922 = t1921
-                * (k(0.4472135954999579) * t1919 - k(0.8944271909999159) * t1918);
-            let t1923 = k(0.1) * t707 + (t1334 + k(0.2) * t1329);
-            let t1924 = t1881 * t1923 - t1922
-                - (t1922
+            let t1800 = k(0.4714045207910317) * t1421;
+            let t1801 = k(0.6666666666666666) * (t1798 - t1796)
+                + k(0.3333333333333333) * (t1800 + k(1.8856180831641267) * t1418);
+            let t1802 = t1666 - t1652;
+            let t1803 = k(0.3333333333333333) * t1802;
+            let t1804 = t1803 * t1801 - t1799 * t1794;
+            let t1805 = k(0.7071067811865476) * (t1451 - t1450 + (t1467 + t1466));
+            let t1806 = t1795 - k(1.8856180831641267) * t1401;
+            let t1807 = t1797 + k(1.8856180831641267) * t1405;
+            let t1808 = k(0.6666666666666666) * (t1807 - t1806)
+                + k(0.3333333333333333) * (t1800 - k(1.8856180831641267) * t1409);
+            let t1809 = k(0.7071067811865476) * (t1807 + t1806);
+            let t1810 = t1809 * t1794 - t1803 * t1808;
+            let t1811 = k(0.7071067811865476)
+                * (t1451 - k(0.6666666666666666) * t1412
+                    + (t1467 + k(0.6666666666666666) * t1414));
+            let t1812 = t1799 * t1808 - t1809 * t1801;
+            let t1813 = k(0.9428090415820634) * t1802;
+            let t1814 = k(1.0) / (t1813 * t1812 + (t1811 * t1810 + t1805 * t1804));
+            let t1815 = t1649 - t1650;
+            let t1816 = t1663 - t1664;
+            let t1817 = k(0.3333333333333333) * t1665 + k(0.6666666666666666) * t1816
+                + (k(0.3333333333333333) * t1651 + k(0.6666666666666666) * t1815);
+            let t1818 = k(0.7071067811865476) * t1817;
+            let t1819 = k(0.9428090415820634) * t1651 - k(0.23570226039551584) * t1815;
+            let t1820 = k(0.9428090415820634) * t1665 - k(0.23570226039551584) * t1816;
+            let t1821 = k(0.7071067811865476) * (t1820 + t1819);
+            let t1822 = k(0.3333333333333333)
+                * (k(0.9428090415820634) * t1680
+                    - k(0.23570226039551584) * (t1678 - t1679))
+                - k(0.6666666666666666) * (t1820 - t1819);
+            let t1823 = t1822 * (t1814 * (t1799 * t1813 - t1803 * t1811))
+                + t1821 * (t1814 * (t1794 * t1811 - t1801 * t1813));
+            let t1824 = t1823 - t1818 * (t1804 * t1814);
+            let t1825 = t1419 * t1776 + (t1415 * t1775 - t1413 * t1774);
+            let t1826 = t1426 * t1825 - t1413 * t1777;
+            let t1827 = t1424 * t1825 + t1415 * t1777;
+            let t1828 = t1422 * t1825 - t1419 * t1777;
+            let t1829 = t1735 * t1828 + (t1732 * t1827 - t1729 * t1826) + k(0.5) * t1826;
+            let t1830 = t1412 + t1425;
+            let t1831 = k(0.2) * -t1830;
+            let t1832 = t1414 - t1423;
+            let t1833 = k(0.2) * t1832;
+            let t1834 = t1418 + t1421;
+            let t1835 = k(0.2) * t1834;
+            let t1836 = t1835 * t1735 - (t1833 * t1732 - t1831 * t1729)
+                - k(0.26) * -t1830;
+            let t1837 = t1836
+                - (t1829 - (t1411 * t1741 + (t1432 * t1739 + t1431 * t1737)));
+            let t1838 = t1749 * t1828 + (t1748 * t1827 - t1732 * t1826) - k(0.5) * t1827;
+            let t1839 = t1835 * t1749 - (t1833 * t1748 - t1831 * t1732)
+                + k(0.26) * t1832;
+            let t1840 = t1839
+                - (t1838 - (t1411 * t1753 - (t1432 * t1752 - t1431 * t1751)));
+            let t1841 = t1756 * t1828 + (t1749 * t1827 - t1735 * t1826) - k(0.5) * t1828;
+            let t1842 = t1835 * t1756 - (t1833 * t1749 - t1831 * t1735)
+                - k(0.26) * t1834;
+            let t1843 = t1842
+                - (t1841 - (t1411 * t1760 - (t1432 * t1759 - t1431 * t1758)));
+            let t1844 = t1822 * (t1814 * (t1803 * t1805 - t1809 * t1813))
+                + t1821 * (t1814 * (t1808 * t1813 - t1794 * t1805));
+            let t1845 = t1844 - t1818 * (t1810 * t1814);
+            let t1846 = t1845
+                * (k(0.9428090415820634) * t1843
+                    + k(0.23570226039551584) * (t1840 + t1837))
+                - t1824
+                    * (k(0.9428090415820634) * t1793
+                        + k(0.23570226039551584) * (t1790 + t1787));
+            let t1847 = t1406 * t1825 + t1413 * t1778;
+            let t1848 = t1402 * t1825 + t1415 * t1778;
+            let t1849 = t1410 * t1825 - t1419 * t1778;
+            let t1850 = t1735 * t1849 + (t1732 * t1848 + t1729 * t1847) - k(0.5) * t1847;
+            let t1851 = t1786
+                - (t1850 + (t1427 * t1741 + (t1436 * t1739 + t1435 * t1737)));
+            let t1852 = t1749 * t1849 + (t1748 * t1848 + t1732 * t1847) - k(0.5) * t1848;
+            let t1853 = t1789
+                - (t1852 + (t1427 * t1753 - (t1436 * t1752 - t1435 * t1751)));
+            let t1854 = t1756 * t1849 + (t1749 * t1848 + t1735 * t1847) - k(0.5) * t1849;
+            let t1855 = t1792
+                - (t1854 + (t1427 * t1760 - (t1436 * t1759 - t1435 * t1758)));
+            let t1856 = t1822 * (t1814 * (t1809 * t1811 - t1799 * t1805))
+                + t1821 * (t1814 * (t1801 * t1805 - t1808 * t1811));
+            let t1857 = t1856 - t1818 * (t1812 * t1814);
+            let t1858 = t1857
+                * (k(0.9428090415820634) * t1855
+                    + k(0.23570226039551584) * (t1853 + t1851)) - t1846
+                - (t1773 * t1772 - (t1771 * t1770 + t1769 * t1768));
+            let t1859 = k(1.0)
+                / (k(0.9428090415820634) * t1773
+                    + k(0.23570226039551584) * (t1771 + t1769));
+            let t1860 = t1859 * (t1858 - t1762);
+            let t1861 = k(0.23570226039551584) * t1860;
+            let t1862 = t1783 * t1857 - (t1831 * t1845 - t1783 * t1824)
+                - (t1768 - t1861);
+            let t1863 = t1727
+                + (t1857 * t1847 + (t1845 * t1826 - t1824 * t1779) - t1862);
+            let t1864 = t1784 * t1857 + (t1833 * t1845 + t1784 * t1824)
+                - (t1770 - t1861);
+            let t1865 = t1731
+                - (t1857 * t1848 - (t1845 * t1827 - t1824 * t1780) - t1864);
+            let t1866 = t1785 * t1857 - (t1835 * t1845 - t1785 * t1824)
+                + (t1772 + k(0.9428090415820634) * t1860);
+            let t1867 = t1734
+                - (t1857 * t1849 - (t1845 * t1828 - t1824 * t1781) - t1866);
+            let t1868 = t1435 * t1857 + (t1431 * t1845 + t1428 * t1824) + t1738;
+            let t1869 = t1436 * t1857 + (t1432 * t1845 + t1429 * t1824) - t1740;
+            let t1870 = t1427 * t1857 + (t1411 * t1845 + t1420 * t1824) + t1742;
+            let t1871 = t1574 * t1870 - (t1570 * t1869 - t1562 * t1868)
+                + (t1548 * t1867 + (t1538 * t1865 - t1528 * t1863));
+            let t1872 = t1576 * (t1518 + t1871);
+            let t1873 = t1869 - k(0.3333333333333333) * t1872;
+            let t1874 = k(0.6666666666666666) * t1872;
+            let t1875 = t1868 + t1874;
+            let t1876 = t1496 * t1875;
+            let t1877 = t1870 - t1874;
+            let t1878 = t1496 * t1877 + (t1876 - t1507 * t1873)
+                - (t1863 + t1453 * t1872);
+            let t1879 = t1386 + (t1378 * t1877 + (t1350 * t1873 + t1355 * t1875));
+            let t1880 = k(0.2) * t1326;
+            let t1881 = t1388 + (t1379 * t1877 + (t1362 * t1873 + t1364 * t1875));
+            let t1882 = t1397 + (t1377 * t1877 + (t1372 * t1873 + t1371 * t1875));
+            let t1883 = k(0.1) * t1326;
+            let t1884 = t1883 * t1882 + (t1390 * t1881 + t1880 * t1879)
+                - (t1339 - (t1514 * t1877 + (t1502 * t1873 + t1876) + t1878));
+            let t1885 = k(1.7888543819998317) * t1326 - k(0.8944271909999159) * t1321;
+            let t1886 = t1497 * t1875;
+            let t1887 = t1497 * t1877 + (t1886 + t1509 * t1873)
+                + (t1865 + t1469 * t1872);
+            let t1888 = k(0.2) * t1356;
+            let t1889 = k(0.1) * t1356;
+            let t1890 = t1889 * t1882 - (t1462 * t1881 - t1888 * t1879)
+                + (t1459 + (t1515 * t1877 - (t1503 * t1873 - t1886) + t1887));
+            let t1891 = k(1.7888543819998317) * t1356 - k(0.8944271909999159) * t1340;
+            let t1892 = t1495 * t1875;
+            let t1893 = t1495 * t1877 + (t1892 - t1511 * t1873)
+                + (t1867 + t1486 * t1872);
+            let t1894 = t1492 * t1882 - (t1478 * t1881 - t1487 * t1879)
+                + (t1475 + (t1516 * t1877 - (t1504 * t1873 - t1892) + t1893));
+            let t1895 = k(1.7888543819998317) * t1360 + k(0.8944271909999159) * t1344;
+            let t1896 = t1895 * t1487;
+            let t1897 = puck_rz - t652 - (lid_rz + (k(0.2) * t1369 + k(0.4) * t1344));
+            let t1898 = t1891 * t1888;
+            let t1899 = puck_ry - t651 - (lid_ry - (k(0.2) * t1367 - k(0.4) * t1340));
+            let t1900 = t1885 * t1880;
+            let t1901 = puck_rx + t650 - (lid_rx - (k(0.2) * t1331 + k(0.4) * t1321));
+            let t1902 = t1901 * (k(1.7888543819998317) * t1331) - t1900
+                + (t1899 * (k(1.7888543819998317) * t1367) - t1898);
+            let t1903 = t1902 - (t1897 * (k(1.7888543819998317) * t1369) + t1896);
+            let t1904 = t1477 - k(0.4) * t1369;
+            let t1905 = t1461 + k(0.4) * t1367;
+            let t1906 = t1389 - k(0.4) * t1331;
+            let t1907 = t1901 * (k(0.8944271909999159) * t1331) + t1885 * t1906
+                + (t1899 * (k(0.8944271909999159) * t1367) + t1891 * t1905);
+            let t1908 = t1907
+                - (t1897 * (k(0.8944271909999159) * t1369) + t1895 * t1904);
+            let t1909 = k(0.4) * t1360;
+            let t1910 = k(0.4) * t1356;
+            let t1911 = k(0.4) * t1326;
+            let t1912 = t1901
+                * (k(0.8944271909999159) * t1326 + k(1.7888543819998317) * t1321)
+                - t1885 * t1911
+                - (t1899
+                    * (k(0.8944271909999159) * t1356 + k(1.7888543819998317) * t1340)
+                    + t1891 * t1910);
+            let t1913 = t1912
+                + (t1897
+                    * (k(0.8944271909999159) * t1360 - k(1.7888543819998317) * t1344)
+                    - t1895 * t1909);
+            let t1914 = t1913 * t1882 + (t1908 * t1881 - t1903 * t1879)
+                - (t1895 * t1894 + (t1891 * t1890 + t1885 * t1884));
+            let t1915 = k(0.2) * t492;
+            let t1916 = k(0.2) * t485;
+            let t1917 = k(0.2) * t476;
+            let t1918 = t1917 * t1885 - t1916 * t1891 - t1915 * t1895;
+            let t1919 = t1885 * t593 + t1891 * t597 + t1895 * t601;
+            let t1920 = t1919 * t752 + t1918 * t751
+                + (t1895 * t767 - (t1891 * t764 + t1885 * t761));
+            let t1921 = t1332 * t1334 - (t1327 * t1393 + t1322 * t1323);
+            let t1922 = t1332 * lid_wx + t1322 * lid_wz;
+            let t1923 = t1332 * lid_wy - t1327 * lid_wz;
+            let t1924 = t1327 * lid_wx + t1322 * lid_wy;
+            let t1925 = lid_sx - (k(0.2) * t1923 - k(0.1) * t1924)
+                - (puck_sx + k(0.1) * (t477 * puck_wy - t470 * puck_wz));
+            let t1926 = t1925
+                * (k(0.4472135954999579) * t1923 - k(0.8944271909999159) * t1922);
+            let t1927 = k(0.1) * t711 + (t1338 + k(0.2) * t1333);
+            let t1928 = t1885 * t1927 - t1926
+                - (t1926
+                    + t1901
+                        * (k(0.8944271909999159) * t1921
+                            + k(0.4472135954999579) * t1333));
+            let t1929 = t1368 * t1334 + (t1357 * t1393 + t1341 * t1323);
+            let t1930 = t1368 * lid_wx - t1341 * lid_wz;
+            let t1931 = t1368 * lid_wy + t1357 * lid_wz;
+            let t1932 = t1357 * lid_wx + t1341 * lid_wy;
+            let t1933 = lid_sy - (k(0.2) * t1931 + k(0.1) * t1932)
+                - (puck_sy + k(0.1) * (t486 * puck_wy + t482 * puck_wz));
+            let t1934 = t1933
+                * (k(0.4472135954999579) * t1931 - k(0.8944271909999159) * t1930);
+            let t1935 = k(0.1) * t717 + (t1458 + k(0.2) * t1456);
+            let t1936 = t1891 * t1935 + t1934
+                + (t1934
+                    + t1899
+                        * (k(0.8944271909999159) * t1929
+                            + k(0.4472135954999579) * t1456));
+            let t1937 = t1370 * t1334 + (t1361 * t1393 - t1345 * t1323);
+            let t1938 = t1370 * lid_wx + t1345 * lid_wz;
+            let t1939 = t1370 * lid_wy + t1361 * lid_wz;
+            let t1940 = t1361 * lid_wx - t1345 * lid_wy;
+            let t1941 = lid_sz + (k(0.2) * t1939 + k(0.1) * t1940)
+                - (puck_sz - k(0.1) * (t493 * puck_wy + t491 * puck_wz));
+            let t1942 = t1941
+                * (k(0.4472135954999579) * t1939 - k(0.8944271909999159) * t1938);
+            let t1943 = k(0.1) * t713 + (t1474 + k(0.2) * t1472);
+            let t1944 = t1895 * t1943 - t1942
+                - (t1942
                     + t1897
-                        * (k(0.8944271909999159) * t1917
-                            + k(0.4472135954999579) * t1329));
-            let t1925 = t1364 * t1330 + (t1353 * t1389 + t1337 * t1319);
-            let t1926 = t1364 * lid_wx - t1337 * lid_wz;
-            let t1927 = t1364 * lid_wy + t1353 * lid_wz;
-            let t1928 = t1353 * lid_wx + t1337 * lid_wy;
-            let t1929 = lid_sy - (k(0.2) * t1927 + k(0.1) * t1928)
-                - (puck_sy + k(0.1) * (t482 * puck_wy + t478 * puck_wz));
-            let t1930 = t1929
-                * (k(0.4472135954999579) * t1927 - k(0.8944271909999159) * t1926);
-            let t1931 = k(0.1) * t713 + (t1454 + k(0.2) * t1452);
-            let t1932 = t1887 * t1931 + t1930
-                + (t1930
-                    + t1895
-                        * (k(0.8944271909999159) * t1925
-                            + k(0.4472135954999579) * t1452));
-            let t1933 = t1366 * t1330 + (t1357 * t1389 - t1341 * t1319);
-            let t1934 = t1366 * lid_wx + t1341 * lid_wz;
-            let t1935 = t1366 * lid_wy + t1357 * lid_wz;
-            let t1936 = t1357 * lid_wx - t1341 * lid_wy;
-            let t1937 = lid_sz + (k(0.2) * t1935 + k(0.1) * t1936)
-                - (puck_sz - k(0.1) * (t489 * puck_wy + t487 * puck_wz));
-            let t1938 = t1937
-                * (k(0.4472135954999579) * t1935 - k(0.8944271909999159) * t1934);
-            let t1939 = k(0.1) * t709 + (t1470 + k(0.2) * t1468);
-            let t1940 = t1891 * t1939 - t1938
-                - (t1938
-                    + t1893
-                        * (k(0.8944271909999159) * t1933
-                            + k(0.4472135954999579) * t1468));
-            let t1941 = t1915 * t889 - t1914 * t888
-                - (t1891 * t903 - (t1887 * t900 + t1881 * t897));
-            let t1942 = t918 * t1941;
-            let t1943 = t1915 * t1012 - t1914 * t1011
-                - (t1891 * t1026 - (t1887 * t1023 + t1881 * t1020));
-            let t1944 = t945 * t1942 - t1943;
-            let t1945 = t1041 * t1944;
-            let t1946 = t1945 * t947
-                - (t1942 * t824 - (t1940 + (t1932 - t1924) + (t1916 + t1910)));
-            let t1947 = t1915 * t1155 - t1914 * t1154
-                - (t1891 * t1169 - (t1887 * t1166 + t1881 * t1163));
-            let t1948 = t1096 * t1945 - (t1093 * t1942 - t1947);
-            let t1949 = t1181 * t1948;
-            let t1950 = t1915 * t1265 - t1914 * t1264
-                - (t1891 * t1279 - (t1887 * t1276 + t1881 * t1273));
-            let t1951 = t1206 * t1949 - (t1202 * t1945 - (t1199 * t1942 - t1950));
-            let t1952 = t1291 * t1951;
-            let t1953 = t1952 * t1208 - (t1949 * t1098 - t1946);
-            let t1954 = t1899 + (t1892 + (t1896 + t1894));
-            let t1955 = t1904 + (t1891 * t1474 + (t1887 * t1458 - t1881 * t1386));
-            let t1956 = t1909 - (t1891 * t1488 + (t1887 * t1885 + t1881 * t1879));
-            let t1957 = t1891 * t1491 + (t1887 * t1493 + t1881 * t1492);
-            let t1958 = t1957
-                + (t1957 - (t1367 * t1956 + (t1360 * t1955 - t1351 * t1954)));
-            let t1959 = t1891 * t1500 + (t1887 * t1499 - t1881 * t1498)
-                + (t1368 * t1956 + (t1358 * t1955 - t1346 * t1954));
-            let t1960 = k(0.3333333333333333)
-                * (t1891 * t1507 - (t1887 * t1505 - t1881 * t1503) + t1959);
-            let t1961 = t1891 * t1512 + (t1887 * t1511 + t1881 * t1510)
-                - (t1373 * t1956 + (t1375 * t1955 - t1374 * t1954));
-            let t1962 = k(0.6666666666666666) * (t1961 + t1957)
-                - (t1960 + k(0.6666666666666666) * t1958)
-                - (t1891 * t1482 + (t1887 * t1465 - t1881 * t1449));
-            let t1963 = t1962 * t1572;
-            let t1964 = k(0.9428090415820634) * (t1891 - t1544 * t1963)
+                        * (k(0.8944271909999159) * t1937
+                            + k(0.4472135954999579) * t1472));
+            let t1945 = t1919 * t893 - t1918 * t892
+                - (t1895 * t907 - (t1891 * t904 + t1885 * t901));
+            let t1946 = t922 * t1945;
+            let t1947 = t1919 * t1016 - t1918 * t1015
+                - (t1895 * t1030 - (t1891 * t1027 + t1885 * t1024));
+            let t1948 = t949 * t1946 - t1947;
+            let t1949 = t1045 * t1948;
+            let t1950 = t1949 * t951
+                - (t1946 * t828 - (t1944 + (t1936 - t1928) + (t1920 + t1914)));
+            let t1951 = t1919 * t1159 - t1918 * t1158
+                - (t1895 * t1173 - (t1891 * t1170 + t1885 * t1167));
+            let t1952 = t1100 * t1949 - (t1097 * t1946 - t1951);
+            let t1953 = t1185 * t1952;
+            let t1954 = t1919 * t1269 - t1918 * t1268
+                - (t1895 * t1283 - (t1891 * t1280 + t1885 * t1277));
+            let t1955 = t1210 * t1953 - (t1206 * t1949 - (t1203 * t1946 - t1954));
+            let t1956 = t1295 * t1955;
+            let t1957 = t1956 * t1212 - (t1953 * t1102 - t1950);
+            let t1958 = t1903 + (t1896 + (t1900 + t1898));
+            let t1959 = t1908 + (t1895 * t1478 + (t1891 * t1462 - t1885 * t1390));
+            let t1960 = t1913 - (t1895 * t1492 + (t1891 * t1889 + t1885 * t1883));
+            let t1961 = t1895 * t1495 + (t1891 * t1497 + t1885 * t1496);
+            let t1962 = t1961
+                + (t1961 - (t1371 * t1960 + (t1364 * t1959 - t1355 * t1958)));
+            let t1963 = t1895 * t1504 + (t1891 * t1503 - t1885 * t1502)
+                + (t1372 * t1960 + (t1362 * t1959 - t1350 * t1958));
+            let t1964 = k(0.3333333333333333)
+                * (t1895 * t1511 - (t1891 * t1509 - t1885 * t1507) + t1963);
+            let t1965 = t1895 * t1516 + (t1891 * t1515 + t1885 * t1514)
+                - (t1377 * t1960 + (t1379 * t1959 - t1378 * t1958));
+            let t1966 = k(0.6666666666666666) * (t1965 + t1961)
+                - (t1964 + k(0.6666666666666666) * t1962)
+                - (t1895 * t1486 + (t1891 * t1469 - t1885 * t1453));
+            let t1967 = t1966 * t1576;
+            let t1968 = k(0.9428090415820634) * (t1895 - t1548 * t1967)
                 + k(0.23570226039551584)
-                    * (t1887 - t1534 * t1963 + (t1881 - t1524 * t1963));
-            let t1965 = t1964 * t1855;
-            let t1966 = k(0.23570226039551584) * t1965;
-            let t1967 = k(0.9428090415820634) * t1965;
-            let t1968 = t1572
-                * (t1962 - (t1544 * t1967 + (t1534 * t1966 + t1524 * t1966)));
-            let t1969 = k(0.3333333333333333) * t1968;
-            let t1970 = k(0.6666666666666666) * t1968;
-            let t1971 = t1492 * t1970;
-            let t1972 = t1971 - (t1971 + t1503 * t1969) + (t1966 + t1449 * t1968);
-            let t1973 = t1374 * t1970 + (t1346 * t1969 - t1351 * t1970);
-            let t1974 = t1375 * t1970 + (t1358 * t1969 - t1360 * t1970);
-            let t1975 = t1373 * t1970 + (t1368 * t1969 - t1367 * t1970);
-            let t1976 = t1879 * t1975 + (t1386 * t1974 + t1876 * t1973)
-                + (t1510 * t1970 + (t1498 * t1969 - t1971) + t1972);
-            let t1977 = t1493 * t1970;
-            let t1978 = t1977 - (t1977 - t1505 * t1969) + (t1966 - t1465 * t1968);
-            let t1979 = t1885 * t1975 - (t1458 * t1974 - t1884 * t1973)
-                + (t1511 * t1970 - (t1499 * t1969 + t1977) + t1978);
-            let t1980 = t1491 * t1970;
-            let t1981 = t1980 - (t1980 + t1507 * t1969) + (t1967 - t1482 * t1968);
-            let t1982 = t1488 * t1975 - (t1474 * t1974 - t1483 * t1973)
-                + (t1512 * t1970 - (t1500 * t1969 + t1980) + t1981);
-            let t1983 = t1909 * t1975 + (t1904 * t1974 - t1899 * t1973)
-                - (t1891 * t1982 + (t1887 * t1979 + t1881 * t1976));
-            let t1984 = k(0.19611613513818404) * t1891 - k(0.9805806756909201) * t1881;
-            let t1985 = t513 * t1984;
-            let t1986 = k(0.9813067629253163) * (t1887 + t525 * t1985)
-                + k(0.03774256780481986) * (t1881 + t510 * t1985);
-            let t1987 = k(0.1887128390240993) * (t1891 - t512 * t1985) + t1986;
-            let t1988 = t637 * t1987;
-            let t1989 = t657 * t1985
-                - (t1914 + (t1891 * t648 - (t1887 * t647 + t1881 * t646)));
-            let t1990 = t664 * t1988 + t1989 + (t645 * t1988 + (t1915 + t633 * t1985));
-            let t1991 = k(0.9622504486493763) * (t679 * t1988 - (t1915 - t673 * t1985))
-                - k(0.19245008972987526) * t1990;
-            let t1992 = t743 * t1991;
-            let t1993 = k(0.19245008972987526) * t1992;
-            let t1994 = k(0.9622504486493763) * t1992;
-            let t1995 = t637 * (t1987 - (t679 * t1994 - (t664 * t1993 + t645 * t1993)));
-            let t1996 = k(0.03774256780481986) * t1995;
-            let t1997 = k(0.9813067629253163) * t1995;
-            let t1998 = k(0.1887128390240993) * t1995;
-            let t1999 = t673 * t1994 - (t657 * t1993 + t633 * t1993)
-                + (t512 * t1998 - (t525 * t1997 + t510 * t1996));
+                    * (t1891 - t1538 * t1967 + (t1885 - t1528 * t1967));
+            let t1969 = t1968 * t1859;
+            let t1970 = k(0.23570226039551584) * t1969;
+            let t1971 = k(0.9428090415820634) * t1969;
+            let t1972 = t1576
+                * (t1966 - (t1548 * t1971 + (t1538 * t1970 + t1528 * t1970)));
+            let t1973 = k(0.3333333333333333) * t1972;
+            let t1974 = k(0.6666666666666666) * t1972;
+            let t1975 = t1496 * t1974;
+            let t1976 = t1975 - (t1975 + t1507 * t1973) + (t1970 + t1453 * t1972);
+            let t1977 = t1378 * t1974 + (t1350 * t1973 - t1355 * t1974);
+            let t1978 = t1379 * t1974 + (t1362 * t1973 - t1364 * t1974);
+            let t1979 = t1377 * t1974 + (t1372 * t1973 - t1371 * t1974);
+            let t1980 = t1883 * t1979 + (t1390 * t1978 + t1880 * t1977)
+                + (t1514 * t1974 + (t1502 * t1973 - t1975) + t1976);
+            let t1981 = t1497 * t1974;
+            let t1982 = t1981 - (t1981 - t1509 * t1973) + (t1970 - t1469 * t1972);
+            let t1983 = t1889 * t1979 - (t1462 * t1978 - t1888 * t1977)
+                + (t1515 * t1974 - (t1503 * t1973 + t1981) + t1982);
+            let t1984 = t1495 * t1974;
+            let t1985 = t1984 - (t1984 + t1511 * t1973) + (t1971 - t1486 * t1972);
+            let t1986 = t1492 * t1979 - (t1478 * t1978 - t1487 * t1977)
+                + (t1516 * t1974 - (t1504 * t1973 + t1984) + t1985);
+            let t1987 = t1913 * t1979 + (t1908 * t1978 - t1903 * t1977)
+                - (t1895 * t1986 + (t1891 * t1983 + t1885 * t1980));
+            let t1988 = k(0.19611613513818404) * t1895 - k(0.9805806756909201) * t1885;
+            let t1989 = t517 * t1988;
+            let t1990 = k(0.9813067629253163) * (t1891 + t529 * t1989)
+                + k(0.03774256780481986) * (t1885 + t514 * t1989);
+            let t1991 = k(0.1887128390240993) * (t1895 - t516 * t1989) + t1990;
+            let t1992 = t641 * t1991;
+            let t1993 = t661 * t1989
+                - (t1918 + (t1895 * t652 - (t1891 * t651 + t1885 * t650)));
+            let t1994 = t668 * t1992 + t1993 + (t649 * t1992 + (t1919 + t637 * t1989));
+            let t1995 = k(0.9622504486493763) * (t683 * t1992 - (t1919 - t677 * t1989))
+                - k(0.19245008972987526) * t1994;
+            let t1996 = t747 * t1995;
+            let t1997 = k(0.19245008972987526) * t1996;
+            let t1998 = k(0.9622504486493763) * t1996;
+            let t1999 = t641 * (t1991 - (t683 * t1998 - (t668 * t1997 + t649 * t1997)));
             (
-                t1820,
-                t1841,
-                t1853,
-                t1855,
-                t1858,
-                t1860,
+                t1824,
+                t1845,
+                t1857,
+                t1859,
                 t1862,
-                t1869,
-                t1871,
+                t1864,
+                t1866,
                 t1873,
-                t1874,
                 t1875,
-                t1876,
                 t1877,
                 t1878,
                 t1879,
                 t1880,
                 t1881,
+                t1882,
                 t1883,
                 t1884,
                 t1885,
-                t1886,
                 t1887,
+                t1888,
                 t1889,
                 t1890,
                 t1891,
                 t1893,
+                t1894,
                 t1895,
                 t1897,
-                t1900,
+                t1899,
                 t1901,
-                t1902,
+                t1904,
                 t1905,
                 t1906,
-                t1907,
+                t1909,
+                t1910,
                 t1911,
-                t1912,
-                t1913,
-                t1914,
                 t1915,
+                t1916,
                 t1917,
                 t1918,
                 t1919,
-                t1920,
                 t1921,
+                t1922,
                 t1923,
+                t1924,
                 t1925,
-                t1926,
                 t1927,
-                t1928,
                 t1929,
+                t1930,
                 t1931,
+                t1932,
                 t1933,
-                t1934,
                 t1935,
-                t1936,
                 t1937,
+                t1938,
                 t1939,
+                t1940,
                 t1941,
-                t1942,
-                t1944,
+                t1943,
                 t1945,
+                t1946,
                 t1948,
                 t1949,
-                t1951,
                 t1952,
                 t1953,
-                t1966,
-                t1967,
-                t1969,
+                t1955,
+                t1956,
+                t1957,
                 t1970,
-                t1972,
+                t1971,
                 t1973,
                 t1974,
-                t1975,
                 t1976,
+                t1977,
                 t1978,
                 t1979,
-                t1981,
+                t1980,
                 t1982,
                 t1983,
-                t1984,
-                t1993,
-                t1994,
-                t1996,
+                t1985,
+                t1986,
+                t1987,
+                t1988,
                 t1997,
                 t1998,
                 t1999,
             )
         };
         let (
-            t2001,
-            t2002,
-            t2003,
-            t2004,
             t2005,
             t2006,
+            t2007,
+            t2008,
             t2009,
-            t2033,
-            t2034,
+            t2010,
+            t2013,
             t2037,
             t2038,
-            t2040,
             t2041,
-            t2043,
+            t2042,
             t2044,
+            t2045,
+            t2047,
             t2048,
-            t2049,
-            t2050,
-            t2063,
-            t2064,
-            t2066,
+            t2052,
+            t2053,
+            t2054,
             t2067,
-            t2069,
+            t2068,
             t2070,
             t2071,
-            t2072,
             t2073,
+            t2074,
             t2075,
             t2076,
-            t2078,
+            t2077,
             t2079,
-            t2090,
-            t2091,
-            t2098,
-            t2099,
-            t2100,
-            t2101,
+            t2080,
+            t2082,
+            t2083,
+            t2094,
+            t2095,
             t2102,
             t2103,
+            t2104,
+            t2105,
             t2106,
-            t2129,
-            t2130,
-            t2131,
+            t2107,
+            t2110,
+            t2133,
             t2134,
             t2135,
-            t2136,
+            t2138,
+            t2139,
             t2140,
-            t2141,
-            t2142,
+            t2144,
+            t2145,
             t2146,
-            t2147,
-            t2149,
             t2150,
-            t2152,
+            t2151,
             t2153,
+            t2154,
             t2156,
             t2157,
-            t2159,
             t2160,
-            t2162,
+            t2161,
             t2163,
             t2164,
+            t2166,
+            t2167,
             t2168,
-            t2169,
-            t2170,
-            t2171,
             t2172,
             t2173,
             t2174,
             t2175,
+            t2176,
+            t2177,
             t2178,
             t2179,
             t2182,
             t2183,
-            t2184,
-            t2185,
             t2186,
+            t2187,
+            t2188,
             t2189,
             t2190,
+            t2193,
             t2194,
-            t2196,
-            t2197,
             t2198,
             t2199,
         ) = {
-            let t2000 = t513 * (t1984 - t1999);
-            let t2001 = t646 * t1993;
-            let t2002 = t2001 + t589 * t1993 + (t1996 - k(0.9805806756909201) * t2000);
-            let t2003 = t647 * t1993;
-            let t2004 = t1997 + (t2003 + t593 * t1993);
-            let t2005 = t648 * t1993;
-            let t2006 = t2005 - t597 * t1993 - (t1998 + k(0.19611613513818404) * t2000);
-            let t2007 = t1915 * t1994 - t1914 * t1993
-                - (t1891 * t2006 - (t1887 * t2004 + t1881 * t2002));
-            let t2008 = t1948 * t1949
-                - (t1944 * t1945 - (t1941 * t1942 + (t2007 - t1983)));
-            let t2009 = k(1.0) / (t1951 * t1952 - t2008);
-            let t2010 = k(1.4907119849998598) * t1327
-                - (k(0.5962847939999439) * t1322 + k(1.1925695879998879) * t1317);
-            let t2011 = k(1.4907119849998598) * t1363
-                + (k(0.5962847939999439) * t1352 + k(1.1925695879998879) * t1336);
-            let t2012 = k(1.4907119849998598) * t1365
-                + (k(0.5962847939999439) * t1356 - k(1.1925695879998879) * t1340);
-            let t2013 = t2012 * t1483;
-            let t2014 = t2011 * t1884;
-            let t2015 = t2010 * t1876;
-            let t2016 = t1897
-                * (k(0.5962847939999439) * t1327 + k(1.4907119849998598) * t1322) + t2015
-                + (t1895
-                    * (k(0.5962847939999439) * t1363 - k(1.4907119849998598) * t1352)
-                    - t2014);
-            let t2017 = t2016
-                - (t1893
-                    * (k(0.5962847939999439) * t1365 - k(1.4907119849998598) * t1356)
-                    + t2013);
-            let t2018 = t1897
-                * (k(1.1925695879998879) * t1327 + k(1.4907119849998598) * t1317)
-                + t2010 * t1902
-                + (t1895
-                    * (k(1.1925695879998879) * t1363 - k(1.4907119849998598) * t1336)
-                    - t2011 * t1901);
-            let t2019 = t2018
-                - (t1893
-                    * (k(1.1925695879998879) * t1365 + k(1.4907119849998598) * t1340)
-                    - t2012 * t1900);
-            let t2020 = t1897
-                * (k(1.1925695879998879) * t1322 - k(0.5962847939999439) * t1317)
-                - t2010 * t1907
-                - (t1895
-                    * (k(1.1925695879998879) * t1352 - k(0.5962847939999439) * t1336)
-                    - t2011 * t1906);
+            let t2000 = k(0.03774256780481986) * t1999;
+            let t2001 = k(0.9813067629253163) * t1999;
+            let t2002 = k(0.1887128390240993) * t1999;
+            let t2003 = t677 * t1998 - (t661 * t1997 + t637 * t1997)
+                + (t516 * t2002 - (t529 * t2001 + t514 * t2000));
+            let t2004 = t517 * (t1988 - t2003);
+            let t2005 = t650 * t1997;
+            let t2006 = t2005 + t593 * t1997 + (t2000 - k(0.9805806756909201) * t2004);
+            let t2007 = t651 * t1997;
+            let t2008 = t2001 + (t2007 + t597 * t1997);
+            let t2009 = t652 * t1997;
+            let t2010 = t2009 - t601 * t1997 - (t2002 + k(0.19611613513818404) * t2004);
+            let t2011 = t1919 * t1998 - t1918 * t1997
+                - (t1895 * t2010 - (t1891 * t2008 + t1885 * t2006));
+            let t2012 = t1952 * t1953
+                - (t1948 * t1949 - (t1945 * t1946 + (t2011 - t1987)));
+            let t2013 = k(1.0) / (t1955 * t1956 - t2012);
+            let t2014 = k(1.4907119849998598) * t1331
+                - (k(0.5962847939999439) * t1326 + k(1.1925695879998879) * t1321);
+            let t2015 = k(1.4907119849998598) * t1367
+                + (k(0.5962847939999439) * t1356 + k(1.1925695879998879) * t1340);
+            let t2016 = k(1.4907119849998598) * t1369
+                + (k(0.5962847939999439) * t1360 - k(1.1925695879998879) * t1344);
+            let t2017 = t2016 * t1487;
+            let t2018 = t2015 * t1888;
+            let t2019 = t2014 * t1880;
+            let t2020 = t1901
+                * (k(0.5962847939999439) * t1331 + k(1.4907119849998598) * t1326) + t2019
+                + (t1899
+                    * (k(0.5962847939999439) * t1367 - k(1.4907119849998598) * t1356)
+                    - t2018);
             let t2021 = t2020
-                + (t1893
-                    * (k(1.1925695879998879) * t1356 + k(0.5962847939999439) * t1340)
-                    + t2012 * t1905);
-            let t2022 = t2021 * t1878 + (t2019 * t1877 + t2017 * t1875)
-                + (t2012 * t1890 + (t2011 * t1886 - t2010 * t1880));
-            let t2023 = t1913 * t2010 + t1912 * t2011 + t1911 * t2012;
-            let t2024 = t2010 * t589 - t2011 * t593 - t2012 * t597;
-            let t2025 = t2024 * t748 + t2023 * t747
-                - (t2012 * t763 - (t2011 * t760 - t2010 * t757));
-            let t2026 = t1921
-                * (k(0.5962847939999439) * t1919 + k(0.29814239699997197) * t1918
-                    + k(0.7453559924999299) * t1920);
-            let t2027 = t2026
+                - (t1897
+                    * (k(0.5962847939999439) * t1369 - k(1.4907119849998598) * t1360)
+                    + t2017);
+            let t2022 = t1901
+                * (k(1.1925695879998879) * t1331 + k(1.4907119849998598) * t1321)
+                + t2014 * t1906
+                + (t1899
+                    * (k(1.1925695879998879) * t1367 - k(1.4907119849998598) * t1340)
+                    - t2015 * t1905);
+            let t2023 = t2022
+                - (t1897
+                    * (k(1.1925695879998879) * t1369 + k(1.4907119849998598) * t1344)
+                    - t2016 * t1904);
+            let t2024 = t1901
+                * (k(1.1925695879998879) * t1326 - k(0.5962847939999439) * t1321)
+                - t2014 * t1911
+                - (t1899
+                    * (k(1.1925695879998879) * t1356 - k(0.5962847939999439) * t1340)
+                    - t2015 * t1910);
+            let t2025 = t2024
+                + (t1897
+                    * (k(1.1925695879998879) * t1360 + k(0.5962847939999439) * t1344)
+                    + t2016 * t1909);
+            let t2026 = t2025 * t1882 + (t2023 * t1881 + t2021 * t1879)
+                + (t2016 * t1894 + (t2015 * t1890 - t2014 * t1884));
+            let t2027 = t1917 * t2014 + t1916 * t2015 + t1915 * t2016;
+            let t2028 = t2014 * t593 - t2015 * t597 - t2016 * t601;
+            let t2029 = t2028 * t752 + t2027 * t751
+                - (t2016 * t767 - (t2015 * t764 - t2014 * t761));
+            let t2030 = t1925
+                * (k(0.5962847939999439) * t1923 + k(0.29814239699997197) * t1922
+                    + k(0.7453559924999299) * t1924);
+            let t2031 = t2030
+                - t1901
+                    * (k(0.7453559924999299) * t1337
+                        + (k(0.29814239699997197) * t1921
+                            - k(0.5962847939999439) * t1333));
+            let t2032 = t1933
+                * (k(0.5962847939999439) * t1931 + k(0.29814239699997197) * t1930
+                    - k(0.7453559924999299) * t1932);
+            let t2033 = t2032
+                - t1899
+                    * (k(0.7453559924999299) * t1457
+                        + (k(0.29814239699997197) * t1929
+                            - k(0.5962847939999439) * t1456));
+            let t2034 = t2015 * t1935 - t2032 - t2033 + (t2014 * t1927 - t2030 - t2031);
+            let t2035 = t1941
+                * (k(0.5962847939999439) * t1939 + k(0.29814239699997197) * t1938
+                    - k(0.7453559924999299) * t1940);
+            let t2036 = t2035
                 - t1897
-                    * (k(0.7453559924999299) * t1333
-                        + (k(0.29814239699997197) * t1917
-                            - k(0.5962847939999439) * t1329));
-            let t2028 = t1929
-                * (k(0.5962847939999439) * t1927 + k(0.29814239699997197) * t1926
-                    - k(0.7453559924999299) * t1928);
-            let t2029 = t2028
-                - t1895
-                    * (k(0.7453559924999299) * t1453
-                        + (k(0.29814239699997197) * t1925
-                            - k(0.5962847939999439) * t1452));
-            let t2030 = t2011 * t1931 - t2028 - t2029 + (t2010 * t1923 - t2026 - t2027);
-            let t2031 = t1937
-                * (k(0.5962847939999439) * t1935 + k(0.29814239699997197) * t1934
-                    - k(0.7453559924999299) * t1936);
-            let t2032 = t2031
-                - t1893
-                    * (k(0.7453559924999299) * t1469
-                        + (k(0.29814239699997197) * t1933
-                            - k(0.5962847939999439) * t1468));
-            let t2033 = t2024 * t889 - t2023 * t888
-                + (t2012 * t903 - (t2011 * t900 - t2010 * t897));
-            let t2034 = t918 * t2033;
-            let t2035 = t2034 * t824
-                + (t2012 * t1939 + t2031 + t2032 + t2030 - (t2025 + t2022));
-            let t2036 = t2024 * t1012 - t2023 * t1011
-                + (t2012 * t1026 - (t2011 * t1023 - t2010 * t1020));
-            let t2037 = t945 * t2034 - t2036;
-            let t2038 = t1041 * t2037;
-            let t2039 = t2024 * t1155 - t2023 * t1154
-                + (t2012 * t1169 - (t2011 * t1166 - t2010 * t1163));
-            let t2040 = t1096 * t2038 - (t1093 * t2034 - t2039);
-            let t2041 = t1181 * t2040;
-            let t2042 = t2024 * t1265 - t2023 * t1264
-                + (t2012 * t1279 - (t2011 * t1276 - t2010 * t1273));
-            let t2043 = t1206 * t2041 - (t1202 * t2038 - (t1199 * t2034 - t2042));
-            let t2044 = t1291 * t2043;
-            let t2045 = t2021 * t1975 + (t2019 * t1974 + t2017 * t1973)
-                + (t2012 * t1982 + (t2011 * t1979 - t2010 * t1976));
-            let t2046 = t2024 * t1994 - t2023 * t1993
-                + (t2012 * t2006 - (t2011 * t2004 - t2010 * t2002));
-            let t2047 = t1948 * t2041
-                - (t1944 * t2038 - (t1941 * t2034 + (t2046 - t2045)));
-            let t2048 = t1951 * t2044 - t2047;
-            let t2049 = t2009 * t2048;
-            let t2050 = t2049 * t1953
-                - (t2044 * t1208 - (t2041 * t1098 - (t2038 * t947 - t2035)));
-            let t2051 = t2017 + (t2013 - (t2015 - t2014));
-            let t2052 = t2019 - (t2012 * t1474 + (t2011 * t1458 + t2010 * t1386));
-            let t2053 = t2021 + (t2012 * t1488 + (t2011 * t1885 - t2010 * t1879));
-            let t2054 = t2012 * t1491 + (t2011 * t1493 - t2010 * t1492);
-            let t2055 = t2054
-                + (t2054 + (t1367 * t2053 + (t1360 * t2052 + t1351 * t2051)));
-            let t2056 = t2012 * t1500 + (t2011 * t1499 + t2010 * t1498)
-                - (t1368 * t2053 + (t1358 * t2052 + t1346 * t2051));
-            let t2057 = k(0.3333333333333333)
-                * (t2012 * t1507 - (t2011 * t1505 + t2010 * t1503) + t2056);
-            let t2058 = t2012 * t1512 + (t2011 * t1511 - t2010 * t1510)
-                + (t1373 * t2053 + (t1375 * t2052 + t1374 * t2051));
-            let t2059 = k(0.6666666666666666) * (t2058 + t2054)
-                - (t2057 + k(0.6666666666666666) * t2055)
-                - (t2012 * t1482 + (t2011 * t1465 + t2010 * t1449));
-            let t2060 = t1572 * t2059;
-            let t2061 = k(0.9428090415820634) * (t2012 - t1544 * t2060)
+                    * (k(0.7453559924999299) * t1473
+                        + (k(0.29814239699997197) * t1937
+                            - k(0.5962847939999439) * t1472));
+            let t2037 = t2028 * t893 - t2027 * t892
+                + (t2016 * t907 - (t2015 * t904 - t2014 * t901));
+            let t2038 = t922 * t2037;
+            let t2039 = t2038 * t828
+                + (t2016 * t1943 + t2035 + t2036 + t2034 - (t2029 + t2026));
+            let t2040 = t2028 * t1016 - t2027 * t1015
+                + (t2016 * t1030 - (t2015 * t1027 - t2014 * t1024));
+            let t2041 = t949 * t2038 - t2040;
+            let t2042 = t1045 * t2041;
+            let t2043 = t2028 * t1159 - t2027 * t1158
+                + (t2016 * t1173 - (t2015 * t1170 - t2014 * t1167));
+            let t2044 = t1100 * t2042 - (t1097 * t2038 - t2043);
+            let t2045 = t1185 * t2044;
+            let t2046 = t2028 * t1269 - t2027 * t1268
+                + (t2016 * t1283 - (t2015 * t1280 - t2014 * t1277));
+            let t2047 = t1210 * t2045 - (t1206 * t2042 - (t1203 * t2038 - t2046));
+            let t2048 = t1295 * t2047;
+            let t2049 = t2025 * t1979 + (t2023 * t1978 + t2021 * t1977)
+                + (t2016 * t1986 + (t2015 * t1983 - t2014 * t1980));
+            let t2050 = t2028 * t1998 - t2027 * t1997
+                + (t2016 * t2010 - (t2015 * t2008 - t2014 * t2006));
+            let t2051 = t1952 * t2045
+                - (t1948 * t2042 - (t1945 * t2038 + (t2050 - t2049)));
+            let t2052 = t1955 * t2048 - t2051;
+            let t2053 = t2013 * t2052;
+            let t2054 = t2053 * t1957
+                - (t2048 * t1212 - (t2045 * t1102 - (t2042 * t951 - t2039)));
+            let t2055 = t2021 + (t2017 - (t2019 - t2018));
+            let t2056 = t2023 - (t2016 * t1478 + (t2015 * t1462 + t2014 * t1390));
+            let t2057 = t2025 + (t2016 * t1492 + (t2015 * t1889 - t2014 * t1883));
+            let t2058 = t2016 * t1495 + (t2015 * t1497 - t2014 * t1496);
+            let t2059 = t2058
+                + (t2058 + (t1371 * t2057 + (t1364 * t2056 + t1355 * t2055)));
+            let t2060 = t2016 * t1504 + (t2015 * t1503 + t2014 * t1502)
+                - (t1372 * t2057 + (t1362 * t2056 + t1350 * t2055));
+            let t2061 = k(0.3333333333333333)
+                * (t2016 * t1511 - (t2015 * t1509 + t2014 * t1507) + t2060);
+            let t2062 = t2016 * t1516 + (t2015 * t1515 - t2014 * t1514)
+                + (t1377 * t2057 + (t1379 * t2056 + t1378 * t2055));
+            let t2063 = k(0.6666666666666666) * (t2062 + t2058)
+                - (t2061 + k(0.6666666666666666) * t2059)
+                - (t2016 * t1486 + (t2015 * t1469 + t2014 * t1453));
+            let t2064 = t1576 * t2063;
+            let t2065 = k(0.9428090415820634) * (t2016 - t1548 * t2064)
                 + k(0.23570226039551584)
-                    * (t2011 - t1534 * t2060 - (t2010 + t1524 * t2060));
-            let t2062 = t1855 * t2061;
-            let t2063 = k(0.23570226039551584) * t2062;
-            let t2064 = k(0.9428090415820634) * t2062;
-            let t2065 = t1572
-                * (t2059 - (t1544 * t2064 + (t1534 * t2063 + t1524 * t2063)));
-            let t2066 = k(0.3333333333333333) * t2065;
-            let t2067 = k(0.6666666666666666) * t2065;
-            let t2068 = t1492 * t2067;
-            let t2069 = t2068 - (t2068 + t1503 * t2066) + (t2063 + t1449 * t2065);
-            let t2070 = t1374 * t2067 + (t1346 * t2066 - t1351 * t2067);
-            let t2071 = t1375 * t2067 + (t1358 * t2066 - t1360 * t2067);
-            let t2072 = t1373 * t2067 + (t1368 * t2066 - t1367 * t2067);
-            let t2073 = t1879 * t2072 + (t1386 * t2071 + t1876 * t2070)
-                + (t1510 * t2067 + (t1498 * t2066 - t2068) + t2069);
-            let t2074 = t1493 * t2067;
-            let t2075 = t2074 - (t2074 - t1505 * t2066) + (t2063 - t1465 * t2065);
-            let t2076 = t1885 * t2072 - (t1458 * t2071 - t1884 * t2070)
-                + (t1511 * t2067 - (t1499 * t2066 + t2074) + t2075);
-            let t2077 = t1491 * t2067;
-            let t2078 = t2077 - (t2077 + t1507 * t2066) + (t2064 - t1482 * t2065);
-            let t2079 = t1488 * t2072 - (t1474 * t2071 - t1483 * t2070)
-                + (t1512 * t2067 - (t1500 * t2066 + t2077) + t2078);
-            let t2080 = t2021 * t2072 + (t2019 * t2071 + t2017 * t2070)
-                + (t2012 * t2079 + (t2011 * t2076 - t2010 * t2073));
-            let t2081 = k(0.19611613513818404) * t2012 + k(0.9805806756909201) * t2010;
-            let t2082 = t513 * t2081;
-            let t2083 = k(0.9813067629253163) * (t2011 + t525 * t2082)
-                - k(0.03774256780481986) * (t2010 - t510 * t2082);
-            let t2084 = k(0.1887128390240993) * (t2012 - t512 * t2082) + t2083;
-            let t2085 = t637 * t2084;
-            let t2086 = t657 * t2082
-                + (t2023 - (t648 * t2012 - (t647 * t2011 - t646 * t2010)));
-            let t2087 = t664 * t2085 + t2086 + (t645 * t2085 - (t2024 - t633 * t2082));
-            let t2088 = k(0.9622504486493763) * (t679 * t2085 + (t2024 + t673 * t2082))
-                - k(0.19245008972987526) * t2087;
-            let t2089 = t743 * t2088;
-            let t2090 = k(0.19245008972987526) * t2089;
-            let t2091 = k(0.9622504486493763) * t2089;
-            let t2092 = t637 * (t2084 - (t679 * t2091 - (t664 * t2090 + t645 * t2090)));
-            let t2093 = k(0.03774256780481986) * t2092;
-            let t2094 = k(0.9813067629253163) * t2092;
-            let t2095 = k(0.1887128390240993) * t2092;
-            let t2096 = t673 * t2091 - (t657 * t2090 + t633 * t2090)
-                + (t512 * t2095 - (t525 * t2094 + t510 * t2093));
-            let t2097 = t513 * (t2081 - t2096);
-            let t2098 = t646 * t2090;
-            let t2099 = t2098 + t589 * t2090 + (t2093 - k(0.9805806756909201) * t2097);
-            let t2100 = t647 * t2090;
-            let t2101 = t2094 + (t2100 + t593 * t2090);
-            let t2102 = t648 * t2090;
-            let t2103 = t2102 - t597 * t2090 - (t2095 + k(0.19611613513818404) * t2097);
-            let t2104 = t2024 * t2091 - t2023 * t2090
-                + (t2012 * t2103 - (t2011 * t2101 - t2010 * t2099));
-            let t2105 = t2040 * t2041
-                - (t2037 * t2038 - (t2033 * t2034 - (t2104 - t2080)));
-            let t2106 = k(1.0) / (t2048 * t2049 - (t2043 * t2044 - t2105));
-            let t2107 = carrier_rx + (k(0.8) * t104 + (k(0.4) * t91 - k(0.2) * t172))
-                - (slide_rx - t1779);
-            let t2108 = k(1.0) / self.rod_length;
-            let t2109 = t2108 * (k(2.0) * t2107);
-            let t2110 = k(0.5) * t2109;
-            let t2111 = carrier_ry + (k(0.8) * t100 - (k(0.4) * t87 - k(0.2) * t197))
-                - (slide_ry + t1780);
-            let t2112 = t2108 * (k(2.0) * t2111);
-            let t2113 = k(0.5) * t2112;
-            let t2114 = carrier_rz - (k(0.8) * t106 - (k(0.4) * t95 + k(0.2) * t213))
-                - (slide_rz - t1781);
-            let t2115 = t2108 * (k(2.0) * t2114);
-            let t2116 = k(0.5) * t2115;
-            let t2117 = t2107 * (t294 - k(0.8) * t91) + t2111 * (t308 + k(0.8) * t87);
-            let t2118 = k(0.5)
-                * (t2108 * (k(2.0) * (t2117 - t2114 * (t322 + k(0.8) * t95))));
-            let t2119 = t2107 * (t271 + k(0.8) * t172) + t2111 * (t272 - k(0.8) * t197);
-            let t2120 = k(0.5)
-                * (t2108 * (k(2.0) * (t2119 - t2114 * (t274 + k(0.8) * t213))));
-            let t2121 = t2107 * (k(0.4) * t172 + k(0.2) * t91)
-                - t2111 * (k(0.4) * t197 + k(0.2) * t87);
-            let t2122 = t2108
-                * (k(2.0) * (t2121 - t2114 * (k(0.4) * t213 - k(0.2) * t95)));
-            let t2123 = k(0.5) * t2122;
-            let t2124 = t2123 * t409 - (t2120 * t408 + t2118 * t406)
-                + (t2116 * t417 - (t2113 * t414 + t2110 * t411));
-            let t2125 = t2107 * (k(0.2) * t1421) + t2111 * (k(0.2) * t1419)
-                - t2114 * (k(0.2) * t1417);
-            let t2126 = t2107 * (k(0.2) * t1408) - t2111 * (k(0.2) * t1410)
-                - t2114 * (k(0.2) * t1414);
-            let t2127 = k(0.5) * (t2108 * (k(2.0) * t2126)) * t1853
-                - k(0.5) * (t2108 * (k(2.0) * t2125)) * t1820;
-            let t2128 = t2127 - (t2116 * t1862 - (t2113 * t1860 - t2110 * t1858))
-                - t2124;
-            let t2129 = t92 * carrier_wx + t173 * carrier_wy;
-            let t2130 = t105 * carrier_wx + t173 * carrier_wz;
-            let t2131 = t105 * carrier_wy - t92 * carrier_wz;
-            let t2132 = slide_sx - k(0.1) * t1652
-                - (carrier_sx - (k(0.1) * t2131 - k(0.2) * t2130 + k(0.4) * t2129));
-            let t2133 = k(0.4) * t178 - (k(0.2) * t184 + k(0.1) * t182) - k(0.1) * t1646;
-            let t2134 = t88 * carrier_wx + t198 * carrier_wy;
-            let t2135 = t101 * carrier_wx - t198 * carrier_wz;
-            let t2136 = t101 * carrier_wy + t88 * carrier_wz;
-            let t2137 = slide_sy - k(0.1) * t1666
-                - (carrier_sy - (k(0.1) * t2136 - k(0.2) * t2135 - k(0.4) * t2134));
-            let t2138 = k(0.4) * t199 - (k(0.2) * t201 + k(0.1) * t200) - k(0.1) * t1660;
-            let t2139 = t2111 * t2138 - t2137 * t2137 + (t2107 * t2133 - t2132 * t2132);
-            let t2140 = t96 * carrier_wx - t214 * carrier_wy;
-            let t2141 = t107 * carrier_wx + t214 * carrier_wz;
-            let t2142 = t107 * carrier_wy + t96 * carrier_wz;
-            let t2143 = slide_sz + k(0.1) * t1681
-                - (carrier_sz + (k(0.1) * t2142 - k(0.2) * t2141 - k(0.4) * t2140));
-            let t2144 = k(0.4) * t215 - (k(0.2) * t217 + k(0.1) * t216) - k(0.1) * t1675;
-            let t2145 = k(0.5)
-                * (t2108 * (k(2.0) * (t2114 * t2144 + t2143 * t2143 - t2139)));
-            let t2146 = t2123 * t845 - (t2120 * t845 - t2118 * t844)
-                - (t2116 * t853 + (t2113 * t850 + t2110 * t847));
-            let t2147 = t918 * t2146;
-            let t2148 = t2123 * t968 - (t2120 * t968 - t2118 * t967)
-                - (t2116 * t976 + (t2113 * t973 + t2110 * t970));
-            let t2149 = t945 * t2147 - t2148;
-            let t2150 = t1041 * t2149;
-            let t2151 = t2123 * t1117 - (t2120 * t1117 - t2118 * t1116)
-                - (t2116 * t1125 + (t2113 * t1122 + t2110 * t1119));
-            let t2152 = t1096 * t2150 - (t1093 * t2147 - t2151);
-            let t2153 = t1181 * t2152;
-            let t2154 = t2153 * t1098
-                - (t2150 * t947 - (t2147 * t824 + (t2145 + t2128)));
-            let t2155 = t2123 * t1227 - (t2120 * t1227 - t2118 * t1226)
-                - (t2116 * t1235 + (t2113 * t1232 + t2110 * t1229));
-            let t2156 = t1206 * t2153 - (t1202 * t2150 - (t1199 * t2147 + t2155));
-            let t2157 = t1291 * t2156;
-            let t2158 = t1941 * t2147
-                - (t2116 * t1967 - (t2113 * t1966 - t2110 * t1966));
-            let t2159 = t1951 * t2157 - (t1948 * t2153 - (t1944 * t2150 - t2158));
-            let t2160 = t2009 * t2159;
-            let t2161 = t2033 * t2147
-                + (t2116 * t2064 - (t2113 * t2063 - t2110 * t2063));
-            let t2162 = t2048 * t2160
-                - (t2043 * t2157 - (t2040 * t2153 - (t2037 * t2150 - t2161)));
-            let t2163 = t2106 * t2162;
-            let t2164 = t2163 * t2050 - (t2160 * t1953 - (t2157 * t1208 - t2154));
-            let t2165 = t2116 * t274 - (t2113 * t272 + t2110 * t271);
-            let t2166 = k(0.6666666666666666)
-                * (t2123 - (t2116 * t285 + (t2113 * t289 + t2110 * t287)));
-            let t2167 = t404
-                * (t2166
-                    - (k(0.6666666666666666) * (t2120 - t2165)
-                        - k(0.3333333333333333) * (t2118 - t2165)));
-            let t2168 = k(0.3333333333333333) * t2167;
-            let t2169 = k(0.6666666666666666) * t2167;
-            let t2170 = t287 * t2169;
-            let t2171 = t2170 + (t271 * t2169 - t271 * t2168);
-            let t2172 = t289 * t2169;
-            let t2173 = t2172 + (t272 * t2169 - t272 * t2168);
-            let t2174 = t285 * t2169;
-            let t2175 = t2174 - (t274 * t2169 - t274 * t2168);
-            let t2176 = t2123 * t2169 - (t2120 * t2169 - t2118 * t2168)
-                - (t2116 * t2175 + (t2113 * t2173 + t2110 * t2171));
-            let t2177 = t1855
-                * (k(0.4714045207910317) * t2115
-                    + k(0.11785113019775792) * (t2109 - t2112));
-            let t2178 = k(0.23570226039551584) * t2177;
-            let t2179 = k(0.9428090415820634) * t2177;
-            let t2180 = t2146 * t2147
-                + (t2116 * t2179 - (t2113 * t2178 - t2110 * t2178) - t2176);
-            let t2181 = t2159 * t2160
-                - (t2156 * t2157 - (t2152 * t2153 - (t2149 * t2150 - t2180)));
-            let t2182 = k(1.0) / (t2162 * t2163 - t2181);
-            let t2183 = k(0.5) * t1058;
-            let t2184 = k(0.45226701686664544) * t1057
-                + (k(0.45226701686664544) * t1056 - k(0.30151134457776363) * t1186);
-            let t2185 = k(1.0) / (t2184 * t2184 + t2183 * t2183);
-            let t2186 = t2185
-                * (t2184 * (k(0.5) * (t1057 + t1056))
-                    + t2183 * (k(0.45226701686664544) * t1058));
-            let t2187 = k(0.45226701686664544) * t1186;
-            let t2188 = t2184 * (k(0.5) * t1186);
-            let t2189 = t2185
-                * (t2188 - t2183 * (k(0.30151134457776363) * t1057 + t2187));
-            let t2190 = t2185
-                * (t2188 + t2183 * (t2187 + k(0.30151134457776363) * t1056));
-            let t2191 = t1048 + t1047;
-            let t2192 = t1044 + t1043;
-            let t2193 = t2183
-                * (k(0.30151134457776363) * (t1053 + t1052)
-                    - k(0.45226701686664544) * t2192 - k(0.45226701686664544) * t2191);
-            let t2194 = t2185 * (t2184 * (k(0.5) * (t2192 - t2191)) - t2193);
-            let t2195 = t2184 * (k(0.5) * (t1046 - t1042))
-                + t2183
-                    * (t1188 - k(0.45226701686664544) * t1042
-                        - k(0.45226701686664544) * t1046);
-            let t2196 = t2185 * t2195;
-            let t2197 = t2196 * t782 + (t2196 * t774 + t2194 * t776)
-                + (t2190 * t427 + (t2189 * t426 - t2186 * t437));
-            let t2198 = t1434 * (k(0.8944271909999159) * t1433)
-                + t1430
-                    * (k(0.29814239699997197) * t1433 + k(0.7453559924999299) * t1429);
-            let t2199 = t1434 * (k(0.4472135954999579) * t1433)
-                - t1430
-                    * (k(0.5962847939999439) * t1433 - k(0.7453559924999299) * t1426);
+                    * (t2015 - t1538 * t2064 - (t2014 + t1528 * t2064));
+            let t2066 = t1859 * t2065;
+            let t2067 = k(0.23570226039551584) * t2066;
+            let t2068 = k(0.9428090415820634) * t2066;
+            let t2069 = t1576
+                * (t2063 - (t1548 * t2068 + (t1538 * t2067 + t1528 * t2067)));
+            let t2070 = k(0.3333333333333333) * t2069;
+            let t2071 = k(0.6666666666666666) * t2069;
+            let t2072 = t1496 * t2071;
+            let t2073 = t2072 - (t2072 + t1507 * t2070) + (t2067 + t1453 * t2069);
+            let t2074 = t1378 * t2071 + (t1350 * t2070 - t1355 * t2071);
+            let t2075 = t1379 * t2071 + (t1362 * t2070 - t1364 * t2071);
+            let t2076 = t1377 * t2071 + (t1372 * t2070 - t1371 * t2071);
+            let t2077 = t1883 * t2076 + (t1390 * t2075 + t1880 * t2074)
+                + (t1514 * t2071 + (t1502 * t2070 - t2072) + t2073);
+            let t2078 = t1497 * t2071;
+            let t2079 = t2078 - (t2078 - t1509 * t2070) + (t2067 - t1469 * t2069);
+            let t2080 = t1889 * t2076 - (t1462 * t2075 - t1888 * t2074)
+                + (t1515 * t2071 - (t1503 * t2070 + t2078) + t2079);
+            let t2081 = t1495 * t2071;
+            let t2082 = t2081 - (t2081 + t1511 * t2070) + (t2068 - t1486 * t2069);
+            let t2083 = t1492 * t2076 - (t1478 * t2075 - t1487 * t2074)
+                + (t1516 * t2071 - (t1504 * t2070 + t2081) + t2082);
+            let t2084 = t2025 * t2076 + (t2023 * t2075 + t2021 * t2074)
+                + (t2016 * t2083 + (t2015 * t2080 - t2014 * t2077));
+            let t2085 = k(0.19611613513818404) * t2016 + k(0.9805806756909201) * t2014;
+            let t2086 = t517 * t2085;
+            let t2087 = k(0.9813067629253163) * (t2015 + t529 * t2086)
+                - k(0.03774256780481986) * (t2014 - t514 * t2086);
+            let t2088 = k(0.1887128390240993) * (t2016 - t516 * t2086) + t2087;
+            let t2089 = t641 * t2088;
+            let t2090 = t661 * t2086
+                + (t2027 - (t652 * t2016 - (t651 * t2015 - t650 * t2014)));
+            let t2091 = t668 * t2089 + t2090 + (t649 * t2089 - (t2028 - t637 * t2086));
+            let t2092 = k(0.9622504486493763) * (t683 * t2089 + (t2028 + t677 * t2086))
+                - k(0.19245008972987526) * t2091;
+            let t2093 = t747 * t2092;
+            let t2094 = k(0.19245008972987526) * t2093;
+            let t2095 = k(0.9622504486493763) * t2093;
+            let t2096 = t641 * (t2088 - (t683 * t2095 - (t668 * t2094 + t649 * t2094)));
+            let t2097 = k(0.03774256780481986) * t2096;
+            let t2098 = k(0.9813067629253163) * t2096;
+            let t2099 = k(0.1887128390240993) * t2096;
+            let t2100 = t677 * t2095 - (t661 * t2094 + t637 * t2094)
+                + (t516 * t2099 - (t529 * t2098 + t514 * t2097));
+            let t2101 = t517 * (t2085 - t2100);
+            let t2102 = t650 * t2094;
+            let t2103 = t2102 + t593 * t2094 + (t2097 - k(0.9805806756909201) * t2101);
+            let t2104 = t651 * t2094;
+            let t2105 = t2098 + (t2104 + t597 * t2094);
+            let t2106 = t652 * t2094;
+            let t2107 = t2106 - t601 * t2094 - (t2099 + k(0.19611613513818404) * t2101);
+            let t2108 = t2028 * t2095 - t2027 * t2094
+                + (t2016 * t2107 - (t2015 * t2105 - t2014 * t2103));
+            let t2109 = t2044 * t2045
+                - (t2041 * t2042 - (t2037 * t2038 - (t2108 - t2084)));
+            let t2110 = k(1.0) / (t2052 * t2053 - (t2047 * t2048 - t2109));
+            let t2111 = carrier_rx + (k(0.8) * t104 + (k(0.4) * t91 - k(0.2) * t176))
+                - (slide_rx - t1783);
+            let t2112 = k(1.0) / self.rod_length;
+            let t2113 = t2112 * (k(2.0) * t2111);
+            let t2114 = k(0.5) * t2113;
+            let t2115 = carrier_ry + (k(0.8) * t100 - (k(0.4) * t87 - k(0.2) * t201))
+                - (slide_ry + t1784);
+            let t2116 = t2112 * (k(2.0) * t2115);
+            let t2117 = k(0.5) * t2116;
+            let t2118 = carrier_rz - (k(0.8) * t106 - (k(0.4) * t95 + k(0.2) * t217))
+                - (slide_rz - t1785);
+            let t2119 = t2112 * (k(2.0) * t2118);
+            let t2120 = k(0.5) * t2119;
+            let t2121 = t2111 * (t298 - k(0.8) * t91) + t2115 * (t312 + k(0.8) * t87);
+            let t2122 = k(0.5)
+                * (t2112 * (k(2.0) * (t2121 - t2118 * (t326 + k(0.8) * t95))));
+            let t2123 = t2111 * (t275 + k(0.8) * t176) + t2115 * (t276 - k(0.8) * t201);
+            let t2124 = k(0.5)
+                * (t2112 * (k(2.0) * (t2123 - t2118 * (t278 + k(0.8) * t217))));
+            let t2125 = t2111 * (k(0.4) * t176 + k(0.2) * t91)
+                - t2115 * (k(0.4) * t201 + k(0.2) * t87);
+            let t2126 = t2112
+                * (k(2.0) * (t2125 - t2118 * (k(0.4) * t217 - k(0.2) * t95)));
+            let t2127 = k(0.5) * t2126;
+            let t2128 = t2127 * t413 - (t2124 * t412 + t2122 * t410)
+                + (t2120 * t421 - (t2117 * t418 + t2114 * t415));
+            let t2129 = t2111 * (k(0.2) * t1425) + t2115 * (k(0.2) * t1423)
+                - t2118 * (k(0.2) * t1421);
+            let t2130 = t2111 * (k(0.2) * t1412) - t2115 * (k(0.2) * t1414)
+                - t2118 * (k(0.2) * t1418);
+            let t2131 = k(0.5) * (t2112 * (k(2.0) * t2130)) * t1857
+                - k(0.5) * (t2112 * (k(2.0) * t2129)) * t1824;
+            let t2132 = t2131 - (t2120 * t1866 - (t2117 * t1864 - t2114 * t1862))
+                - t2128;
+            let t2133 = t92 * carrier_wx + t177 * carrier_wy;
+            let t2134 = t105 * carrier_wx + t177 * carrier_wz;
+            let t2135 = t105 * carrier_wy - t92 * carrier_wz;
+            let t2136 = slide_sx - k(0.1) * t1656
+                - (carrier_sx - (k(0.1) * t2135 - k(0.2) * t2134 + k(0.4) * t2133));
+            let t2137 = k(0.4) * t182 - (k(0.2) * t188 + k(0.1) * t186) - k(0.1) * t1650;
+            let t2138 = t88 * carrier_wx + t202 * carrier_wy;
+            let t2139 = t101 * carrier_wx - t202 * carrier_wz;
+            let t2140 = t101 * carrier_wy + t88 * carrier_wz;
+            let t2141 = slide_sy - k(0.1) * t1670
+                - (carrier_sy - (k(0.1) * t2140 - k(0.2) * t2139 - k(0.4) * t2138));
+            let t2142 = k(0.4) * t203 - (k(0.2) * t205 + k(0.1) * t204) - k(0.1) * t1664;
+            let t2143 = t2115 * t2142 - t2141 * t2141 + (t2111 * t2137 - t2136 * t2136);
+            let t2144 = t96 * carrier_wx - t218 * carrier_wy;
+            let t2145 = t107 * carrier_wx + t218 * carrier_wz;
+            let t2146 = t107 * carrier_wy + t96 * carrier_wz;
+            let t2147 = slide_sz + k(0.1) * t1685
+                - (carrier_sz + (k(0.1) * t2146 - k(0.2) * t2145 - k(0.4) * t2144));
+            let t2148 = k(0.4) * t219 - (k(0.2) * t221 + k(0.1) * t220) - k(0.1) * t1679;
+            let t2149 = k(0.5)
+                * (t2112 * (k(2.0) * (t2118 * t2148 + t2147 * t2147 - t2143)));
+            let t2150 = t2127 * t849 - (t2124 * t849 - t2122 * t848)
+                - (t2120 * t857 + (t2117 * t854 + t2114 * t851));
+            let t2151 = t922 * t2150;
+            let t2152 = t2127 * t972 - (t2124 * t972 - t2122 * t971)
+                - (t2120 * t980 + (t2117 * t977 + t2114 * t974));
+            let t2153 = t949 * t2151 - t2152;
+            let t2154 = t1045 * t2153;
+            let t2155 = t2127 * t1121 - (t2124 * t1121 - t2122 * t1120)
+                - (t2120 * t1129 + (t2117 * t1126 + t2114 * t1123));
+            let t2156 = t1100 * t2154 - (t1097 * t2151 - t2155);
+            let t2157 = t1185 * t2156;
+            let t2158 = t2157 * t1102
+                - (t2154 * t951 - (t2151 * t828 + (t2149 + t2132)));
+            let t2159 = t2127 * t1231 - (t2124 * t1231 - t2122 * t1230)
+                - (t2120 * t1239 + (t2117 * t1236 + t2114 * t1233));
+            let t2160 = t1210 * t2157 - (t1206 * t2154 - (t1203 * t2151 + t2159));
+            let t2161 = t1295 * t2160;
+            let t2162 = t1945 * t2151
+                - (t2120 * t1971 - (t2117 * t1970 - t2114 * t1970));
+            let t2163 = t1955 * t2161 - (t1952 * t2157 - (t1948 * t2154 - t2162));
+            let t2164 = t2013 * t2163;
+            let t2165 = t2037 * t2151
+                + (t2120 * t2068 - (t2117 * t2067 - t2114 * t2067));
+            let t2166 = t2052 * t2164
+                - (t2047 * t2161 - (t2044 * t2157 - (t2041 * t2154 - t2165)));
+            let t2167 = t2110 * t2166;
+            let t2168 = t2167 * t2054 - (t2164 * t1957 - (t2161 * t1212 - t2158));
+            let t2169 = t2120 * t278 - (t2117 * t276 + t2114 * t275);
+            let t2170 = k(0.6666666666666666)
+                * (t2127 - (t2120 * t289 + (t2117 * t293 + t2114 * t291)));
+            let t2171 = t408
+                * (t2170
+                    - (k(0.6666666666666666) * (t2124 - t2169)
+                        - k(0.3333333333333333) * (t2122 - t2169)));
+            let t2172 = k(0.3333333333333333) * t2171;
+            let t2173 = k(0.6666666666666666) * t2171;
+            let t2174 = t291 * t2173;
+            let t2175 = t2174 + (t275 * t2173 - t275 * t2172);
+            let t2176 = t293 * t2173;
+            let t2177 = t2176 + (t276 * t2173 - t276 * t2172);
+            let t2178 = t289 * t2173;
+            let t2179 = t2178 - (t278 * t2173 - t278 * t2172);
+            let t2180 = t2127 * t2173 - (t2124 * t2173 - t2122 * t2172)
+                - (t2120 * t2179 + (t2117 * t2177 + t2114 * t2175));
+            let t2181 = t1859
+                * (k(0.4714045207910317) * t2119
+                    + k(0.11785113019775792) * (t2113 - t2116));
+            let t2182 = k(0.23570226039551584) * t2181;
+            let t2183 = k(0.9428090415820634) * t2181;
+            let t2184 = t2150 * t2151
+                + (t2120 * t2183 - (t2117 * t2182 - t2114 * t2182) - t2180);
+            let t2185 = t2163 * t2164
+                - (t2160 * t2161 - (t2156 * t2157 - (t2153 * t2154 - t2184)));
+            let t2186 = k(1.0) / (t2166 * t2167 - t2185);
+            let t2187 = k(0.5) * t1062;
+            let t2188 = k(0.45226701686664544) * t1061
+                + (k(0.45226701686664544) * t1060 - k(0.30151134457776363) * t1190);
+            let t2189 = k(1.0) / (t2188 * t2188 + t2187 * t2187);
+            let t2190 = t2189
+                * (t2188 * (k(0.5) * (t1061 + t1060))
+                    + t2187 * (k(0.45226701686664544) * t1062));
+            let t2191 = k(0.45226701686664544) * t1190;
+            let t2192 = t2188 * (k(0.5) * t1190);
+            let t2193 = t2189
+                * (t2192 - t2187 * (k(0.30151134457776363) * t1061 + t2191));
+            let t2194 = t2189
+                * (t2192 + t2187 * (t2191 + k(0.30151134457776363) * t1060));
+            let t2195 = t1052 + t1051;
+            let t2196 = t1048 + t1047;
+            let t2197 = t2187
+                * (k(0.30151134457776363) * (t1057 + t1056)
+                    - k(0.45226701686664544) * t2196 - k(0.45226701686664544) * t2195);
+            let t2198 = t2189 * (t2188 * (k(0.5) * (t2196 - t2195)) - t2197);
+            let t2199 = t2188 * (k(0.5) * (t1050 - t1046))
+                + t2187
+                    * (t1192 - k(0.45226701686664544) * t1046
+                        - k(0.45226701686664544) * t1050);
             (
-                t2001,
-                t2002,
-                t2003,
-                t2004,
                 t2005,
                 t2006,
+                t2007,
+                t2008,
                 t2009,
-                t2033,
-                t2034,
+                t2010,
+                t2013,
                 t2037,
                 t2038,
-                t2040,
                 t2041,
-                t2043,
+                t2042,
                 t2044,
+                t2045,
+                t2047,
                 t2048,
-                t2049,
-                t2050,
-                t2063,
-                t2064,
-                t2066,
+                t2052,
+                t2053,
+                t2054,
                 t2067,
-                t2069,
+                t2068,
                 t2070,
                 t2071,
-                t2072,
                 t2073,
+                t2074,
                 t2075,
                 t2076,
-                t2078,
+                t2077,
                 t2079,
-                t2090,
-                t2091,
-                t2098,
-                t2099,
-                t2100,
-                t2101,
+                t2080,
+                t2082,
+                t2083,
+                t2094,
+                t2095,
                 t2102,
                 t2103,
+                t2104,
+                t2105,
                 t2106,
-                t2129,
-                t2130,
-                t2131,
+                t2107,
+                t2110,
+                t2133,
                 t2134,
                 t2135,
-                t2136,
+                t2138,
+                t2139,
                 t2140,
-                t2141,
-                t2142,
+                t2144,
+                t2145,
                 t2146,
-                t2147,
-                t2149,
                 t2150,
-                t2152,
+                t2151,
                 t2153,
+                t2154,
                 t2156,
                 t2157,
-                t2159,
                 t2160,
-                t2162,
+                t2161,
                 t2163,
                 t2164,
+                t2166,
+                t2167,
                 t2168,
-                t2169,
-                t2170,
-                t2171,
                 t2172,
                 t2173,
                 t2174,
                 t2175,
+                t2176,
+                t2177,
                 t2178,
                 t2179,
                 t2182,
                 t2183,
-                t2184,
-                t2185,
                 t2186,
+                t2187,
+                t2188,
                 t2189,
                 t2190,
+                t2193,
                 t2194,
-                t2196,
-                t2197,
                 t2198,
                 t2199,
             )
         };
         let (
-            t2217,
-            t2218,
-            t2220,
             t2221,
+            t2222,
             t2224,
             t2225,
-            t2227,
             t2228,
             t2229,
-            t2230,
             t2231,
+            t2232,
+            t2233,
+            t2234,
             t2235,
-            t2237,
-            t2240,
-            t2242,
-            t2243,
+            t2239,
+            t2241,
             t2244,
-            t2245,
             t2246,
+            t2247,
+            t2248,
+            t2249,
             t2250,
-            t2252,
-            t2255,
-            t2258,
+            t2254,
+            t2256,
             t2259,
-            t2261,
             t2262,
             t2263,
-            t2271,
-            t2272,
-            t2273,
-            t2274,
+            t2265,
+            t2266,
+            t2267,
             t2275,
             t2276,
+            t2277,
+            t2278,
             t2279,
             t2280,
-            t2281,
-            t2299,
-            t2300,
-            t2302,
+            t2283,
+            t2284,
+            t2285,
             t2303,
-            t2305,
+            t2304,
             t2306,
-            t2308,
+            t2307,
             t2309,
-            t2317,
-            t2318,
-            t2319,
-            t2337,
-            t2338,
-            t2346,
-            t2347,
-            t2349,
+            t2310,
+            t2312,
+            t2313,
+            t2321,
+            t2322,
+            t2323,
+            t2341,
+            t2342,
             t2350,
-            t2352,
+            t2351,
             t2353,
+            t2354,
+            t2356,
             t2357,
-            t2359,
-            t2362,
-            t2368,
-            t2369,
-            t2370,
-            t2371,
+            t2361,
+            t2363,
+            t2366,
             t2372,
+            t2373,
+            t2374,
             t2375,
-            t2385,
-            t2386,
-            t2388,
+            t2376,
+            t2379,
+            t2382,
+            t2384,
             t2389,
-            t2394,
+            t2390,
+            t2392,
+            t2393,
+            t2398,
             t2399,
         ) = {
-            let t2200 = self.gear_ratio * (t1436 * t2199) * t1841
-                - self.gear_ratio * (t1436 * t2198) * t1820;
-            let t2201 = t1434
-                * (k(0.4472135954999579) * t1429 - k(0.8944271909999159) * t1426)
-                - t1430
-                    * (k(0.5962847939999439) * t1429 + k(0.29814239699997197) * t1426);
-            let t2202 = self.gear_ratio * t1437;
-            let t2203 = self.gear_ratio * t1440;
-            let t2204 = self.gear_ratio * t1444;
-            let t2205 = t2204 * t1873 - (t2203 * t1869 - t2202 * t1871)
-                + (self.gear_ratio * (t1436 * t2201) * t1853 - t2200 - t2197);
-            let t2206 = t1079 + (shaft_wx * t1044 - shaft_wy * t1053)
-                + (t1075 - (shaft_wx * t1043 - shaft_wy * t1052));
-            let t2207 = t1089 - (shaft_wx * t1048 + shaft_wz * t1053)
-                + (t1086 + (shaft_wx * t1047 + shaft_wz * t1052));
-            let t2208 = t1078 + (shaft_wy * t1048 + shaft_wz * t1044)
-                + (t1074 - (shaft_wy * t1047 + shaft_wz * t1043));
-            let t2209 = k(0.30151134457776363) * t2208 - k(0.45226701686664544) * t2207
-                - k(0.45226701686664544) * t2206;
-            let t2210 = k(0.5) * (t2207 - t2206);
-            let t2211 = t2185 * t2185 * (k(2.0) * (t2183 * t2210 + t2184 * t2209))
-                * (t2184 * t2210 - t2183 * t2209);
-            let t2212 = t1081 - t1077;
-            let t2213 = t1091 - t1088;
-            let t2214 = t2210 * t2209;
-            let t2215 = t2183
-                * (k(0.45226701686664544) * t2213
-                    + (k(0.45226701686664544) * t2212
-                        - k(0.30151134457776363) * (t1197 - t1195)));
-            let t2216 = t2185
-                * (t2215 - t2214 + (t2214 - t2184 * (k(0.5) * (t2213 - t2212))));
-            let t2217 = t2196 * t913 + (t2196 * t908 + t2194 * t910)
-                + (t2190 * t863 + (t2189 * t862 - t2186 * t867));
-            let t2218 = t918 * t2217;
-            let t2219 = t2196 * t1036 + (t2196 * t1031 + t2194 * t1033)
-                + (t2190 * t986 + (t2189 * t985 - t2186 * t990));
-            let t2220 = t945 * t2218 - t2219;
-            let t2221 = t1041 * t2220;
-            let t2222 = t2221 * t947
-                - (t2218 * t824 + (self.gear_ratio * t1699 + (t2216 - t2211) + t2205));
-            let t2223 = t2196 * t1179 + (t2196 * t1174 + t2194 * t1176)
-                + (t2190 * t1136 + (t2189 * t1135 - t2186 * t1134));
-            let t2224 = t1096 * t2221 - (t1093 * t2218 - t2223);
-            let t2225 = t1181 * t2224;
-            let t2226 = t2196 * t1289 + (t2196 * t1284 + t2194 * t1286)
-                - (t2190 * t1246 + (t2189 * t1245 - t2186 * t1244));
-            let t2227 = t1206 * t2225 - (t1202 * t2221 - (t1199 * t2218 - t2226));
-            let t2228 = t1291 * t2227;
-            let t2229 = t2002 + (t665 * t1994 + (t2001 + t590 * t1993));
-            let t2230 = t2004 + (t666 * t1994 + (t2003 - t594 * t1993));
-            let t2231 = t2006 + (t667 * t1994 + (t2005 + t598 * t1993));
-            let t2232 = t767 * t1994 - (t766 * t1993 + t765 * t1993);
-            let t2233 = t771 * t1994 - (t770 * t1993 + t769 * t1993);
-            let t2234 = k(0.0038) * t2233
-                + (t504 * t2231 - (t516 * t2230 - t496 * t2229));
-            let t2235 = t2233 - k(263.1578947368421) * t2234;
-            let t2236 = k(0.008) * t2235 - k(0.02) * t2232
-                + (t503 * t2231 - (t515 * t2230 - t494 * t2229));
-            let t2237 = t2232 + k(50.0) * t2236;
-            let t2238 = t779 * t1994 - (t778 * t1993 + t777 * t1993);
-            let t2239 = k(0.025) * t2238
-                - (t507 * t2231 - (t519 * t2230 + t501 * t2229));
-            let t2240 = t2238 - k(40.0) * t2239;
-            let t2241 = t2204 * t1970 - (t2203 * t1969 + t2202 * t1970)
-                + (t2196 * t2240 + (t2196 * t2235 + t2194 * t2237));
-            let t2242 = t1951 * t2228
-                - (t1948 * t2225 - (t1944 * t2221 - (t1941 * t2218 + t2241)));
-            let t2243 = t2009 * t2242;
-            let t2244 = t2099 + (t665 * t2091 + (t2098 + t590 * t2090));
-            let t2245 = t2101 + (t666 * t2091 + (t2100 - t594 * t2090));
-            let t2246 = t2103 + (t667 * t2091 + (t2102 + t598 * t2090));
-            let t2247 = t767 * t2091 - (t766 * t2090 + t765 * t2090);
-            let t2248 = t771 * t2091 - (t770 * t2090 + t769 * t2090);
-            let t2249 = k(0.0038) * t2248
-                + (t504 * t2246 - (t516 * t2245 - t496 * t2244));
-            let t2250 = t2248 - k(263.1578947368421) * t2249;
-            let t2251 = k(0.008) * t2250 - k(0.02) * t2247
-                + (t503 * t2246 - (t515 * t2245 - t494 * t2244));
-            let t2252 = t2247 + k(50.0) * t2251;
-            let t2253 = t779 * t2091 - (t778 * t2090 + t777 * t2090);
-            let t2254 = k(0.025) * t2253
-                - (t507 * t2246 - (t519 * t2245 + t501 * t2244));
-            let t2255 = t2253 - k(40.0) * t2254;
-            let t2256 = t2204 * t2067 - (t2203 * t2066 + t2202 * t2067)
-                + (t2196 * t2255 + (t2196 * t2250 + t2194 * t2252));
-            let t2257 = t2043 * t2228
-                - (t2040 * t2225 - (t2037 * t2221 - (t2033 * t2218 - t2256)));
-            let t2258 = t2048 * t2243 - t2257;
-            let t2259 = t2106 * t2258;
-            let t2260 = t2259 * t2050
-                - (t2243 * t1953 - (t2228 * t1208 - (t2225 * t1098 - t2222)));
-            let t2261 = t2171 + (t2170 - (t277 * t2169 - t258 * t2168));
-            let t2262 = t2173 + (t2172 - (t279 * t2169 - t264 * t2168));
-            let t2263 = t2175 + (t2174 - (t281 * t2169 - t269 * t2168));
-            let t2264 = t128 * t2169 - (t127 * t2169 + t223 * t2168);
-            let t2265 = t108 * t2169 - (t98 * t2169 + t229 * t2168);
-            let t2266 = t109 * t2169 - (t97 * t2169 + t230 * t2168);
-            let t2267 = t242 * t2266 + (t224 * t2265 + t161 * t2264)
-                + (t210 * t2263 - (t194 * t2262 - t168 * t2261));
-            let t2268 = t2264 - t162 * t2267;
-            let t2269 = t156 * t2266 - (t155 * t2265 - t154 * t2268)
-                - (t208 * t2263 - (t192 * t2262 - t166 * t2261));
-            let t2270 = t157 * t2269;
-            let t2271 = t2268 - t129 * t2270;
-            let t2272 = t2265 + t144 * t2270;
-            let t2273 = t2266 - t152 * t2270;
-            let t2274 = t1572 * (t1544 * t2179 + (t1534 * t2178 + t1524 * t2178));
-            let t2275 = k(0.6666666666666666) * t2274;
-            let t2276 = k(0.3333333333333333) * t2274;
-            let t2277 = t2204 * t2275 - (t2203 * t2276 + t2202 * t2275)
-                - (t2190 * t2273 + (t2189 * t2272 - t2186 * t2271));
-            let t2278 = t2156 * t2228
-                - (t2152 * t2225 - (t2149 * t2221 - (t2146 * t2218 + t2277)));
-            let t2279 = t2162 * t2259 - (t2159 * t2243 - t2278);
-            let t2280 = t2182 * t2279;
-            let t2281 = t2280 * t2164 - t2260;
-            let t2282 = t152 * t2190 - (t144 * t2189 + t129 * t2186);
-            let t2283 = t157 * t2282;
-            let t2284 = t2186 + t154 * t2283;
-            let t2285 = t162 * t2284;
-            let t2286 = t2284 - t161 * t2285;
-            let t2287 = t224 * t2285 + (t2189 + t155 * t2283);
-            let t2288 = t242 * t2285 + (t2190 - t156 * t2283);
-            let t2289 = t168 * t2285 + t166 * t2283;
-            let t2290 = t194 * t2285 + t192 * t2283;
-            let t2291 = t210 * t2285 + t208 * t2283;
-            let t2292 = t269 * t2291 - (t264 * t2290 - t258 * t2289)
-                - (t230 * t2288 + (t229 * t2287 - t223 * t2286));
-            let t2293 = t274 * t2291 + (t272 * t2290 - t271 * t2289);
-            let t2294 = t281 * t2291 - (t279 * t2290 - t277 * t2289)
-                + (t97 * t2288 + (t98 * t2287 - t127 * t2286));
-            let t2295 = t285 * t2291 - (t289 * t2290 - t287 * t2289);
-            let t2296 = t2295 + (t2295 + (t109 * t2288 + (t108 * t2287 - t128 * t2286)));
-            let t2297 = k(0.6666666666666666) * t2296
-                - (k(0.6666666666666666) * (t2293 + t2294)
-                    - k(0.3333333333333333) * (t2293 + t2292));
-            let t2298 = t404 * t2297;
-            let t2299 = k(0.3333333333333333) * t2298;
-            let t2300 = k(0.6666666666666666) * t2298;
-            let t2301 = t287 * t2300;
-            let t2302 = t2301 + (t271 * t2300 - t271 * t2299);
-            let t2303 = t277 * t2300 - t258 * t2299 - t2301 - t2302;
-            let t2304 = t289 * t2300;
-            let t2305 = t2304 + (t272 * t2300 - t272 * t2299);
-            let t2306 = t279 * t2300 - t264 * t2299 - t2304 - t2305;
-            let t2307 = t285 * t2300;
-            let t2308 = t2307 - (t274 * t2300 - t274 * t2299);
-            let t2309 = t281 * t2300 - t269 * t2299 - t2307 - t2308;
-            let t2310 = t128 * t2300 - (t127 * t2300 + t223 * t2299);
-            let t2311 = t108 * t2300 - (t98 * t2300 + t229 * t2299);
-            let t2312 = t109 * t2300 - (t97 * t2300 + t230 * t2299);
-            let t2313 = t242 * t2312 + (t224 * t2311 + t161 * t2310)
-                - (t210 * t2309 - (t194 * t2306 - t168 * t2303));
-            let t2314 = t2310 + t162 * (t2284 - t2313);
-            let t2315 = t156 * t2312 - (t155 * t2311 - t154 * t2314)
-                + (t208 * t2309 - (t192 * t2306 - t166 * t2303));
-            let t2316 = t157 * (t2282 + t2315);
-            let t2317 = t2314 - t129 * t2316;
-            let t2318 = t2311 + t144 * t2316;
-            let t2319 = t2312 - t152 * t2316;
-            let t2320 = k(50.0) * t2194;
-            let t2321 = t2196 + k(0.4) * t2194;
-            let t2322 = k(263.1578947368421) * t2321;
-            let t2323 = k(40.0) * t2196;
-            let t2324 = t501 * t2323 + (t496 * t2322 - t494 * t2320);
-            let t2325 = t519 * t2323 - (t516 * t2322 - t515 * t2320);
-            let t2326 = t507 * t2323 - (t504 * t2322 - t503 * t2320);
-            let t2327 = t597 * t2326 + (t593 * t2325 + t589 * t2324)
-                - (t598 * t2326 + (t594 * t2325 - t590 * t2324));
-            let t2328 = k(0.19611613513818404) * t2326 - k(0.9805806756909201) * t2324;
-            let t2329 = t513 * t2328;
-            let t2330 = k(0.9813067629253163) * (t525 * t2329 + t2325)
-                + k(0.03774256780481986) * (t2324 + t510 * t2329);
-            let t2331 = k(0.1887128390240993) * (t2326 - t512 * t2329) + t2330;
-            let t2332 = t637 * t2331;
-            let t2333 = t657 * t2329
-                - k(2.0) * (t648 * t2326 - (t647 * t2325 + t646 * t2324));
-            let t2334 = t664 * t2332 + t2333 + (t645 * t2332 + (t633 * t2329 + t2327));
-            let t2335 = t673 * t2329 + (t667 * t2326 - (t666 * t2325 + t665 * t2324));
-            let t2336 = t743
-                * (k(0.9622504486493763) * (t679 * t2332 + t2335)
-                    - k(0.19245008972987526) * t2334);
-            let t2337 = k(0.19245008972987526) * t2336;
-            let t2338 = k(0.9622504486493763) * t2336;
-            let t2339 = t637 * (t2331 - (t679 * t2338 - (t664 * t2337 + t645 * t2337)));
-            let t2340 = k(0.03774256780481986) * t2339;
-            let t2341 = k(0.9813067629253163) * t2339;
-            let t2342 = k(0.1887128390240993) * t2339;
-            let t2343 = t673 * t2338 - (t657 * t2337 + t633 * t2337)
-                + (t512 * t2342 - (t525 * t2341 + t510 * t2340));
-            let t2344 = t513 * (t2328 - t2343);
-            let t2345 = t646 * t2337;
-            let t2346 = t2345 + t589 * t2337 + (t2340 - k(0.9805806756909201) * t2344);
-            let t2347 = t665 * t2338 + (t590 * t2337 + t2345) + t2346;
-            let t2348 = t647 * t2337;
-            let t2349 = t2341 + (t2348 + t593 * t2337);
-            let t2350 = t666 * t2338 - (t594 * t2337 - t2348) + t2349;
-            let t2351 = t648 * t2337;
-            let t2352 = t2351 - t597 * t2337 - (t2342 + k(0.19611613513818404) * t2344);
-            let t2353 = t667 * t2338 + (t598 * t2337 + t2351) + t2352;
-            let t2354 = t767 * t2338 - (t766 * t2337 + t765 * t2337);
-            let t2355 = t771 * t2338 - (t770 * t2337 + t769 * t2337);
-            let t2356 = k(0.0038) * t2355
-                + (t504 * t2353 - (t516 * t2350 - t496 * t2347));
-            let t2357 = t2355 - k(263.1578947368421) * (t2321 + t2356);
-            let t2358 = k(0.008) * t2357 - k(0.02) * t2354
-                + (t503 * t2353 - (t515 * t2350 - t494 * t2347));
-            let t2359 = t2354 - k(50.0) * (t2194 - t2358);
-            let t2360 = t779 * t2338 - (t778 * t2337 + t777 * t2337);
-            let t2361 = k(0.025) * t2360
-                - (t507 * t2353 - (t519 * t2350 + t501 * t2347));
-            let t2362 = t2360 - k(40.0) * (t2196 + t2361);
-            let t2363 = t2196 * t2362 + (t2196 * t2357 + t2194 * t2359)
-                + (t2190 * t2319 + (t2189 * t2318 - t2186 * t2317));
-            let t2364 = k(0.6666666666666666) * t2204
-                - (k(0.3333333333333333) * t2203 + k(0.6666666666666666) * t2202);
-            let t2365 = t1572 * t2364;
-            let t2366 = k(0.9428090415820634) * (t1544 * t2365)
-                + k(0.23570226039551584) * (t1534 * t2365 + t1524 * t2365);
-            let t2367 = t1855 * t2366;
-            let t2368 = k(0.23570226039551584) * t2367;
-            let t2369 = k(0.9428090415820634) * t2367;
-            let t2370 = t1572
-                * (t2364 + (t1544 * t2369 + (t1534 * t2368 + t1524 * t2368)));
-            let t2371 = k(0.6666666666666666) * t2370;
-            let t2372 = k(0.3333333333333333) * t2370;
-            let t2373 = t2217 * t2218
-                + (t2204 * t2371 - (t2203 * t2372 + t2202 * t2371) - t2363);
-            let t2374 = t2242 * t2243
-                - (t2227 * t2228 - (t2224 * t2225 - (t2220 * t2221 - t2373)));
-            let t2375 = k(1.0) / (t2279 * t2280 - (t2258 * t2259 - t2374));
-            let t2376 = k(1.3333333333333333) * t95;
-            let t2377 = t2376 - t345;
-            let t2378 = k(1.3333333333333333) * t87;
-            let t2379 = t2378 - t347;
-            let t2380 = k(1.3333333333333333) * t91;
-            let t2381 = t2380 + t349;
-            let t2382 = k(1.3333333333333333) * t104 - (t342 - t341);
-            let t2383 = k(1.3333333333333333) * t100 - (t339 - t338);
-            let t2384 = t336 + t335 + k(1.3333333333333333) * t106;
-            let t2385 = k(0.6666666666666666) * t2384
-                + (k(0.3333333333333333) * t2383 + k(0.6666666666666666) * t2382);
-            let t2386 = k(0.3333333333333333) * t2384
-                + k(0.6666666666666666) * (t2383 - t2382);
-            let t2387 = t2386
-                * (k(0.6666666666666666) * t2381 - k(0.3333333333333333) * t2379
-                    - k(0.6666666666666666) * t2377)
-                + t2385
-                    * (k(0.6666666666666666) * (t2381 + t2379)
-                        + k(0.3333333333333333) * t2377);
-            let t2388 = k(1.0) / (t2386 * t2386 + t2385 * t2385);
-            let t2389 = t2388 * t2387;
-            let t2390 = t213 - t106;
-            let t2391 = t197 + t100;
-            let t2392 = t172 - t104;
-            let t2393 = t2386
-                * (k(0.8888888888888888) * -t2392 + k(0.4444444444444444) * t2391
-                    - k(0.8888888888888888) * t2390)
-                - t2385
-                    * (k(0.8888888888888888) * (t2392 + t2391)
-                        - k(0.4444444444444444) * t2390);
-            let t2394 = t2388 * t2393;
-            let t2395 = t2376 - k(0.6666666666666666) * t213;
-            let t2396 = t2378 + k(0.6666666666666666) * t197;
-            let t2397 = t2380 + k(0.6666666666666666) * t172;
-            let t2398 = t2386
-                * (k(0.6666666666666666) * t2397 - k(0.3333333333333333) * t2396
-                    - k(0.6666666666666666) * t2395)
-                + t2385
-                    * (k(0.6666666666666666) * (t2397 + t2396)
-                        + k(0.3333333333333333) * t2395);
-            let t2399 = t2388 * t2398;
+            let t2200 = t2189 * t2199;
+            let t2201 = t2200 * t786 + (t2200 * t778 + t2198 * t780)
+                + (t2194 * t431 + (t2193 * t430 - t2190 * t441));
+            let t2202 = t1438 * (k(0.8944271909999159) * t1437)
+                + t1434
+                    * (k(0.29814239699997197) * t1437 + k(0.7453559924999299) * t1433);
+            let t2203 = t1438 * (k(0.4472135954999579) * t1437)
+                - t1434
+                    * (k(0.5962847939999439) * t1437 - k(0.7453559924999299) * t1430);
+            let t2204 = self.gear_ratio * (t1440 * t2203) * t1845
+                - self.gear_ratio * (t1440 * t2202) * t1824;
+            let t2205 = t1438
+                * (k(0.4472135954999579) * t1433 - k(0.8944271909999159) * t1430)
+                - t1434
+                    * (k(0.5962847939999439) * t1433 + k(0.29814239699997197) * t1430);
+            let t2206 = self.gear_ratio * t1441;
+            let t2207 = self.gear_ratio * t1444;
+            let t2208 = self.gear_ratio * t1448;
+            let t2209 = t2208 * t1877 - (t2207 * t1873 - t2206 * t1875)
+                + (self.gear_ratio * (t1440 * t2205) * t1857 - t2204 - t2201);
+            let t2210 = t1083 + (shaft_wx * t1048 - shaft_wy * t1057)
+                + (t1079 - (shaft_wx * t1047 - shaft_wy * t1056));
+            let t2211 = t1093 - (shaft_wx * t1052 + shaft_wz * t1057)
+                + (t1090 + (shaft_wx * t1051 + shaft_wz * t1056));
+            let t2212 = t1082 + (shaft_wy * t1052 + shaft_wz * t1048)
+                + (t1078 - (shaft_wy * t1051 + shaft_wz * t1047));
+            let t2213 = k(0.30151134457776363) * t2212 - k(0.45226701686664544) * t2211
+                - k(0.45226701686664544) * t2210;
+            let t2214 = k(0.5) * (t2211 - t2210);
+            let t2215 = t2189 * t2189 * (k(2.0) * (t2187 * t2214 + t2188 * t2213))
+                * (t2188 * t2214 - t2187 * t2213);
+            let t2216 = t1085 - t1081;
+            let t2217 = t1095 - t1092;
+            let t2218 = t2214 * t2213;
+            let t2219 = t2187
+                * (k(0.45226701686664544) * t2217
+                    + (k(0.45226701686664544) * t2216
+                        - k(0.30151134457776363) * (t1201 - t1199)));
+            let t2220 = t2189
+                * (t2219 - t2218 + (t2218 - t2188 * (k(0.5) * (t2217 - t2216))));
+            let t2221 = t2200 * t917 + (t2200 * t912 + t2198 * t914)
+                + (t2194 * t867 + (t2193 * t866 - t2190 * t871));
+            let t2222 = t922 * t2221;
+            let t2223 = t2200 * t1040 + (t2200 * t1035 + t2198 * t1037)
+                + (t2194 * t990 + (t2193 * t989 - t2190 * t994));
+            let t2224 = t949 * t2222 - t2223;
+            let t2225 = t1045 * t2224;
+            let t2226 = t2225 * t951
+                - (t2222 * t828 + (self.gear_ratio * t1703 + (t2220 - t2215) + t2209));
+            let t2227 = t2200 * t1183 + (t2200 * t1178 + t2198 * t1180)
+                + (t2194 * t1140 + (t2193 * t1139 - t2190 * t1138));
+            let t2228 = t1100 * t2225 - (t1097 * t2222 - t2227);
+            let t2229 = t1185 * t2228;
+            let t2230 = t2200 * t1293 + (t2200 * t1288 + t2198 * t1290)
+                - (t2194 * t1250 + (t2193 * t1249 - t2190 * t1248));
+            let t2231 = t1210 * t2229 - (t1206 * t2225 - (t1203 * t2222 - t2230));
+            let t2232 = t1295 * t2231;
+            let t2233 = t2006 + (t669 * t1998 + (t2005 + t594 * t1997));
+            let t2234 = t2008 + (t670 * t1998 + (t2007 - t598 * t1997));
+            let t2235 = t2010 + (t671 * t1998 + (t2009 + t602 * t1997));
+            let t2236 = t771 * t1998 - (t770 * t1997 + t769 * t1997);
+            let t2237 = t775 * t1998 - (t774 * t1997 + t773 * t1997);
+            let t2238 = k(0.0038) * t2237
+                + (t508 * t2235 - (t520 * t2234 - t500 * t2233));
+            let t2239 = t2237 - k(263.1578947368421) * t2238;
+            let t2240 = k(0.008) * t2239 - k(0.02) * t2236
+                + (t507 * t2235 - (t519 * t2234 - t498 * t2233));
+            let t2241 = t2236 + k(50.0) * t2240;
+            let t2242 = t783 * t1998 - (t782 * t1997 + t781 * t1997);
+            let t2243 = k(0.025) * t2242
+                - (t511 * t2235 - (t523 * t2234 + t505 * t2233));
+            let t2244 = t2242 - k(40.0) * t2243;
+            let t2245 = t2208 * t1974 - (t2207 * t1973 + t2206 * t1974)
+                + (t2200 * t2244 + (t2200 * t2239 + t2198 * t2241));
+            let t2246 = t1955 * t2232
+                - (t1952 * t2229 - (t1948 * t2225 - (t1945 * t2222 + t2245)));
+            let t2247 = t2013 * t2246;
+            let t2248 = t2103 + (t669 * t2095 + (t2102 + t594 * t2094));
+            let t2249 = t2105 + (t670 * t2095 + (t2104 - t598 * t2094));
+            let t2250 = t2107 + (t671 * t2095 + (t2106 + t602 * t2094));
+            let t2251 = t771 * t2095 - (t770 * t2094 + t769 * t2094);
+            let t2252 = t775 * t2095 - (t774 * t2094 + t773 * t2094);
+            let t2253 = k(0.0038) * t2252
+                + (t508 * t2250 - (t520 * t2249 - t500 * t2248));
+            let t2254 = t2252 - k(263.1578947368421) * t2253;
+            let t2255 = k(0.008) * t2254 - k(0.02) * t2251
+                + (t507 * t2250 - (t519 * t2249 - t498 * t2248));
+            let t2256 = t2251 + k(50.0) * t2255;
+            let t2257 = t783 * t2095 - (t782 * t2094 + t781 * t2094);
+            let t2258 = k(0.025) * t2257
+                - (t511 * t2250 - (t523 * t2249 + t505 * t2248));
+            let t2259 = t2257 - k(40.0) * t2258;
+            let t2260 = t2208 * t2071 - (t2207 * t2070 + t2206 * t2071)
+                + (t2200 * t2259 + (t2200 * t2254 + t2198 * t2256));
+            let t2261 = t2047 * t2232
+                - (t2044 * t2229 - (t2041 * t2225 - (t2037 * t2222 - t2260)));
+            let t2262 = t2052 * t2247 - t2261;
+            let t2263 = t2110 * t2262;
+            let t2264 = t2263 * t2054
+                - (t2247 * t1957 - (t2232 * t1212 - (t2229 * t1102 - t2226)));
+            let t2265 = t2175 + (t2174 - (t281 * t2173 - t262 * t2172));
+            let t2266 = t2177 + (t2176 - (t283 * t2173 - t268 * t2172));
+            let t2267 = t2179 + (t2178 - (t285 * t2173 - t273 * t2172));
+            let t2268 = t128 * t2173 - (t127 * t2173 + t227 * t2172);
+            let t2269 = t108 * t2173 - (t98 * t2173 + t233 * t2172);
+            let t2270 = t109 * t2173 - (t97 * t2173 + t234 * t2172);
+            let t2271 = t246 * t2270 + (t228 * t2269 + t165 * t2268)
+                + (t214 * t2267 - (t198 * t2266 - t172 * t2265));
+            let t2272 = t2268 - t166 * t2271;
+            let t2273 = t160 * t2270 - (t159 * t2269 - t158 * t2272)
+                - (t212 * t2267 - (t196 * t2266 - t170 * t2265));
+            let t2274 = t161 * t2273;
+            let t2275 = t2272 - t129 * t2274;
+            let t2276 = t2269 + t148 * t2274;
+            let t2277 = t2270 - t156 * t2274;
+            let t2278 = t1576 * (t1548 * t2183 + (t1538 * t2182 + t1528 * t2182));
+            let t2279 = k(0.6666666666666666) * t2278;
+            let t2280 = k(0.3333333333333333) * t2278;
+            let t2281 = t2208 * t2279 - (t2207 * t2280 + t2206 * t2279)
+                - (t2194 * t2277 + (t2193 * t2276 - t2190 * t2275));
+            let t2282 = t2160 * t2232
+                - (t2156 * t2229 - (t2153 * t2225 - (t2150 * t2222 + t2281)));
+            let t2283 = t2166 * t2263 - (t2163 * t2247 - t2282);
+            let t2284 = t2186 * t2283;
+            let t2285 = t2284 * t2168 - t2264;
+            let t2286 = t156 * t2194 - (t148 * t2193 + t129 * t2190);
+            let t2287 = t161 * t2286;
+            let t2288 = t2190 + t158 * t2287;
+            let t2289 = t166 * t2288;
+            let t2290 = t2288 - t165 * t2289;
+            let t2291 = t228 * t2289 + (t2193 + t159 * t2287);
+            let t2292 = t246 * t2289 + (t2194 - t160 * t2287);
+            let t2293 = t172 * t2289 + t170 * t2287;
+            let t2294 = t198 * t2289 + t196 * t2287;
+            let t2295 = t214 * t2289 + t212 * t2287;
+            let t2296 = t273 * t2295 - (t268 * t2294 - t262 * t2293)
+                - (t234 * t2292 + (t233 * t2291 - t227 * t2290));
+            let t2297 = t278 * t2295 + (t276 * t2294 - t275 * t2293);
+            let t2298 = t285 * t2295 - (t283 * t2294 - t281 * t2293)
+                + (t97 * t2292 + (t98 * t2291 - t127 * t2290));
+            let t2299 = t289 * t2295 - (t293 * t2294 - t291 * t2293);
+            let t2300 = t2299 + (t2299 + (t109 * t2292 + (t108 * t2291 - t128 * t2290)));
+            let t2301 = k(0.6666666666666666) * t2300
+                - (k(0.6666666666666666) * (t2297 + t2298)
+                    - k(0.3333333333333333) * (t2297 + t2296));
+            let t2302 = t408 * t2301;
+            let t2303 = k(0.3333333333333333) * t2302;
+            let t2304 = k(0.6666666666666666) * t2302;
+            let t2305 = t291 * t2304;
+            let t2306 = t2305 + (t275 * t2304 - t275 * t2303);
+            let t2307 = t281 * t2304 - t262 * t2303 - t2305 - t2306;
+            let t2308 = t293 * t2304;
+            let t2309 = t2308 + (t276 * t2304 - t276 * t2303);
+            let t2310 = t283 * t2304 - t268 * t2303 - t2308 - t2309;
+            let t2311 = t289 * t2304;
+            let t2312 = t2311 - (t278 * t2304 - t278 * t2303);
+            let t2313 = t285 * t2304 - t273 * t2303 - t2311 - t2312;
+            let t2314 = t128 * t2304 - (t127 * t2304 + t227 * t2303);
+            let t2315 = t108 * t2304 - (t98 * t2304 + t233 * t2303);
+            let t2316 = t109 * t2304 - (t97 * t2304 + t234 * t2303);
+            let t2317 = t246 * t2316 + (t228 * t2315 + t165 * t2314)
+                - (t214 * t2313 - (t198 * t2310 - t172 * t2307));
+            let t2318 = t2314 + t166 * (t2288 - t2317);
+            let t2319 = t160 * t2316 - (t159 * t2315 - t158 * t2318)
+                + (t212 * t2313 - (t196 * t2310 - t170 * t2307));
+            let t2320 = t161 * (t2286 + t2319);
+            let t2321 = t2318 - t129 * t2320;
+            let t2322 = t2315 + t148 * t2320;
+            let t2323 = t2316 - t156 * t2320;
+            let t2324 = k(50.0) * t2198;
+            let t2325 = t2200 + k(0.4) * t2198;
+            let t2326 = k(263.1578947368421) * t2325;
+            let t2327 = k(40.0) * t2200;
+            let t2328 = t505 * t2327 + (t500 * t2326 - t498 * t2324);
+            let t2329 = t523 * t2327 - (t520 * t2326 - t519 * t2324);
+            let t2330 = t511 * t2327 - (t508 * t2326 - t507 * t2324);
+            let t2331 = t601 * t2330 + (t597 * t2329 + t593 * t2328)
+                - (t602 * t2330 + (t598 * t2329 - t594 * t2328));
+            let t2332 = k(0.19611613513818404) * t2330 - k(0.9805806756909201) * t2328;
+            let t2333 = t517 * t2332;
+            let t2334 = k(0.9813067629253163) * (t529 * t2333 + t2329)
+                + k(0.03774256780481986) * (t2328 + t514 * t2333);
+            let t2335 = k(0.1887128390240993) * (t2330 - t516 * t2333) + t2334;
+            let t2336 = t641 * t2335;
+            let t2337 = t661 * t2333
+                - k(2.0) * (t652 * t2330 - (t651 * t2329 + t650 * t2328));
+            let t2338 = t668 * t2336 + t2337 + (t649 * t2336 + (t637 * t2333 + t2331));
+            let t2339 = t677 * t2333 + (t671 * t2330 - (t670 * t2329 + t669 * t2328));
+            let t2340 = t747
+                * (k(0.9622504486493763) * (t683 * t2336 + t2339)
+                    - k(0.19245008972987526) * t2338);
+            let t2341 = k(0.19245008972987526) * t2340;
+            let t2342 = k(0.9622504486493763) * t2340;
+            let t2343 = t641 * (t2335 - (t683 * t2342 - (t668 * t2341 + t649 * t2341)));
+            let t2344 = k(0.03774256780481986) * t2343;
+            let t2345 = k(0.9813067629253163) * t2343;
+            let t2346 = k(0.1887128390240993) * t2343;
+            let t2347 = t677 * t2342 - (t661 * t2341 + t637 * t2341)
+                + (t516 * t2346 - (t529 * t2345 + t514 * t2344));
+            let t2348 = t517 * (t2332 - t2347);
+            let t2349 = t650 * t2341;
+            let t2350 = t2349 + t593 * t2341 + (t2344 - k(0.9805806756909201) * t2348);
+            let t2351 = t669 * t2342 + (t594 * t2341 + t2349) + t2350;
+            let t2352 = t651 * t2341;
+            let t2353 = t2345 + (t2352 + t597 * t2341);
+            let t2354 = t670 * t2342 - (t598 * t2341 - t2352) + t2353;
+            let t2355 = t652 * t2341;
+            let t2356 = t2355 - t601 * t2341 - (t2346 + k(0.19611613513818404) * t2348);
+            let t2357 = t671 * t2342 + (t602 * t2341 + t2355) + t2356;
+            let t2358 = t771 * t2342 - (t770 * t2341 + t769 * t2341);
+            let t2359 = t775 * t2342 - (t774 * t2341 + t773 * t2341);
+            let t2360 = k(0.0038) * t2359
+                + (t508 * t2357 - (t520 * t2354 - t500 * t2351));
+            let t2361 = t2359 - k(263.1578947368421) * (t2325 + t2360);
+            let t2362 = k(0.008) * t2361 - k(0.02) * t2358
+                + (t507 * t2357 - (t519 * t2354 - t498 * t2351));
+            let t2363 = t2358 - k(50.0) * (t2198 - t2362);
+            let t2364 = t783 * t2342 - (t782 * t2341 + t781 * t2341);
+            let t2365 = k(0.025) * t2364
+                - (t511 * t2357 - (t523 * t2354 + t505 * t2351));
+            let t2366 = t2364 - k(40.0) * (t2200 + t2365);
+            let t2367 = t2200 * t2366 + (t2200 * t2361 + t2198 * t2363)
+                + (t2194 * t2323 + (t2193 * t2322 - t2190 * t2321));
+            let t2368 = k(0.6666666666666666) * t2208
+                - (k(0.3333333333333333) * t2207 + k(0.6666666666666666) * t2206);
+            let t2369 = t1576 * t2368;
+            let t2370 = k(0.9428090415820634) * (t1548 * t2369)
+                + k(0.23570226039551584) * (t1538 * t2369 + t1528 * t2369);
+            let t2371 = t1859 * t2370;
+            let t2372 = k(0.23570226039551584) * t2371;
+            let t2373 = k(0.9428090415820634) * t2371;
+            let t2374 = t1576
+                * (t2368 + (t1548 * t2373 + (t1538 * t2372 + t1528 * t2372)));
+            let t2375 = k(0.6666666666666666) * t2374;
+            let t2376 = k(0.3333333333333333) * t2374;
+            let t2377 = t2221 * t2222
+                + (t2208 * t2375 - (t2207 * t2376 + t2206 * t2375) - t2367);
+            let t2378 = t2246 * t2247
+                - (t2231 * t2232 - (t2228 * t2229 - (t2224 * t2225 - t2377)));
+            let t2379 = k(1.0) / (t2283 * t2284 - (t2262 * t2263 - t2378));
+            let t2380 = k(1.3333333333333333) * t95;
+            let t2381 = t2380 - t349;
+            let t2382 = k(1.3333333333333333) * t87;
+            let t2383 = t2382 - t351;
+            let t2384 = k(1.3333333333333333) * t91;
+            let t2385 = t2384 + t353;
+            let t2386 = k(1.3333333333333333) * t104 - (t346 - t345);
+            let t2387 = k(1.3333333333333333) * t100 - (t343 - t342);
+            let t2388 = t340 + t339 + k(1.3333333333333333) * t106;
+            let t2389 = k(0.6666666666666666) * t2388
+                + (k(0.3333333333333333) * t2387 + k(0.6666666666666666) * t2386);
+            let t2390 = k(0.3333333333333333) * t2388
+                + k(0.6666666666666666) * (t2387 - t2386);
+            let t2391 = t2390
+                * (k(0.6666666666666666) * t2385 - k(0.3333333333333333) * t2383
+                    - k(0.6666666666666666) * t2381)
+                + t2389
+                    * (k(0.6666666666666666) * (t2385 + t2383)
+                        + k(0.3333333333333333) * t2381);
+            let t2392 = k(1.0) / (t2390 * t2390 + t2389 * t2389);
+            let t2393 = t2392 * t2391;
+            let t2394 = t217 - t106;
+            let t2395 = t201 + t100;
+            let t2396 = t176 - t104;
+            let t2397 = t2390
+                * (k(0.8888888888888888) * -t2396 + k(0.4444444444444444) * t2395
+                    - k(0.8888888888888888) * t2394)
+                - t2389
+                    * (k(0.8888888888888888) * (t2396 + t2395)
+                        - k(0.4444444444444444) * t2394);
+            let t2398 = t2392 * t2397;
+            let t2399 = t2380 - k(0.6666666666666666) * t217;
             (
-                t2217,
-                t2218,
-                t2220,
                 t2221,
+                t2222,
                 t2224,
                 t2225,
-                t2227,
                 t2228,
                 t2229,
-                t2230,
                 t2231,
+                t2232,
+                t2233,
+                t2234,
                 t2235,
-                t2237,
-                t2240,
-                t2242,
-                t2243,
+                t2239,
+                t2241,
                 t2244,
-                t2245,
                 t2246,
+                t2247,
+                t2248,
+                t2249,
                 t2250,
-                t2252,
-                t2255,
-                t2258,
+                t2254,
+                t2256,
                 t2259,
-                t2261,
                 t2262,
                 t2263,
-                t2271,
-                t2272,
-                t2273,
-                t2274,
+                t2265,
+                t2266,
+                t2267,
                 t2275,
                 t2276,
+                t2277,
+                t2278,
                 t2279,
                 t2280,
-                t2281,
-                t2299,
-                t2300,
-                t2302,
+                t2283,
+                t2284,
+                t2285,
                 t2303,
-                t2305,
+                t2304,
                 t2306,
-                t2308,
+                t2307,
                 t2309,
-                t2317,
-                t2318,
-                t2319,
-                t2337,
-                t2338,
-                t2346,
-                t2347,
-                t2349,
+                t2310,
+                t2312,
+                t2313,
+                t2321,
+                t2322,
+                t2323,
+                t2341,
+                t2342,
                 t2350,
-                t2352,
+                t2351,
                 t2353,
+                t2354,
+                t2356,
                 t2357,
-                t2359,
-                t2362,
-                t2368,
-                t2369,
-                t2370,
-                t2371,
+                t2361,
+                t2363,
+                t2366,
                 t2372,
+                t2373,
+                t2374,
                 t2375,
-                t2385,
-                t2386,
-                t2388,
+                t2376,
+                t2379,
+                t2382,
+                t2384,
                 t2389,
-                t2394,
+                t2390,
+                t2392,
+                t2393,
+                t2398,
                 t2399,
             )
         };
         let (
-            t2439,
             t2443,
-            t2444,
-            t2445,
-            t2446,
+            t2447,
             t2448,
+            t2449,
             t2450,
             t2452,
             t2454,
-            t2457,
+            t2456,
             t2458,
-            t2460,
             t2461,
-            t2463,
+            t2462,
             t2464,
-            t2466,
+            t2465,
             t2467,
-            t2475,
-            t2476,
-            t2489,
-            t2490,
-            t2491,
+            t2468,
+            t2470,
+            t2471,
+            t2479,
+            t2480,
+            t2493,
             t2494,
-            t2497,
-            t2499,
-            t2500,
+            t2495,
+            t2498,
             t2501,
+            t2503,
+            t2504,
             t2505,
-            t2506,
-            t2507,
+            t2509,
+            t2510,
             t2511,
-            t2512,
-            t2513,
+            t2515,
+            t2516,
             t2517,
-            t2518,
-            t2519,
-            t2520,
             t2521,
             t2522,
             t2523,
@@ -15719,332 +15737,341 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t2525,
             t2526,
             t2527,
-            t2532,
-            t2537,
-            t2542,
-            t2543,
-            t2544,
-            t2545,
+            t2528,
+            t2529,
+            t2530,
+            t2531,
+            t2536,
+            t2541,
             t2546,
             t2547,
-            t2556,
-            t2559,
-            t2562,
+            t2548,
+            t2549,
+            t2550,
+            t2551,
+            t2560,
             t2563,
-            t2564,
-            t2565,
             t2566,
             t2567,
             t2568,
-            t2576,
-            t2577,
-            t2578,
+            t2569,
+            t2570,
+            t2571,
+            t2572,
+            t2580,
+            t2581,
+            t2582,
         ) = {
-            let t2400 = k(0.6666666666666666) * t2142 - k(0.3333333333333333) * t2141
-                + k(0.6666666666666666) * t2140;
-            let t2401 = k(0.6666666666666666) * t2136 - k(0.3333333333333333) * t2135
-                + k(0.6666666666666666) * t2134;
-            let t2402 = k(0.6666666666666666) * t2131 - k(0.3333333333333333) * t2130
-                - k(0.6666666666666666) * t2129;
-            let t2403 = k(0.6666666666666666) * (t2402 - t2401)
-                - k(0.3333333333333333) * t2400;
-            let t2404 = k(0.6666666666666666) * t2402 + k(0.3333333333333333) * t2401
-                + k(0.6666666666666666) * t2400;
-            let t2405 = t2388 * t2388 * (k(2.0) * (t2385 * t2404 - t2386 * t2403))
-                * (t2386 * t2404 + t2385 * t2403);
-            let t2406 = t360
-                + (k(0.3333333333333333) * t184 + k(0.6666666666666666) * t182);
-            let t2407 = t362
-                + (k(0.3333333333333333) * t201 + k(0.6666666666666666) * t200);
-            let t2408 = t364
-                + (k(0.3333333333333333) * t217 + k(0.6666666666666666) * t216);
-            let t2409 = t2404 * t2403;
-            let t2410 = t2409
-                + t2386
-                    * (k(0.6666666666666666) * t2408
-                        + (k(0.3333333333333333) * t2407
-                            + k(0.6666666666666666) * t2406));
-            let t2411 = t2385
-                * (k(0.3333333333333333) * t2408
-                    + k(0.6666666666666666) * (t2407 - t2406)) + t2409 - t2410;
-            let t2412 = k(8.882643960980422) * (k(9.42477796076938) * t).sin()
-                - (t2388 * t2411 - t2405)
-                - (t2399 * t409 - (t2394 * t408 + t2389 * t406));
-            let t2413 = t2399 * t845 - (t2394 * t845 - t2389 * t844);
-            let t2414 = t918 * t2413;
-            let t2415 = t945 * t2414 - (t2399 * t968 - (t2394 * t968 - t2389 * t967));
-            let t2416 = t1041 * t2415;
-            let t2417 = t1093 * t2414
-                - (t2399 * t1117 - (t2394 * t1117 - t2389 * t1116));
-            let t2418 = t1096 * t2416 - t2417;
-            let t2419 = t1181 * t2418;
-            let t2420 = t1199 * t2414
-                + (t2399 * t1227 - (t2394 * t1227 - t2389 * t1226));
-            let t2421 = t1206 * t2419 - (t1202 * t2416 - t2420);
-            let t2422 = t1291 * t2421;
-            let t2423 = t2422 * t1208
-                - (t2419 * t1098 - (t2416 * t947 - (t2414 * t824 + t2412)));
-            let t2424 = t1951 * t2422
-                - (t1948 * t2419 - (t1944 * t2416 - t1941 * t2414));
-            let t2425 = t2009 * t2424;
-            let t2426 = t2043 * t2422
-                - (t2040 * t2419 - (t2037 * t2416 - t2033 * t2414));
-            let t2427 = t2048 * t2425 - t2426;
-            let t2428 = t2106 * t2427;
-            let t2429 = t2146 * t2414
-                - (t2399 * t2169 - (t2394 * t2169 - t2389 * t2168));
-            let t2430 = t2159 * t2425
-                - (t2156 * t2422 - (t2152 * t2419 - (t2149 * t2416 - t2429)));
-            let t2431 = t2162 * t2428 - t2430;
-            let t2432 = t2182 * t2431;
-            let t2433 = t2217 * t2414
-                - (t2399 * t2300 - (t2394 * t2300 - t2389 * t2299));
-            let t2434 = t2242 * t2425
-                - (t2227 * t2422 - (t2224 * t2419 - (t2220 * t2416 - t2433)));
-            let t2435 = t2279 * t2432 - (t2258 * t2428 - t2434);
-            let t2436 = t2375 * t2435;
-            let t2437 = t2436 * t2281
-                - (t2432 * t2164 - (t2428 * t2050 - (t2425 * t1953 - t2423)));
-            let t2438 = t404
-                * (k(0.6666666666666666) * t2399
-                    - (k(0.6666666666666666) * t2394 - k(0.3333333333333333) * t2389));
-            let t2439 = k(0.3333333333333333) * t2438;
-            let t2440 = k(0.6666666666666666) * t2438;
-            let t2441 = t2413 * t2414
-                - (t2399 * t2440 - (t2394 * t2440 - t2389 * t2439));
-            let t2442 = t2424 * t2425
-                - (t2421 * t2422 - (t2418 * t2419 - (t2415 * t2416 - t2441)));
-            let t2443 = t2437
-                / (t2435 * t2436 - (t2431 * t2432 - (t2427 * t2428 - t2442)));
-            let t2444 = t2436 * t2443 - t2375 * t2281;
-            let t2445 = t2432 * t2443 - (t2280 * t2444 + t2182 * t2164);
-            let t2446 = t2428 * t2443
-                - (t2259 * t2444 + (t2163 * t2445 + t2106 * t2050));
-            let t2447 = t2243 * t2444
-                + (t2160 * t2445 + (t2049 * t2446 + t2009 * t1953));
-            let t2448 = t2425 * t2443 - t2447;
-            let t2449 = t2157 * t2445
-                + (t2044 * t2446 + (t1952 * t2448 + t1291 * t1208));
-            let t2450 = t2422 * t2443 - (t2228 * t2444 + t2449);
-            let t2451 = t2041 * t2446
-                + (t1949 * t2448 + (t1207 * t2450 + t1181 * t1098));
-            let t2452 = t2419 * t2443 - (t2225 * t2444 + (t2153 * t2445 + t2451));
-            let t2453 = t1945 * t2448 + (t1203 * t2450 + (t1097 * t2452 + t1041 * t947));
-            let t2454 = t2416 * t2443
-                - (t2221 * t2444 + (t2150 * t2445 + (t2038 * t2446 + t2453)));
-            let t2455 = t1200 * t2450 + (t1094 * t2452 + (t946 * t2454 + t918 * t824));
-            let t2456 = t2218 * t2444
-                + (t2147 * t2445 + (t2034 * t2446 + (t1942 * t2448 + t2455)));
-            let t2457 = t2414 * t2443 - t2456;
-            let t2458 = t1229 * t2450
-                - (t1119 * t2452 + (t970 * t2454 + (t411 + t847 * t2457)));
-            let t2459 = t287 * t2440;
-            let t2460 = t2459 + (t271 * t2440 - t271 * t2439);
-            let t2461 = t1232 * t2450
-                - (t1122 * t2452 + (t973 * t2454 + (t414 + t850 * t2457)));
-            let t2462 = t289 * t2440;
-            let t2463 = t2462 + (t272 * t2440 - t272 * t2439);
-            let t2464 = t1235 * t2450
-                - (t1125 * t2452 + (t976 * t2454 - (t417 - t853 * t2457)));
-            let t2465 = t285 * t2440;
-            let t2466 = t2465 - (t274 * t2440 - t274 * t2439);
-            let t2467 = t1226 * t2450
-                - (t1116 * t2452 + (t967 * t2454 - (t406 - t844 * t2457)));
-            let t2468 = t845 * t2457;
-            let t2469 = t968 * t2454;
-            let t2470 = t1117 * t2452;
-            let t2471 = t1227 * t2450;
-            let t2472 = t2169 * t2445;
-            let t2473 = t2300 * t2444;
-            let t2474 = t2440 * t2443;
-            let t2475 = t2474
-                - (t2473 + (t2472 - (t2471 - (t2470 + (t2469 + (t408 + t2468))))));
-            let t2476 = t2474
-                - (t2473 + (t2472 - (t2471 - (t2470 + (t2469 + (t409 + t2468))))));
-            let t2477 = t2452 * (t1120 + (t145 * t1136 + t131 * t1135))
-                + (t987 * t2454 - (t428 - t864 * t2457));
-            let t2478 = t2445 * (t2261 - (t145 * t2273 + t131 * t2272))
-                + (t2450 * (t1230 + (t145 * t1246 + t131 * t1245)) - t2477);
-            let t2479 = t2460 + (t2459 - (t277 * t2440 - t258 * t2439));
-            let t2480 = t2463 + (t2462 - (t279 * t2440 - t264 * t2439));
-            let t2481 = t2466 + (t2465 - (t281 * t2440 - t269 * t2439));
-            let t2482 = t128 * t2440 - (t127 * t2440 + t223 * t2439);
-            let t2483 = t108 * t2440 - (t98 * t2440 + t229 * t2439);
-            let t2484 = t109 * t2440 - (t97 * t2440 + t230 * t2439);
-            let t2485 = t242 * t2484 + (t224 * t2483 + t161 * t2482)
-                + (t210 * t2481 - (t194 * t2480 - t168 * t2479));
-            let t2486 = t2482 - t162 * t2485;
-            let t2487 = t156 * t2484 - (t155 * t2483 - t154 * t2486)
-                - (t208 * t2481 - (t192 * t2480 - t166 * t2479));
-            let t2488 = t157 * t2487;
-            let t2489 = t2483 + t144 * t2488;
-            let t2490 = t2484 - t152 * t2488;
-            let t2491 = t2443 * (t2479 - (t145 * t2490 + t131 * t2489))
-                + (t2444 * (t2303 + (t145 * t2319 + t131 * t2318)) - t2478);
-            let t2492 = t2452 * (t1123 - (t146 * t1136 - t133 * t1135))
-                + (t988 * t2454 - (t431 - t865 * t2457));
-            let t2493 = t2445 * (t2262 + (t146 * t2273 - t133 * t2272))
-                + (t2450 * (t1233 - (t146 * t1246 - t133 * t1245)) - t2492);
-            let t2494 = t2443 * (t2480 + (t146 * t2490 - t133 * t2489))
-                + (t2444 * (t2306 - (t146 * t2319 - t133 * t2318)) - t2493);
-            let t2495 = t2452 * (t1126 + (t147 * t1136 - t136 * t1135))
-                + (t989 * t2454 + (t434 + t866 * t2457));
-            let t2496 = t2445 * (t2263 - (t147 * t2273 - t136 * t2272))
-                + (t2450 * (t1236 + (t147 * t1246 - t136 * t1245)) - t2495);
-            let t2497 = t2443 * (t2481 - (t147 * t2490 - t136 * t2489))
-                + (t2444 * (t2309 + (t147 * t2319 - t136 * t2318)) - t2496);
-            let t2498 = t1244 * t2450
-                - (t1134 * t2452 + (t990 * t2454 + (t437 + t867 * t2457)));
-            let t2499 = t2443 * (t2486 - t129 * t2488)
-                - (t2317 * t2444 + (t2271 * t2445 - t2498));
-            let t2500 = t1245 * t2450
-                - (t1135 * t2452 + (t985 * t2454 + (t426 + t862 * t2457)));
-            let t2501 = t1246 * t2450
-                - (t1136 * t2452 + (t986 * t2454 + (t427 + t863 * t2457)));
-            let t2502 = t2452 * (t1164 + (t499 * t1179 + (t552 * t1174 - t540 * t1176)));
-            let t2503 = t2450 * (t1274 + (t499 * t1289 + (t552 * t1284 - t540 * t1286)));
-            let t2504 = t2448 * (t2229 + (t499 * t2240 + (t552 * t2235 - t540 * t2237)));
-            let t2505 = t2504
-                - (t2503 + (t2502 + (t1037 * t2454 - (t783 - t914 * t2457))));
-            let t2506 = t2446 * (t2244 + (t499 * t2255 + (t552 * t2250 - t540 * t2252)));
-            let t2507 = t2444 * (t2347 + (t499 * t2362 + (t552 * t2357 - t540 * t2359)));
-            let t2508 = t2452 * (t1167 + (t518 * t1179 - (t553 * t1174 - t542 * t1176)));
-            let t2509 = t2450 * (t1277 + (t518 * t1289 - (t553 * t1284 - t542 * t1286)));
-            let t2510 = t2448 * (t2230 + (t518 * t2240 - (t553 * t2235 - t542 * t2237)));
-            let t2511 = t2510
-                - (t2509 + (t2508 + (t1038 * t2454 + (t784 + t915 * t2457))));
-            let t2512 = t2446 * (t2245 + (t518 * t2255 - (t553 * t2250 - t542 * t2252)));
-            let t2513 = t2444 * (t2350 + (t518 * t2362 - (t553 * t2357 - t542 * t2359)));
-            let t2514 = t2452 * (t1170 - (t506 * t1179 - (t554 * t1174 - t544 * t1176)));
-            let t2515 = t2450 * (t1280 - (t506 * t1289 - (t554 * t1284 - t544 * t1286)));
-            let t2516 = t2448 * (t2231 - (t506 * t2240 - (t554 * t2235 - t544 * t2237)));
-            let t2517 = t2516
-                - (t2515 + (t2514 + (t1039 * t2454 - (t785 - t916 * t2457))));
-            let t2518 = t2446 * (t2246 - (t506 * t2255 - (t554 * t2250 - t544 * t2252)));
-            let t2519 = t2444 * (t2353 - (t506 * t2362 - (t554 * t2357 - t544 * t2359)));
-            let t2520 = t1286 * t2450
-                + (t1176 * t2452 + (t1033 * t2454 + (t776 + t910 * t2457)));
-            let t2521 = t1284 * t2450
-                + (t1174 * t2452 + (t1031 * t2454 + (t774 + t908 * t2457)));
-            let t2522 = t1289 * t2450
-                + (t1179 * t2452 + (t1036 * t2454 + (t782 + t913 * t2457)));
-            let t2523 = t1966 * t2448;
-            let t2524 = t2063 * t2446;
-            let t2525 = t2178 * t2445;
-            let t2526 = t2368 * t2444;
-            let t2527 = t2369 * t2444
-                + (t2179 * t2445 + (t2064 * t2446 - (t1862 + t1967 * t2448)));
-            let t2528 = t1492 * t2275;
-            let t2529 = t2528 - (t1503 * t2276 + t2528) - (t2178 - t1449 * t2274);
-            let t2530 = t1492 * t2371;
-            let t2531 = t2530 - (t1503 * t2372 + t2530) - (t2368 - t1449 * t2370);
-            let t2532 = t2444 * t2531
-                + (t2445 * t2529 - (t2069 * t2446 - (t1874 + t1972 * t2448)));
-            let t2533 = t1493 * t2275;
-            let t2534 = t2533 + (t1505 * t2276 - t2533) - (t2178 + t1465 * t2274);
-            let t2535 = t1493 * t2371;
-            let t2536 = t2535 + (t1505 * t2372 - t2535) - (t2368 + t1465 * t2370);
-            let t2537 = t2444 * t2536
-                + (t2445 * t2534 - (t2075 * t2446 - (t1883 + t1978 * t2448)));
-            let t2538 = t1491 * t2275;
-            let t2539 = t2538 - (t1507 * t2276 + t2538) - (t2179 + t1482 * t2274);
-            let t2540 = t1491 * t2371;
-            let t2541 = t2540 - (t1507 * t2372 + t2540) - (t2369 + t1482 * t2370);
-            let t2542 = t2444 * t2541
-                + (t2445 * t2539 - (t2078 * t2446 - (t1889 + t1981 * t2448)));
-            let t2543 = t1970 * t2448;
-            let t2544 = t2067 * t2446;
-            let t2545 = t2275 * t2445;
-            let t2546 = t2371 * t2444;
-            let t2547 = t2372 * t2444
-                + (t2276 * t2445 - (t2066 * t2446 - (t1869 + t1969 * t2448)));
-            let t2548 = t1374 * t2275 + (t1346 * t2276 - t1351 * t2275);
-            let t2549 = t1375 * t2275 + (t1358 * t2276 - t1360 * t2275);
-            let t2550 = t1373 * t2275 + (t1368 * t2276 - t1367 * t2275);
-            let t2551 = t1879 * t2550 + (t1386 * t2549 + t1876 * t2548)
-                + (t2529 + (t1510 * t2275 - (t2528 - t1498 * t2276)));
-            let t2552 = t1374 * t2371 + (t1346 * t2372 - t1351 * t2371);
-            let t2553 = t1375 * t2371 + (t1358 * t2372 - t1360 * t2371);
-            let t2554 = t1373 * t2371 + (t1368 * t2372 - t1367 * t2371);
-            let t2555 = t1879 * t2554 + (t1386 * t2553 + t1876 * t2552)
-                + (t2531 + (t1510 * t2371 - (t2530 - t1498 * t2372)));
-            let t2556 = t2444 * t2555
-                + (t2445 * t2551 - (t2073 * t2446 - (t1880 + t1976 * t2448)));
-            let t2557 = t1885 * t2550 - (t1458 * t2549 - t1884 * t2548)
-                + (t2534 + (t1511 * t2275 - (t2533 + t1499 * t2276)));
-            let t2558 = t1885 * t2554 - (t1458 * t2553 - t1884 * t2552)
-                + (t2536 + (t1511 * t2371 - (t2535 + t1499 * t2372)));
-            let t2559 = t2444 * t2558
-                + (t2445 * t2557 - (t2076 * t2446 - (t1886 + t1979 * t2448)));
-            let t2560 = t1488 * t2550 - (t1474 * t2549 - t1483 * t2548)
-                + (t2539 + (t1512 * t2275 - (t2538 + t1500 * t2276)));
-            let t2561 = t1488 * t2554 - (t1474 * t2553 - t1483 * t2552)
-                + (t2541 + (t1512 * t2371 - (t2540 + t1500 * t2372)));
-            let t2562 = t2444 * t2561
-                + (t2445 * t2560 - (t2079 * t2446 - (t1890 + t1982 * t2448)));
-            let t2563 = t2444 * t2552
-                + (t2445 * t2548 - (t2070 * t2446 - (t1875 + t1973 * t2448)));
-            let t2564 = t2444 * t2553
-                + (t2445 * t2549 - (t2071 * t2446 - (t1877 + t1974 * t2448)));
-            let t2565 = t2444 * t2554
-                + (t2445 * t2550 - (t2072 * t2446 - (t1878 + t1975 * t2448)));
-            let t2566 = t1273 * t2450
-                + (t1163 * t2452 + (t1020 * t2454 - (t757 - t897 * t2457)));
-            let t2567 = t1276 * t2450
-                + (t1166 * t2452 + (t1023 * t2454 - (t760 - t900 * t2457)));
-            let t2568 = t1279 * t2450
-                + (t1169 * t2452 + (t1026 * t2454 - (t763 - t903 * t2457)));
-            let t2569 = t888 * t2457;
-            let t2570 = t1011 * t2454;
-            let t2571 = t1154 * t2452;
-            let t2572 = t1264 * t2450;
-            let t2573 = t1993 * t2448;
-            let t2574 = t2090 * t2446;
-            let t2575 = t2337 * t2444;
-            let t2576 = t2575
-                + (t2574 - (t2573 - (t2572 + (t2571 + (t2570 + (t746 + t2569))))));
-            let t2577 = t2575
-                + (t2574 - (t2573 - (t2572 + (t2571 + (t2570 - (t747 - t2569))))));
-            let t2578 = t1265 * t2450
-                + (t1155 * t2452 + (t1012 * t2454 + (t748 + t889 * t2457)));
+            let t2400 = t2382 + k(0.6666666666666666) * t201;
+            let t2401 = t2384 + k(0.6666666666666666) * t176;
+            let t2402 = t2390
+                * (k(0.6666666666666666) * t2401 - k(0.3333333333333333) * t2400
+                    - k(0.6666666666666666) * t2399)
+                + t2389
+                    * (k(0.6666666666666666) * (t2401 + t2400)
+                        + k(0.3333333333333333) * t2399);
+            let t2403 = t2392 * t2402;
+            let t2404 = k(0.6666666666666666) * t2146 - k(0.3333333333333333) * t2145
+                + k(0.6666666666666666) * t2144;
+            let t2405 = k(0.6666666666666666) * t2140 - k(0.3333333333333333) * t2139
+                + k(0.6666666666666666) * t2138;
+            let t2406 = k(0.6666666666666666) * t2135 - k(0.3333333333333333) * t2134
+                - k(0.6666666666666666) * t2133;
+            let t2407 = k(0.6666666666666666) * (t2406 - t2405)
+                - k(0.3333333333333333) * t2404;
+            let t2408 = k(0.6666666666666666) * t2406 + k(0.3333333333333333) * t2405
+                + k(0.6666666666666666) * t2404;
+            let t2409 = t2392 * t2392 * (k(2.0) * (t2389 * t2408 - t2390 * t2407))
+                * (t2390 * t2408 + t2389 * t2407);
+            let t2410 = t364
+                + (k(0.3333333333333333) * t188 + k(0.6666666666666666) * t186);
+            let t2411 = t366
+                + (k(0.3333333333333333) * t205 + k(0.6666666666666666) * t204);
+            let t2412 = t368
+                + (k(0.3333333333333333) * t221 + k(0.6666666666666666) * t220);
+            let t2413 = t2408 * t2407;
+            let t2414 = t2413
+                + t2390
+                    * (k(0.6666666666666666) * t2412
+                        + (k(0.3333333333333333) * t2411
+                            + k(0.6666666666666666) * t2410));
+            let t2415 = t2389
+                * (k(0.3333333333333333) * t2412
+                    + k(0.6666666666666666) * (t2411 - t2410)) + t2413 - t2414;
+            let t2416 = k(8.882643960980422) * (k(9.42477796076938) * t).sin()
+                - (t2392 * t2415 - t2409)
+                - (t2403 * t413 - (t2398 * t412 + t2393 * t410));
+            let t2417 = t2403 * t849 - (t2398 * t849 - t2393 * t848);
+            let t2418 = t922 * t2417;
+            let t2419 = t949 * t2418 - (t2403 * t972 - (t2398 * t972 - t2393 * t971));
+            let t2420 = t1045 * t2419;
+            let t2421 = t1097 * t2418
+                - (t2403 * t1121 - (t2398 * t1121 - t2393 * t1120));
+            let t2422 = t1100 * t2420 - t2421;
+            let t2423 = t1185 * t2422;
+            let t2424 = t1203 * t2418
+                + (t2403 * t1231 - (t2398 * t1231 - t2393 * t1230));
+            let t2425 = t1210 * t2423 - (t1206 * t2420 - t2424);
+            let t2426 = t1295 * t2425;
+            let t2427 = t2426 * t1212
+                - (t2423 * t1102 - (t2420 * t951 - (t2418 * t828 + t2416)));
+            let t2428 = t1955 * t2426
+                - (t1952 * t2423 - (t1948 * t2420 - t1945 * t2418));
+            let t2429 = t2013 * t2428;
+            let t2430 = t2047 * t2426
+                - (t2044 * t2423 - (t2041 * t2420 - t2037 * t2418));
+            let t2431 = t2052 * t2429 - t2430;
+            let t2432 = t2110 * t2431;
+            let t2433 = t2150 * t2418
+                - (t2403 * t2173 - (t2398 * t2173 - t2393 * t2172));
+            let t2434 = t2163 * t2429
+                - (t2160 * t2426 - (t2156 * t2423 - (t2153 * t2420 - t2433)));
+            let t2435 = t2166 * t2432 - t2434;
+            let t2436 = t2186 * t2435;
+            let t2437 = t2221 * t2418
+                - (t2403 * t2304 - (t2398 * t2304 - t2393 * t2303));
+            let t2438 = t2246 * t2429
+                - (t2231 * t2426 - (t2228 * t2423 - (t2224 * t2420 - t2437)));
+            let t2439 = t2283 * t2436 - (t2262 * t2432 - t2438);
+            let t2440 = t2379 * t2439;
+            let t2441 = t2440 * t2285
+                - (t2436 * t2168 - (t2432 * t2054 - (t2429 * t1957 - t2427)));
+            let t2442 = t408
+                * (k(0.6666666666666666) * t2403
+                    - (k(0.6666666666666666) * t2398 - k(0.3333333333333333) * t2393));
+            let t2443 = k(0.3333333333333333) * t2442;
+            let t2444 = k(0.6666666666666666) * t2442;
+            let t2445 = t2417 * t2418
+                - (t2403 * t2444 - (t2398 * t2444 - t2393 * t2443));
+            let t2446 = t2428 * t2429
+                - (t2425 * t2426 - (t2422 * t2423 - (t2419 * t2420 - t2445)));
+            let t2447 = t2441
+                / (t2439 * t2440 - (t2435 * t2436 - (t2431 * t2432 - t2446)));
+            let t2448 = t2440 * t2447 - t2379 * t2285;
+            let t2449 = t2436 * t2447 - (t2284 * t2448 + t2186 * t2168);
+            let t2450 = t2432 * t2447
+                - (t2263 * t2448 + (t2167 * t2449 + t2110 * t2054));
+            let t2451 = t2247 * t2448
+                + (t2164 * t2449 + (t2053 * t2450 + t2013 * t1957));
+            let t2452 = t2429 * t2447 - t2451;
+            let t2453 = t2161 * t2449
+                + (t2048 * t2450 + (t1956 * t2452 + t1295 * t1212));
+            let t2454 = t2426 * t2447 - (t2232 * t2448 + t2453);
+            let t2455 = t2045 * t2450
+                + (t1953 * t2452 + (t1211 * t2454 + t1185 * t1102));
+            let t2456 = t2423 * t2447 - (t2229 * t2448 + (t2157 * t2449 + t2455));
+            let t2457 = t1949 * t2452 + (t1207 * t2454 + (t1101 * t2456 + t1045 * t951));
+            let t2458 = t2420 * t2447
+                - (t2225 * t2448 + (t2154 * t2449 + (t2042 * t2450 + t2457)));
+            let t2459 = t1204 * t2454 + (t1098 * t2456 + (t950 * t2458 + t922 * t828));
+            let t2460 = t2222 * t2448
+                + (t2151 * t2449 + (t2038 * t2450 + (t1946 * t2452 + t2459)));
+            let t2461 = t2418 * t2447 - t2460;
+            let t2462 = t1233 * t2454
+                - (t1123 * t2456 + (t974 * t2458 + (t415 + t851 * t2461)));
+            let t2463 = t291 * t2444;
+            let t2464 = t2463 + (t275 * t2444 - t275 * t2443);
+            let t2465 = t1236 * t2454
+                - (t1126 * t2456 + (t977 * t2458 + (t418 + t854 * t2461)));
+            let t2466 = t293 * t2444;
+            let t2467 = t2466 + (t276 * t2444 - t276 * t2443);
+            let t2468 = t1239 * t2454
+                - (t1129 * t2456 + (t980 * t2458 - (t421 - t857 * t2461)));
+            let t2469 = t289 * t2444;
+            let t2470 = t2469 - (t278 * t2444 - t278 * t2443);
+            let t2471 = t1230 * t2454
+                - (t1120 * t2456 + (t971 * t2458 - (t410 - t848 * t2461)));
+            let t2472 = t849 * t2461;
+            let t2473 = t972 * t2458;
+            let t2474 = t1121 * t2456;
+            let t2475 = t1231 * t2454;
+            let t2476 = t2173 * t2449;
+            let t2477 = t2304 * t2448;
+            let t2478 = t2444 * t2447;
+            let t2479 = t2478
+                - (t2477 + (t2476 - (t2475 - (t2474 + (t2473 + (t412 + t2472))))));
+            let t2480 = t2478
+                - (t2477 + (t2476 - (t2475 - (t2474 + (t2473 + (t413 + t2472))))));
+            let t2481 = t2456 * (t1124 + (t149 * t1140 + t133 * t1139))
+                + (t991 * t2458 - (t432 - t868 * t2461));
+            let t2482 = t2449 * (t2265 - (t149 * t2277 + t133 * t2276))
+                + (t2454 * (t1234 + (t149 * t1250 + t133 * t1249)) - t2481);
+            let t2483 = t2464 + (t2463 - (t281 * t2444 - t262 * t2443));
+            let t2484 = t2467 + (t2466 - (t283 * t2444 - t268 * t2443));
+            let t2485 = t2470 + (t2469 - (t285 * t2444 - t273 * t2443));
+            let t2486 = t128 * t2444 - (t127 * t2444 + t227 * t2443);
+            let t2487 = t108 * t2444 - (t98 * t2444 + t233 * t2443);
+            let t2488 = t109 * t2444 - (t97 * t2444 + t234 * t2443);
+            let t2489 = t246 * t2488 + (t228 * t2487 + t165 * t2486)
+                + (t214 * t2485 - (t198 * t2484 - t172 * t2483));
+            let t2490 = t2486 - t166 * t2489;
+            let t2491 = t160 * t2488 - (t159 * t2487 - t158 * t2490)
+                - (t212 * t2485 - (t196 * t2484 - t170 * t2483));
+            let t2492 = t161 * t2491;
+            let t2493 = t2487 + t148 * t2492;
+            let t2494 = t2488 - t156 * t2492;
+            let t2495 = t2447 * (t2483 - (t149 * t2494 + t133 * t2493))
+                + (t2448 * (t2307 + (t149 * t2323 + t133 * t2322)) - t2482);
+            let t2496 = t2456 * (t1127 - (t150 * t1140 - t137 * t1139))
+                + (t992 * t2458 - (t435 - t869 * t2461));
+            let t2497 = t2449 * (t2266 + (t150 * t2277 - t137 * t2276))
+                + (t2454 * (t1237 - (t150 * t1250 - t137 * t1249)) - t2496);
+            let t2498 = t2447 * (t2484 + (t150 * t2494 - t137 * t2493))
+                + (t2448 * (t2310 - (t150 * t2323 - t137 * t2322)) - t2497);
+            let t2499 = t2456 * (t1130 + (t151 * t1140 - t140 * t1139))
+                + (t993 * t2458 + (t438 + t870 * t2461));
+            let t2500 = t2449 * (t2267 - (t151 * t2277 - t140 * t2276))
+                + (t2454 * (t1240 + (t151 * t1250 - t140 * t1249)) - t2499);
+            let t2501 = t2447 * (t2485 - (t151 * t2494 - t140 * t2493))
+                + (t2448 * (t2313 + (t151 * t2323 - t140 * t2322)) - t2500);
+            let t2502 = t1248 * t2454
+                - (t1138 * t2456 + (t994 * t2458 + (t441 + t871 * t2461)));
+            let t2503 = t2447 * (t2490 - t129 * t2492)
+                - (t2321 * t2448 + (t2275 * t2449 - t2502));
+            let t2504 = t1249 * t2454
+                - (t1139 * t2456 + (t989 * t2458 + (t430 + t866 * t2461)));
+            let t2505 = t1250 * t2454
+                - (t1140 * t2456 + (t990 * t2458 + (t431 + t867 * t2461)));
+            let t2506 = t2456 * (t1168 + (t503 * t1183 + (t556 * t1178 - t544 * t1180)));
+            let t2507 = t2454 * (t1278 + (t503 * t1293 + (t556 * t1288 - t544 * t1290)));
+            let t2508 = t2452 * (t2233 + (t503 * t2244 + (t556 * t2239 - t544 * t2241)));
+            let t2509 = t2508
+                - (t2507 + (t2506 + (t1041 * t2458 - (t787 - t918 * t2461))));
+            let t2510 = t2450 * (t2248 + (t503 * t2259 + (t556 * t2254 - t544 * t2256)));
+            let t2511 = t2448 * (t2351 + (t503 * t2366 + (t556 * t2361 - t544 * t2363)));
+            let t2512 = t2456 * (t1171 + (t522 * t1183 - (t557 * t1178 - t546 * t1180)));
+            let t2513 = t2454 * (t1281 + (t522 * t1293 - (t557 * t1288 - t546 * t1290)));
+            let t2514 = t2452 * (t2234 + (t522 * t2244 - (t557 * t2239 - t546 * t2241)));
+            let t2515 = t2514
+                - (t2513 + (t2512 + (t1042 * t2458 + (t788 + t919 * t2461))));
+            let t2516 = t2450 * (t2249 + (t522 * t2259 - (t557 * t2254 - t546 * t2256)));
+            let t2517 = t2448 * (t2354 + (t522 * t2366 - (t557 * t2361 - t546 * t2363)));
+            let t2518 = t2456 * (t1174 - (t510 * t1183 - (t558 * t1178 - t548 * t1180)));
+            let t2519 = t2454 * (t1284 - (t510 * t1293 - (t558 * t1288 - t548 * t1290)));
+            let t2520 = t2452 * (t2235 - (t510 * t2244 - (t558 * t2239 - t548 * t2241)));
+            let t2521 = t2520
+                - (t2519 + (t2518 + (t1043 * t2458 - (t789 - t920 * t2461))));
+            let t2522 = t2450 * (t2250 - (t510 * t2259 - (t558 * t2254 - t548 * t2256)));
+            let t2523 = t2448 * (t2357 - (t510 * t2366 - (t558 * t2361 - t548 * t2363)));
+            let t2524 = t1290 * t2454
+                + (t1180 * t2456 + (t1037 * t2458 + (t780 + t914 * t2461)));
+            let t2525 = t1288 * t2454
+                + (t1178 * t2456 + (t1035 * t2458 + (t778 + t912 * t2461)));
+            let t2526 = t1293 * t2454
+                + (t1183 * t2456 + (t1040 * t2458 + (t786 + t917 * t2461)));
+            let t2527 = t1970 * t2452;
+            let t2528 = t2067 * t2450;
+            let t2529 = t2182 * t2449;
+            let t2530 = t2372 * t2448;
+            let t2531 = t2373 * t2448
+                + (t2183 * t2449 + (t2068 * t2450 - (t1866 + t1971 * t2452)));
+            let t2532 = t1496 * t2279;
+            let t2533 = t2532 - (t1507 * t2280 + t2532) - (t2182 - t1453 * t2278);
+            let t2534 = t1496 * t2375;
+            let t2535 = t2534 - (t1507 * t2376 + t2534) - (t2372 - t1453 * t2374);
+            let t2536 = t2448 * t2535
+                + (t2449 * t2533 - (t2073 * t2450 - (t1878 + t1976 * t2452)));
+            let t2537 = t1497 * t2279;
+            let t2538 = t2537 + (t1509 * t2280 - t2537) - (t2182 + t1469 * t2278);
+            let t2539 = t1497 * t2375;
+            let t2540 = t2539 + (t1509 * t2376 - t2539) - (t2372 + t1469 * t2374);
+            let t2541 = t2448 * t2540
+                + (t2449 * t2538 - (t2079 * t2450 - (t1887 + t1982 * t2452)));
+            let t2542 = t1495 * t2279;
+            let t2543 = t2542 - (t1511 * t2280 + t2542) - (t2183 + t1486 * t2278);
+            let t2544 = t1495 * t2375;
+            let t2545 = t2544 - (t1511 * t2376 + t2544) - (t2373 + t1486 * t2374);
+            let t2546 = t2448 * t2545
+                + (t2449 * t2543 - (t2082 * t2450 - (t1893 + t1985 * t2452)));
+            let t2547 = t1974 * t2452;
+            let t2548 = t2071 * t2450;
+            let t2549 = t2279 * t2449;
+            let t2550 = t2375 * t2448;
+            let t2551 = t2376 * t2448
+                + (t2280 * t2449 - (t2070 * t2450 - (t1873 + t1973 * t2452)));
+            let t2552 = t1378 * t2279 + (t1350 * t2280 - t1355 * t2279);
+            let t2553 = t1379 * t2279 + (t1362 * t2280 - t1364 * t2279);
+            let t2554 = t1377 * t2279 + (t1372 * t2280 - t1371 * t2279);
+            let t2555 = t1883 * t2554 + (t1390 * t2553 + t1880 * t2552)
+                + (t2533 + (t1514 * t2279 - (t2532 - t1502 * t2280)));
+            let t2556 = t1378 * t2375 + (t1350 * t2376 - t1355 * t2375);
+            let t2557 = t1379 * t2375 + (t1362 * t2376 - t1364 * t2375);
+            let t2558 = t1377 * t2375 + (t1372 * t2376 - t1371 * t2375);
+            let t2559 = t1883 * t2558 + (t1390 * t2557 + t1880 * t2556)
+                + (t2535 + (t1514 * t2375 - (t2534 - t1502 * t2376)));
+            let t2560 = t2448 * t2559
+                + (t2449 * t2555 - (t2077 * t2450 - (t1884 + t1980 * t2452)));
+            let t2561 = t1889 * t2554 - (t1462 * t2553 - t1888 * t2552)
+                + (t2538 + (t1515 * t2279 - (t2537 + t1503 * t2280)));
+            let t2562 = t1889 * t2558 - (t1462 * t2557 - t1888 * t2556)
+                + (t2540 + (t1515 * t2375 - (t2539 + t1503 * t2376)));
+            let t2563 = t2448 * t2562
+                + (t2449 * t2561 - (t2080 * t2450 - (t1890 + t1983 * t2452)));
+            let t2564 = t1492 * t2554 - (t1478 * t2553 - t1487 * t2552)
+                + (t2543 + (t1516 * t2279 - (t2542 + t1504 * t2280)));
+            let t2565 = t1492 * t2558 - (t1478 * t2557 - t1487 * t2556)
+                + (t2545 + (t1516 * t2375 - (t2544 + t1504 * t2376)));
+            let t2566 = t2448 * t2565
+                + (t2449 * t2564 - (t2083 * t2450 - (t1894 + t1986 * t2452)));
+            let t2567 = t2448 * t2556
+                + (t2449 * t2552 - (t2074 * t2450 - (t1879 + t1977 * t2452)));
+            let t2568 = t2448 * t2557
+                + (t2449 * t2553 - (t2075 * t2450 - (t1881 + t1978 * t2452)));
+            let t2569 = t2448 * t2558
+                + (t2449 * t2554 - (t2076 * t2450 - (t1882 + t1979 * t2452)));
+            let t2570 = t1277 * t2454
+                + (t1167 * t2456 + (t1024 * t2458 - (t761 - t901 * t2461)));
+            let t2571 = t1280 * t2454
+                + (t1170 * t2456 + (t1027 * t2458 - (t764 - t904 * t2461)));
+            let t2572 = t1283 * t2454
+                + (t1173 * t2456 + (t1030 * t2458 - (t767 - t907 * t2461)));
+            let t2573 = t892 * t2461;
+            let t2574 = t1015 * t2458;
+            let t2575 = t1158 * t2456;
+            let t2576 = t1268 * t2454;
+            let t2577 = t1997 * t2452;
+            let t2578 = t2094 * t2450;
+            let t2579 = t2341 * t2448;
+            let t2580 = t2579
+                + (t2578 - (t2577 - (t2576 + (t2575 + (t2574 + (t750 + t2573))))));
+            let t2581 = t2579
+                + (t2578 - (t2577 - (t2576 + (t2575 + (t2574 - (t751 - t2573))))));
+            let t2582 = t1269 * t2454
+                + (t1159 * t2456 + (t1016 * t2458 + (t752 + t893 * t2461)));
             (
-                t2439,
                 t2443,
-                t2444,
-                t2445,
-                t2446,
+                t2447,
                 t2448,
+                t2449,
                 t2450,
                 t2452,
                 t2454,
-                t2457,
+                t2456,
                 t2458,
-                t2460,
                 t2461,
-                t2463,
+                t2462,
                 t2464,
-                t2466,
+                t2465,
                 t2467,
-                t2475,
-                t2476,
-                t2489,
-                t2490,
-                t2491,
+                t2468,
+                t2470,
+                t2471,
+                t2479,
+                t2480,
+                t2493,
                 t2494,
-                t2497,
-                t2499,
-                t2500,
+                t2495,
+                t2498,
                 t2501,
+                t2503,
+                t2504,
                 t2505,
-                t2506,
-                t2507,
+                t2509,
+                t2510,
                 t2511,
-                t2512,
-                t2513,
+                t2515,
+                t2516,
                 t2517,
-                t2518,
-                t2519,
-                t2520,
                 t2521,
                 t2522,
                 t2523,
@@ -16052,83 +16079,87 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 t2525,
                 t2526,
                 t2527,
-                t2532,
-                t2537,
-                t2542,
-                t2543,
-                t2544,
-                t2545,
+                t2528,
+                t2529,
+                t2530,
+                t2531,
+                t2536,
+                t2541,
                 t2546,
                 t2547,
-                t2556,
-                t2559,
-                t2562,
+                t2548,
+                t2549,
+                t2550,
+                t2551,
+                t2560,
                 t2563,
-                t2564,
-                t2565,
                 t2566,
                 t2567,
                 t2568,
-                t2576,
-                t2577,
-                t2578,
+                t2569,
+                t2570,
+                t2571,
+                t2572,
+                t2580,
+                t2581,
+                t2582,
             )
         };
         *out = [
-            t2302 * t2444 + (t2171 * t2445 - t2458) - t2443 * t2460,
-            t2305 * t2444 + (t2173 * t2445 - t2461) - t2443 * t2463,
-            t2308 * t2444 + (t2175 * t2445 - t2464) - t2443 * t2466,
-            t2439 * t2443 - (t2299 * t2444 + (t2168 * t2445 - t2467)),
-            t2475,
-            t2476,
-            -t2491,
-            -t2494,
-            -t2497,
-            -t2499,
-            t2318 * t2444 + (t2272 * t2445 - t2500) - t2443 * t2489,
-            t2443 * t2490 - (t2319 * t2444 + (t2273 * t2445 - t2501)),
-            t2507 + (t2506 - t2505),
-            -(t2513 + (t2512 - t2511)),
-            -(t2519 + (t2518 - t2517)),
-            t2359 * t2444 + (t2252 * t2446 - (t2237 * t2448 - t2520)),
-            t2357 * t2444 + (t2250 * t2446 - (t2235 * t2448 - t2521)),
-            -(t2362 * t2444 + (t2255 * t2446 - (t2240 * t2448 - t2522))),
-            -(t2526 + (t2525 + (t2524 - (t1858 + t2523)))),
-            t2526 + (t2525 + (t2524 - (t1860 + t2523))),
-            -t2527,
-            -t1820,
-            -t1841,
-            t1853,
-            t2532,
-            -t2537,
-            t2542,
-            t2546 + (t2545 - (t2544 + (t1871 - t2543))),
-            -t2547,
-            t2546 + (t2545 - (t2544 - (t1873 + t2543))),
-            t2556,
-            -t2559,
-            t2562,
+            t2306 * t2448 + (t2175 * t2449 - t2462) - t2447 * t2464,
+            t2309 * t2448 + (t2177 * t2449 - t2465) - t2447 * t2467,
+            t2312 * t2448 + (t2179 * t2449 - t2468) - t2447 * t2470,
+            t2443 * t2447 - (t2303 * t2448 + (t2172 * t2449 - t2471)),
+            t2479,
+            t2480,
+            -t2495,
+            -t2498,
+            -t2501,
+            -t2503,
+            t2322 * t2448 + (t2276 * t2449 - t2504) - t2447 * t2493,
+            t2447 * t2494 - (t2323 * t2448 + (t2277 * t2449 - t2505)),
+            t2511 + (t2510 - t2509),
+            -(t2517 + (t2516 - t2515)),
+            -(t2523 + (t2522 - t2521)),
+            t2363 * t2448 + (t2256 * t2450 - (t2241 * t2452 - t2524)),
+            t2361 * t2448 + (t2254 * t2450 - (t2239 * t2452 - t2525)),
+            -(t2366 * t2448 + (t2259 * t2450 - (t2244 * t2452 - t2526))),
+            -(t2530 + (t2529 + (t2528 - (t1862 + t2527)))),
+            t2530 + (t2529 + (t2528 - (t1864 + t2527))),
+            -t2531,
+            -t1824,
+            -t1845,
+            t1857,
+            t2536,
+            -t2541,
+            t2546,
+            t2550 + (t2549 - (t2548 + (t1875 - t2547))),
+            -t2551,
+            t2550 + (t2549 - (t2548 - (t1877 + t2547))),
+            t2560,
             -t2563,
-            -t2564,
-            t2565,
-            t2346 * t2444 + (t2099 * t2446 - (t2002 * t2448 - t2566)),
-            -(t2349 * t2444 + (t2101 * t2446 - (t2004 * t2448 - t2567))),
-            -(t2352 * t2444 + (t2103 * t2446 - (t2006 * t2448 - t2568))),
-            -t2576,
-            -t2577,
-            -(t2338 * t2444 + (t2091 * t2446 - (t1994 * t2448 - t2578))),
-            t2457,
+            t2566,
+            -t2567,
+            -t2568,
+            t2569,
+            t2350 * t2448 + (t2103 * t2450 - (t2006 * t2452 - t2570)),
+            -(t2353 * t2448 + (t2105 * t2450 - (t2008 * t2452 - t2571))),
+            -(t2356 * t2448 + (t2107 * t2450 - (t2010 * t2452 - t2572))),
+            -t2580,
+            -t2581,
+            -(t2342 * t2448 + (t2095 * t2450 - (t1998 * t2452 - t2582))),
+            t2461,
+            t2458,
+            t2456,
             t2454,
             t2452,
             t2450,
+            -t2449,
             t2448,
-            t2446,
-            -t2445,
-            t2444,
-            t2443,
+            t2447,
         ];
     }
-    /// Writes λ: 2843 operations (1185 ±, 1646 ×, 12 ÷) and 6 functions.
+    /// Writes λ: 2845 operations (1187 ±, 1646 ×, 12 ÷) and 6 functions.
     fn multipliers(
         &self,
         _t: T,
@@ -16316,7 +16347,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t71,
             t76,
             t79,
-            t82,
+            t80,
             t83,
             t84,
             t85,
@@ -16328,9 +16359,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t91,
             t92,
             t93,
-            t95,
-            t98,
-            t101,
+            t94,
+            t96,
+            t99,
             t102,
             t103,
             t104,
@@ -16347,8 +16378,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t115,
             t116,
             t117,
-            t120,
-            t121,
+            t118,
+            t119,
             t122,
             t123,
             t124,
@@ -16380,28 +16411,28 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t150,
             t151,
             t152,
-            t155,
-            t156,
-            t160,
-            t161,
+            t153,
+            t154,
+            t157,
+            t158,
             t162,
             t163,
             t164,
-            t167,
-            t168,
+            t165,
+            t166,
             t169,
+            t170,
             t171,
-            t172,
+            t173,
             t174,
-            t175,
+            t176,
             t177,
-            t178,
+            t179,
             t180,
-            t181,
+            t182,
             t183,
-            t184,
+            t185,
             t186,
-            t187,
             t188,
             t189,
             t190,
@@ -16510,143 +16541,143 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                     - k(0.30151134457776363) * t70) - t74 * t60;
             let t78 = t77 + t56 - t30;
             let t79 = k(3.0) * t78;
-            let t80 = k(0.05) - (t29 * t8 - (t55 * t36 + t76 * t60));
-            let t81 = (k(0.0001) + t80 * t80).sqrt();
-            let t82 = (k(1.0) - t80 / t81) * t78 + k(250.0) * (t80 - t81);
-            let t83 = t60 * t82 + t60 * t79;
-            let t84 = t58 + t59;
-            let t85 = k(1.4142135623730951) * t84;
-            let t86 = closing0 * t85;
-            let t87 = k(1.2792042981336627) * t59
+            let t80 = t60 * t79;
+            let t81 = k(0.05) - (t29 * t8 - (t55 * t36 + t76 * t60));
+            let t82 = (k(0.0001) + t81 * t81).sqrt();
+            let t83 = (k(1.0) - t81 / t82) * t78 + k(250.0) * (t81 - t82);
+            let t84 = t60 * t83;
+            let t85 = t58 + t59;
+            let t86 = k(1.4142135623730951) * t85;
+            let t87 = closing0 * t86;
+            let t88 = k(1.2792042981336627) * t59
                 - (k(1.2792042981336627) * t58 + k(0.8528028654224418) * t57);
-            let t88 = closing1 * t87;
-            let t89 = t88 + (t86 - (k(0.5) * shaft_dsx - t83));
-            let t90 = slide_e0 * slide_e3;
-            let t91 = slide_e1 * slide_e2;
-            let t92 = t91 - t90;
-            let t93 = k(0.2) * t92;
-            let t94 = carrier_e0 * carrier_e0;
-            let t95 = k(0.5) - (t94 + carrier_e1 * carrier_e1);
-            let t96 = carrier_e0 * carrier_e3;
-            let t97 = carrier_e1 * carrier_e2;
-            let t98 = t97 - t96;
-            let t99 = carrier_e0 * carrier_e2;
-            let t100 = carrier_e1 * carrier_e3;
-            let t101 = t100 + t99;
-            let t102 = carrier_rx + (k(0.8) * t101 + (k(0.4) * t98 - k(0.2) * t95))
-                - (slide_rx - t93);
-            let t103 = k(1.0) / self.rod_length;
-            let t104 = closing6 * (k(0.5) * (t103 * (k(2.0) * t102)));
-            let t105 = k(1.5) * carrier_dsx + t104 - t89;
-            let t106 = t36 * t82 + t36 * t79;
-            let t107 = t34 - t35;
-            let t108 = k(1.4142135623730951) * -t107;
-            let t109 = closing0 * t108;
-            let t110 = k(1.2792042981336627) * t35
+            let t89 = closing1 * t88;
+            let t90 = t89 + (t87 - (k(0.5) * shaft_dsx - (t84 + t80)));
+            let t91 = slide_e0 * slide_e3;
+            let t92 = slide_e1 * slide_e2;
+            let t93 = t92 - t91;
+            let t94 = k(0.2) * t93;
+            let t95 = carrier_e0 * carrier_e0;
+            let t96 = k(0.5) - (t95 + carrier_e1 * carrier_e1);
+            let t97 = carrier_e0 * carrier_e3;
+            let t98 = carrier_e1 * carrier_e2;
+            let t99 = t98 - t97;
+            let t100 = carrier_e0 * carrier_e2;
+            let t101 = carrier_e1 * carrier_e3;
+            let t102 = t101 + t100;
+            let t103 = carrier_rx + (k(0.8) * t102 + (k(0.4) * t99 - k(0.2) * t96))
+                - (slide_rx - t94);
+            let t104 = k(1.0) / self.rod_length;
+            let t105 = closing6 * (k(0.5) * (t104 * (k(2.0) * t103)));
+            let t106 = k(1.5) * carrier_dsx + t105 - t90;
+            let t107 = t36 * t79;
+            let t108 = t36 * t83;
+            let t109 = t34 - t35;
+            let t110 = k(1.4142135623730951) * -t109;
+            let t111 = closing0 * t110;
+            let t112 = k(1.2792042981336627) * t35
                 + (k(1.2792042981336627) * t34 + k(0.8528028654224418) * t33);
-            let t111 = closing1 * t110;
-            let t112 = t111 + (t109 - (k(0.5) * shaft_dsy - t106));
-            let t113 = slide_e0 * slide_e0;
-            let t114 = k(0.5) - (t113 + slide_e2 * slide_e2);
-            let t115 = k(0.2) * t114;
-            let t116 = t97 + t96;
-            let t117 = k(0.5) - (t94 + carrier_e2 * carrier_e2);
-            let t118 = carrier_e0 * carrier_e1;
-            let t119 = carrier_e2 * carrier_e3;
-            let t120 = t119 - t118;
-            let t121 = carrier_ry + (k(0.8) * t120 - (k(0.4) * t117 - k(0.2) * t116))
-                - (slide_ry + t115);
-            let t122 = closing6 * (k(0.5) * (t103 * (k(2.0) * t121)));
-            let t123 = k(1.5) * carrier_dsy + t122 - t112;
-            let t124 = t8 * t82 + t8 * t79;
-            let t125 = t5 - t7;
-            let t126 = k(1.4142135623730951) * t125;
-            let t127 = closing0 * t126;
-            let t128 = k(1.2792042981336627) * t7
+            let t113 = closing1 * t112;
+            let t114 = t113 + (t111 - (k(0.5) * shaft_dsy - (t108 + t107)));
+            let t115 = slide_e0 * slide_e0;
+            let t116 = k(0.5) - (t115 + slide_e2 * slide_e2);
+            let t117 = k(0.2) * t116;
+            let t118 = t98 + t97;
+            let t119 = k(0.5) - (t95 + carrier_e2 * carrier_e2);
+            let t120 = carrier_e0 * carrier_e1;
+            let t121 = carrier_e2 * carrier_e3;
+            let t122 = t121 - t120;
+            let t123 = carrier_ry + (k(0.8) * t122 - (k(0.4) * t119 - k(0.2) * t118))
+                - (slide_ry + t117);
+            let t124 = closing6 * (k(0.5) * (t104 * (k(2.0) * t123)));
+            let t125 = k(1.5) * carrier_dsy + t124 - t114;
+            let t126 = t8 * t83 + t8 * t79;
+            let t127 = t5 - t7;
+            let t128 = k(1.4142135623730951) * t127;
+            let t129 = closing0 * t128;
+            let t130 = k(1.2792042981336627) * t7
                 + (k(1.2792042981336627) * t5 - k(0.8528028654224418) * t2);
-            let t129 = closing1 * t128;
-            let t130 = t129
-                - (t127 - (k(0.5) * shaft_dsz + (k(0.5) * self.gravity + t124)));
-            let t131 = slide_e0 * slide_e1;
-            let t132 = slide_e2 * slide_e3;
-            let t133 = t132 + t131;
-            let t134 = k(0.2) * t133;
-            let t135 = t100 - t99;
-            let t136 = t119 + t118;
-            let t137 = k(0.5) - (t94 + carrier_e3 * carrier_e3);
-            let t138 = carrier_rz - (k(0.8) * t137 - (k(0.4) * t136 + k(0.2) * t135))
-                - (slide_rz - t134);
-            let t139 = closing6 * (k(0.5) * (t103 * (k(2.0) * t138)));
-            let t140 = k(1.5) * (self.gravity + carrier_dsz) + t139 + t130;
-            let t141 = k(2.0) * t117;
-            let t142 = k(2.0) * t98;
-            let t143 = k(2.0) * t136;
-            let t144 = t143 * t24 - (t142 * t71 - t141 * t49);
-            let t145 = t143 * t22 + (t142 * t69 + t141 * t47);
-            let t146 = k(0.6) * t145;
-            let t147 = k(2.0) * t120;
-            let t148 = k(2.0) * t101;
-            let t149 = k(2.0) * t137;
-            let t150 = t149 * t22 - (t148 * t69 - t147 * t47);
-            let t151 = t148 * t71 + t147 * t49 + t149 * t24;
-            let t152 = k(0.8) * t151;
-            let t153 = k(0.8) * (t152 - k(0.6) * t150) + k(0.6) * (t146 - k(0.8) * t144);
-            let t154 = turn1.cos();
-            let t155 = k(0.6) * t144;
-            let t156 = k(0.8) * t150;
-            let t157 = k(0.8) * (t156 + k(0.6) * t151) - k(0.6) * (t155 + k(0.8) * t145);
-            let t158 = turn1.sin();
-            let t159 = -(t154 * t157 + t158 * t153).atan2(t154 * t153 - t158 * t157);
-            let t160 = k(2.0) * (k(0.1) - (turn1 + t159));
-            let t161 = k(2.0) * t95;
-            let t162 = k(2.0) * t116;
-            let t163 = k(2.0) * t135;
-            let t164 = t163 * t21 + (t162 * t46 + t161 * t68);
-            let t165 = t102 * (k(0.4) * t101 - k(0.8) * t98)
-                + t121 * (k(0.4) * t120 + k(0.8) * t117);
-            let t166 = t103 * (k(2.0) * (t165 - t138 * (k(0.4) * t137 + k(0.8) * t136)));
-            let t167 = closing6 * (k(0.5) * t166)
+            let t131 = closing1 * t130;
+            let t132 = t131
+                - (t129 - (k(0.5) * shaft_dsz + (k(0.5) * self.gravity + t126)));
+            let t133 = slide_e0 * slide_e1;
+            let t134 = slide_e2 * slide_e3;
+            let t135 = t134 + t133;
+            let t136 = k(0.2) * t135;
+            let t137 = t101 - t100;
+            let t138 = t121 + t120;
+            let t139 = k(0.5) - (t95 + carrier_e3 * carrier_e3);
+            let t140 = carrier_rz - (k(0.8) * t139 - (k(0.4) * t138 + k(0.2) * t137))
+                - (slide_rz - t136);
+            let t141 = closing6 * (k(0.5) * (t104 * (k(2.0) * t140)));
+            let t142 = k(1.5) * (self.gravity + carrier_dsz) + t141 + t132;
+            let t143 = k(2.0) * t119;
+            let t144 = k(2.0) * t99;
+            let t145 = k(2.0) * t138;
+            let t146 = t145 * t24 - (t144 * t71 - t143 * t49);
+            let t147 = t145 * t22 + (t144 * t69 + t143 * t47);
+            let t148 = k(0.6) * t147;
+            let t149 = k(2.0) * t122;
+            let t150 = k(2.0) * t102;
+            let t151 = k(2.0) * t139;
+            let t152 = t151 * t22 - (t150 * t69 - t149 * t47);
+            let t153 = t150 * t71 + t149 * t49 + t151 * t24;
+            let t154 = k(0.8) * t153;
+            let t155 = k(0.8) * (t154 - k(0.6) * t152) + k(0.6) * (t148 - k(0.8) * t146);
+            let t156 = turn1.cos();
+            let t157 = k(0.6) * t146;
+            let t158 = k(0.8) * t152;
+            let t159 = k(0.8) * (t158 + k(0.6) * t153) - k(0.6) * (t157 + k(0.8) * t147);
+            let t160 = turn1.sin();
+            let t161 = -(t156 * t159 + t160 * t155).atan2(t156 * t155 - t160 * t159);
+            let t162 = k(2.0) * (k(0.1) - (turn1 + t161));
+            let t163 = k(2.0) * t96;
+            let t164 = k(2.0) * t118;
+            let t165 = k(2.0) * t137;
+            let t166 = t165 * t21 + (t164 * t46 + t163 * t68);
+            let t167 = t103 * (k(0.4) * t102 - k(0.8) * t99)
+                + t123 * (k(0.4) * t122 + k(0.8) * t119);
+            let t168 = t104 * (k(2.0) * (t167 - t140 * (k(0.4) * t139 + k(0.8) * t138)));
+            let t169 = closing6 * (k(0.5) * t168)
                 + (k(0.02) * carrier_dwx
-                    - (k(0.005) * (carrier_wy * carrier_wz) - t164 * t160));
-            let t168 = k(0.6666666666666666) * t137;
-            let t169 = k(1.3333333333333333) * t136;
-            let t170 = t169 - t168;
-            let t171 = k(0.6666666666666666) * t120;
-            let t172 = k(1.3333333333333333) * t117;
-            let t173 = t172 - t171;
-            let t174 = k(0.6666666666666666) * t101;
-            let t175 = k(1.3333333333333333) * t98;
-            let t176 = t175 + t174;
-            let t177 = k(1.3333333333333333) * t95;
-            let t178 = k(0.6666666666666666) * t98;
-            let t179 = k(1.3333333333333333) * t101 - (t178 - t177);
-            let t180 = k(0.6666666666666666) * t117;
-            let t181 = k(1.3333333333333333) * t116;
-            let t182 = k(1.3333333333333333) * t120 - (t181 - t180);
-            let t183 = k(0.6666666666666666) * t136;
-            let t184 = k(1.3333333333333333) * t135;
-            let t185 = t184 + t183 + k(1.3333333333333333) * t137;
-            let t186 = k(0.6666666666666666) * t185
-                + (k(0.3333333333333333) * t182 + k(0.6666666666666666) * t179);
-            let t187 = k(0.3333333333333333) * t185
-                + k(0.6666666666666666) * (t182 - t179);
-            let t188 = t187
-                * (k(0.6666666666666666) * t176 - k(0.3333333333333333) * t173
-                    - k(0.6666666666666666) * t170)
-                + t186
-                    * (k(0.6666666666666666) * (t176 + t173)
-                        + k(0.3333333333333333) * t170);
-            let t189 = k(1.0) / (t187 * t187 + t186 * t186);
-            let t190 = shaft_rx - t75;
-            let t191 = shaft_ry - t54;
-            let t192 = shaft_rz - t28;
-            let t193 = t22 * t192 - (t47 * t191 - t69 * t190);
-            let t194 = t24 * t192 - (t49 * t191 + t71 * t190);
-            let t195 = k(0.30151134457776363) * (t194 - t193);
-            let t196 = k(0.0002) * shaft_wz;
-            let t197 = k(0.0001) * shaft_wy;
-            let t198 = shaft_wy * shaft_wy;
-            let t199 = shaft_wz * shaft_wz;
+                    - (k(0.005) * (carrier_wy * carrier_wz) - t166 * t162));
+            let t170 = k(0.6666666666666666) * t139;
+            let t171 = k(1.3333333333333333) * t138;
+            let t172 = t171 - t170;
+            let t173 = k(0.6666666666666666) * t122;
+            let t174 = k(1.3333333333333333) * t119;
+            let t175 = t174 - t173;
+            let t176 = k(0.6666666666666666) * t102;
+            let t177 = k(1.3333333333333333) * t99;
+            let t178 = t177 + t176;
+            let t179 = k(1.3333333333333333) * t96;
+            let t180 = k(0.6666666666666666) * t99;
+            let t181 = k(1.3333333333333333) * t102 - (t180 - t179);
+            let t182 = k(0.6666666666666666) * t119;
+            let t183 = k(1.3333333333333333) * t118;
+            let t184 = k(1.3333333333333333) * t122 - (t183 - t182);
+            let t185 = k(0.6666666666666666) * t138;
+            let t186 = k(1.3333333333333333) * t137;
+            let t187 = t186 + t185 + k(1.3333333333333333) * t139;
+            let t188 = k(0.6666666666666666) * t187
+                + (k(0.3333333333333333) * t184 + k(0.6666666666666666) * t181);
+            let t189 = k(0.3333333333333333) * t187
+                + k(0.6666666666666666) * (t184 - t181);
+            let t190 = t189
+                * (k(0.6666666666666666) * t178 - k(0.3333333333333333) * t175
+                    - k(0.6666666666666666) * t172)
+                + t188
+                    * (k(0.6666666666666666) * (t178 + t175)
+                        + k(0.3333333333333333) * t172);
+            let t191 = k(1.0) / (t189 * t189 + t188 * t188);
+            let t192 = shaft_rx - t75;
+            let t193 = shaft_ry - t54;
+            let t194 = shaft_rz - t28;
+            let t195 = t22 * t194 - (t47 * t193 - t69 * t192);
+            let t196 = t24 * t194 - (t49 * t193 + t71 * t192);
+            let t197 = k(0.30151134457776363) * (t196 - t195);
+            let t198 = k(0.0002) * shaft_wz;
+            let t199 = k(0.0001) * shaft_wy;
             (
                 t2,
                 t5,
@@ -16692,7 +16723,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 t71,
                 t76,
                 t79,
-                t82,
+                t80,
                 t83,
                 t84,
                 t85,
@@ -16704,9 +16735,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 t91,
                 t92,
                 t93,
-                t95,
-                t98,
-                t101,
+                t94,
+                t96,
+                t99,
                 t102,
                 t103,
                 t104,
@@ -16723,8 +16754,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 t115,
                 t116,
                 t117,
-                t120,
-                t121,
+                t118,
+                t119,
                 t122,
                 t123,
                 t124,
@@ -16756,28 +16787,28 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 t150,
                 t151,
                 t152,
-                t155,
-                t156,
-                t160,
-                t161,
+                t153,
+                t154,
+                t157,
+                t158,
                 t162,
                 t163,
                 t164,
-                t167,
-                t168,
+                t165,
+                t166,
                 t169,
+                t170,
                 t171,
-                t172,
+                t173,
                 t174,
-                t175,
+                t176,
                 t177,
-                t178,
+                t179,
                 t180,
-                t181,
+                t182,
                 t183,
-                t184,
+                t185,
                 t186,
-                t187,
                 t188,
                 t189,
                 t190,
@@ -16793,14 +16824,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             )
         };
         let (
-            t209,
-            t210,
             t211,
+            t212,
             t213,
-            t214,
             t215,
-            t218,
-            t219,
+            t216,
+            t217,
             t220,
             t221,
             t222,
@@ -16808,39 +16837,39 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t224,
             t225,
             t226,
-            t253,
-            t261,
-            t277,
-            t300,
-            t303,
-            t327,
-            t328,
+            t227,
+            t228,
+            t255,
+            t263,
+            t279,
+            t302,
+            t305,
             t329,
             t330,
             t331,
             t332,
             t333,
-            t336,
-            t337,
+            t334,
+            t335,
             t338,
             t339,
             t340,
+            t341,
             t342,
-            t343,
             t344,
             t345,
             t346,
+            t347,
             t348,
-            t349,
             t350,
             t351,
             t352,
-            t357,
-            t360,
-            t361,
+            t353,
+            t354,
+            t359,
             t362,
-            t365,
-            t366,
+            t363,
+            t364,
             t367,
             t368,
             t369,
@@ -16849,8 +16878,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t372,
             t373,
             t374,
-            t377,
-            t378,
+            t375,
+            t376,
             t379,
             t380,
             t381,
@@ -16869,286 +16898,283 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t394,
             t395,
             t396,
+            t397,
             t398,
             t399,
         ) = {
-            let t200 = k(0.0003) * (t199 - t198) + shaft_wx * (t197 + t196)
-                + (t82 * t195 + (t160 + t79 * t195));
-            let t201 = k(0.1) * t125;
-            let t202 = k(0.1) * -t107;
-            let t203 = k(0.1) * t84;
-            let t204 = t76 * (k(1.4142135623730951) * (t58 - t59)) + t85 * t203
-                + (t55 * (k(1.4142135623730951) * -(t34 + t35)) + t108 * t202);
-            let t205 = closing0
-                * (t204 + (t29 * (k(1.4142135623730951) * (t5 + t7)) + t126 * t201));
-            let t206 = t205
+            let t200 = shaft_wy * shaft_wy;
+            let t201 = shaft_wz * shaft_wz;
+            let t202 = k(0.0003) * (t201 - t200) + shaft_wx * (t199 + t198)
+                + (t83 * t197 + (t162 + t79 * t197));
+            let t203 = k(0.1) * t127;
+            let t204 = k(0.1) * -t109;
+            let t205 = k(0.1) * t85;
+            let t206 = t76 * (k(1.4142135623730951) * (t58 - t59)) + t86 * t205
+                + (t55 * (k(1.4142135623730951) * -(t34 + t35)) + t110 * t204);
+            let t207 = closing0
+                * (t206 + (t29 * (k(1.4142135623730951) * (t5 + t7)) + t128 * t203));
+            let t208 = t207
                 - (k(0.001) * shaft_dwx + k(0.0002) * shaft_dwy - k(0.0001) * shaft_dwz
-                    - t200);
-            let t207 = t76 * (k(1.2792042981336627) * t84) + t87 * t203
-                + (t55 * (k(1.2792042981336627) * -t107) + t110 * t202);
-            let t208 = closing1
-                * (t207 + (t29 * (k(1.2792042981336627) * t125) - t128 * t201)) + t206;
-            let t209 = t22 * t12 - (t47 * t40 + t69 * t62);
-            let t210 = t22 * t16 + (t69 * t64 + t47 * t42);
-            let t211 = t22 * t19 - (t69 * t66 - t47 * t44);
-            let t212 = k(0.30151134457776363) * t211
-                + (k(0.30151134457776363) * t210 + k(0.9045340337332909) * t209);
-            let t213 = t24 * t12 - (t49 * t40 - t71 * t62);
-            let t214 = t24 * t16 - (t71 * t64 - t49 * t42);
-            let t215 = t71 * t66 + t49 * t44 + t24 * t19;
-            let t216 = k(0.30151134457776363) * t215
-                + (k(0.30151134457776363) * t214 + k(0.9045340337332909) * t213);
-            let t217 = closing3 * (k(0.6396021490668313) * (t216 - t212))
-                - (closing2 * (k(0.7071067811865476) * (t216 + t212)) + t208);
-            let t218 = t211 - t210;
-            let t219 = t215 - t214;
-            let t220 = t219 - t218;
-            let t221 = k(0.5) * t220;
-            let t222 = t21 * t16 - (t46 * t42 + t68 * t64);
-            let t223 = t21 * t19 - (t46 * t44 - t68 * t66);
-            let t224 = t223 - t222;
-            let t225 = k(0.45226701686664544) * t219
-                + (k(0.45226701686664544) * t218 - k(0.30151134457776363) * t224);
-            let t226 = k(1.0) / (t225 * t225 + t221 * t221);
-            let t227 = t226
-                * (t225 * (k(0.5) * (t219 + t218))
-                    + t221 * (k(0.45226701686664544) * t220));
-            let t228 = closing7 * t227 - t217;
-            let t229 = k(0.30151134457776363) * (t21 * t192 + (t46 * t191 - t68 * t190));
-            let t230 = k(0.9045340337332909) * t194 - t229;
-            let t231 = shaft_wx * shaft_wx;
-            let t232 = k(0.0003) * shaft_wx;
-            let t233 = shaft_wy * (t196 - t232)
-                - (k(0.005) * (shaft_wx * shaft_wz) + k(0.0001) * (t199 - t231));
-            let t234 = k(0.0002) * shaft_dwx + k(0.006) * shaft_dwy
-                + k(0.0003) * shaft_dwz + (t233 + (t82 * t230 + t79 * t230));
-            let t235 = k(0.1) * t2;
-            let t236 = k(0.4) * t7;
-            let t237 = t236 - t235;
-            let t238 = t29 * (k(1.4142135623730951) * t2);
-            let t239 = k(0.1) * t33;
-            let t240 = k(0.4) * t35;
-            let t241 = t240 + t239;
-            let t242 = t55 * (k(1.4142135623730951) * t33);
-            let t243 = k(0.1) * t57;
-            let t244 = k(0.4) * t59;
-            let t245 = t244 - t243;
-            let t246 = t76 * (k(1.4142135623730951) * t57);
-            let t247 = t246 - t85 * t245 - (t242 + t108 * t241) - (t238 - t126 * t237);
-            let t248 = k(1.2792042981336627) * t2;
-            let t249 = k(1.2792042981336627) * t33;
-            let t250 = k(1.2792042981336627) * t57;
-            let t251 = t76 * (k(0.8528028654224418) * t59 + t250) - t87 * t245
-                + (t55 * (k(0.8528028654224418) * t35 - t249) - t110 * t241);
-            let t252 = closing1
-                * (t251 - (t29 * (k(0.8528028654224418) * t7 + t248) + t128 * t237));
-            let t253 = t21 * t12 + (t46 * t40 + t68 * t62);
-            let t254 = k(0.30151134457776363) * t223
-                + (k(0.30151134457776363) * t222 + k(0.9045340337332909) * t253);
-            let t255 = closing2 * (k(0.7071067811865476) * t254);
-            let t256 = k(0.6396021490668313) * t254;
-            let t257 = closing3 * (k(0.4264014327112209) * t216 + t256)
-                + (t255 - (t252 + (closing0 * t247 - t234)));
-            let t258 = k(0.45226701686664544) * t224;
-            let t259 = t225 * (k(0.5) * t224);
-            let t260 = closing7
-                * (t226 * (t259 - t221 * (k(0.30151134457776363) * t219 + t258))) + t257;
-            let t261 = t236 * t130 + (t240 * t112 + t244 * t89) + t260;
-            let t262 = (t163 * t22 - (t162 * t47 + t161 * t69)) * t261 - t164 * t228;
-            let t263 = t229 - k(0.9045340337332909) * t193;
-            let t264 = shaft_wz * (t197 + t232)
-                + (k(0.005) * (shaft_wx * shaft_wy) - k(0.0002) * (t198 - t231));
-            let t265 = k(0.0001) * shaft_dwx - k(0.0003) * shaft_dwy
-                - k(0.006) * shaft_dwz - (t264 - (t82 * t263 + t79 * t263));
-            let t266 = k(0.4) * t5;
-            let t267 = t266 - t235;
-            let t268 = k(0.4) * t34;
-            let t269 = t268 + t239;
-            let t270 = k(0.4) * t58;
-            let t271 = t270 + t243;
-            let t272 = t246 - t85 * t271 - (t242 - t108 * t269) - (t238 + t126 * t267);
-            let t273 = t76 * (t250 - k(0.8528028654224418) * t58) + t87 * t271
-                - (t55 * (t249 - k(0.8528028654224418) * t34) + t110 * t269);
-            let t274 = closing1
-                * (t273 - (t29 * (t248 + k(0.8528028654224418) * t5) + t128 * t267));
-            let t275 = closing3 * (t256 + k(0.4264014327112209) * t212)
-                - (t255 + (t274 - (closing0 * t272 - t265)));
-            let t276 = closing7
-                * (t226 * (t259 + t221 * (t258 + k(0.30151134457776363) * t218))) - t275;
-            let t277 = t266 * t130 + (t268 * t112 - t270 * t89) - t276;
-            let t278 = (t163 * t24 - (t162 * t49 - t161 * t71)) * t277 - t262;
-            let t279 = t98 - t101;
-            let t280 = t117 + t120;
-            let t281 = t136 + t137;
-            let t282 = k(0.2) * t281 * t130
-                - (k(0.2) * -t280 * t112 + k(0.2) * t279 * t89);
-            let t283 = k(0.2) * t101;
-            let t284 = k(0.2) * t120;
-            let t285 = k(0.2) * t137;
-            let t286 = t285 * t140 - (t284 * t123 + t283 * t105);
-            let t287 = t286 + (t282 + t278 - (closing8 * (t189 * t188) + t167));
-            let t288 = t184 - t183;
-            let t289 = t181 + t180;
-            let t290 = t178 + t177;
-            let t291 = k(0.6666666666666666) * (t290 + t289)
-                - k(0.3333333333333333) * t288;
-            let t292 = t184 + t168;
-            let t293 = t181 - t171;
-            let t294 = t177 + t174;
-            let t295 = k(0.6666666666666666) * (t294 + t293)
-                - k(0.3333333333333333) * t292;
-            let t296 = k(0.6666666666666666) * (t295 + t291);
-            let t297 = k(0.8888888888888888) * t279 + k(0.4444444444444444) * -t280
-                - k(0.8888888888888888) * t281;
-            let t298 = k(0.6666666666666666)
-                * (k(0.8888888888888888) * -(t279 + t280)
-                    - k(0.4444444444444444) * t281);
-            let t299 = t298 - k(0.3333333333333333) * t291;
-            let t300 = k(0.6666666666666666) * t294 - k(0.3333333333333333) * t293
-                + k(0.6666666666666666) * t292;
-            let t301 = k(0.3333333333333333) * t295 + t298;
-            let t302 = k(0.6666666666666666) * t290 - k(0.3333333333333333) * t289
-                + k(0.6666666666666666) * t288;
-            let t303 = k(1.0) / (t302 * t301 + (t300 * t299 + t297 * t296));
-            let t304 = t143 * t21 - (t141 * t46 + t142 * t68);
-            let t305 = t102 * (t283 + k(0.8) * t95) + t121 * (t284 - k(0.8) * t116);
-            let t306 = k(0.5)
-                * (t103 * (k(2.0) * (t305 - t138 * (t285 + k(0.8) * t135))));
-            let t307 = closing6 * t306
+                    - t202);
+            let t209 = t76 * (k(1.2792042981336627) * t85) + t88 * t205
+                + (t55 * (k(1.2792042981336627) * -t109) + t112 * t204);
+            let t210 = closing1
+                * (t209 + (t29 * (k(1.2792042981336627) * t127) - t130 * t203)) + t208;
+            let t211 = t22 * t12 - (t47 * t40 + t69 * t62);
+            let t212 = t22 * t16 + (t69 * t64 + t47 * t42);
+            let t213 = t22 * t19 - (t69 * t66 - t47 * t44);
+            let t214 = k(0.30151134457776363) * t213
+                + (k(0.30151134457776363) * t212 + k(0.9045340337332909) * t211);
+            let t215 = t24 * t12 - (t49 * t40 - t71 * t62);
+            let t216 = t24 * t16 - (t71 * t64 - t49 * t42);
+            let t217 = t71 * t66 + t49 * t44 + t24 * t19;
+            let t218 = k(0.30151134457776363) * t217
+                + (k(0.30151134457776363) * t216 + k(0.9045340337332909) * t215);
+            let t219 = closing3 * (k(0.6396021490668313) * (t218 - t214))
+                - (closing2 * (k(0.7071067811865476) * (t218 + t214)) + t210);
+            let t220 = t213 - t212;
+            let t221 = t217 - t216;
+            let t222 = t221 - t220;
+            let t223 = k(0.5) * t222;
+            let t224 = t21 * t16 - (t46 * t42 + t68 * t64);
+            let t225 = t21 * t19 - (t46 * t44 - t68 * t66);
+            let t226 = t225 - t224;
+            let t227 = k(0.45226701686664544) * t221
+                + (k(0.45226701686664544) * t220 - k(0.30151134457776363) * t226);
+            let t228 = k(1.0) / (t227 * t227 + t223 * t223);
+            let t229 = t228
+                * (t227 * (k(0.5) * (t221 + t220))
+                    + t223 * (k(0.45226701686664544) * t222));
+            let t230 = closing7 * t229 - t219;
+            let t231 = k(0.30151134457776363) * (t21 * t194 + (t46 * t193 - t68 * t192));
+            let t232 = k(0.9045340337332909) * t196 - t231;
+            let t233 = shaft_wx * shaft_wx;
+            let t234 = k(0.0003) * shaft_wx;
+            let t235 = shaft_wy * (t198 - t234)
+                - (k(0.005) * (shaft_wx * shaft_wz) + k(0.0001) * (t201 - t233));
+            let t236 = k(0.0002) * shaft_dwx + k(0.006) * shaft_dwy
+                + k(0.0003) * shaft_dwz + (t235 + (t83 * t232 + t79 * t232));
+            let t237 = k(0.1) * t2;
+            let t238 = k(0.4) * t7;
+            let t239 = t238 - t237;
+            let t240 = t29 * (k(1.4142135623730951) * t2);
+            let t241 = k(0.1) * t33;
+            let t242 = k(0.4) * t35;
+            let t243 = t242 + t241;
+            let t244 = t55 * (k(1.4142135623730951) * t33);
+            let t245 = k(0.1) * t57;
+            let t246 = k(0.4) * t59;
+            let t247 = t246 - t245;
+            let t248 = t76 * (k(1.4142135623730951) * t57);
+            let t249 = t248 - t86 * t247 - (t244 + t110 * t243) - (t240 - t128 * t239);
+            let t250 = k(1.2792042981336627) * t2;
+            let t251 = k(1.2792042981336627) * t33;
+            let t252 = k(1.2792042981336627) * t57;
+            let t253 = t76 * (k(0.8528028654224418) * t59 + t252) - t88 * t247
+                + (t55 * (k(0.8528028654224418) * t35 - t251) - t112 * t243);
+            let t254 = closing1
+                * (t253 - (t29 * (k(0.8528028654224418) * t7 + t250) + t130 * t239));
+            let t255 = t21 * t12 + (t46 * t40 + t68 * t62);
+            let t256 = k(0.30151134457776363) * t225
+                + (k(0.30151134457776363) * t224 + k(0.9045340337332909) * t255);
+            let t257 = closing2 * (k(0.7071067811865476) * t256);
+            let t258 = k(0.6396021490668313) * t256;
+            let t259 = closing3 * (k(0.4264014327112209) * t218 + t258)
+                + (t257 - (t254 + (closing0 * t249 - t236)));
+            let t260 = k(0.45226701686664544) * t226;
+            let t261 = t227 * (k(0.5) * t226);
+            let t262 = closing7
+                * (t228 * (t261 - t223 * (k(0.30151134457776363) * t221 + t260))) + t259;
+            let t263 = t238 * t132 + (t242 * t114 + t246 * t90) + t262;
+            let t264 = (t165 * t22 - (t164 * t47 + t163 * t69)) * t263 - t166 * t230;
+            let t265 = t231 - k(0.9045340337332909) * t195;
+            let t266 = shaft_wz * (t199 + t234)
+                + (k(0.005) * (shaft_wx * shaft_wy) - k(0.0002) * (t200 - t233));
+            let t267 = k(0.0001) * shaft_dwx - k(0.0003) * shaft_dwy
+                - k(0.006) * shaft_dwz - (t266 - (t83 * t265 + t79 * t265));
+            let t268 = k(0.4) * t5;
+            let t269 = t268 - t237;
+            let t270 = k(0.4) * t34;
+            let t271 = t270 + t241;
+            let t272 = k(0.4) * t58;
+            let t273 = t272 + t245;
+            let t274 = t248 - t86 * t273 - (t244 - t110 * t271) - (t240 + t128 * t269);
+            let t275 = t76 * (t252 - k(0.8528028654224418) * t58) + t88 * t273
+                - (t55 * (t251 - k(0.8528028654224418) * t34) + t112 * t271);
+            let t276 = closing1
+                * (t275 - (t29 * (t250 + k(0.8528028654224418) * t5) + t130 * t269));
+            let t277 = closing3 * (t258 + k(0.4264014327112209) * t214)
+                - (t257 + (t276 - (closing0 * t274 - t267)));
+            let t278 = closing7
+                * (t228 * (t261 + t223 * (t260 + k(0.30151134457776363) * t220))) - t277;
+            let t279 = t268 * t132 + (t270 * t114 - t272 * t90) - t278;
+            let t280 = (t165 * t24 - (t164 * t49 - t163 * t71)) * t279 - t264;
+            let t281 = t99 - t102;
+            let t282 = t119 + t122;
+            let t283 = t138 + t139;
+            let t284 = k(0.2) * t283 * t132
+                - (k(0.2) * -t282 * t114 + k(0.2) * t281 * t90);
+            let t285 = k(0.2) * t102;
+            let t286 = k(0.2) * t122;
+            let t287 = k(0.2) * t139;
+            let t288 = t287 * t142 - (t286 * t125 + t285 * t106);
+            let t289 = t288 + (t284 + t280 - (closing8 * (t191 * t190) + t169));
+            let t290 = t186 - t185;
+            let t291 = t183 + t182;
+            let t292 = t180 + t179;
+            let t293 = k(0.6666666666666666) * (t292 + t291)
+                - k(0.3333333333333333) * t290;
+            let t294 = t186 + t170;
+            let t295 = t183 - t173;
+            let t296 = t179 + t176;
+            let t297 = k(0.6666666666666666) * (t296 + t295)
+                - k(0.3333333333333333) * t294;
+            let t298 = k(0.6666666666666666) * (t297 + t293);
+            let t299 = k(0.8888888888888888) * t281 + k(0.4444444444444444) * -t282
+                - k(0.8888888888888888) * t283;
+            let t300 = k(0.6666666666666666)
+                * (k(0.8888888888888888) * -(t281 + t282)
+                    - k(0.4444444444444444) * t283);
+            let t301 = t300 - k(0.3333333333333333) * t293;
+            let t302 = k(0.6666666666666666) * t296 - k(0.3333333333333333) * t295
+                + k(0.6666666666666666) * t294;
+            let t303 = k(0.3333333333333333) * t297 + t300;
+            let t304 = k(0.6666666666666666) * t292 - k(0.3333333333333333) * t291
+                + k(0.6666666666666666) * t290;
+            let t305 = k(1.0) / (t304 * t303 + (t302 * t301 + t299 * t298));
+            let t306 = t145 * t21 - (t143 * t46 + t144 * t68);
+            let t307 = t103 * (t285 + k(0.8) * t96) + t123 * (t286 - k(0.8) * t118);
+            let t308 = k(0.5)
+                * (t104 * (k(2.0) * (t307 - t140 * (t287 + k(0.8) * t137))));
+            let t309 = closing6 * t308
                 - (k(0.03) * carrier_dwy
-                    - (k(0.005) * (carrier_wx * carrier_wz) - t304 * t160));
-            let t308 = t135 - t137;
-            let t309 = t116 + t120;
-            let t310 = t95 - t101;
-            let t311 = t187
-                * (k(0.8888888888888888) * -t310 + k(0.4444444444444444) * t309
-                    - k(0.8888888888888888) * t308)
-                - t186
-                    * (k(0.8888888888888888) * (t310 + t309)
-                        - k(0.4444444444444444) * t308);
-            let t312 = k(0.2) * (t116 - t120) * t112 + k(0.2) * -(t95 + t101) * t89;
-            let t313 = k(0.2) * (t135 + t137) * t130 - t312
-                - (t144 * t277 - (t145 * t261 - t304 * t228));
-            let t314 = t286 + (t313 - (closing8 * (t189 * t311) + t307));
-            let t315 = t149 * t21 - (t147 * t46 - t148 * t68);
-            let t316 = t102 * (k(0.4) * t95 + k(0.2) * t98)
-                - t121 * (k(0.4) * t116 + k(0.2) * t117);
-            let t317 = t103 * (k(2.0) * (t316 - t138 * (k(0.4) * t135 - k(0.2) * t136)));
-            let t318 = closing6 * (k(0.5) * t317)
+                    - (k(0.005) * (carrier_wx * carrier_wz) - t306 * t162));
+            let t310 = t137 - t139;
+            let t311 = t118 + t122;
+            let t312 = t96 - t102;
+            let t313 = t189
+                * (k(0.8888888888888888) * -t312 + k(0.4444444444444444) * t311
+                    - k(0.8888888888888888) * t310)
+                - t188
+                    * (k(0.8888888888888888) * (t312 + t311)
+                        - k(0.4444444444444444) * t310);
+            let t314 = k(0.2) * (t118 - t122) * t114 + k(0.2) * -(t96 + t102) * t90;
+            let t315 = k(0.2) * (t137 + t139) * t132 - t314
+                - (t146 * t279 - (t147 * t263 - t306 * t230));
+            let t316 = t288 + (t315 - (closing8 * (t191 * t313) + t309));
+            let t317 = t151 * t21 - (t149 * t46 - t150 * t68);
+            let t318 = t103 * (k(0.4) * t96 + k(0.2) * t99)
+                - t123 * (k(0.4) * t118 + k(0.2) * t119);
+            let t319 = t104 * (k(2.0) * (t318 - t140 * (k(0.4) * t137 - k(0.2) * t138)));
+            let t320 = closing6 * (k(0.5) * t319)
                 + (k(0.025) * carrier_dwz
-                    + (k(0.01) * (carrier_wx * carrier_wy) - t315 * t160));
-            let t319 = t169 - k(0.6666666666666666) * t135;
-            let t320 = t172 + k(0.6666666666666666) * t116;
-            let t321 = t175 + k(0.6666666666666666) * t95;
-            let t322 = t187
-                * (k(0.6666666666666666) * t321 - k(0.3333333333333333) * t320
-                    - k(0.6666666666666666) * t319)
-                + t186
-                    * (k(0.6666666666666666) * (t321 + t320)
-                        + k(0.3333333333333333) * t319);
-            let t323 = k(0.2) * -(t95 + t98);
-            let t324 = k(0.2) * (t116 + t117);
-            let t325 = k(0.2) * (t135 - t136);
-            let t326 = t325 * t130 - (t324 * t112 + t323 * t89)
-                - (t151 * t277 - (t150 * t261 - t315 * t228));
-            let t327 = t325 * t140 + (t324 * t123 + t323 * t105)
-                + (t326 - (closing8 * (t189 * t322) + t318));
-            let t328 = t301 * t303 * t327 + (t299 * t303 * t314 - t296 * t303 * t287);
-            let t329 = k(0.6666666666666666) * t297;
-            let t330 = t303 * (t329 + k(0.3333333333333333) * t302) * t314
-                + t303 * (k(0.6666666666666666) * (t300 + t302)) * t287;
-            let t331 = t152 - t155;
-            let t332 = t146 - t156;
-            let t333 = k(1.0) / (t332 * t332 + t331 * t331);
-            let t334 = slide_e0 * slide_e2;
-            let t335 = slide_e1 * slide_e3;
-            let t336 = t335 - t334;
-            let t337 = k(2.0) * t336;
-            let t338 = k(2.0) * t133;
-            let t339 = k(0.5) - (t113 + slide_e3 * slide_e3);
-            let t340 = k(2.0) * t339;
-            let t341 = t340 * slide_wy + t338 * slide_wz
-                - (t338 * slide_wx - t337 * slide_wy);
-            let t342 = t91 + t90;
-            let t343 = k(2.0) * t342;
-            let t344 = k(2.0) * t114;
-            let t345 = t132 - t131;
-            let t346 = k(2.0) * t345;
-            let t347 = t346 * slide_wy + t344 * slide_wz
-                - (t344 * slide_wx + t343 * slide_wy);
-            let t348 = k(0.5) - (t113 + slide_e1 * slide_e1);
-            let t349 = k(2.0) * t348;
-            let t350 = k(2.0) * t92;
-            let t351 = t335 + t334;
-            let t352 = k(2.0) * t351;
-            let t353 = t352 * slide_wy - t350 * slide_wz
-                + (t350 * slide_wx + t349 * slide_wy);
-            let t354 = k(0.23570226039551584)
-                * (slide_sx + k(0.1) * t353 - (slide_sy + k(0.1) * t347))
-                + k(0.9428090415820634) * (slide_sz - k(0.1) * t341);
-            let t355 = k(0.11785113019775792) * t354;
-            let t356 = lid_e0 * lid_e0;
-            let t357 = k(0.5) - (t356 + lid_e1 * lid_e1);
-            let t358 = lid_e0 * lid_e3;
-            let t359 = lid_e1 * lid_e2;
-            let t360 = t359 - t358;
-            let t361 = k(1.7888543819998317) * t360 - k(0.8944271909999159) * t357;
-            let t362 = closing4 * t361;
-            let t363 = lid_e0 * lid_e2;
-            let t364 = lid_e1 * lid_e3;
-            let t365 = t364 + t363;
-            let t366 = k(1.4907119849998598) * t365
-                - (k(0.5962847939999439) * t360 + k(1.1925695879998879) * t357);
-            let t367 = closing5 * t366;
-            let t368 = t367 - (k(0.2) * lid_dsx - t362);
-            let t369 = k(0.3) * nut_dsx - t368;
-            let t370 = t369 - (t104 - (k(0.8) * slide_dsx + t355));
-            let t371 = t359 + t358;
-            let t372 = k(0.5) - (t356 + lid_e2 * lid_e2);
-            let t373 = k(1.7888543819998317) * t372 - k(0.8944271909999159) * t371;
-            let t374 = closing4 * t373;
-            let t375 = lid_e0 * lid_e1;
-            let t376 = lid_e2 * lid_e3;
-            let t377 = t376 - t375;
-            let t378 = k(1.4907119849998598) * t377
-                + (k(0.5962847939999439) * t372 + k(1.1925695879998879) * t371);
-            let t379 = closing5 * t378;
-            let t380 = t379 - (k(0.2) * lid_dsy + t374);
-            let t381 = k(0.3) * nut_dsy - t380;
-            let t382 = t381 - (t122 - (k(0.8) * slide_dsy - t355));
-            let t383 = t364 - t363;
-            let t384 = t376 + t375;
-            let t385 = k(1.7888543819998317) * t384 + k(0.8944271909999159) * t383;
-            let t386 = closing4 * t385;
-            let t387 = k(0.5) - (t356 + lid_e3 * lid_e3);
-            let t388 = k(1.4907119849998598) * t387
-                + (k(0.5962847939999439) * t384 - k(1.1925695879998879) * t383);
-            let t389 = closing5 * t388;
-            let t390 = t389 + (k(0.2) * (self.gravity + lid_dsz) - t386);
-            let t391 = k(0.3) * (self.gravity + nut_dsz) + t390;
-            let t392 = t391
-                - (t139
+                    + (k(0.01) * (carrier_wx * carrier_wy) - t317 * t162));
+            let t321 = t171 - k(0.6666666666666666) * t137;
+            let t322 = t174 + k(0.6666666666666666) * t118;
+            let t323 = t177 + k(0.6666666666666666) * t96;
+            let t324 = t189
+                * (k(0.6666666666666666) * t323 - k(0.3333333333333333) * t322
+                    - k(0.6666666666666666) * t321)
+                + t188
+                    * (k(0.6666666666666666) * (t323 + t322)
+                        + k(0.3333333333333333) * t321);
+            let t325 = k(0.2) * -(t96 + t99);
+            let t326 = k(0.2) * (t118 + t119);
+            let t327 = k(0.2) * (t137 - t138);
+            let t328 = t327 * t132 - (t326 * t114 + t325 * t90)
+                - (t153 * t279 - (t152 * t263 - t317 * t230));
+            let t329 = t327 * t142 + (t326 * t125 + t325 * t106)
+                + (t328 - (closing8 * (t191 * t324) + t320));
+            let t330 = t303 * t305 * t329 + (t301 * t305 * t316 - t298 * t305 * t289);
+            let t331 = k(0.6666666666666666) * t299;
+            let t332 = t305 * (t331 + k(0.3333333333333333) * t304) * t316
+                + t305 * (k(0.6666666666666666) * (t302 + t304)) * t289;
+            let t333 = t154 - t157;
+            let t334 = t148 - t158;
+            let t335 = k(1.0) / (t334 * t334 + t333 * t333);
+            let t336 = slide_e0 * slide_e2;
+            let t337 = slide_e1 * slide_e3;
+            let t338 = t337 - t336;
+            let t339 = k(2.0) * t338;
+            let t340 = k(2.0) * t135;
+            let t341 = k(0.5) - (t115 + slide_e3 * slide_e3);
+            let t342 = k(2.0) * t341;
+            let t343 = t342 * slide_wy + t340 * slide_wz
+                - (t340 * slide_wx - t339 * slide_wy);
+            let t344 = t92 + t91;
+            let t345 = k(2.0) * t344;
+            let t346 = k(2.0) * t116;
+            let t347 = t134 - t133;
+            let t348 = k(2.0) * t347;
+            let t349 = t348 * slide_wy + t346 * slide_wz
+                - (t346 * slide_wx + t345 * slide_wy);
+            let t350 = k(0.5) - (t115 + slide_e1 * slide_e1);
+            let t351 = k(2.0) * t350;
+            let t352 = k(2.0) * t93;
+            let t353 = t337 + t336;
+            let t354 = k(2.0) * t353;
+            let t355 = t354 * slide_wy - t352 * slide_wz
+                + (t352 * slide_wx + t351 * slide_wy);
+            let t356 = k(0.23570226039551584)
+                * (slide_sx + k(0.1) * t355 - (slide_sy + k(0.1) * t349))
+                + k(0.9428090415820634) * (slide_sz - k(0.1) * t343);
+            let t357 = k(0.11785113019775792) * t356;
+            let t358 = lid_e0 * lid_e0;
+            let t359 = k(0.5) - (t358 + lid_e1 * lid_e1);
+            let t360 = lid_e0 * lid_e3;
+            let t361 = lid_e1 * lid_e2;
+            let t362 = t361 - t360;
+            let t363 = k(1.7888543819998317) * t362 - k(0.8944271909999159) * t359;
+            let t364 = closing4 * t363;
+            let t365 = lid_e0 * lid_e2;
+            let t366 = lid_e1 * lid_e3;
+            let t367 = t366 + t365;
+            let t368 = k(1.4907119849998598) * t367
+                - (k(0.5962847939999439) * t362 + k(1.1925695879998879) * t359);
+            let t369 = closing5 * t368;
+            let t370 = t369 - (k(0.2) * lid_dsx - t364);
+            let t371 = k(0.3) * nut_dsx - t370;
+            let t372 = t371 - (t105 - (k(0.8) * slide_dsx + t357));
+            let t373 = t361 + t360;
+            let t374 = k(0.5) - (t358 + lid_e2 * lid_e2);
+            let t375 = k(1.7888543819998317) * t374 - k(0.8944271909999159) * t373;
+            let t376 = closing4 * t375;
+            let t377 = lid_e0 * lid_e1;
+            let t378 = lid_e2 * lid_e3;
+            let t379 = t378 - t377;
+            let t380 = k(1.4907119849998598) * t379
+                + (k(0.5962847939999439) * t374 + k(1.1925695879998879) * t373);
+            let t381 = closing5 * t380;
+            let t382 = t381 - (k(0.2) * lid_dsy + t376);
+            let t383 = k(0.3) * nut_dsy - t382;
+            let t384 = t383 - (t124 - (k(0.8) * slide_dsy - t357));
+            let t385 = t366 - t365;
+            let t386 = t378 + t377;
+            let t387 = k(1.7888543819998317) * t386 + k(0.8944271909999159) * t385;
+            let t388 = closing4 * t387;
+            let t389 = k(0.5) - (t358 + lid_e3 * lid_e3);
+            let t390 = k(1.4907119849998598) * t389
+                + (k(0.5962847939999439) * t386 - k(1.1925695879998879) * t385);
+            let t391 = closing5 * t390;
+            let t392 = t391 + (k(0.2) * (self.gravity + lid_dsz) - t388);
+            let t393 = k(0.3) * (self.gravity + nut_dsz) + t392;
+            let t394 = t393
+                - (t141
                     - (k(0.8) * slide_dsz
-                        + (k(0.8) * self.gravity + k(0.4714045207910317) * t354)));
-            let t393 = k(0.5) * t354;
-            let t394 = k(1.8856180831641267) * t133;
-            let t395 = k(0.1) * (t394 + k(0.4714045207910317) * (t92 + t114)) * t393;
-            let t396 = k(0.6666666666666666) * self.motor;
-            let t397 = t102 * (k(0.2) * t351) + t121 * (k(0.2) * t345)
-                - t138 * (k(0.2) * t339);
-            let t398 = closing6 * (k(0.5) * (t103 * (k(2.0) * t397)))
-                + (k(0.006) * slide_dwx
-                    + (k(0.002) * (slide_wy * slide_wz) + (t396 + t395)));
-            let t399 = nut_e0 * nut_e0;
+                        + (k(0.8) * self.gravity + k(0.4714045207910317) * t356)));
+            let t395 = k(0.5) * t356;
+            let t396 = k(1.8856180831641267) * t135;
+            let t397 = k(0.1) * (t396 + k(0.4714045207910317) * (t93 + t116)) * t395;
+            let t398 = k(0.6666666666666666) * self.motor;
+            let t399 = t103 * (k(0.2) * t353) + t123 * (k(0.2) * t347)
+                - t140 * (k(0.2) * t341);
             (
-                t209,
-                t210,
                 t211,
+                t212,
                 t213,
-                t214,
                 t215,
-                t218,
-                t219,
+                t216,
+                t217,
                 t220,
                 t221,
                 t222,
@@ -17156,39 +17182,39 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 t224,
                 t225,
                 t226,
-                t253,
-                t261,
-                t277,
-                t300,
-                t303,
-                t327,
-                t328,
+                t227,
+                t228,
+                t255,
+                t263,
+                t279,
+                t302,
+                t305,
                 t329,
                 t330,
                 t331,
                 t332,
                 t333,
-                t336,
-                t337,
+                t334,
+                t335,
                 t338,
                 t339,
                 t340,
+                t341,
                 t342,
-                t343,
                 t344,
                 t345,
                 t346,
+                t347,
                 t348,
-                t349,
                 t350,
                 t351,
                 t352,
-                t357,
-                t360,
-                t361,
+                t353,
+                t354,
+                t359,
                 t362,
-                t365,
-                t366,
+                t363,
+                t364,
                 t367,
                 t368,
                 t369,
@@ -17197,8 +17223,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 t372,
                 t373,
                 t374,
-                t377,
-                t378,
+                t375,
+                t376,
                 t379,
                 t380,
                 t381,
@@ -17217,716 +17243,725 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 t394,
                 t395,
                 t396,
+                t397,
                 t398,
                 t399,
             )
         };
         let (
-            t441,
-            t444,
-            t445,
+            t443,
             t446,
             t447,
-            t450,
-            t451,
+            t448,
+            t449,
             t452,
             t453,
-            t456,
-            t457,
+            t454,
+            t455,
             t458,
-            t464,
-            t468,
-            t480,
-            t484,
-            t494,
-            t498,
-            t504,
+            t459,
+            t460,
+            t466,
+            t470,
+            t482,
+            t486,
+            t496,
+            t500,
+            t506,
             t507,
-            t510,
-            t511,
-            t516,
-            t520,
-            t525,
-            t545,
-            t548,
+            t509,
+            t512,
+            t513,
+            t518,
+            t522,
+            t527,
+            t547,
             t550,
-            t555,
-            t558,
-            t559,
-            t562,
-            t571,
-            t577,
-            t578,
+            t552,
+            t557,
+            t560,
+            t561,
+            t564,
+            t573,
             t579,
             t580,
+            t581,
             t582,
-            t583,
             t584,
             t585,
+            t586,
+            t587,
             t588,
             t590,
-            t591,
             t592,
             t593,
             t594,
             t595,
+            t596,
+            t597,
             t598,
             t599,
         ) = {
-            let t400 = k(0.5) - (t399 + nut_e1 * nut_e1);
-            let t401 = k(2.0) * t400;
-            let t402 = nut_e0 * nut_e3;
-            let t403 = nut_e1 * nut_e2;
-            let t404 = t403 + t402;
-            let t405 = k(2.0) * t404;
-            let t406 = nut_e0 * nut_e2;
-            let t407 = nut_e1 * nut_e3;
-            let t408 = t407 - t406;
-            let t409 = k(2.0) * t408;
-            let t410 = t338 * t409 - (t344 * t405 + t350 * t401);
-            let t411 = k(0.5) - (t399 + nut_e2 * nut_e2);
-            let t412 = k(2.0) * t411;
-            let t413 = t403 - t402;
+            let t400 = closing6 * (k(0.5) * (t104 * (k(2.0) * t399)))
+                + (k(0.006) * slide_dwx
+                    + (k(0.002) * (slide_wy * slide_wz) + (t398 + t397)));
+            let t401 = nut_e0 * nut_e0;
+            let t402 = k(0.5) - (t401 + nut_e1 * nut_e1);
+            let t403 = k(2.0) * t402;
+            let t404 = nut_e0 * nut_e3;
+            let t405 = nut_e1 * nut_e2;
+            let t406 = t405 + t404;
+            let t407 = k(2.0) * t406;
+            let t408 = nut_e0 * nut_e2;
+            let t409 = nut_e1 * nut_e3;
+            let t410 = t409 - t408;
+            let t411 = k(2.0) * t410;
+            let t412 = t340 * t411 - (t346 * t407 + t352 * t403);
+            let t413 = k(0.5) - (t401 + nut_e2 * nut_e2);
             let t414 = k(2.0) * t413;
-            let t415 = nut_e0 * nut_e1;
-            let t416 = nut_e2 * nut_e3;
-            let t417 = t416 + t415;
-            let t418 = k(2.0) * t417;
-            let t419 = t338 * t418 + (t350 * t414 + t344 * t412);
-            let t420 = k(0.8944271909999159) * t419 + k(0.4472135954999579) * t410;
-            let t421 = t340 * t409 - (t346 * t405 - t352 * t401);
-            let t422 = t340 * t418 - (t352 * t414 - t346 * t412);
-            let t423 = k(0.8944271909999159) * t422 + k(0.4472135954999579) * t421;
-            let t424 = t337 * t409 + (t343 * t405 + t349 * t401);
-            let t425 = t337 * t418 - (t343 * t412 + t349 * t414);
-            let t426 = k(0.8944271909999159) * t425 + k(0.4472135954999579) * t424;
-            let t427 = k(0.8944271909999159) * t420 + k(0.4472135954999579) * t426;
-            let t428 = k(0.7453559924999299) * t423
-                - (k(0.29814239699997197) * t420 - k(0.5962847939999439) * t426);
-            let t429 = t428 * (k(0.8944271909999159) * t423)
-                + t427 * (k(0.29814239699997197) * t423 + k(0.7453559924999299) * t420);
-            let t430 = k(1.0) / (t428 * t428 + t427 * t427);
-            let t431 = t416 - t415;
-            let t432 = k(2.0) * t431;
-            let t433 = t407 + t406;
+            let t415 = t405 - t404;
+            let t416 = k(2.0) * t415;
+            let t417 = nut_e0 * nut_e1;
+            let t418 = nut_e2 * nut_e3;
+            let t419 = t418 + t417;
+            let t420 = k(2.0) * t419;
+            let t421 = t340 * t420 + (t352 * t416 + t346 * t414);
+            let t422 = k(0.8944271909999159) * t421 + k(0.4472135954999579) * t412;
+            let t423 = t342 * t411 - (t348 * t407 - t354 * t403);
+            let t424 = t342 * t420 - (t354 * t416 - t348 * t414);
+            let t425 = k(0.8944271909999159) * t424 + k(0.4472135954999579) * t423;
+            let t426 = t339 * t411 + (t345 * t407 + t351 * t403);
+            let t427 = t339 * t420 - (t345 * t414 + t351 * t416);
+            let t428 = k(0.8944271909999159) * t427 + k(0.4472135954999579) * t426;
+            let t429 = k(0.8944271909999159) * t422 + k(0.4472135954999579) * t428;
+            let t430 = k(0.7453559924999299) * t425
+                - (k(0.29814239699997197) * t422 - k(0.5962847939999439) * t428);
+            let t431 = t430 * (k(0.8944271909999159) * t425)
+                + t429 * (k(0.29814239699997197) * t425 + k(0.7453559924999299) * t422);
+            let t432 = k(1.0) / (t430 * t430 + t429 * t429);
+            let t433 = t418 - t417;
             let t434 = k(2.0) * t433;
-            let t435 = k(0.5) - (t399 + nut_e3 * nut_e3);
+            let t435 = t409 + t408;
             let t436 = k(2.0) * t435;
-            let t437 = t338 * t436 - (t350 * t434 - t344 * t432);
-            let t438 = t337 * t436 - (t343 * t432 - t349 * t434);
-            let t439 = t352 * t434 + t346 * t432 + t340 * t436;
-            let t440 = t428 * (k(0.4) * t438 + k(0.8) * t437)
-                - t427
-                    * (k(0.6666666666666666) * t439
-                        + (k(0.5333333333333333) * t438
-                            - k(0.26666666666666666) * t437));
-            let t441 = t430 * t440;
-            let t442 = t396 - k(0.0005) * (nut_wy * nut_wz) - k(0.002) * nut_dwx
-                - closing7 * (self.gear_ratio * t441);
-            let t443 = k(0.2) * t384;
-            let t444 = puck_e0 * puck_e2;
-            let t445 = puck_e1 * puck_e3;
-            let t446 = t445 - t444;
-            let t447 = k(0.2) * t446;
-            let t448 = puck_rz - t447 - (lid_rz + (k(0.2) * t387 + k(0.4) * t383));
-            let t449 = k(0.2) * t372;
-            let t450 = puck_e0 * puck_e3;
-            let t451 = puck_e1 * puck_e2;
-            let t452 = t451 + t450;
-            let t453 = k(0.2) * t452;
-            let t454 = puck_ry - t453 - (lid_ry - (k(0.2) * t377 - k(0.4) * t371));
-            let t455 = k(0.2) * t360;
-            let t456 = puck_e0 * puck_e0;
-            let t457 = k(0.5) - (t456 + puck_e1 * puck_e1);
-            let t458 = k(0.2) * t457;
-            let t459 = puck_rx + t458 - (lid_rx - (k(0.2) * t365 + k(0.4) * t357));
-            let t460 = t459 * (k(1.7888543819998317) * t365) - t361 * t455
-                + (t454 * (k(1.7888543819998317) * t377) - t373 * t449);
-            let t461 = k(0.0005) * (lid_wy * lid_wz) + k(0.001) * lid_dwx
+            let t437 = k(0.5) - (t401 + nut_e3 * nut_e3);
+            let t438 = k(2.0) * t437;
+            let t439 = t340 * t438 - (t352 * t436 - t346 * t434);
+            let t440 = t339 * t438 - (t345 * t434 - t351 * t436);
+            let t441 = t354 * t436 + t348 * t434 + t342 * t438;
+            let t442 = t430 * (k(0.4) * t440 + k(0.8) * t439)
+                - t429
+                    * (k(0.6666666666666666) * t441
+                        + (k(0.5333333333333333) * t440
+                            - k(0.26666666666666666) * t439));
+            let t443 = t432 * t442;
+            let t444 = t398 - k(0.0005) * (nut_wy * nut_wz) - k(0.002) * nut_dwx
+                - closing7 * (self.gear_ratio * t443);
+            let t445 = k(0.2) * t386;
+            let t446 = puck_e0 * puck_e2;
+            let t447 = puck_e1 * puck_e3;
+            let t448 = t447 - t446;
+            let t449 = k(0.2) * t448;
+            let t450 = puck_rz - t449 - (lid_rz + (k(0.2) * t389 + k(0.4) * t385));
+            let t451 = k(0.2) * t374;
+            let t452 = puck_e0 * puck_e3;
+            let t453 = puck_e1 * puck_e2;
+            let t454 = t453 + t452;
+            let t455 = k(0.2) * t454;
+            let t456 = puck_ry - t455 - (lid_ry - (k(0.2) * t379 - k(0.4) * t373));
+            let t457 = k(0.2) * t362;
+            let t458 = puck_e0 * puck_e0;
+            let t459 = k(0.5) - (t458 + puck_e1 * puck_e1);
+            let t460 = k(0.2) * t459;
+            let t461 = puck_rx + t460 - (lid_rx - (k(0.2) * t367 + k(0.4) * t359));
+            let t462 = t461 * (k(1.7888543819998317) * t367) - t363 * t457
+                + (t456 * (k(1.7888543819998317) * t379) - t375 * t451);
+            let t463 = k(0.0005) * (lid_wy * lid_wz) + k(0.001) * lid_dwx
                 + closing4
-                    * (t460 - (t448 * (k(1.7888543819998317) * t387) + t385 * t443));
-            let t462 = t459
-                * (k(0.5962847939999439) * t365 + k(1.4907119849998598) * t360)
-                + t366 * t455
-                + (t454 * (k(0.5962847939999439) * t377 - k(1.4907119849998598) * t372)
-                    - t378 * t449);
-            let t463 = t462
-                - (t448 * (k(0.5962847939999439) * t387 - k(1.4907119849998598) * t384)
-                    + t388 * t443);
-            let t464 = t443 * t390 + (t449 * t380 - t455 * t368)
-                + (closing5 * t463 - t461);
-            let t465 = k(2.0) * t357;
-            let t466 = k(2.0) * t371;
-            let t467 = k(2.0) * t383;
-            let t468 = t409 * t467 + (t405 * t466 + t401 * t465);
-            let t469 = k(0.2) * t383;
-            let t470 = t469 - k(0.4) * t387;
-            let t471 = k(0.2) * t371;
-            let t472 = t471 + k(0.4) * t377;
-            let t473 = k(0.2) * t357;
-            let t474 = t473 - k(0.4) * t365;
-            let t475 = t459 * (k(0.8944271909999159) * t365) + t361 * t474
-                + (t454 * (k(0.8944271909999159) * t377) + t373 * t472);
-            let t476 = k(0.001) * (lid_wx * lid_wz) - k(0.0015) * lid_dwy
+                    * (t462 - (t450 * (k(1.7888543819998317) * t389) + t387 * t445));
+            let t464 = t461
+                * (k(0.5962847939999439) * t367 + k(1.4907119849998598) * t362)
+                + t368 * t457
+                + (t456 * (k(0.5962847939999439) * t379 - k(1.4907119849998598) * t374)
+                    - t380 * t451);
+            let t465 = t464
+                - (t450 * (k(0.5962847939999439) * t389 - k(1.4907119849998598) * t386)
+                    + t390 * t445);
+            let t466 = t445 * t392 + (t451 * t382 - t457 * t370)
+                + (closing5 * t465 - t463);
+            let t467 = k(2.0) * t359;
+            let t468 = k(2.0) * t373;
+            let t469 = k(2.0) * t385;
+            let t470 = t411 * t469 + (t407 * t468 + t403 * t467);
+            let t471 = k(0.2) * t385;
+            let t472 = t471 - k(0.4) * t389;
+            let t473 = k(0.2) * t373;
+            let t474 = t473 + k(0.4) * t379;
+            let t475 = k(0.2) * t359;
+            let t476 = t475 - k(0.4) * t367;
+            let t477 = t461 * (k(0.8944271909999159) * t367) + t363 * t476
+                + (t456 * (k(0.8944271909999159) * t379) + t375 * t474);
+            let t478 = k(0.001) * (lid_wx * lid_wz) - k(0.0015) * lid_dwy
                 + closing4
-                    * (t475 - (t448 * (k(0.8944271909999159) * t387) + t385 * t470));
-            let t477 = t459
-                * (k(1.1925695879998879) * t365 + k(1.4907119849998598) * t357)
-                + t366 * t474
-                + (t454 * (k(1.1925695879998879) * t377 - k(1.4907119849998598) * t371)
-                    - t378 * t472);
-            let t478 = t477
-                - (t448 * (k(1.1925695879998879) * t387 + k(1.4907119849998598) * t383)
-                    - t388 * t470);
-            let t479 = (k(0.1) * t377 - t471) * t380 + (k(0.1) * t365 + t473) * t368;
-            let t480 = (k(0.1) * t387 + t469) * t390 + t479 - (closing5 * t478 + t476);
-            let t481 = k(2.0) * t360;
-            let t482 = k(2.0) * t372;
-            let t483 = k(2.0) * t384;
-            let t484 = t409 * t483 - (t405 * t482 + t401 * t481);
-            let t485 = k(0.4) * t384;
-            let t486 = k(0.4) * t372;
-            let t487 = k(0.4) * t360;
-            let t488 = t459
-                * (k(0.8944271909999159) * t360 + k(1.7888543819998317) * t357)
-                - t361 * t487
-                - (t454 * (k(0.8944271909999159) * t372 + k(1.7888543819998317) * t371)
-                    + t373 * t486);
-            let t489 = t488
-                + (t448 * (k(0.8944271909999159) * t384 - k(1.7888543819998317) * t383)
-                    - t385 * t485);
-            let t490 = t459
-                * (k(1.1925695879998879) * t360 - k(0.5962847939999439) * t357)
-                - t366 * t487
-                - (t454 * (k(1.1925695879998879) * t372 - k(0.5962847939999439) * t371)
-                    - t378 * t486);
+                    * (t477 - (t450 * (k(0.8944271909999159) * t389) + t387 * t472));
+            let t479 = t461
+                * (k(1.1925695879998879) * t367 + k(1.4907119849998598) * t359)
+                + t368 * t476
+                + (t456 * (k(1.1925695879998879) * t379 - k(1.4907119849998598) * t373)
+                    - t380 * t474);
+            let t480 = t479
+                - (t450 * (k(1.1925695879998879) * t389 + k(1.4907119849998598) * t385)
+                    - t390 * t472);
+            let t481 = (k(0.1) * t379 - t473) * t382 + (k(0.1) * t367 + t475) * t370;
+            let t482 = (k(0.1) * t389 + t471) * t392 + t481 - (closing5 * t480 + t478);
+            let t483 = k(2.0) * t362;
+            let t484 = k(2.0) * t374;
+            let t485 = k(2.0) * t386;
+            let t486 = t411 * t485 - (t407 * t484 + t403 * t483);
+            let t487 = k(0.4) * t386;
+            let t488 = k(0.4) * t374;
+            let t489 = k(0.4) * t362;
+            let t490 = t461
+                * (k(0.8944271909999159) * t362 + k(1.7888543819998317) * t359)
+                - t363 * t489
+                - (t456 * (k(0.8944271909999159) * t374 + k(1.7888543819998317) * t373)
+                    + t375 * t488);
             let t491 = t490
-                + (t448 * (k(1.1925695879998879) * t384 + k(0.5962847939999439) * t383)
-                    + t388 * t485);
-            let t492 = closing5 * t491
-                + (k(0.0005) * (lid_wx * lid_wy) + k(0.002) * lid_dwz + closing4 * t489);
-            let t493 = k(0.1) * t384 * t390
-                + (k(0.1) * t372 * t380 - k(0.1) * t360 * t368);
-            let t494 = t493 + t492;
-            let t495 = k(2.0) * t365;
-            let t496 = k(2.0) * t377;
-            let t497 = k(2.0) * t387;
-            let t498 = t409 * t497 - (t405 * t496 - t401 * t495);
-            let t499 = k(0.2) * t413;
-            let t500 = k(0.2) * t411;
-            let t501 = k(0.2) * t417;
-            let t502 = t501 * t390 + (t500 * t380 - t499 * t368)
-                + (t498 * t494 - (t484 * t480 - t468 * t464));
-            let t503 = t501 * t391 - (t500 * t381 - t499 * t369);
-            let t504 = t503 + (t502 + t442);
-            let t505 = k(0.3333333333333333) * t439;
-            let t506 = t428 * (k(0.2) * t438 + k(0.4) * t437)
-                - t427
-                    * (k(0.26666666666666666) * t438 - k(0.13333333333333333) * t437
-                        + t505);
-            let t507 = t430 * t506;
-            let t508 = k(0.3333333333333333) * self.motor;
-            let t509 = t508 - k(0.001) * (nut_wx * nut_wz) + k(0.0025) * nut_dwy
-                - closing7 * (self.gear_ratio * t507);
-            let t510 = t418 * t467 - (t412 * t466 + t414 * t465);
-            let t511 = t418 * t483 + (t412 * t482 + t414 * t481);
-            let t512 = (t418 * t497 + (t412 * t496 - t414 * t495)) * t494
-                - (t511 * t480 - t510 * t464);
-            let t513 = (k(0.1) * t431 - k(0.2) * t404) * t380
-                + (k(0.1) * t433 + k(0.2) * t400) * t368;
-            let t514 = (k(0.1) * t435 + k(0.2) * t408) * t390 + t513 - t512 + t509;
-            let t515 = k(0.2) * (t404 - t431) * t381 + k(0.2) * -(t400 + t433) * t369;
-            let t516 = k(0.2) * (t408 + t435) * t391 + t515 + t514;
-            let t517 = k(0.4472135954999579) * t419 - k(0.8944271909999159) * t410;
-            let t518 = k(0.4472135954999579) * t425 - k(0.8944271909999159) * t424;
-            let t519 = k(0.5962847939999439) * t518 - k(0.29814239699997197) * t517
+                + (t450 * (k(0.8944271909999159) * t386 - k(1.7888543819998317) * t385)
+                    - t387 * t487);
+            let t492 = t461
+                * (k(1.1925695879998879) * t362 - k(0.5962847939999439) * t359)
+                - t368 * t489
+                - (t456 * (k(1.1925695879998879) * t374 - k(0.5962847939999439) * t373)
+                    - t380 * t488);
+            let t493 = t492
+                + (t450 * (k(1.1925695879998879) * t386 + k(0.5962847939999439) * t385)
+                    + t390 * t487);
+            let t494 = closing5 * t493
+                + (k(0.0005) * (lid_wx * lid_wy) + k(0.002) * lid_dwz + closing4 * t491);
+            let t495 = k(0.1) * t386 * t392
+                + (k(0.1) * t374 * t382 - k(0.1) * t362 * t370);
+            let t496 = t495 + t494;
+            let t497 = k(2.0) * t367;
+            let t498 = k(2.0) * t379;
+            let t499 = k(2.0) * t389;
+            let t500 = t411 * t499 - (t407 * t498 - t403 * t497);
+            let t501 = k(0.2) * t415;
+            let t502 = k(0.2) * t413;
+            let t503 = k(0.2) * t419;
+            let t504 = t503 * t392 + (t502 * t382 - t501 * t370)
+                + (t500 * t496 - (t486 * t482 - t470 * t466));
+            let t505 = t503 * t393 - (t502 * t383 - t501 * t371);
+            let t506 = t505 + (t504 + t444);
+            let t507 = k(0.3333333333333333) * t441;
+            let t508 = t430 * (k(0.2) * t440 + k(0.4) * t439)
+                - t429
+                    * (k(0.26666666666666666) * t440 - k(0.13333333333333333) * t439
+                        + t507);
+            let t509 = t432 * t508;
+            let t510 = k(0.3333333333333333) * self.motor;
+            let t511 = t510 - k(0.001) * (nut_wx * nut_wz) + k(0.0025) * nut_dwy
+                - closing7 * (self.gear_ratio * t509);
+            let t512 = t420 * t469 - (t414 * t468 + t416 * t467);
+            let t513 = t420 * t485 + (t414 * t484 + t416 * t483);
+            let t514 = (t420 * t499 + (t414 * t498 - t416 * t497)) * t496
+                - (t513 * t482 - t512 * t466);
+            let t515 = (k(0.1) * t433 - k(0.2) * t406) * t382
+                + (k(0.1) * t435 + k(0.2) * t402) * t370;
+            let t516 = (k(0.1) * t437 + k(0.2) * t410) * t392 + t515 - t514 + t511;
+            let t517 = k(0.2) * (t406 - t433) * t383 + k(0.2) * -(t402 + t435) * t371;
+            let t518 = k(0.2) * (t410 + t437) * t393 + t517 + t516;
+            let t519 = k(0.4472135954999579) * t421 - k(0.8944271909999159) * t412;
+            let t520 = k(0.4472135954999579) * t427 - k(0.8944271909999159) * t426;
+            let t521 = k(0.5962847939999439) * t520 - k(0.29814239699997197) * t519
                 + k(0.7453559924999299)
-                    * (k(0.4472135954999579) * t422 - k(0.8944271909999159) * t421);
-            let t520 = t430
-                * (t428 * (k(0.4472135954999579) * t518 + k(0.8944271909999159) * t517)
-                    - t427 * t519);
-            let t521 = t396 - k(0.0005) * (nut_wx * nut_wy) - k(0.003) * nut_dwz
-                + closing7 * (self.gear_ratio * t520);
-            let t522 = (t436 * t483 + (t432 * t482 - t434 * t481)) * t480
-                - (t436 * t467 - (t432 * t466 - t434 * t465)) * t464;
-            let t523 = (t436 * t497 + (t432 * t496 + t434 * t495)) * t494 - t522;
-            let t524 = k(0.1) * t417 * t390
-                + (k(0.1) * t411 * t380 - k(0.1) * t413 * t368);
-            let t525 = t503 + (t524 + t523 - t521);
-            let t526 = slide_rx - (nut_rx - k(0.2) * (t433 - t400));
-            let t527 = slide_ry - (nut_ry - k(0.2) * (t404 + t431));
-            let t528 = slide_rz - (nut_rz - k(0.2) * (t408 - t435));
-            let t529 = t340 * t528 - (t346 * t527 + t352 * t526);
-            let t530 = t338 * t528 - (t344 * t527 - t350 * t526);
-            let t531 = (t346 * t530 - t344 * t529) * t381
-                + (t352 * t530 + t350 * t529) * t369;
-            let t532 = (t340 * t530 - t338 * t529) * t391 - t531
-                - (t438 * t525 - (t425 * t516 - t424 * t504));
-            let t533 = t134 * t392 - (t115 * t382 - t93 * t370);
-            let t534 = t533
-                - (t532 + (closing7 * (self.gear_ratio * (t430 * t429)) + t398));
-            let t535 = t348 - t92;
-            let t536 = t342 - t114;
-            let t537 = t536 - t535;
-            let t538 = k(0.9428090415820634) * t537;
-            let t539 = k(1.8856180831641267) * t336;
-            let t540 = k(0.4714045207910317) * t339;
-            let t541 = k(0.4714045207910317) * t345;
-            let t542 = t541 - k(1.8856180831641267) * t342;
-            let t543 = k(0.4714045207910317) * t351;
-            let t544 = t543 + k(1.8856180831641267) * t348;
-            let t545 = k(0.6666666666666666) * (t544 - t542)
-                + k(0.3333333333333333) * (t540 + t539);
-            let t546 = k(1.3333333333333333) * t345;
-            let t547 = k(1.3333333333333333) * t351;
-            let t548 = k(0.7071067811865476)
-                * (t547 - k(0.6666666666666666) * t348
-                    + (t546 + k(0.6666666666666666) * t342));
-            let t549 = k(0.31426968052735443) * -(t536 + t535)
-                - k(0.15713484026367722) * (t336 + t133);
-            let t550 = k(0.7071067811865476) * (t544 + t542);
-            let t551 = k(0.3333333333333333) * t537;
-            let t552 = t551 * t545 - t550 * t549;
-            let t553 = k(0.6666666666666666) * t114;
-            let t554 = k(0.6666666666666666) * t92;
-            let t555 = k(0.7071067811865476) * (t547 - t554 + (t546 + t553));
-            let t556 = t541 - k(1.8856180831641267) * t114;
-            let t557 = t543 + k(1.8856180831641267) * t92;
-            let t558 = k(0.6666666666666666) * (t557 - t556)
-                + k(0.3333333333333333) * (t540 - t394);
-            let t559 = k(0.7071067811865476) * (t557 + t556);
-            let t560 = t559 * t549 - t551 * t558;
-            let t561 = t550 * t558 - t559 * t545;
-            let t562 = k(1.0) / (t538 * t561 + (t548 * t560 + t555 * t552));
-            let t563 = k(1.8856180831641267) * t339
-                - k(0.4714045207910317) * (t351 - t345)
-                + (t539 + k(0.4714045207910317) * -(t348 + t342));
-            let t564 = k(0.005) * slide_dwy
-                - (k(0.001) * (slide_wx * slide_wz) + (t508 + t393 * (k(0.1) * t563)));
-            let t565 = t428 * (k(0.4472135954999579) * t423)
-                - t427 * (k(0.5962847939999439) * t423 - k(0.7453559924999299) * t426);
-            let t566 = t337 * t528 + (t343 * t527 - t349 * t526);
-            let t567 = (t346 * t566 + t343 * t529) * t381
-                + (t352 * t566 - t349 * t529) * t369;
-            let t568 = (t340 * t566 - t337 * t529) * t391 - t567
-                + (t437 * t525 - (t419 * t516 - t410 * t504));
-            let t569 = k(0.2) * (t342 - t345) * t382 + k(0.2) * -(t348 + t351) * t370;
-            let t570 = k(0.2) * (t336 + t339) * t392 + t569
-                - (t568 + (closing7 * (self.gear_ratio * (t430 * t565)) - t564));
-            let t571 = t562 * (t558 * t538 - t549 * t555) * t570
-                - t562 * (t549 * t548 - t545 * t538) * t534;
-            let t572 = t102 * (k(0.2) * t348) - t121 * (k(0.2) * t342)
-                - t138 * (k(0.2) * t336);
-            let t573 = closing6 * (k(0.5) * (t103 * (k(2.0) * t572)))
+                    * (k(0.4472135954999579) * t424 - k(0.8944271909999159) * t423);
+            let t522 = t432
+                * (t430 * (k(0.4472135954999579) * t520 + k(0.8944271909999159) * t519)
+                    - t429 * t521);
+            let t523 = t398 - k(0.0005) * (nut_wx * nut_wy) - k(0.003) * nut_dwz
+                + closing7 * (self.gear_ratio * t522);
+            let t524 = (t438 * t485 + (t434 * t484 - t436 * t483)) * t482
+                - (t438 * t469 - (t434 * t468 - t436 * t467)) * t466;
+            let t525 = (t438 * t499 + (t434 * t498 + t436 * t497)) * t496 - t524;
+            let t526 = k(0.1) * t419 * t392
+                + (k(0.1) * t413 * t382 - k(0.1) * t415 * t370);
+            let t527 = t505 + (t526 + t525 - t523);
+            let t528 = slide_rx - (nut_rx - k(0.2) * (t435 - t402));
+            let t529 = slide_ry - (nut_ry - k(0.2) * (t406 + t433));
+            let t530 = slide_rz - (nut_rz - k(0.2) * (t410 - t437));
+            let t531 = t342 * t530 - (t348 * t529 + t354 * t528);
+            let t532 = t340 * t530 - (t346 * t529 - t352 * t528);
+            let t533 = (t348 * t532 - t346 * t531) * t383
+                + (t354 * t532 + t352 * t531) * t371;
+            let t534 = (t342 * t532 - t340 * t531) * t393 - t533
+                - (t440 * t527 - (t427 * t518 - t426 * t506));
+            let t535 = t136 * t394 - (t117 * t384 - t94 * t372);
+            let t536 = t535
+                - (t534 + (closing7 * (self.gear_ratio * (t432 * t431)) + t400));
+            let t537 = t350 - t93;
+            let t538 = t344 - t116;
+            let t539 = t538 - t537;
+            let t540 = k(0.9428090415820634) * t539;
+            let t541 = k(1.8856180831641267) * t338;
+            let t542 = k(0.4714045207910317) * t341;
+            let t543 = k(0.4714045207910317) * t347;
+            let t544 = t543 - k(1.8856180831641267) * t344;
+            let t545 = k(0.4714045207910317) * t353;
+            let t546 = t545 + k(1.8856180831641267) * t350;
+            let t547 = k(0.6666666666666666) * (t546 - t544)
+                + k(0.3333333333333333) * (t542 + t541);
+            let t548 = k(1.3333333333333333) * t347;
+            let t549 = k(1.3333333333333333) * t353;
+            let t550 = k(0.7071067811865476)
+                * (t549 - k(0.6666666666666666) * t350
+                    + (t548 + k(0.6666666666666666) * t344));
+            let t551 = k(0.31426968052735443) * -(t538 + t537)
+                - k(0.15713484026367722) * (t338 + t135);
+            let t552 = k(0.7071067811865476) * (t546 + t544);
+            let t553 = k(0.3333333333333333) * t539;
+            let t554 = t553 * t547 - t552 * t551;
+            let t555 = k(0.6666666666666666) * t116;
+            let t556 = k(0.6666666666666666) * t93;
+            let t557 = k(0.7071067811865476) * (t549 - t556 + (t548 + t555));
+            let t558 = t543 - k(1.8856180831641267) * t116;
+            let t559 = t545 + k(1.8856180831641267) * t93;
+            let t560 = k(0.6666666666666666) * (t559 - t558)
+                + k(0.3333333333333333) * (t542 - t396);
+            let t561 = k(0.7071067811865476) * (t559 + t558);
+            let t562 = t561 * t551 - t553 * t560;
+            let t563 = t552 * t560 - t561 * t547;
+            let t564 = k(1.0) / (t540 * t563 + (t550 * t562 + t557 * t554));
+            let t565 = k(1.8856180831641267) * t341
+                - k(0.4714045207910317) * (t353 - t347)
+                + (t541 + k(0.4714045207910317) * -(t350 + t344));
+            let t566 = k(0.005) * slide_dwy
+                - (k(0.001) * (slide_wx * slide_wz) + (t510 + t395 * (k(0.1) * t565)));
+            let t567 = t430 * (k(0.4472135954999579) * t425)
+                - t429 * (k(0.5962847939999439) * t425 - k(0.7453559924999299) * t428);
+            let t568 = t339 * t530 + (t345 * t529 - t351 * t528);
+            let t569 = (t348 * t568 + t345 * t531) * t383
+                + (t354 * t568 - t351 * t531) * t371;
+            let t570 = (t342 * t568 - t339 * t531) * t393 - t569
+                + (t439 * t527 - (t421 * t518 - t412 * t506));
+            let t571 = k(0.2) * (t344 - t347) * t384 + k(0.2) * -(t350 + t353) * t372;
+            let t572 = k(0.2) * (t338 + t341) * t394 + t571
+                - (t570 + (closing7 * (self.gear_ratio * (t432 * t567)) - t566));
+            let t573 = t564 * (t560 * t540 - t551 * t557) * t572
+                - t564 * (t551 * t550 - t547 * t540) * t536;
+            let t574 = t103 * (k(0.2) * t350) - t123 * (k(0.2) * t344)
+                - t140 * (k(0.2) * t338);
+            let t575 = closing6 * (k(0.5) * (t104 * (k(2.0) * t574)))
                 + (k(0.007) * slide_dwz
-                    - (k(0.001) * (slide_wx * slide_wy) - (t396 - t395)));
-            let t574 = t428
-                * (k(0.4472135954999579) * t420 - k(0.8944271909999159) * t426)
-                - t427 * (k(0.5962847939999439) * t420 + k(0.29814239699997197) * t426);
-            let t575 = (t344 * t566 + t343 * t530) * t381
-                - (t350 * t566 + t349 * t530) * t369;
-            let t576 = (t338 * t566 - t337 * t530) * t391 - t575
-                - (t439 * t525 - (t422 * t516 - t421 * t504));
-            let t577 = t533
-                - (t576 + (closing7 * (self.gear_ratio * (t430 * t574)) - t573));
-            let t578 = t562 * (t551 * t555 - t559 * t538) * t570
-                - t562 * (t550 * t538 - t551 * t548) * t534;
-            let t579 = t561 * t562 * t577 - (t560 * t562 * t570 - t552 * t562 * t534);
-            let t580 = (k(1.7888543819998317) * t114 - k(0.8944271909999159) * t342)
-                * t381
-                - (k(1.7888543819998317) * t92 - k(0.8944271909999159) * t348) * t369;
-            let t581 = (k(1.4907119849998598) * t345
-                - (k(0.5962847939999439) * t114 + k(1.1925695879998879) * t342)) * t381
-                + (k(1.4907119849998598) * t351
-                    + (k(0.5962847939999439) * t92 + k(1.1925695879998879) * t348))
-                    * t369;
-            let t582 = (k(1.4907119849998598) * t339
-                - (k(0.5962847939999439) * t133 - k(1.1925695879998879) * t336)) * t391
-                - t581;
-            let t583 = t547 - (t554 + k(1.3333333333333333) * t348);
-            let t584 = t546 + (t553 + k(1.3333333333333333) * t342);
-            let t585 = k(1.3333333333333333) * t339
-                + (k(0.6666666666666666) * t133 - k(1.3333333333333333) * t336);
-            let t586 = k(0.6666666666666666) * t422;
-            let t587 = k(0.6666666666666666) * t419;
-            let t588 = t587 + k(0.3333333333333333) * t410;
-            let t589 = k(0.6666666666666666) * t425;
-            let t590 = t589 + k(0.3333333333333333) * t424;
-            let t591 = k(0.5962847939999439) * t590 - k(0.29814239699997197) * t588
-                + k(0.7453559924999299) * (t586 + k(0.3333333333333333) * t421);
-            let t592 = t410 + t437;
-            let t593 = t424 + t438;
-            let t594 = k(0.6666666666666666)
-                * (k(0.3975231959999626) * t593 - k(0.1987615979999813) * t592
-                    + k(0.49690399499995325) * (t421 + t439));
-            let t595 = t594 + k(0.3333333333333333) * t591;
-            let t596 = k(0.3333333333333333) * t437 - t587;
-            let t597 = k(0.3333333333333333) * t438 - t589;
-            let t598 = k(0.4472135954999579) * t597 + k(0.8944271909999159) * t596;
-            let t599 = k(0.5962847939999439) * t597 - k(0.29814239699997197) * t596
-                + k(0.7453559924999299) * (t505 - t586);
+                    - (k(0.001) * (slide_wx * slide_wy) - (t398 - t397)));
+            let t576 = t430
+                * (k(0.4472135954999579) * t422 - k(0.8944271909999159) * t428)
+                - t429 * (k(0.5962847939999439) * t422 + k(0.29814239699997197) * t428);
+            let t577 = (t346 * t568 + t345 * t532) * t383
+                - (t352 * t568 + t351 * t532) * t371;
+            let t578 = (t340 * t568 - t339 * t532) * t393 - t577
+                - (t441 * t527 - (t424 * t518 - t423 * t506));
+            let t579 = t535
+                - (t578 + (closing7 * (self.gear_ratio * (t432 * t576)) - t575));
+            let t580 = t564 * (t553 * t557 - t561 * t540) * t572
+                - t564 * (t552 * t540 - t553 * t550) * t536;
+            let t581 = t563 * t564 * t579 - (t562 * t564 * t572 - t554 * t564 * t536);
+            let t582 = (k(1.7888543819998317) * t116 - k(0.8944271909999159) * t344)
+                * t383
+                - (k(1.7888543819998317) * t93 - k(0.8944271909999159) * t350) * t371;
+            let t583 = (k(1.4907119849998598) * t347
+                - (k(0.5962847939999439) * t116 + k(1.1925695879998879) * t344)) * t383
+                + (k(1.4907119849998598) * t353
+                    + (k(0.5962847939999439) * t93 + k(1.1925695879998879) * t350))
+                    * t371;
+            let t584 = (k(1.4907119849998598) * t341
+                - (k(0.5962847939999439) * t135 - k(1.1925695879998879) * t338)) * t393
+                - t583;
+            let t585 = t549 - (t556 + k(1.3333333333333333) * t350);
+            let t586 = t548 + (t555 + k(1.3333333333333333) * t344);
+            let t587 = k(1.3333333333333333) * t341
+                + (k(0.6666666666666666) * t135 - k(1.3333333333333333) * t338);
+            let t588 = k(0.6666666666666666) * t424;
+            let t589 = k(0.6666666666666666) * t421;
+            let t590 = t589 + k(0.3333333333333333) * t412;
+            let t591 = k(0.6666666666666666) * t427;
+            let t592 = t591 + k(0.3333333333333333) * t426;
+            let t593 = k(0.5962847939999439) * t592 - k(0.29814239699997197) * t590
+                + k(0.7453559924999299) * (t588 + k(0.3333333333333333) * t423);
+            let t594 = t412 + t439;
+            let t595 = t426 + t440;
+            let t596 = k(0.6666666666666666)
+                * (k(0.3975231959999626) * t595 - k(0.1987615979999813) * t594
+                    + k(0.49690399499995325) * (t423 + t441));
+            let t597 = t596 + k(0.3333333333333333) * t593;
+            let t598 = k(0.3333333333333333) * t439 - t589;
+            let t599 = k(0.3333333333333333) * t440 - t591;
             (
-                t441,
-                t444,
-                t445,
+                t443,
                 t446,
                 t447,
-                t450,
-                t451,
+                t448,
+                t449,
                 t452,
                 t453,
-                t456,
-                t457,
+                t454,
+                t455,
                 t458,
-                t464,
-                t468,
-                t480,
-                t484,
-                t494,
-                t498,
-                t504,
+                t459,
+                t460,
+                t466,
+                t470,
+                t482,
+                t486,
+                t496,
+                t500,
+                t506,
                 t507,
-                t510,
-                t511,
-                t516,
-                t520,
-                t525,
-                t545,
-                t548,
+                t509,
+                t512,
+                t513,
+                t518,
+                t522,
+                t527,
+                t547,
                 t550,
-                t555,
-                t558,
-                t559,
-                t562,
-                t571,
-                t577,
-                t578,
+                t552,
+                t557,
+                t560,
+                t561,
+                t564,
+                t573,
                 t579,
                 t580,
+                t581,
                 t582,
-                t583,
                 t584,
                 t585,
+                t586,
+                t587,
                 t588,
                 t590,
-                t591,
                 t592,
                 t593,
                 t594,
                 t595,
+                t596,
+                t597,
                 t598,
                 t599,
             )
         };
         let (
-            t605,
             t607,
             t609,
-            t612,
+            t611,
             t614,
-            t615,
             t616,
+            t617,
             t618,
             t620,
-            t621,
             t622,
             t623,
             t624,
-            t657,
-            t658,
+            t625,
+            t626,
+            t659,
             t660,
-            t661,
+            t662,
             t663,
-            t744,
+            t665,
             t747,
             t750,
-            t767,
-            t768,
+            t753,
             t770,
+            t771,
+            t773,
         ) = {
-            let t600 = k(0.6666666666666666) * (t599 - t591);
-            let t601 = k(0.29814239699997197) * t593 + k(0.5962847939999439) * t592;
-            let t602 = k(0.3333333333333333) * t599 + t594;
-            let t603 = k(0.4472135954999579) * t590 + k(0.8944271909999159) * t588;
-            let t604 = k(1.0) / (t603 * t602 + (t601 * t600 - t598 * t595));
-            let t605 = t595 * t604;
-            let t606 = k(0.0031830988618379067) * t441;
-            let t607 = t600 * t604;
-            let t608 = k(0.0031830988618379067) * t507;
-            let t609 = t602 * t604;
-            let t610 = k(0.0031830988618379067) * t520;
-            let t611 = t610 * t609 + (t608 * t607 + t606 * t605);
-            let t612 = t585 * t611 * t391 - (t584 * t611 * t381 + t583 * t611 * t369);
-            let t613 = k(0.6666666666666666) * t601;
-            let t614 = t604 * (t613 + k(0.3333333333333333) * t603);
-            let t615 = t604 * (k(0.6666666666666666) * (t598 - t603));
-            let t616 = t604 * (k(0.3333333333333333) * t598 + t613);
-            let t617 = t610 * t616 + (t608 * t615 + t606 * t614);
-            let t618 = t585 * t617 * t391 - (t584 * t617 * t381 + t583 * t617 * t369);
-            let t619 = t468 * t511;
-            let t620 = t484 * t510 - t619;
-            let t621 = k(1.0) / (t468 * t620);
-            let t622 = t621 * (t498 * t510) * t494
-                - (t619 * t621 * t480 - t621 * (t468 * t510) * t464);
-            let t623 = t621 * (t484 * t468) * t480 - t621 * (t468 * t468) * t464;
-            let t624 = t88 + (t86 + (k(0.4) * sleeve_dsx - (k(0.2) - t83)));
-            let t625 = k(0.1) * (puck_wy - puck_wz);
-            let t626 = k(2.0) * t457;
-            let t627 = k(0.1) * puck_wx;
-            let t628 = t451 - t450;
-            let t629 = k(2.0) * t628;
-            let t630 = t445 + t444;
+            let t600 = k(0.4472135954999579) * t599 + k(0.8944271909999159) * t598;
+            let t601 = k(0.5962847939999439) * t599 - k(0.29814239699997197) * t598
+                + k(0.7453559924999299) * (t507 - t588);
+            let t602 = k(0.6666666666666666) * (t601 - t593);
+            let t603 = k(0.29814239699997197) * t595 + k(0.5962847939999439) * t594;
+            let t604 = k(0.3333333333333333) * t601 + t596;
+            let t605 = k(0.4472135954999579) * t592 + k(0.8944271909999159) * t590;
+            let t606 = k(1.0) / (t605 * t604 + (t603 * t602 - t600 * t597));
+            let t607 = t597 * t606;
+            let t608 = k(0.0031830988618379067) * t443;
+            let t609 = t602 * t606;
+            let t610 = k(0.0031830988618379067) * t509;
+            let t611 = t604 * t606;
+            let t612 = k(0.0031830988618379067) * t522;
+            let t613 = t612 * t611 + (t610 * t609 + t608 * t607);
+            let t614 = t587 * t613 * t393 - (t586 * t613 * t383 + t585 * t613 * t371);
+            let t615 = k(0.6666666666666666) * t603;
+            let t616 = t606 * (t615 + k(0.3333333333333333) * t605);
+            let t617 = t606 * (k(0.6666666666666666) * (t600 - t605));
+            let t618 = t606 * (k(0.3333333333333333) * t600 + t615);
+            let t619 = t612 * t618 + (t610 * t617 + t608 * t616);
+            let t620 = t587 * t619 * t393 - (t586 * t619 * t383 + t585 * t619 * t371);
+            let t621 = t470 * t513;
+            let t622 = t486 * t512 - t621;
+            let t623 = k(1.0) / (t470 * t622);
+            let t624 = t623 * (t500 * t512) * t496
+                - (t621 * t623 * t482 - t623 * (t470 * t512) * t466);
+            let t625 = t623 * (t486 * t470) * t482 - t623 * (t470 * t470) * t466;
+            let t626 = t89 + (t87 + (k(0.4) * sleeve_dsx + (t84 - (k(0.2) - t80))));
+            let t627 = k(0.1) * (puck_wy - puck_wz);
+            let t628 = k(2.0) * t459;
+            let t629 = k(0.1) * puck_wx;
+            let t630 = t453 - t452;
             let t631 = k(2.0) * t630;
-            let t632 = k(1.2) - (puck_rx + k(0.2) * (t628 + t630));
-            let t633 = puck_e0 * puck_e1;
-            let t634 = puck_e2 * puck_e3;
-            let t635 = t634 - t633;
-            let t636 = k(0.5) - (t456 + puck_e2 * puck_e2);
-            let t637 = k(1.0) - (puck_ry + k(0.2) * (t635 - t636));
-            let t638 = k(0.5) - (t456 + puck_e3 * puck_e3);
-            let t639 = t634 + t633;
-            let t640 = k(1.0) - (puck_rz + k(0.2) * (t639 - t638));
-            let t641 = (t640 * t640 + (t637 * t637 + t632 * t632)).sqrt();
-            let t642 = k(1.0) / t641;
-            let t643 = t632 * t642;
-            let t644 = t643 * (puck_sx + (t631 * t627 - (t629 * t627 + t626 * t625)));
-            let t645 = k(2.0) * t452;
-            let t646 = k(2.0) * t636;
-            let t647 = k(2.0) * t635;
-            let t648 = t637 * t642;
-            let t649 = t648 * (puck_sy + (t647 * t627 + (t646 * t627 + t645 * t625)));
-            let t650 = k(2.0) * t446;
-            let t651 = k(2.0) * t639;
-            let t652 = k(2.0) * t638;
-            let t653 = t640 * t642;
-            let t654 = t653 * (puck_sz - (t652 * t627 + (t651 * t627 - t650 * t625)));
-            let t655 = k(30.0) * (k(0.6) - t641) + (t654 + (t649 + t644));
-            let t656 = t643 * t655;
-            let t657 = t367 + (t362 + (self.puck_mass * puck_dsx + t656)) + t624;
-            let t658 = t111 + (t109 + (k(0.4) * sleeve_dsy + (k(0.1) + t106)));
-            let t659 = t648 * t655;
-            let t660 = t379 - (t374 - (self.puck_mass * puck_dsy + t659)) + t658;
-            let t661 = t129
-                - (t127 + (k(0.4) * sleeve_dsz + (k(0.4) * self.gravity - t124)));
-            let t662 = t653 * t655;
-            let t663 = t389
-                - (t386
+            let t632 = t447 + t446;
+            let t633 = k(2.0) * t632;
+            let t634 = k(1.2) - (puck_rx + k(0.2) * (t630 + t632));
+            let t635 = puck_e0 * puck_e1;
+            let t636 = puck_e2 * puck_e3;
+            let t637 = t636 - t635;
+            let t638 = k(0.5) - (t458 + puck_e2 * puck_e2);
+            let t639 = k(1.0) - (puck_ry + k(0.2) * (t637 - t638));
+            let t640 = k(0.5) - (t458 + puck_e3 * puck_e3);
+            let t641 = t636 + t635;
+            let t642 = k(1.0) - (puck_rz + k(0.2) * (t641 - t640));
+            let t643 = (t642 * t642 + (t639 * t639 + t634 * t634)).sqrt();
+            let t644 = k(1.0) / t643;
+            let t645 = t634 * t644;
+            let t646 = t645 * (puck_sx + (t633 * t629 - (t631 * t629 + t628 * t627)));
+            let t647 = k(2.0) * t454;
+            let t648 = k(2.0) * t638;
+            let t649 = k(2.0) * t637;
+            let t650 = t639 * t644;
+            let t651 = t650 * (puck_sy + (t649 * t629 + (t648 * t629 + t647 * t627)));
+            let t652 = k(2.0) * t448;
+            let t653 = k(2.0) * t641;
+            let t654 = k(2.0) * t640;
+            let t655 = t642 * t644;
+            let t656 = t655 * (puck_sz - (t654 * t629 + (t653 * t629 - t652 * t627)));
+            let t657 = k(30.0) * (k(0.6) - t643) + (t656 + (t651 + t646));
+            let t658 = t645 * t657;
+            let t659 = t369 + (t364 + (self.puck_mass * puck_dsx + t658)) + t626;
+            let t660 = t113 + (t111 + (k(0.4) * sleeve_dsy + (t108 + (k(0.1) + t107))));
+            let t661 = t650 * t657;
+            let t662 = t381 - (t376 - (self.puck_mass * puck_dsy + t661)) + t660;
+            let t663 = t131
+                - (t129 + (k(0.4) * sleeve_dsz + (k(0.4) * self.gravity - t126)));
+            let t664 = t655 * t657;
+            let t665 = t391
+                - (t388
                     + (self.puck_mass * puck_dsz
-                        + (self.gravity * self.puck_mass + t662))) + t661;
-            let t664 = t652 * t662 - (t647 * t659 + t631 * t656)
-                + (t651 * t662 - (t646 * t659 - t629 * t656));
-            let t665 = (k(10.0)
+                        + (self.gravity * self.puck_mass + t664))) + t663;
+            let t666 = t654 * t664 - (t649 * t661 + t633 * t658)
+                + (t653 * t664 - (t648 * t661 - t631 * t658));
+            let t667 = (k(10.0)
                 * (k(0.19245008972987526) * (puck_wx + puck_wy)
                     + k(0.9622504486493763) * puck_wz))
                 .tanh();
-            let t666 = k(0.009622504486493762) * t665;
-            let t667 = k(0.004) * puck_dwx
-                - (k(0.002) * (puck_wy * puck_wz) - (t666 - k(0.1) * t664));
-            let t668 = t16 * t8 + (t42 * t36 - t64 * t60);
-            let t669 = t19 * t8 + (t44 * t36 + t66 * t60);
-            let t670 = k(0.05) * (t669 - t668);
-            let t671 = k(0.2) * t41;
-            let t672 = k(0.05) * (k(0.4) * t63 + t671) - k(0.02) * t11
-                - (t82 * t670 + t79 * t670);
-            let t673 = k(0.1) * (t15 - t18);
-            let t674 = k(0.1) * (t43 - t41);
-            let t675 = k(0.1) * (t63 + t65);
-            let t676 = closing0 * (t85 * t675 + t108 * t674 + t126 * t673)
-                - (k(0.004) * sleeve_dwx + (k(0.002) * (sleeve_wy * sleeve_wz) + t672));
-            let t677 = closing1 * (t87 * t675 + t110 * t674 - t128 * t673) + t676;
-            let t678 = closing3
-                * (k(0.128564869306645) * t224 - k(0.19284730395996752) * t218
-                    - k(0.19284730395996752) * t219)
-                - (closing2 * (k(0.21320071635561044) * t220) - t677);
-            let t679 = t215 + t214;
-            let t680 = t211 + t210;
-            let t681 = t221
-                * (k(0.30151134457776363) * (t223 + t222) - k(0.45226701686664544) * t680
-                    - k(0.45226701686664544) * t679);
-            let t682 = closing7 * (t226 * (t225 * (k(0.5) * (t680 - t679)) - t681))
-                - t678;
-            let t683 = k(0.4) * t18 * t661 + (k(0.4) * t43 * t658 + k(0.4) * t65 * t624);
-            let t684 = t683 - t682;
-            let t685 = k(0.05) * (t12 * t8 - (t40 * t36 - t62 * t60));
-            let t686 = k(0.1) * t669 - t685;
-            let t687 = k(0.4) * t61;
-            let t688 = k(0.05) * (t53 + t687) - k(0.02) * t15
-                + (t82 * t686 + t79 * t686);
-            let t689 = k(0.1) * t11;
-            let t690 = k(0.2) * t18;
-            let t691 = t690 - t689;
-            let t692 = k(0.1) * t39;
-            let t693 = k(0.2) * t43;
-            let t694 = t693 + t692;
-            let t695 = k(0.1) * t61;
-            let t696 = k(0.2) * t65;
-            let t697 = t696 - t695;
-            let t698 = closing0 * (t85 * t697 + t108 * t694 - t126 * t691)
-                + (k(0.003) * sleeve_dwy - (k(0.001) * (sleeve_wx * sleeve_wz) - t688));
-            let t699 = closing1 * (t87 * t697 + t110 * t694 + t128 * t691) + t698;
-            let t700 = k(0.30151134457776363) * t213;
-            let t701 = k(0.9045340337332909) * t215 - t700;
-            let t702 = k(0.30151134457776363) * t209;
-            let t703 = k(0.9045340337332909) * t211 - t702;
-            let t704 = k(0.30151134457776363) * t253;
-            let t705 = k(0.4264014327112209) * (k(0.9045340337332909) * t223 - t704)
-                - k(0.6396021490668313) * t703 - k(0.6396021490668313) * t701;
-            let t706 = t225 * (k(0.5) * (t213 - t209))
-                + t221
-                    * (t704 - k(0.45226701686664544) * t209
-                        - k(0.45226701686664544) * t213);
-            let t707 = closing7 * (t226 * t706);
-            let t708 = t707
-                + (closing3 * t705
-                    + (closing2 * (k(0.7071067811865476) * (t703 - t701)) + t699));
-            let t709 = t690 * t661 + (t693 * t658 + t696 * t624) + t708;
-            let t710 = (t16 * t650 - (t42 * t645 + t64 * t626)) * t709
-                - (t12 * t650 + (t40 * t645 + t62 * t626)) * t684;
-            let t711 = t685 - k(0.1) * t668;
-            let t712 = k(0.001) * (sleeve_wx * sleeve_wy)
-                - (k(0.02) * t18 - (t82 * t711 + t79 * t711));
-            let t713 = k(0.2) * t15;
-            let t714 = t689 - t713;
-            let t715 = t692 + t671;
-            let t716 = k(0.2) * t63;
-            let t717 = t695 + t716;
-            let t718 = closing0 * (t85 * t717 - t108 * t715 - t126 * t714)
-                - (k(0.005) * sleeve_dwz - t712);
-            let t719 = closing1 * (t87 * t717 - t110 * t715 + t128 * t714) + t718;
-            let t720 = t700 - k(0.9045340337332909) * t214;
-            let t721 = t702 - k(0.9045340337332909) * t210;
-            let t722 = k(0.4264014327112209) * (t704 - k(0.9045340337332909) * t222)
-                - k(0.6396021490668313) * t721 - k(0.6396021490668313) * t720;
-            let t723 = t707
-                + (closing3 * t722
-                    + (closing2 * (k(0.7071067811865476) * (t721 - t720)) + t719));
-            let t724 = (t713 - k(0.4) * t11) * t661
-                + ((t671 + k(0.4) * t39) * t658 - (t716 + t687) * t624);
-            let t725 = t724 - t723;
-            let t726 = (t19 * t650 - (t44 * t645 - t66 * t626)) * t725 - t710;
-            let t727 = k(0.2) * t628;
-            let t728 = k(0.2) * t636;
-            let t729 = (k(0.4) * t635 - t728) * t658 + (k(0.4) * t630 + t727) * t624;
-            let t730 = k(0.2) * t639;
-            let t731 = t730 * t663 + (t728 * t660 - t727 * t657)
-                - ((k(0.4) * t638 - t730) * t661 + t729 + t726 - t667);
-            let t732 = k(0.3849001794597505) * t638;
-            let t733 = t732 + k(1.9245008972987525) * t446;
-            let t734 = k(0.3849001794597505) * t635;
-            let t735 = k(0.3849001794597505) * t630;
-            let t736 = t735 + k(1.9245008972987525) * t457;
-            let t737 = k(0.03774256780481986) * t736
-                - k(0.9813067629253163) * (t734 - k(1.9245008972987525) * t452)
-                - k(0.1887128390240993) * t733;
-            let t738 = t446 - t639;
-            let t739 = t457 + t628;
-            let t740 = k(0.19245008972987526)
-                * (k(0.014527121121346966) * -t739
-                    - k(0.3777051491550211) * (t452 + t636)
-                    + k(0.07263560560673482) * t738);
-            let t741 = t740 - k(0.9622504486493763) * t737;
-            let t742 = t732 + k(1.9245008972987525) * t639;
-            let t743 = t735 - k(1.9245008972987525) * t628;
-            let t744 = k(0.9805806756909201) * t743 + k(0.19611613513818404) * t742;
-            let t745 = k(0.03774256780481986) * t743
-                - k(0.9813067629253163) * (t734 + k(1.9245008972987525) * t636)
-                - k(0.1887128390240993) * t742;
-            let t746 = k(0.9622504486493763) * t745 + t740;
-            let t747 = k(0.9805806756909201) * t736 + k(0.19611613513818404) * t733;
-            let t748 = k(0.19245008972987526) * (t745 + t737);
-            let t749 = k(0.3774256780481986) * -t739 - k(0.07548513560963972) * t738;
-            let t750 = k(1.0) / (t749 * t748 - (t747 * t746 + t744 * t741));
-            let t751 = k(0.1) * (t650 * t662 + (t645 * t659 - t626 * t656));
-            let t752 = k(0.2) * t638;
-            let t753 = k(0.2) * t635;
-            let t754 = k(0.2) * t630;
-            let t755 = closing4 * (t754 * t361 - t753 * t373 - t752 * t385)
+            let t668 = k(0.009622504486493762) * t667;
+            let t669 = k(0.004) * puck_dwx
+                - (k(0.002) * (puck_wy * puck_wz) - (t668 - k(0.1) * t666));
+            let t670 = k(0.2) * t41;
+            let t671 = t16 * t8 + (t42 * t36 - t64 * t60);
+            let t672 = t19 * t8 + (t44 * t36 + t66 * t60);
+            let t673 = k(0.05) * (t672 - t671);
+            let t674 = t79 * t673 - (k(0.05) * (k(0.4) * t63 + t670) - k(0.02) * t11);
+            let t675 = k(0.004) * sleeve_dwx
+                + (k(0.002) * (sleeve_wy * sleeve_wz) - (t83 * t673 + t674));
+            let t676 = k(0.1) * (t15 - t18);
+            let t677 = k(0.1) * (t43 - t41);
+            let t678 = k(0.1) * (t63 + t65);
+            let t679 = closing0 * (t86 * t678 + t110 * t677 + t128 * t676) - t675;
+            let t680 = closing1 * (t88 * t678 + t112 * t677 - t130 * t676) + t679;
+            let t681 = closing3
+                * (k(0.128564869306645) * t226 - k(0.19284730395996752) * t220
+                    - k(0.19284730395996752) * t221)
+                - (closing2 * (k(0.21320071635561044) * t222) - t680);
+            let t682 = t217 + t216;
+            let t683 = t213 + t212;
+            let t684 = t223
+                * (k(0.30151134457776363) * (t225 + t224) - k(0.45226701686664544) * t683
+                    - k(0.45226701686664544) * t682);
+            let t685 = closing7 * (t228 * (t227 * (k(0.5) * (t683 - t682)) - t684))
+                - t681;
+            let t686 = k(0.4) * t18 * t663 + (k(0.4) * t43 * t660 + k(0.4) * t65 * t626);
+            let t687 = t686 - t685;
+            let t688 = k(0.4) * t61;
+            let t689 = k(0.05) * (t12 * t8 - (t40 * t36 - t62 * t60));
+            let t690 = k(0.1) * t672 - t689;
+            let t691 = t83 * t690
+                + (t79 * t690 + (k(0.05) * (t53 + t688) - k(0.02) * t15));
+            let t692 = k(0.1) * t11;
+            let t693 = k(0.2) * t18;
+            let t694 = t693 - t692;
+            let t695 = k(0.1) * t39;
+            let t696 = k(0.2) * t43;
+            let t697 = t696 + t695;
+            let t698 = k(0.1) * t61;
+            let t699 = k(0.2) * t65;
+            let t700 = t699 - t698;
+            let t701 = closing0 * (t86 * t700 + t110 * t697 - t128 * t694)
+                + (k(0.003) * sleeve_dwy - (k(0.001) * (sleeve_wx * sleeve_wz) - t691));
+            let t702 = closing1 * (t88 * t700 + t112 * t697 + t130 * t694) + t701;
+            let t703 = k(0.30151134457776363) * t215;
+            let t704 = k(0.9045340337332909) * t217 - t703;
+            let t705 = k(0.30151134457776363) * t211;
+            let t706 = k(0.9045340337332909) * t213 - t705;
+            let t707 = k(0.30151134457776363) * t255;
+            let t708 = k(0.4264014327112209) * (k(0.9045340337332909) * t225 - t707)
+                - k(0.6396021490668313) * t706 - k(0.6396021490668313) * t704;
+            let t709 = t227 * (k(0.5) * (t215 - t211))
+                + t223
+                    * (t707 - k(0.45226701686664544) * t211
+                        - k(0.45226701686664544) * t215);
+            let t710 = closing7 * (t228 * t709);
+            let t711 = t710
+                + (closing3 * t708
+                    + (closing2 * (k(0.7071067811865476) * (t706 - t704)) + t702));
+            let t712 = t693 * t663 + (t696 * t660 + t699 * t626) + t711;
+            let t713 = (t16 * t652 - (t42 * t647 + t64 * t628)) * t712
+                - (t12 * t652 + (t40 * t647 + t62 * t628)) * t687;
+            let t714 = t689 - k(0.1) * t671;
+            let t715 = k(0.001) * (sleeve_wx * sleeve_wy)
+                + (t83 * t714 + (t79 * t714 - k(0.02) * t18));
+            let t716 = k(0.2) * t15;
+            let t717 = t692 - t716;
+            let t718 = t695 + t670;
+            let t719 = k(0.2) * t63;
+            let t720 = t698 + t719;
+            let t721 = closing0 * (t86 * t720 - t110 * t718 - t128 * t717)
+                - (k(0.005) * sleeve_dwz - t715);
+            let t722 = closing1 * (t88 * t720 - t112 * t718 + t130 * t717) + t721;
+            let t723 = t703 - k(0.9045340337332909) * t216;
+            let t724 = t705 - k(0.9045340337332909) * t212;
+            let t725 = k(0.4264014327112209) * (t707 - k(0.9045340337332909) * t224)
+                - k(0.6396021490668313) * t724 - k(0.6396021490668313) * t723;
+            let t726 = t710
+                + (closing3 * t725
+                    + (closing2 * (k(0.7071067811865476) * (t724 - t723)) + t722));
+            let t727 = (t716 - k(0.4) * t11) * t663
+                + ((t670 + k(0.4) * t39) * t660 - (t719 + t688) * t626);
+            let t728 = t727 - t726;
+            let t729 = (t19 * t652 - (t44 * t647 - t66 * t628)) * t728 - t713;
+            let t730 = k(0.2) * t630;
+            let t731 = k(0.2) * t638;
+            let t732 = (k(0.4) * t637 - t731) * t660 + (k(0.4) * t632 + t730) * t626;
+            let t733 = k(0.2) * t641;
+            let t734 = t733 * t665 + (t731 * t662 - t730 * t659)
+                - ((k(0.4) * t640 - t733) * t663 + t732 + t729 - t669);
+            let t735 = k(0.3849001794597505) * t640;
+            let t736 = t735 + k(1.9245008972987525) * t448;
+            let t737 = k(0.3849001794597505) * t637;
+            let t738 = k(0.3849001794597505) * t632;
+            let t739 = t738 + k(1.9245008972987525) * t459;
+            let t740 = k(0.03774256780481986) * t739
+                - k(0.9813067629253163) * (t737 - k(1.9245008972987525) * t454)
+                - k(0.1887128390240993) * t736;
+            let t741 = t448 - t641;
+            let t742 = t459 + t630;
+            let t743 = k(0.19245008972987526)
+                * (k(0.014527121121346966) * -t742
+                    - k(0.3777051491550211) * (t454 + t638)
+                    + k(0.07263560560673482) * t741);
+            let t744 = t743 - k(0.9622504486493763) * t740;
+            let t745 = t735 + k(1.9245008972987525) * t641;
+            let t746 = t738 - k(1.9245008972987525) * t630;
+            let t747 = k(0.9805806756909201) * t746 + k(0.19611613513818404) * t745;
+            let t748 = k(0.03774256780481986) * t746
+                - k(0.9813067629253163) * (t737 + k(1.9245008972987525) * t638)
+                - k(0.1887128390240993) * t745;
+            let t749 = k(0.9622504486493763) * t748 + t743;
+            let t750 = k(0.9805806756909201) * t739 + k(0.19611613513818404) * t736;
+            let t751 = k(0.19245008972987526) * (t748 + t740);
+            let t752 = k(0.3774256780481986) * -t742 - k(0.07548513560963972) * t741;
+            let t753 = k(1.0) / (t752 * t751 - (t750 * t749 + t747 * t744));
+            let t754 = k(0.1) * (t652 * t664 + (t647 * t661 - t628 * t658));
+            let t755 = k(0.2) * t640;
+            let t756 = k(0.2) * t637;
+            let t757 = k(0.2) * t632;
+            let t758 = closing4 * (t757 * t363 - t756 * t375 - t755 * t387)
                 + (k(0.005) * puck_dwy
-                    + (k(0.001) * (puck_wx * puck_wz) + (t666 + t751)));
-            let t756 = closing5 * (t754 * t366 + t753 * t378 + t752 * t388) + t755;
-            let t757 = (t16 * t651 + (t42 * t646 + t64 * t629)) * t709
-                - (t12 * t651 - (t40 * t646 + t62 * t629)) * t684;
-            let t758 = (t19 * t651 + (t44 * t646 - t66 * t629)) * t725 - t757;
-            let t759 = t447 * t661 - (t453 * t658 - t458 * t624) + t758 - t756;
-            let t760 = t447 * t663 - (t453 * t660 - t458 * t657) + t759;
-            let t761 = k(0.003) * puck_dwz
+                    + (k(0.001) * (puck_wx * puck_wz) + (t668 + t754)));
+            let t759 = closing5 * (t757 * t368 + t756 * t380 + t755 * t390) + t758;
+            let t760 = (t16 * t653 + (t42 * t648 + t64 * t631)) * t712
+                - (t12 * t653 - (t40 * t648 + t62 * t631)) * t687;
+            let t761 = (t19 * t653 + (t44 * t648 - t66 * t631)) * t728 - t760;
+            let t762 = t449 * t663 - (t455 * t660 - t460 * t626) + t761 - t759;
+            let t763 = t449 * t665 - (t455 * t662 - t460 * t659) + t762;
+            let t764 = k(0.003) * puck_dwz
                 + (k(0.001) * (puck_wx * puck_wy)
-                    + (k(0.048112522432468816) * t665 - t751));
-            let t762 = closing4 * (t361 * t727 + t373 * t728 + t385 * t730) - t761;
-            let t763 = closing5 * (t366 * t727 - t378 * t728 - t388 * t730) + t762;
-            let t764 = (t16 * t652 + (t42 * t647 - t64 * t631)) * t709
-                - (t12 * t652 - (t40 * t647 - t62 * t631)) * t684;
-            let t765 = (t19 * t652 + (t44 * t647 + t66 * t631)) * t725 - t764;
-            let t766 = k(0.4) * t446 * t661
-                - (k(0.4) * t452 * t658 - k(0.4) * t457 * t624);
-            let t767 = t766 - t765 + t763;
-            let t768 = t748 * t750 * t767 - (t746 * t750 * t760 + t741 * t750 * t731);
-            let t769 = k(0.19245008972987526) * t749;
-            let t770 = t750 * (k(0.9622504486493763) * t744 + t769) * t760
-                + t750 * (t769 - k(0.9622504486493763) * t747) * t731;
+                    + (k(0.048112522432468816) * t667 - t754));
+            let t765 = closing4 * (t363 * t730 + t375 * t731 + t387 * t733) - t764;
+            let t766 = closing5 * (t368 * t730 - t380 * t731 - t390 * t733) + t765;
+            let t767 = (t16 * t654 + (t42 * t649 - t64 * t633)) * t712
+                - (t12 * t654 - (t40 * t649 - t62 * t633)) * t687;
+            let t768 = (t19 * t654 + (t44 * t649 + t66 * t633)) * t728 - t767;
+            let t769 = k(0.4) * t448 * t663
+                - (k(0.4) * t454 * t660 - k(0.4) * t459 * t626);
+            let t770 = t769 - t768 + t766;
+            let t771 = t751 * t753 * t770 - (t749 * t753 * t763 + t744 * t753 * t734);
+            let t772 = k(0.19245008972987526) * t752;
+            let t773 = t753 * (k(0.9622504486493763) * t747 + t772) * t763
+                + t753 * (t772 - k(0.9622504486493763) * t750) * t734;
             (
-                t605,
                 t607,
                 t609,
-                t612,
+                t611,
                 t614,
-                t615,
                 t616,
+                t617,
                 t618,
                 t620,
-                t621,
                 t622,
                 t623,
                 t624,
-                t657,
-                t658,
+                t625,
+                t626,
+                t659,
                 t660,
-                t661,
+                t662,
                 t663,
-                t744,
+                t665,
                 t747,
                 t750,
-                t767,
-                t768,
+                t753,
                 t770,
+                t771,
+                t773,
             )
         };
         *lambda = [
-            -t105,
-            -t123,
-            -t140,
-            t328,
-            t303 * (k(0.3333333333333333) * t300 - t329) * t327 - t330,
-            t89,
-            t112,
-            -t130,
-            t331 * t333 * t261 - t332 * t333 * t277,
+            -t106,
+            -t125,
+            -t142,
+            t330,
+            t305 * (k(0.3333333333333333) * t302 - t331) * t329 - t332,
+            t90,
+            t114,
+            -t132,
+            t333 * t335 * t263 - t334 * t335 * t279,
             closing0,
             closing1,
             closing2,
             closing3,
-            -(k(0.7071067811865476) * (t382 + t370)),
-            -(k(0.3333333333333333) * t392 + k(0.6666666666666666) * (t382 - t370)),
-            t571 - t562 * (t545 * t555 - t558 * t548) * t577,
-            t562 * (t559 * t548 - t550 * t555) * t577 - t578,
-            t579,
-            t580 - (k(1.7888543819998317) * t133 + k(0.8944271909999159) * t336) * t391,
-            t582,
-            t585 * t391 - (t584 * t381 + t583 * t369),
-            t612 - (t609 * t525 + (t607 * t516 + t605 * t504)),
-            t618 - (t616 * t525 + (t615 * t516 + t614 * t504)),
-            t368,
-            t380,
-            -t390,
-            -t622,
-            t621 * (t498 * t468) * t494 - t623,
-            t620 * t621 * t494,
-            k(0.9622504486493763) * t663 - k(0.19245008972987526) * (t660 + t657),
-            -t768,
-            t770 - t750 * (k(0.19245008972987526) * (t744 + t747)) * t767,
-            t624,
-            t658,
-            -t661,
+            -(k(0.7071067811865476) * (t384 + t372)),
+            -(k(0.3333333333333333) * t394 + k(0.6666666666666666) * (t384 - t372)),
+            t573 - t564 * (t547 * t557 - t560 * t550) * t579,
+            t564 * (t561 * t550 - t552 * t557) * t579 - t580,
+            t581,
+            t582 - (k(1.7888543819998317) * t135 + k(0.8944271909999159) * t338) * t393,
+            t584,
+            t587 * t393 - (t586 * t383 + t585 * t371),
+            t614 - (t611 * t527 + (t609 * t518 + t607 * t506)),
+            t620 - (t618 * t527 + (t617 * t518 + t616 * t506)),
+            t370,
+            t382,
+            -t392,
+            -t624,
+            t623 * (t500 * t470) * t496 - t625,
+            t622 * t623 * t496,
+            k(0.9622504486493763) * t665 - k(0.19245008972987526) * (t662 + t659),
+            -t771,
+            t773 - t753 * (k(0.19245008972987526) * (t747 + t750)) * t770,
+            t626,
+            t660,
+            -t663,
             closing4,
             closing5,
             closing6,
@@ -18546,27 +18581,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for AllJoints<T> {
                 t199,
             )
         };
-        let (
-            t359,
-            t361,
-            t362,
-            t363,
-            t379,
-            t380,
-            t381,
-            t382,
-            t383,
-            t384,
-            t385,
-            t386,
-            t387,
-            t388,
-            t392,
-            t393,
-            t394,
-            t397,
-            t399,
-        ) = {
+        let (t359, t361, t362, t363, t379, t387, t392, t396, t398, t399) = {
             let t200 = k(0.6666666666666666) * t142;
             let t201 = k(1.3333333333333333) * t141;
             let t202 = k(1.3333333333333333) * t145 - (t201 - t200);
@@ -18849,82 +18864,61 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for AllJoints<T> {
             let t388 = (t387 * t387 + (t385 * t385 + t383 * t383)).sqrt();
             let t389 = k(0.6) - t388;
             let t390 = carrier_rz * (k(1.5) * self.gravity)
-                + k(0.5) * (t389 * (k(30.0) * t389) + t179 * t180);
+                + k(0.5) * (t179 * t180 + t389 * (k(30.0) * t389));
             let t391 = slide_rz * (k(0.8) * self.gravity)
                 + (sleeve_rz * (k(0.4) * self.gravity) + (shaft_rz * t148 + t390));
             let t392 = puck_rz * (self.gravity * self.puck_mass)
                 + (lid_rz * (k(0.2) * self.gravity)
                     + (nut_rz * (k(0.3) * self.gravity) + t391));
-            let t393 = slide_e0 * slide_e2;
-            let t394 = slide_e1 * slide_e3;
-            let t395 = k(2.0) * t156;
-            let t396 = k(2.0) * (k(0.5) - (t139 + slide_e3 * slide_e3)) * slide_wy
-                + t395 * slide_wz;
-            let t397 = k(0.1)
-                * (t396 - (t395 * slide_wx - k(2.0) * (t394 - t393) * slide_wy));
-            let t398 = k(2.0) * t140;
-            let t399 = k(2.0) * (t155 - t154) * slide_wy + t398 * slide_wz
-                - (t398 * slide_wx + k(2.0) * (t121 + t120) * slide_wy);
-            (
-                t359,
-                t361,
-                t362,
-                t363,
-                t379,
-                t380,
-                t381,
-                t382,
-                t383,
-                t384,
-                t385,
-                t386,
-                t387,
-                t388,
-                t392,
-                t393,
-                t394,
-                t397,
-                t399,
-            )
+            let t393 = k(0.1) * (puck_wy - puck_wz);
+            let t394 = k(0.1) * puck_wx;
+            let t395 = k(2.0) * t382 * t394
+                + k(2.0) * (k(0.5) - (t6 + puck_e1 * puck_e1)) * t393;
+            let t396 = k(1.0) / t388;
+            let t397 = k(2.0) * t5 * t394
+                + (k(2.0) * t384 * t394 + k(2.0) * (t381 + t380) * t393);
+            let t398 = t385 * t396 * (puck_sy + t397)
+                + t383 * t396 * (puck_sx + (k(2.0) * t2 * t394 - t395));
+            let t399 = k(2.0) * t7 * t394
+                + (k(2.0) * t386 * t394 - k(2.0) * (t1 - t0) * t393);
+            (t359, t361, t362, t363, t379, t387, t392, t396, t398, t399)
         };
-        let (t419,) = {
-            let t400 = k(2.0) * t122;
-            let t401 = t400 * slide_wx
+        let (t418, t419) = {
+            let t400 = t387 * t396 * (puck_sz - t399) + t398;
+            let t401 = k(0.05) * sleeve_wy;
+            let t402 = k(0.05) * sleeve_wx;
+            let t403 = k(0.1) * (sleeve_sy + (t84 * t402 + t82 * t401))
+                - k(0.2) * (sleeve_sx - (t99 * t402 + t97 * t401));
+            let t404 = sleeve_wz * (k(0.02) * t68)
+                - (sleeve_wy * (k(0.02) * t65) + sleeve_wx * (k(0.02) * t61));
+            let t405 = slide_e0 * slide_e2;
+            let t406 = slide_e1 * slide_e3;
+            let t407 = k(2.0) * t156;
+            let t408 = k(2.0) * (k(0.5) - (t139 + slide_e3 * slide_e3)) * slide_wy
+                + t407 * slide_wz;
+            let t409 = k(0.1)
+                * (t408 - (t407 * slide_wx - k(2.0) * (t406 - t405) * slide_wy));
+            let t410 = k(2.0) * t140;
+            let t411 = k(2.0) * (t155 - t154) * slide_wy + t410 * slide_wz
+                - (t410 * slide_wx + k(2.0) * (t121 + t120) * slide_wy);
+            let t412 = k(2.0) * t122;
+            let t413 = t412 * slide_wx
                 + k(2.0) * (k(0.5) - (t139 + slide_e1 * slide_e1)) * slide_wy;
-            let t402 = k(0.1)
-                * (k(2.0) * (t394 + t393) * slide_wy - t400 * slide_wz + t401);
-            let t403 = k(0.23570226039551584)
-                * (slide_sx + t402 - (slide_sy + k(0.1) * t399))
-                + k(0.9428090415820634) * (slide_sz - t397);
-            let t404 = k(0.19245008972987526) * (puck_wx + puck_wy)
+            let t414 = k(0.1)
+                * (k(2.0) * (t406 + t405) * slide_wy - t412 * slide_wz + t413);
+            let t415 = k(0.23570226039551584)
+                * (slide_sx + t414 - (slide_sy + k(0.1) * t411))
+                + k(0.9428090415820634) * (slide_sz - t409);
+            let t416 = t110 * t111
+                + (t415 * (k(0.5) * t415) + (t404 + t403 + t400 * t400));
+            let t417 = k(0.19245008972987526) * (puck_wx + puck_wy)
                 + k(0.9622504486493763) * puck_wz;
-            let t405 = t404 * (k(0.05) * (k(10.0) * t404).tanh())
-                + (t110 * t111 + t403 * (k(0.5) * t403));
-            let t406 = k(0.6666666666666666) * slide_wx
+            let t418 = t110 * t114 + (t417 * (k(0.05) * (k(10.0) * t417).tanh()) + t416);
+            let t419 = k(0.6666666666666666) * slide_wx
                 - k(0.3333333333333333) * slide_wy + k(0.6666666666666666) * slide_wz
                 - (k(0.6666666666666666) * nut_wx - k(0.3333333333333333) * nut_wy
                     + k(0.6666666666666666) * nut_wz);
-            let t407 = k(0.1) * (puck_wy - puck_wz);
-            let t408 = k(0.1) * puck_wx;
-            let t409 = k(2.0) * t382 * t408
-                + k(2.0) * (k(0.5) - (t6 + puck_e1 * puck_e1)) * t407;
-            let t410 = k(1.0) / t388;
-            let t411 = k(2.0) * t5 * t408
-                + (k(2.0) * t384 * t408 + k(2.0) * (t381 + t380) * t407);
-            let t412 = t385 * t410 * (puck_sy + t411)
-                + t383 * t410 * (puck_sx + (k(2.0) * t2 * t408 - t409));
-            let t413 = k(2.0) * t7 * t408
-                + (k(2.0) * t386 * t408 - k(2.0) * (t1 - t0) * t407);
-            let t414 = t387 * t410 * (puck_sz - t413) + t412;
-            let t415 = k(0.05) * sleeve_wy;
-            let t416 = k(0.05) * sleeve_wx;
-            let t417 = k(0.1) * (sleeve_sy + (t84 * t416 + t82 * t415))
-                - k(0.2) * (sleeve_sx - (t99 * t416 + t97 * t415));
-            let t418 = sleeve_wz * (k(0.02) * t68)
-                - (sleeve_wy * (k(0.02) * t65) + sleeve_wx * (k(0.02) * t61));
-            let t419 = t418 + t417
-                + (t414 * t414 + (self.motor * t406 + (t110 * t114 + t405)));
-            (t419,)
+            (t418, t419)
         };
         *out = [
             puck_rx + k(0.2) * t2,
@@ -18961,7 +18955,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for AllJoints<T> {
             -closing8,
             t379,
             t392,
-            -t419,
+            -(self.motor * t419 + t418),
             -(k(0.9424777960769379) * (k(9.42477796076938) * t).cos() * closing8),
         ];
     }

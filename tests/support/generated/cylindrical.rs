@@ -25,6 +25,12 @@
 //! | energy | T and V | 5 | 12 | 0 | 17 | 0 of 2 |
 //! | read_joints | joint coordinates and rates | 15 | 20 | 0 | 35 | 0 of 5 |
 //! | outputs | outputs, the accelerations being known | 50 | 90 | 1 | 141 | 1 of 6 |
+//! | joint_accelerations | u̇ in joint coordinates | 0 | 0 | 0 | 0 | 1 of 2 |
+//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 2 |
+//! | to_maximal | (q, v) of a joint state | 17 | 34 | 0 | 51 | 1 of 13 |
+//! | to_joints | (x, u) of a maximal state | 18 | 24 | 0 | 42 | 0 of 4 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 0 | 0 | 0 | 0 | 1 of 2 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 25 | 44 | 0 | 69 | 0 of 6 |
 
 /// The mechanism `cylindrical`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -317,6 +323,45 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Cylindrical<T> {
     ) -> ::core::result::Result<(), gyro_sim::Error> {
         gyro_sim::pivoting::solve_velocities(self, t, choice, y)
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let spindle_e0 = y[3];
+        let spindle_e1 = y[4];
+        let spindle_e2 = y[5];
+        let spindle_e3 = y[6];
+        let spindle_sx = y[7];
+        let spindle_sy = y[8];
+        let spindle_sz = y[9];
+        let spindle_wx = y[10];
+        let spindle_wy = y[11];
+        let spindle_wz = y[12];
+        *dy = [
+            spindle_sx,
+            spindle_sy,
+            spindle_sz,
+            -(k(0.5)
+                * (spindle_e1 * spindle_wx + spindle_e2 * spindle_wy
+                    + spindle_e3 * spindle_wz)),
+            k(0.5)
+                * (spindle_e0 * spindle_wx - spindle_e3 * spindle_wy
+                    + spindle_e2 * spindle_wz),
+            k(0.5)
+                * (spindle_e3 * spindle_wx + spindle_e0 * spindle_wy
+                    - spindle_e1 * spindle_wz),
+            -(k(0.5)
+                * (spindle_e2 * spindle_wx - spindle_e1 * spindle_wy
+                    - spindle_e0 * spindle_wz)),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+        ];
+    }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for Cylindrical<T> {
     type Velocities = [T; 6];
@@ -518,10 +563,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Cylindrical<T> {
         let t5 = spindle_e2 * spindle_e3;
         let t6 = t5 + t4;
         let t7 = k(0.24) * t6;
-        let t8 = t7 * t3;
+        let t8 = t3 * t7;
         let t9 = k(0.8) * t8 - k(0.6) * (k(0.038) - t3 * t2);
         let t10 = k(0.3) * t6;
-        let t11 = k(0.8) * (k(0.038) - t7 * t10) - k(0.6) * t8;
+        let t11 = k(0.8) * (k(0.038) - t10 * t7) - k(0.6) * t8;
         let t12 = k(2.3544) * t1;
         let t13 = spindle_wx * spindle_wz;
         let t14 = k(2.3544) * t6;
@@ -629,6 +674,151 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Cylindrical<T> {
         let t25 = t16 * t18 * t24 + (t14 * t18 * t22 + t19 * (t7 * t18));
         let t26 = t18 * (k(0.8) * t6) * t22 - t19 * (k(2.0) * t15 * t18);
         *lambda = [-t0, -t1, -t25, t18 * (k(0.6) * t6) * t24 + t26];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Cylindrical<T> {
+    type Joints = [T; 4];
+    type Rates = [T; 2];
+    fn joint_start(&self) -> Self::Joints {
+        let k = T::constant;
+        [k(0.4), k(0.5), k(11.0), k(1.9999999999999998)]
+    }
+    fn rates(&self) -> Self::Rates {
+        [T::constant(0.0); 2]
+    }
+    /// Writes u̇: 0 operations (0 ±, 0 ×, 0 ÷).
+    fn joint_accelerations(&self, _t: T, _y: &Self::Joints, out: &mut Self::Rates) {
+        let k = T::constant;
+        *out = [k(0.0), k(-9.81)];
+    }
+    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
+    fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
+        let mut rates = gyro_sim::JointSpace::rates(self);
+        gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
+        let u0 = x[2];
+        let u1 = x[3];
+        *dx = [u0, u1, rates[0], rates[1]];
+    }
+    /// Writes the maximal state of a joint state: 51 operations (17 ±, 34 ×, 0 ÷) and 2 functions.
+    fn to_maximal(&self, _t: T, x: &Self::Joints, y: &mut Self::State) {
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let u0 = x[2];
+        let u1 = x[3];
+        let t0 = k(0.5) * x0;
+        let t1 = t0.cos();
+        let t2 = k(0.31622776601683794) * t1;
+        let t3 = k(0.9486832980505138) * t1;
+        let t4 = t3 * t3;
+        let t5 = t0.sin();
+        let t6 = k(0.9486832980505138) * t5;
+        let t7 = t3 * t6;
+        let t8 = k(0.31622776601683794) * t5;
+        let t9 = t2 * t8;
+        let t10 = t3 * t8;
+        let t11 = t2 * t6;
+        let t12 = k(0.09) * u0;
+        let t13 = k(0.12) * u0;
+        let t14 = k(2.0) * (t9 - t7) * t13 - k(2.0) * (t11 + t10) * t12;
+        let t15 = t3 * t2;
+        let t16 = t8 * t6;
+        let t17 = k(2.0) * (k(0.5) - (t4 + t8 * t8)) * t13 + k(2.0) * (t16 - t15) * t12;
+        let t18 = k(2.0) * (t16 + t15) * t13 + k(2.0) * (k(0.5) - (t4 + t6 * t6)) * t12;
+        *y = [
+            -(k(0.3) * (k(0.5) - (t4 + t2 * t2))),
+            k(0.3) * (t9 + t7),
+            x1 + k(0.3) * (t11 - t10),
+            t3,
+            t2,
+            t8,
+            t6,
+            t14,
+            -t17,
+            u1 + t18,
+            k(0.0),
+            k(0.6) * u0,
+            k(0.8) * u0,
+        ];
+    }
+    /// Writes the joint state of a maximal state: 42 operations (18 ±, 24 ×, 0 ÷) and 3 functions.
+    fn to_joints(&self, _t: T, y: &Self::State, x: &mut Self::Joints) {
+        let k = T::constant;
+        let spindle_rz = y[2];
+        let spindle_e0 = y[3];
+        let spindle_e1 = y[4];
+        let spindle_e2 = y[5];
+        let spindle_e3 = y[6];
+        let spindle_sz = y[9];
+        let spindle_wy = y[11];
+        let spindle_wz = y[12];
+        let x0 = x[0];
+        let t0 = x0.sin();
+        let t1 = k(2.0) * (spindle_e1 * spindle_e2 + spindle_e0 * spindle_e3);
+        let t2 = x0.cos();
+        let t3 = spindle_e0 * spindle_e0;
+        let t4 = t3 + spindle_e1 * spindle_e1;
+        let t5 = spindle_e3 * spindle_e3;
+        let t6 = k(2.0) * (k(0.5) - t4)
+            - (k(1.0) - (t5 + (t4 + spindle_e2 * spindle_e2)));
+        let t7 = (t6 * t0 + t1 * t2).atan2(t1 * t0 - t6 * t2);
+        let t8 = k(2.0) * (k(0.5) - (t3 + t5)) * spindle_wy
+            + k(2.0) * (spindle_e2 * spindle_e3 + spindle_e0 * spindle_e1) * spindle_wz;
+        x[0] = x0 + t7;
+        x[1] = spindle_rz - k(0.3) * (spindle_e1 * spindle_e3 - spindle_e0 * spindle_e2);
+        x[2] = k(0.6) * spindle_wy + k(0.8) * spindle_wz;
+        x[3] = spindle_sz - k(0.15) * t8;
+    }
+    /// Writes u̇ at a state that satisfies the constraints: 0 operations (0 ±, 0 ×, 0 ÷).
+    fn joint_accelerations_at(&self, _t: T, _y: &Self::State, out: &mut Self::Rates) {
+        let k = T::constant;
+        *out = [k(0.0), k(-9.81)];
+    }
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 69 operations (25 ±, 44 ×, 0 ÷).
+    fn corrected_accelerations(
+        &self,
+        _t: T,
+        y: &Self::State,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let spindle_e0 = y[3];
+        let spindle_e1 = y[4];
+        let spindle_e2 = y[5];
+        let spindle_e3 = y[6];
+        let spindle_wx = y[10];
+        let spindle_wy = y[11];
+        let spindle_wz = y[12];
+        let t0 = k(0.15) * spindle_wz;
+        let t1 = k(0.15) * spindle_wy;
+        let t2 = spindle_wy * t1 + spindle_wz * t0;
+        let t3 = spindle_e0 * spindle_e0;
+        let t4 = k(0.6) * spindle_wy + k(0.8) * spindle_wz;
+        let t5 = k(0.6) * t4;
+        let t6 = spindle_wx * t5;
+        let t7 = k(5.886) - spindle_wx * t1 - k(0.15) * t6;
+        let t8 = spindle_e0 * spindle_e3;
+        let t9 = spindle_e1 * spindle_e2;
+        let t10 = k(2.0) * (t9 - t8) * t7
+            - k(2.0) * (k(0.5) - (t3 + spindle_e1 * spindle_e1)) * t2;
+        let t11 = k(0.8) * t4;
+        let t12 = spindle_wx * t11;
+        let t13 = k(7.848) - spindle_wx * t0 - k(0.15) * t12;
+        let t14 = spindle_e0 * spindle_e2;
+        let t15 = spindle_e1 * spindle_e3;
+        let t16 = k(2.0) * (k(0.5) - (t3 + spindle_e2 * spindle_e2)) * t7
+            - k(2.0) * (t9 + t8) * t2;
+        let t17 = spindle_e0 * spindle_e1;
+        let t18 = spindle_e2 * spindle_e3;
+        let t19 = k(2.0) * (t18 + t17) * t7 + k(2.0) * (t15 - t14) * t2;
+        *out = [
+            -(k(2.0) * (t15 + t14) * t13 + t10),
+            t16 - k(2.0) * (t18 - t17) * t13,
+            k(2.0) * (k(0.5) - (t3 + spindle_e3 * spindle_e3)) * t13 - t19,
+            spindle_wy * t11 - spindle_wz * t5,
+            -t12,
+            t6,
+        ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Ports for Cylindrical<T> {

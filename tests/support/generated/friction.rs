@@ -24,6 +24,12 @@
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 28 | 59 | 0 | 87 | 0 of 23 |
 //! | energy | T and V | 23 | 43 | 0 | 66 | 0 of 2 |
 //! | read_joints | joint coordinates and rates | 7 | 8 | 0 | 15 | 0 of 12 |
+//! | joint_accelerations | u̇ in joint coordinates | 1 | 7 | 0 | 8 | 0 of 5 |
+//! | joint_derivative | ẋ but for u̇ | 12 | 27 | 0 | 39 | 0 of 7 |
+//! | to_maximal | (q, v) of a joint state | 0 | 1 | 0 | 1 | 24 of 40 |
+//! | to_joints | (x, u) of a maximal state | 10 | 12 | 0 | 22 | 0 of 11 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 7 | 17 | 0 | 24 | 0 of 5 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 11 | 31 | 0 | 42 | 9 of 18 |
 
 /// The mechanism `friction`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -525,6 +531,97 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Friction<T> {
     ) -> ::core::result::Result<(), gyro_sim::Error> {
         gyro_sim::pivoting::solve_velocities(self, t, choice, y)
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 87 operations (28 ±, 59 ×, 0 ÷) and 1 functions.
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let disc_e0 = y[3];
+        let disc_e1 = y[4];
+        let disc_e2 = y[5];
+        let disc_e3 = y[6];
+        let ball_e0 = y[10];
+        let ball_e1 = y[11];
+        let ball_e2 = y[12];
+        let ball_e3 = y[13];
+        let carriage_e0 = y[17];
+        let carriage_e1 = y[18];
+        let carriage_e2 = y[19];
+        let carriage_e3 = y[20];
+        let disc_sx = y[21];
+        let disc_sy = y[22];
+        let disc_sz = y[23];
+        let ball_sx = y[27];
+        let ball_sy = y[28];
+        let ball_sz = y[29];
+        let carriage_sx = y[33];
+        let carriage_sy = y[34];
+        let carriage_sz = y[35];
+        let disc_wx = y[24];
+        let disc_wy = y[25];
+        let disc_wz = y[26];
+        let ball_wx = y[30];
+        let ball_wy = y[31];
+        let ball_wz = y[32];
+        let carriage_wx = y[36];
+        let carriage_wy = y[37];
+        let carriage_wz = y[38];
+        let t0 = ball_wx * (k(0.04) * ball_wx) + ball_wy * (k(0.04) * ball_wy)
+            + ball_wz * (k(0.04) * ball_wz);
+        let t1 = t0 + carriage_sy * (k(0.5) * carriage_sy)
+            + disc_wz * (k(0.05) * (k(10.0) * disc_wz).tanh());
+        *dy = [
+            disc_sx,
+            disc_sy,
+            disc_sz,
+            -(k(0.5) * (disc_e1 * disc_wx + disc_e2 * disc_wy + disc_e3 * disc_wz)),
+            k(0.5) * (disc_e0 * disc_wx - disc_e3 * disc_wy + disc_e2 * disc_wz),
+            k(0.5) * (disc_e3 * disc_wx + disc_e0 * disc_wy - disc_e1 * disc_wz),
+            -(k(0.5) * (disc_e2 * disc_wx - disc_e1 * disc_wy - disc_e0 * disc_wz)),
+            ball_sx,
+            ball_sy,
+            ball_sz,
+            -(k(0.5) * (ball_e1 * ball_wx + ball_e2 * ball_wy + ball_e3 * ball_wz)),
+            k(0.5) * (ball_e0 * ball_wx - ball_e3 * ball_wy + ball_e2 * ball_wz),
+            k(0.5) * (ball_e3 * ball_wx + ball_e0 * ball_wy - ball_e1 * ball_wz),
+            -(k(0.5) * (ball_e2 * ball_wx - ball_e1 * ball_wy - ball_e0 * ball_wz)),
+            carriage_sx,
+            carriage_sy,
+            carriage_sz,
+            -(k(0.5)
+                * (carriage_e1 * carriage_wx + carriage_e2 * carriage_wy
+                    + carriage_e3 * carriage_wz)),
+            k(0.5)
+                * (carriage_e0 * carriage_wx - carriage_e3 * carriage_wy
+                    + carriage_e2 * carriage_wz),
+            k(0.5)
+                * (carriage_e3 * carriage_wx + carriage_e0 * carriage_wy
+                    - carriage_e1 * carriage_wz),
+            -(k(0.5)
+                * (carriage_e2 * carriage_wx - carriage_e1 * carriage_wy
+                    - carriage_e0 * carriage_wz)),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            accelerations[6],
+            accelerations[7],
+            accelerations[8],
+            accelerations[9],
+            accelerations[10],
+            accelerations[11],
+            accelerations[12],
+            accelerations[13],
+            accelerations[14],
+            accelerations[15],
+            accelerations[16],
+            accelerations[17],
+            -t1,
+            disc_wz,
+        ];
+    }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for Friction<T> {
     type Velocities = [T; 18];
@@ -996,6 +1093,253 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Friction<T> {
             t23 * (t15 * t18) - t22,
             t24 - t23 * (t18 * (t14 * t16)),
             t21 * (t17 * t18),
+        ];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Friction<T> {
+    type Joints = [T; 12];
+    type Rates = [T; 5];
+    fn joint_start(&self) -> Self::Joints {
+        let k = T::constant;
+        [
+            k(2.0),
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(3.0),
+            k(-2.0),
+            k(1.0),
+            k(3.0),
+            k(0.0),
+        ]
+    }
+    fn rates(&self) -> Self::Rates {
+        [T::constant(0.0); 5]
+    }
+    /// Writes u̇: 8 operations (1 ±, 7 ×, 0 ÷) and 1 functions.
+    fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
+        let k = T::constant;
+        let x0 = x[0];
+        let u0 = x[6];
+        let u1 = x[7];
+        let u2 = x[8];
+        let u3 = x[9];
+        let u4 = x[10];
+        *out = [
+            -(k(2.5) * (k(10.0) * u0).tanh() + k(25.0) * x0),
+            -(k(0.8) * u1),
+            -(k(0.8) * u2),
+            -(k(0.8) * u3),
+            -(k(0.25) * u4),
+        ];
+    }
+    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 39 operations (12 ±, 27 ×, 0 ÷) and 1 functions.
+    fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
+        let mut rates = gyro_sim::JointSpace::rates(self);
+        gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
+        let k = T::constant;
+        let x1 = x[1];
+        let x2 = x[2];
+        let x3 = x[3];
+        let x4 = x[4];
+        let u0 = x[6];
+        let u1 = x[7];
+        let u2 = x[8];
+        let u3 = x[9];
+        let u4 = x[10];
+        let t0 = u3 * (k(0.04) * u3) + (u2 * (k(0.04) * u2) + u1 * (k(0.04) * u1));
+        let t1 = u0 * (k(0.05) * (k(10.0) * u0).tanh()) + (u4 * (k(0.5) * u4) + t0);
+        *dx = [
+            u0,
+            -(k(0.5) * (x2 * u1 + x3 * u2 + x4 * u3)),
+            k(0.5) * (x1 * u1 - x4 * u2 + x3 * u3),
+            k(0.5) * (x4 * u1 + x1 * u2 - x2 * u3),
+            -(k(0.5) * (x3 * u1 - x2 * u2 - x1 * u3)),
+            u4,
+            rates[0],
+            rates[1],
+            rates[2],
+            rates[3],
+            rates[4],
+            -t1,
+        ];
+    }
+    /// Writes the maximal state of a joint state: 1 operations (0 ±, 1 ×, 0 ÷) and 2 functions.
+    fn to_maximal(&self, _t: T, x: &Self::Joints, y: &mut Self::State) {
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let x3 = x[3];
+        let x4 = x[4];
+        let x5 = x[5];
+        let u0 = x[6];
+        let u1 = x[7];
+        let u2 = x[8];
+        let u3 = x[9];
+        let u4 = x[10];
+        let t0 = k(0.5) * x0;
+        *y = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t0.cos(),
+            k(0.0),
+            k(0.0),
+            t0.sin(),
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            x1,
+            x2,
+            x3,
+            x4,
+            k(2.0),
+            x5,
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            u0,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            u1,
+            u2,
+            u3,
+            k(0.0),
+            u4,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            x[11],
+            x0,
+        ];
+    }
+    /// Writes the joint state of a maximal state: 22 operations (10 ±, 12 ×, 0 ÷) and 3 functions.
+    fn to_joints(&self, _t: T, y: &Self::State, x: &mut Self::Joints) {
+        let k = T::constant;
+        let carriage_ry = y[15];
+        let disc_e0 = y[3];
+        let disc_e1 = y[4];
+        let disc_e2 = y[5];
+        let disc_e3 = y[6];
+        let ball_e0 = y[10];
+        let ball_e1 = y[11];
+        let ball_e2 = y[12];
+        let ball_e3 = y[13];
+        let carriage_sy = y[34];
+        let disc_wz = y[26];
+        let ball_wx = y[30];
+        let ball_wy = y[31];
+        let ball_wz = y[32];
+        let x0 = x[0];
+        let t0 = x0.sin();
+        let t1 = k(2.0) * (disc_e1 * disc_e2 + disc_e0 * disc_e3);
+        let t2 = x0.cos();
+        let t3 = disc_e0 * disc_e0 + disc_e1 * disc_e1;
+        let t4 = k(2.0) * (k(0.5) - t3)
+            - (k(1.0) - (disc_e3 * disc_e3 + (t3 + disc_e2 * disc_e2)));
+        let t5 = (t4 * t0 + t1 * t2).atan2(t1 * t0 - t4 * t2);
+        x[0] = x0 + t5;
+        x[1] = ball_e0;
+        x[2] = ball_e1;
+        x[3] = ball_e2;
+        x[4] = ball_e3;
+        x[5] = carriage_ry;
+        x[6] = disc_wz;
+        x[7] = ball_wx;
+        x[8] = ball_wy;
+        x[9] = ball_wz;
+        x[10] = carriage_sy;
+        x[11] = y[39];
+    }
+    /// Writes u̇ at a state that satisfies the constraints: 24 operations (7 ±, 17 ×, 0 ÷) and 4 functions.
+    fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
+        let k = T::constant;
+        let disc_e0 = y[3];
+        let disc_e1 = y[4];
+        let disc_e2 = y[5];
+        let disc_e3 = y[6];
+        let carriage_sy = y[34];
+        let disc_wz = y[26];
+        let ball_wx = y[30];
+        let ball_wy = y[31];
+        let ball_wz = y[32];
+        let turn0 = y[40];
+        let t0 = turn0.cos();
+        let t1 = k(2.0) * (k(0.5) - (disc_e0 * disc_e0 + disc_e1 * disc_e1));
+        let t2 = turn0.sin();
+        let t3 = k(2.0) * (disc_e1 * disc_e2 + disc_e0 * disc_e3);
+        let t4 = (t3 * t0 + t1 * t2).atan2(t3 * t2 - t1 * t0);
+        *out = [
+            -(k(25.0) * (turn0 + t4) + k(2.5) * (k(10.0) * disc_wz).tanh()),
+            -(k(0.8) * ball_wx),
+            -(k(0.8) * ball_wy),
+            -(k(0.8) * ball_wz),
+            -(k(0.25) * carriage_sy),
+        ];
+    }
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 42 operations (11 ±, 31 ×, 0 ÷) and 4 functions.
+    fn corrected_accelerations(
+        &self,
+        _t: T,
+        y: &Self::State,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let disc_e0 = y[3];
+        let disc_e1 = y[4];
+        let disc_e2 = y[5];
+        let disc_e3 = y[6];
+        let carriage_e0 = y[17];
+        let carriage_e1 = y[18];
+        let carriage_e2 = y[19];
+        let carriage_e3 = y[20];
+        let carriage_sy = y[34];
+        let disc_wx = y[24];
+        let disc_wy = y[25];
+        let disc_wz = y[26];
+        let ball_wx = y[30];
+        let ball_wy = y[31];
+        let ball_wz = y[32];
+        let turn0 = y[40];
+        let t0 = turn0.cos();
+        let t1 = k(2.0) * (k(0.5) - (disc_e0 * disc_e0 + disc_e1 * disc_e1));
+        let t2 = turn0.sin();
+        let t3 = k(2.0) * (disc_e1 * disc_e2 + disc_e0 * disc_e3);
+        let t4 = (t3 * t0 + t1 * t2).atan2(t3 * t2 - t1 * t0);
+        let t5 = k(0.25) * carriage_sy;
+        *out = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            disc_wy * disc_wz,
+            -(disc_wx * disc_wz),
+            -(k(25.0) * (turn0 + t4) + k(2.5) * (k(10.0) * disc_wz).tanh()),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -(k(0.8) * ball_wx),
+            -(k(0.8) * ball_wy),
+            -(k(0.8) * ball_wz),
+            -(k(2.0) * (carriage_e1 * carriage_e2 - carriage_e0 * carriage_e3) * t5),
+            k(2.0) * (k(0.5) - (carriage_e0 * carriage_e0 + carriage_e2 * carriage_e2))
+                * t5,
+            -(k(2.0) * (carriage_e2 * carriage_e3 + carriage_e0 * carriage_e1) * t5),
+            k(0.0),
+            k(0.0),
+            k(0.0),
         ];
     }
 }

@@ -28,6 +28,12 @@
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
 //! | newton_step | dependent positions, one Newton step | 193 | 318 | 3 | 514 | 6 of 21 |
 //! | solve_velocities | dependent velocities, eq. (19) | 96 | 158 | 3 | 257 | 6 of 18 |
+//! | joint_accelerations | u̇ in joint coordinates | 5 | 12 | 1 | 18 | 0 of 3 |
+//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 |
+//! | to_maximal | (q, v) of a joint state | 24 | 54 | 0 | 78 | 16 of 39 |
+//! | to_joints | (x, u) of a maximal state | 63 | 72 | 0 | 135 | 0 of 6 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 14 | 23 | 1 | 38 | 0 of 3 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 56 | 92 | 1 | 149 | 6 of 18 |
 
 /// The mechanism `gyroscope_bearings`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -995,6 +1001,101 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeBearings<T> {
         y[37] = rotor_wy - t73 * (t56 * t65) - t71 * (t64 * t65);
         y[38] = rotor_wz + t73 * (t63 * t65) + t71 * (t62 * t65);
         Ok(())
+    }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 72 operations (24 ±, 48 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_sx = y[21];
+        let outer_ring_sy = y[22];
+        let outer_ring_sz = y[23];
+        let inner_ring_sx = y[27];
+        let inner_ring_sy = y[28];
+        let inner_ring_sz = y[29];
+        let rotor_sx = y[33];
+        let rotor_sy = y[34];
+        let rotor_sz = y[35];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        *dy = [
+            outer_ring_sx,
+            outer_ring_sy,
+            outer_ring_sz,
+            -(k(0.5)
+                * (outer_ring_e1 * outer_ring_wx + outer_ring_e2 * outer_ring_wy
+                    + outer_ring_e3 * outer_ring_wz)),
+            k(0.5)
+                * (outer_ring_e0 * outer_ring_wx - outer_ring_e3 * outer_ring_wy
+                    + outer_ring_e2 * outer_ring_wz),
+            k(0.5)
+                * (outer_ring_e3 * outer_ring_wx + outer_ring_e0 * outer_ring_wy
+                    - outer_ring_e1 * outer_ring_wz),
+            -(k(0.5)
+                * (outer_ring_e2 * outer_ring_wx - outer_ring_e1 * outer_ring_wy
+                    - outer_ring_e0 * outer_ring_wz)),
+            inner_ring_sx,
+            inner_ring_sy,
+            inner_ring_sz,
+            -(k(0.5)
+                * (inner_ring_e1 * inner_ring_wx + inner_ring_e2 * inner_ring_wy
+                    + inner_ring_e3 * inner_ring_wz)),
+            k(0.5)
+                * (inner_ring_e0 * inner_ring_wx - inner_ring_e3 * inner_ring_wy
+                    + inner_ring_e2 * inner_ring_wz),
+            k(0.5)
+                * (inner_ring_e3 * inner_ring_wx + inner_ring_e0 * inner_ring_wy
+                    - inner_ring_e1 * inner_ring_wz),
+            -(k(0.5)
+                * (inner_ring_e2 * inner_ring_wx - inner_ring_e1 * inner_ring_wy
+                    - inner_ring_e0 * inner_ring_wz)),
+            rotor_sx,
+            rotor_sy,
+            rotor_sz,
+            -(k(0.5)
+                * (rotor_e1 * rotor_wx + rotor_e2 * rotor_wy + rotor_e3 * rotor_wz)),
+            k(0.5) * (rotor_e0 * rotor_wx - rotor_e3 * rotor_wy + rotor_e2 * rotor_wz),
+            k(0.5) * (rotor_e3 * rotor_wx + rotor_e0 * rotor_wy - rotor_e1 * rotor_wz),
+            -(k(0.5)
+                * (rotor_e2 * rotor_wx - rotor_e1 * rotor_wy - rotor_e0 * rotor_wz)),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            accelerations[6],
+            accelerations[7],
+            accelerations[8],
+            accelerations[9],
+            accelerations[10],
+            accelerations[11],
+            accelerations[12],
+            accelerations[13],
+            accelerations[14],
+            accelerations[15],
+            accelerations[16],
+            accelerations[17],
+        ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeBearings<T> {
@@ -1972,6 +2073,343 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeBearings<T> {
             -t4,
             t67 * t87 * t30 + t28 * (t65 * t87),
             t55 * t87 * t30 + t28 * (t53 * t87),
+        ];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeBearings<T> {
+    type Joints = [T; 6];
+    type Rates = [T; 3];
+    fn joint_start(&self) -> Self::Joints {
+        let k = T::constant;
+        [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(100.0)]
+    }
+    fn rates(&self) -> Self::Rates {
+        [T::constant(0.0); 3]
+    }
+    /// Writes u̇: 18 operations (5 ±, 12 ×, 1 ÷) and 2 functions.
+    fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
+        let k = T::constant;
+        let x1 = x[1];
+        let u0 = x[3];
+        let u1 = x[4];
+        let u2 = x[5];
+        let t0 = x1.cos();
+        let t1 = u1 * t0;
+        let t2 = x1.sin();
+        let t3 = u0 * t2;
+        let t4 = k(1.6663195167673401)
+            * ((u2 - k(0.20025) * t3) / (k(1.3332639033534681) - t2 * t2));
+        *out = [
+            -(t4 * t1),
+            -(k(1.6663195167673401) * (t0 * (k(10.0) - u0 * (u2 + k(0.399875) * t3)))),
+            -(t1 * (u0 - t2 * t4)),
+        ];
+    }
+    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
+    fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
+        let mut rates = gyro_sim::JointSpace::rates(self);
+        gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
+        let u0 = x[3];
+        let u1 = x[4];
+        let u2 = x[5];
+        *dx = [u0, u1, u2, rates[0], rates[1], rates[2]];
+    }
+    /// Writes the maximal state of a joint state: 78 operations (24 ±, 54 ×, 0 ÷) and 6 functions.
+    fn to_maximal(&self, _t: T, x: &Self::Joints, y: &mut Self::State) {
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let u0 = x[3];
+        let u1 = x[4];
+        let u2 = x[5];
+        let t0 = k(0.5) * x0;
+        let t1 = t0.cos();
+        let t2 = t0.sin();
+        let t3 = k(0.5) * x1;
+        let t4 = t3.cos();
+        let t5 = t1 * t4;
+        let t6 = t3.sin();
+        let t7 = t2 * t6;
+        let t8 = t2 * t4;
+        let t9 = t1 * t6;
+        let t10 = t5 * t5;
+        let t11 = t5 * t9;
+        let t12 = t7 * t8;
+        let t13 = t5 * t8;
+        let t14 = t7 * t9;
+        let t15 = k(0.5) * x2;
+        let t16 = t15.sin();
+        let t17 = t15.cos();
+        let t18 = k(2.0) * t6;
+        let t19 = u0 * (t4 * t18);
+        let t20 = u0 * (k(1.0) - t6 * t18);
+        let t21 = k(0.000125) * t20;
+        let t22 = k(0.000125) * u1;
+        let t23 = k(2.0) * (t12 - t11) * t22 - k(2.0) * (t14 + t13) * t21;
+        let t24 = t5 * t7;
+        let t25 = t8 * t9;
+        let t26 = k(2.0) * (k(0.5) - (t10 + t8 * t8)) * t22 + k(2.0) * (t25 - t24) * t21;
+        let t27 = k(2.0) * (t25 + t24) * t22 + k(2.0) * (k(0.5) - (t10 + t9 * t9)) * t21;
+        let t28 = k(2.0) * t16;
+        let t29 = k(1.0) - t16 * t28;
+        let t30 = t17 * t28;
+        *y = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t1,
+            k(0.0),
+            t2,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t5,
+            t7,
+            t8,
+            t9,
+            -(k(0.00025) * (k(0.5) - (t10 + t7 * t7))),
+            k(0.00025) * (t12 + t11),
+            k(0.00025) * (t14 - t13),
+            t5 * t17 - t7 * t16,
+            t7 * t17 + t5 * t16,
+            t8 * t17 + t9 * t16,
+            t9 * t17 - t8 * t16,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            u0,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t19,
+            t20,
+            u1,
+            t23,
+            -t26,
+            t27,
+            u2 + t19,
+            u1 * t30 + t29 * t20,
+            u1 * t29 - t30 * t20,
+        ];
+    }
+    /// Writes the joint state of a maximal state: 135 operations (63 ±, 72 ×, 0 ÷) and 9 functions.
+    fn to_joints(&self, _t: T, y: &Self::State, x: &mut Self::Joints) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let t0 = x0.sin();
+        let t1 = outer_ring_e0 * outer_ring_e2;
+        let t2 = outer_ring_e1 * outer_ring_e3;
+        let t3 = k(2.0) * (t2 + t1);
+        let t4 = x0.cos();
+        let t5 = outer_ring_e2 * outer_ring_e2;
+        let t6 = outer_ring_e0 * outer_ring_e0;
+        let t7 = t6 + outer_ring_e1 * outer_ring_e1;
+        let t8 = outer_ring_e3 * outer_ring_e3;
+        let t9 = k(1.0) - (t8 + (t7 + t5));
+        let t10 = k(2.0) * (k(0.5) - (t6 + t8)) - t9;
+        let t11 = (t10 * t0 + t3 * t4).atan2(t3 * t0 - t10 * t4);
+        let t12 = x1.sin();
+        let t13 = inner_ring_e0 * inner_ring_e2;
+        let t14 = inner_ring_e1 * inner_ring_e3;
+        let t15 = k(2.0) * (t14 - t13);
+        let t16 = inner_ring_e0 * inner_ring_e3;
+        let t17 = inner_ring_e1 * inner_ring_e2;
+        let t18 = k(2.0) * (t17 + t16);
+        let t19 = inner_ring_e2 * inner_ring_e2;
+        let t20 = inner_ring_e0 * inner_ring_e0;
+        let t21 = t20 + inner_ring_e1 * inner_ring_e1;
+        let t22 = inner_ring_e3 * inner_ring_e3;
+        let t23 = k(1.0) - (t22 + (t21 + t19));
+        let t24 = k(2.0) * (k(0.5) - t21) - t23;
+        let t25 = outer_ring_e0 * outer_ring_e3;
+        let t26 = outer_ring_e1 * outer_ring_e2;
+        let t27 = k(2.0) * (t26 - t25) * t24
+            + t18 * (k(2.0) * (k(0.5) - (t6 + t5)) - t9);
+        let t28 = t27
+            - k(2.0) * (outer_ring_e2 * outer_ring_e3 + outer_ring_e0 * outer_ring_e1)
+                * t15;
+        let t29 = x1.cos();
+        let t30 = (k(2.0) * (k(0.5) - t7) - t9) * t24 + k(2.0) * (t26 + t25) * t18;
+        let t31 = t30 + k(2.0) * (t2 - t1) * t15;
+        let t32 = -(t31 * t12 + t28 * t29).atan2(t31 * t29 - t28 * t12);
+        let t33 = x2.sin();
+        let t34 = k(2.0) * (rotor_e2 * rotor_e3 + rotor_e0 * rotor_e1);
+        let t35 = rotor_e2 * rotor_e2;
+        let t36 = rotor_e0 * rotor_e0;
+        let t37 = k(2.0) * (k(0.5) - (t36 + t35))
+            - (k(1.0) - (rotor_e3 * rotor_e3 + (t36 + rotor_e1 * rotor_e1 + t35)));
+        let t38 = inner_ring_e0 * inner_ring_e1;
+        let t39 = inner_ring_e2 * inner_ring_e3;
+        let t40 = k(2.0) * (rotor_e1 * rotor_e2 - rotor_e0 * rotor_e3);
+        let t41 = k(2.0) * (t14 + t13) * t40 - k(2.0) * (t39 - t38) * t37;
+        let t42 = t41 - t34 * (k(2.0) * (k(0.5) - (t20 + t22)) - t23);
+        let t43 = x2.cos();
+        let t44 = k(2.0) * (t17 - t16) * t40
+            + (k(2.0) * (k(0.5) - (t20 + t19)) - t23) * t37;
+        let t45 = t44 + k(2.0) * (t39 + t38) * t34;
+        let t46 = (t42 * t43 - t45 * t33).atan2(t45 * t43 + t42 * t33);
+        x[0] = x0 + t11;
+        x[1] = x1 + t32;
+        x[2] = x2 + t46;
+        x[3] = outer_ring_wy;
+        x[4] = inner_ring_wz - outer_ring_wz;
+        x[5] = rotor_wx - inner_ring_wx;
+    }
+    /// Writes u̇ at a state that satisfies the constraints: 38 operations (14 ±, 23 ×, 1 ÷).
+    fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let t0 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t1 = k(2.0) * t0;
+        let t2 = k(1.0) - t0 * t1;
+        let t3 = (outer_ring_wz - inner_ring_wz) * t2;
+        let t4 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t5 = t4 * t1;
+        let t6 = outer_ring_wy * t5;
+        let t7 = inner_ring_wx - rotor_wx;
+        let t8 = k(1.6663195167673401)
+            * ((t7 - k(0.20025) * t6) / (k(1.3332639033534681) - t5 * t5));
+        *out = [
+            -(t8 * t3),
+            -(k(1.6663195167673401)
+                * (t2 * (k(10.0) + outer_ring_wy * (t7 + k(0.399875) * t6)))),
+            t3 * (outer_ring_wy - t5 * t8),
+        ];
+    }
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 149 operations (56 ±, 92 ×, 1 ÷).
+    fn corrected_accelerations(
+        &self,
+        _t: T,
+        y: &Self::State,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        let t0 = outer_ring_wy * outer_ring_wz;
+        let t1 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t2 = k(2.0) * t1;
+        let t3 = k(1.0) - t1 * t2;
+        let t4 = outer_ring_wz - inner_ring_wz;
+        let t5 = t4 * t3;
+        let t6 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t7 = t6 * t2;
+        let t8 = outer_ring_wy * t7;
+        let t9 = inner_ring_wx - rotor_wx;
+        let t10 = k(1.6663195167673401)
+            * ((t9 - k(0.20025) * t8) / (k(1.3332639033534681) - t7 * t7));
+        let t11 = t10 * t5;
+        let t12 = outer_ring_wx * outer_ring_wy;
+        let t13 = inner_ring_wy * t4 + (t0 * t3 - t7 * t11);
+        let t14 = inner_ring_wx * t4 - (t0 * t7 + t3 * t11);
+        let t15 = t12
+            - k(1.6663195167673401)
+                * (t3 * (k(10.0) + outer_ring_wy * (t9 + k(0.399875) * t8)));
+        let t16 = k(0.000125) * t15;
+        let t17 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t18 = k(2.0) * t17;
+        let t19 = k(1.0) - t17 * t18;
+        let t20 = k(0.000125) * t14;
+        let t21 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t22 = t21 * t18;
+        let t23 = k(0.000125) * inner_ring_wy;
+        let t24 = inner_ring_wx * t23;
+        let t25 = k(0.000125) * inner_ring_wz;
+        let t26 = inner_ring_wx * t25;
+        let t27 = t22 * t26 - t19 * t24 - (t22 * t20 + t19 * t16);
+        let t28 = rotor_e0 * rotor_e3;
+        let t29 = rotor_e1 * rotor_e2;
+        let t30 = inner_ring_wy * t23 + inner_ring_wz * t25;
+        let t31 = rotor_e0 * rotor_e0;
+        let t32 = k(2.0) * (k(0.5) - (t31 + rotor_e1 * rotor_e1)) * t30
+            - k(2.0) * (t29 - t28) * t27;
+        let t33 = t19 * t26 + t22 * t24 - (t19 * t20 - t22 * t16);
+        let t34 = rotor_e0 * rotor_e2;
+        let t35 = rotor_e1 * rotor_e3;
+        let t36 = k(2.0) * (t29 + t28) * t30
+            - k(2.0) * (k(0.5) - (t31 + rotor_e2 * rotor_e2)) * t27;
+        let t37 = rotor_e0 * rotor_e1;
+        let t38 = rotor_e2 * rotor_e3;
+        let t39 = k(2.0) * (t35 - t34) * t30 + k(2.0) * (t38 + t37) * t27;
+        *out = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t0,
+            -t11,
+            t12,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t13,
+            t14,
+            t15,
+            k(2.0) * (t35 + t34) * t33 + t32,
+            k(2.0) * (t38 - t37) * t33 - t36,
+            -(k(2.0) * (k(0.5) - (t31 + rotor_e3 * rotor_e3)) * t33 + t39),
+            t5 * (outer_ring_wy - t7 * t10) - t13,
+            -(rotor_wz * t9 + (t22 * t15 - t19 * t14)),
+            rotor_wy * t9 + (t19 * t15 + t22 * t14),
         ];
     }
 }

@@ -24,6 +24,12 @@
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 54 | 93 | 0 | 147 | 0 of 15 |
 //! | energy | T and V | 11 | 21 | 0 | 32 | 1 of 2 |
 //! | read_joints | joint coordinates and rates | 10 | 12 | 0 | 22 | 0 of 5 |
+//! | joint_accelerations | u̇ in joint coordinates | 5 | 9 | 0 | 14 | 0 of 2 |
+//! | joint_derivative | ẋ but for u̇ | 6 | 16 | 0 | 22 | 0 of 3 |
+//! | to_maximal | (q, v) of a joint state | 1 | 5 | 0 | 6 | 18 of 26 |
+//! | to_joints | (x, u) of a maximal state | 13 | 16 | 0 | 29 | 0 of 4 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 17 | 26 | 0 | 43 | 0 of 2 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 23 | 38 | 0 | 61 | 6 of 12 |
 
 /// The mechanism `loads`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -471,6 +477,101 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Loads<T> {
         y: &mut Self::State,
     ) -> ::core::result::Result<(), gyro_sim::Error> {
         gyro_sim::pivoting::solve_velocities(self, t, choice, y)
+    }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 147 operations (54 ±, 93 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let disc_e0 = y[3];
+        let disc_e1 = y[4];
+        let disc_e2 = y[5];
+        let disc_e3 = y[6];
+        let carriage_e0 = y[10];
+        let carriage_e1 = y[11];
+        let carriage_e2 = y[12];
+        let carriage_e3 = y[13];
+        let disc_sx = y[14];
+        let disc_sy = y[15];
+        let disc_sz = y[16];
+        let carriage_sx = y[20];
+        let carriage_sy = y[21];
+        let carriage_sz = y[22];
+        let disc_wx = y[17];
+        let disc_wy = y[18];
+        let disc_wz = y[19];
+        let carriage_wx = y[23];
+        let carriage_wy = y[24];
+        let carriage_wz = y[25];
+        let t0 = k(0.2) * disc_wz;
+        let t1 = disc_e1 * disc_e2 - disc_e0 * disc_e3;
+        let t2 = k(0.2) * disc_wy;
+        let t3 = disc_e0 * disc_e2;
+        let t4 = disc_e1 * disc_e3;
+        let t5 = disc_sx - (k(2.0) * (t4 + t3) * t2 - k(2.0) * t1 * t0);
+        let t6 = disc_e0 * disc_e0;
+        let t7 = k(0.5) - (t6 + disc_e2 * disc_e2);
+        let t8 = disc_e0 * disc_e1;
+        let t9 = disc_e2 * disc_e3;
+        let t10 = disc_sy - (k(2.0) * (t9 - t8) * t2 + k(2.0) * t7 * t0);
+        let t11 = t9 + t8;
+        let t12 = k(0.5) - (t6 + disc_e3 * disc_e3);
+        let t13 = k(0.6) * t11 * (disc_sz + (k(2.0) * t12 * t2 + k(2.0) * t11 * t0));
+        let t14 = disc_wz * (k(0.02) * t12)
+            - (disc_wy * (k(0.02) * t11) + disc_wx * (k(0.02) * (t4 - t3)));
+        let t15 = t14 + (t13 - (k(0.6) * t7 * t10 - k(0.6) * t1 * t5));
+        let t16 = k(0.1) * carriage_wz;
+        let t17 = carriage_e0 * carriage_e2;
+        let t18 = carriage_e1 * carriage_e3;
+        let t19 = k(0.1) * carriage_wx;
+        let t20 = carriage_e0 * carriage_e0;
+        let t21 = k(2.0) * (k(0.5) - (t20 + carriage_e3 * carriage_e3)) * t19
+            + k(2.0) * (t18 - t17) * t16;
+        let t22 = carriage_e0 * carriage_e3;
+        let t23 = carriage_e1 * carriage_e2;
+        let t24 = k(2.0) * (carriage_e2 * carriage_e3 - carriage_e0 * carriage_e1) * t19
+            - k(2.0) * (t23 + t22) * t16;
+        let t25 = carriage_wy * (k(0.2) * (t23 - t22))
+            - carriage_wx * (k(0.2) * (k(0.5) - (t20 + carriage_e1 * carriage_e1)));
+        let t26 = carriage_wz * (k(0.2) * (t18 + t17)) + t25
+            + (k(5.0) * (carriage_sy + t24) + (carriage_sz - t21));
+        *dy = [
+            disc_sx,
+            disc_sy,
+            disc_sz,
+            -(k(0.5) * (disc_e1 * disc_wx + disc_e2 * disc_wy + disc_e3 * disc_wz)),
+            k(0.5) * (disc_e0 * disc_wx - disc_e3 * disc_wy + disc_e2 * disc_wz),
+            k(0.5) * (disc_e3 * disc_wx + disc_e0 * disc_wy - disc_e1 * disc_wz),
+            -(k(0.5) * (disc_e2 * disc_wx - disc_e1 * disc_wy - disc_e0 * disc_wz)),
+            carriage_sx,
+            carriage_sy,
+            carriage_sz,
+            -(k(0.5)
+                * (carriage_e1 * carriage_wx + carriage_e2 * carriage_wy
+                    + carriage_e3 * carriage_wz)),
+            k(0.5)
+                * (carriage_e0 * carriage_wx - carriage_e3 * carriage_wy
+                    + carriage_e2 * carriage_wz),
+            k(0.5)
+                * (carriage_e3 * carriage_wx + carriage_e0 * carriage_wy
+                    - carriage_e1 * carriage_wz),
+            -(k(0.5)
+                * (carriage_e2 * carriage_wx - carriage_e1 * carriage_wy
+                    - carriage_e0 * carriage_wz)),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            accelerations[6],
+            accelerations[7],
+            accelerations[8],
+            accelerations[9],
+            accelerations[10],
+            accelerations[11],
+            t26 + t15,
+        ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for Loads<T> {
@@ -1030,6 +1131,187 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Loads<T> {
             t49 * (t40 * t45 + t46 * t33) * t53 - t51,
             -(t49 * (t47 * t33 + t39 * t45) * t53 + t54),
             -t55,
+        ];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Loads<T> {
+    type Joints = [T; 5];
+    type Rates = [T; 2];
+    fn joint_start(&self) -> Self::Joints {
+        let k = T::constant;
+        [k(0.0), k(0.0), k(1.0), k(-1.0), k(0.0)]
+    }
+    fn rates(&self) -> Self::Rates {
+        [T::constant(0.0); 2]
+    }
+    /// Writes u̇: 14 operations (5 ±, 9 ×, 0 ÷) and 2 functions.
+    fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
+        let k = T::constant;
+        let x0 = x[0];
+        let t0 = k(0.5) * x0;
+        let t1 = t0.cos();
+        let t2 = t1 * t1;
+        let t3 = k(2.0) * (k(0.5) - t2);
+        let t4 = t0.sin();
+        let t5 = k(2.0) * (t4 * t1);
+        let t6 = k(0.5) - (t2 + t4 * t4) + k(3.0) * (t5 * t5 + t3 * t3);
+        *out = [t6, k(1.5)];
+    }
+    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 22 operations (6 ±, 16 ×, 0 ÷) and 2 functions.
+    fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
+        let mut rates = gyro_sim::JointSpace::rates(self);
+        gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
+        let k = T::constant;
+        let x0 = x[0];
+        let u0 = x[2];
+        let u1 = x[3];
+        let t0 = k(0.2) * u0;
+        let t1 = k(0.5) * x0;
+        let t2 = t1.cos();
+        let t3 = t1.sin();
+        let t4 = t3 * t2;
+        let t5 = t2 * t2;
+        let t6 = k(0.5) - t5;
+        let t7 = k(0.6) * t6 * (k(2.0) * t6 * t0) + k(0.6) * t4 * (k(2.0) * t4 * t0);
+        let t8 = k(3.0) * u1 + (u0 * (k(0.02) * (k(0.5) - (t5 + t3 * t3))) + t7);
+        *dx = [u0, u1, rates[0], rates[1], t8];
+    }
+    /// Writes the maximal state of a joint state: 6 operations (1 ±, 5 ×, 0 ÷) and 2 functions.
+    fn to_maximal(&self, _t: T, x: &Self::Joints, y: &mut Self::State) {
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let u0 = x[2];
+        let u1 = x[3];
+        let t0 = k(0.5) * x0;
+        *y = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t0.cos(),
+            k(0.0),
+            k(0.0),
+            t0.sin(),
+            k(1.0) + k(0.8) * x1,
+            k(0.6) * x1,
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            u0,
+            k(0.8) * u1,
+            k(0.6) * u1,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            x[4],
+        ];
+    }
+    /// Writes the joint state of a maximal state: 29 operations (13 ±, 16 ×, 0 ÷) and 3 functions.
+    fn to_joints(&self, _t: T, y: &Self::State, x: &mut Self::Joints) {
+        let k = T::constant;
+        let carriage_rx = y[7];
+        let carriage_ry = y[8];
+        let disc_e0 = y[3];
+        let disc_e1 = y[4];
+        let disc_e2 = y[5];
+        let disc_e3 = y[6];
+        let carriage_sx = y[20];
+        let carriage_sy = y[21];
+        let disc_wz = y[19];
+        let x0 = x[0];
+        let t0 = x0.sin();
+        let t1 = k(2.0) * (disc_e1 * disc_e2 + disc_e0 * disc_e3);
+        let t2 = x0.cos();
+        let t3 = disc_e0 * disc_e0 + disc_e1 * disc_e1;
+        let t4 = k(2.0) * (k(0.5) - t3)
+            - (k(1.0) - (disc_e3 * disc_e3 + (t3 + disc_e2 * disc_e2)));
+        let t5 = (t4 * t0 + t1 * t2).atan2(t1 * t0 - t4 * t2);
+        x[0] = x0 + t5;
+        x[1] = k(0.6) * carriage_ry - k(0.8) * (k(1.0) - carriage_rx);
+        x[2] = disc_wz;
+        x[3] = k(0.6) * carriage_sy + k(0.8) * carriage_sx;
+        x[4] = y[26];
+    }
+    /// Writes u̇ at a state that satisfies the constraints: 43 operations (17 ±, 26 ×, 0 ÷).
+    fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
+        let k = T::constant;
+        let disc_e0 = y[3];
+        let disc_e1 = y[4];
+        let disc_e2 = y[5];
+        let disc_e3 = y[6];
+        let carriage_e0 = y[10];
+        let carriage_e1 = y[11];
+        let carriage_e2 = y[12];
+        let carriage_e3 = y[13];
+        let t0 = disc_e0 * disc_e0;
+        let t1 = k(2.0) * (k(0.5) - (t0 + disc_e2 * disc_e2));
+        let t2 = k(2.0) * (disc_e2 * disc_e3 + disc_e0 * disc_e1);
+        let t3 = k(2.0) * (disc_e1 * disc_e2 - disc_e0 * disc_e3);
+        let t4 = k(0.5) - (t0 + disc_e3 * disc_e3)
+            + k(3.0) * (t3 * t3 + t2 * t2 + t1 * t1);
+        let t5 = k(0.6) * (carriage_e2 * carriage_e3 + carriage_e0 * carriage_e1)
+            - k(3.0)
+                * (k(0.5) - (carriage_e0 * carriage_e0 + carriage_e2 * carriage_e2));
+        let t6 = t5 + k(4.0) * (carriage_e1 * carriage_e2 + carriage_e0 * carriage_e3)
+            + k(0.8) * (carriage_e1 * carriage_e3 - carriage_e0 * carriage_e2);
+        *out = [t4, t6];
+    }
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 61 operations (23 ±, 38 ×, 0 ÷).
+    fn corrected_accelerations(
+        &self,
+        _t: T,
+        y: &Self::State,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let disc_e0 = y[3];
+        let disc_e1 = y[4];
+        let disc_e2 = y[5];
+        let disc_e3 = y[6];
+        let carriage_e0 = y[10];
+        let carriage_e1 = y[11];
+        let carriage_e2 = y[12];
+        let carriage_e3 = y[13];
+        let disc_wx = y[17];
+        let disc_wy = y[18];
+        let disc_wz = y[19];
+        let t0 = disc_e0 * disc_e0;
+        let t1 = k(2.0) * (k(0.5) - (t0 + disc_e2 * disc_e2));
+        let t2 = k(2.0) * (disc_e2 * disc_e3 + disc_e0 * disc_e1);
+        let t3 = k(2.0) * (disc_e1 * disc_e2 - disc_e0 * disc_e3);
+        let t4 = k(0.5) - (t0 + disc_e3 * disc_e3)
+            + k(3.0) * (t3 * t3 + t2 * t2 + t1 * t1);
+        let t5 = carriage_e0 * carriage_e0;
+        let t6 = carriage_e0 * carriage_e3;
+        let t7 = carriage_e1 * carriage_e2;
+        let t8 = k(1.2) * (t7 - t6)
+            - k(1.6) * (k(0.5) - (t5 + carriage_e1 * carriage_e1));
+        let t9 = carriage_e1 * carriage_e3 - carriage_e0 * carriage_e2;
+        let t10 = t7 + t6;
+        let t11 = k(0.5) - (t5 + carriage_e2 * carriage_e2);
+        let t12 = carriage_e2 * carriage_e3 + carriage_e0 * carriage_e1;
+        let t13 = k(0.6) * t12 - k(3.0) * t11 + k(4.0) * t10 + k(0.8) * t9;
+        *out = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            disc_wy * disc_wz,
+            -(disc_wx * disc_wz),
+            t4,
+            t13 * t8,
+            -(t13 * (k(1.2) * t11 - k(1.6) * t10)),
+            t13 * (k(1.2) * t12 + k(1.6) * t9),
+            k(0.0),
+            k(0.0),
+            k(0.0),
         ];
     }
 }

@@ -27,6 +27,12 @@
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
 //! | newton_step | dependent positions, one Newton step | 206 | 343 | 3 | 552 | 6 of 21 |
 //! | solve_velocities | dependent velocities, eq. (19) | 113 | 196 | 3 | 312 | 6 of 18 |
+//! | joint_accelerations | u̇ in joint coordinates | 36 | 81 | 1 | 118 | 0 of 3 |
+//! | joint_derivative | ẋ but for u̇ | 192 | 348 | 2 | 542 | 0 of 4 |
+//! | to_maximal | (q, v) of a joint state | 39 | 88 | 0 | 127 | 12 of 39 |
+//! | to_joints | (x, u) of a maximal state | 68 | 86 | 0 | 154 | 0 of 6 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 47 | 100 | 1 | 148 | 0 of 3 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 86 | 159 | 1 | 246 | 7 of 18 |
 
 /// The mechanism `pitching_bearings`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -1195,6 +1201,221 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for PitchingBearings<T> {
         y[38] = rotor_wz + t97 * (t87 * t89) + t95 * (t86 * t89);
         Ok(())
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 369 operations (132 ±, 236 ×, 1 ÷) and 8 functions.
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_sx = y[21];
+        let outer_ring_sy = y[22];
+        let outer_ring_sz = y[23];
+        let inner_ring_sx = y[27];
+        let inner_ring_sy = y[28];
+        let inner_ring_sz = y[29];
+        let rotor_sx = y[33];
+        let rotor_sy = y[34];
+        let rotor_sz = y[35];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        let outer_ring_dwx = accelerations[3];
+        let outer_ring_dwz = accelerations[5];
+        let inner_ring_dwx = accelerations[9];
+        let inner_ring_dwy = accelerations[10];
+        let inner_ring_dwz = accelerations[11];
+        let rotor_dsx = accelerations[12];
+        let rotor_dsy = accelerations[13];
+        let rotor_dsz = accelerations[14];
+        let rotor_dwx = accelerations[15];
+        let rotor_dwy = accelerations[16];
+        let rotor_dwz = accelerations[17];
+        let t0 = rotor_e0 * rotor_e0;
+        let t1 = k(2.0) * (k(0.5) - (t0 + rotor_e1 * rotor_e1));
+        let t2 = inner_ring_e0 * inner_ring_e0;
+        let t3 = k(2.0) * (k(0.5) - (t2 + inner_ring_e1 * inner_ring_e1));
+        let t4 = rotor_e0 * rotor_e3;
+        let t5 = rotor_e1 * rotor_e2;
+        let t6 = k(2.0) * (t5 + t4);
+        let t7 = inner_ring_e0 * inner_ring_e3;
+        let t8 = inner_ring_e1 * inner_ring_e2;
+        let t9 = k(2.0) * (t8 + t7);
+        let t10 = rotor_e0 * rotor_e2;
+        let t11 = rotor_e1 * rotor_e3;
+        let t12 = k(2.0) * (t11 - t10);
+        let t13 = inner_ring_e0 * inner_ring_e2;
+        let t14 = inner_ring_e1 * inner_ring_e3;
+        let t15 = k(2.0) * (t14 - t13);
+        let t16 = k(1e-5) * rotor_dwx;
+        let t17 = k(2.0) * (t5 - t4);
+        let t18 = k(2.0) * (k(0.5) - (t0 + rotor_e2 * rotor_e2));
+        let t19 = rotor_e0 * rotor_e1;
+        let t20 = rotor_e2 * rotor_e3;
+        let t21 = k(2.0) * (t20 + t19);
+        let t22 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
+        let t23 = t22 * (t15 * t21 - (t9 * t18 + t3 * t17))
+            + t16 * (t15 * t12 + (t9 * t6 + t3 * t1));
+        let t24 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
+        let t25 = k(2.0) * (t11 + t10);
+        let t26 = k(2.0) * (t20 - t19);
+        let t27 = k(2.0) * (k(0.5) - (t0 + rotor_e3 * rotor_e3));
+        let t28 = (t15 * t27 - (t9 * t26 - t3 * t25)) * t24 + t23;
+        let t29 = t28 - k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx);
+        let t30 = outer_ring_e0 * outer_ring_e0;
+        let t31 = k(2.0) * (k(0.5) - (t30 + outer_ring_e1 * outer_ring_e1));
+        let t32 = outer_ring_e0 * outer_ring_e3;
+        let t33 = outer_ring_e1 * outer_ring_e2;
+        let t34 = k(2.0) * (t33 + t32);
+        let t35 = outer_ring_e0 * outer_ring_e2;
+        let t36 = outer_ring_e1 * outer_ring_e3;
+        let t37 = k(2.0) * (t36 - t35);
+        let t38 = t8 - t7;
+        let t39 = k(2.0) * t38;
+        let t40 = k(0.5) - (t2 + inner_ring_e2 * inner_ring_e2);
+        let t41 = k(2.0) * t40;
+        let t42 = inner_ring_e0 * inner_ring_e1;
+        let t43 = inner_ring_e2 * inner_ring_e3;
+        let t44 = t43 + t42;
+        let t45 = k(2.0) * t44;
+        let t46 = t22 * (t45 * t21 + (t39 * t17 + t41 * t18))
+            + t16 * (t45 * t12 - (t41 * t6 + t39 * t1));
+        let t47 = (t45 * t27 - (t39 * t25 - t41 * t26)) * t24 + t46;
+        let t48 = t14 + t13;
+        let t49 = k(0.08) * rotor_dsx;
+        let t50 = t43 - t42;
+        let t51 = k(0.8) + k(0.08) * rotor_dsy;
+        let t52 = k(0.5) - (t2 + inner_ring_e3 * inner_ring_e3);
+        let t53 = k(0.08) * rotor_dsz;
+        let t54 = t53 * (k(0.00025) * t52)
+            - (t51 * (k(0.00025) * t50) + t49 * (k(0.00025) * t48));
+        let t55 = k(2e-6) * inner_ring_dwy + (t54 + t47);
+        let t56 = (t37 * t45 - (t34 * t41 + t31 * t39)) * t55
+            + (t37 * t15 + (t34 * t9 + t31 * t3)) * t29;
+        let t57 = k(2.0) * t48;
+        let t58 = k(2.0) * t50;
+        let t59 = k(2.0) * t52;
+        let t60 = t22 * (t59 * t21 - (t57 * t17 - t58 * t18))
+            + t16 * (t59 * t12 - (t58 * t6 - t57 * t1));
+        let t61 = (t57 * t25 + t58 * t26 + t59 * t27) * t24 + t60;
+        let t62 = t53 * (k(0.00025) * t44)
+            - (t51 * (k(0.00025) * t40) - t49 * (k(0.00025) * t38));
+        let t63 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz)
+            + (t62 - t61);
+        let t64 = (t37 * t59 - (t34 * t58 - t31 * t57)) * t63 - t56;
+        let t65 = k(2e-6) * outer_ring_dwx - t64;
+        let t66 = k(18.84955592153876) * t;
+        let t67 = k(0.05) * t66.sin();
+        let t68 = t67.cos();
+        let t69 = t67.sin();
+        let t70 = k(12.566370614359172) * t;
+        let t71 = k(0.1) * t70.sin();
+        let t72 = t71.cos();
+        let t73 = t72 * t69;
+        let t74 = t71.sin();
+        let t75 = t74 * t69;
+        let t76 = t75 * t37 + (t73 * t34 - t68 * t31);
+        let t77 = k(2.0) * (k(0.5) - (t30 + outer_ring_e3 * outer_ring_e3));
+        let t78 = outer_ring_e0 * outer_ring_e1;
+        let t79 = outer_ring_e2 * outer_ring_e3;
+        let t80 = k(2.0) * (t79 - t78);
+        let t81 = t74 * t80 + t72 * t77;
+        let t82 = k(2.0) * (t36 + t35);
+        let t83 = t68 * t82 + t73 * t80 - t75 * t77;
+        let t84 = t74 * t34 - t72 * t37;
+        let t85 = k(1.0) / (t84 * t83 - t81 * t76);
+        let t86 = (t77 * t45 - (t82 * t39 - t80 * t41)) * t55
+            + (t77 * t15 - (t80 * t9 - t82 * t3)) * t29;
+        let t87 = (t82 * t57 + t80 * t58 + t77 * t59) * t63 - t86;
+        let t88 = t87 - k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz);
+        let t89 = k(1.2566370614359172) * t70.cos();
+        let t90 = t89 * t74;
+        let t91 = k(2.0) * (t79 + t78);
+        let t92 = t89 * t72;
+        let t93 = k(2.0) * (k(0.5) - (t30 + outer_ring_e2 * outer_ring_e2));
+        let t94 = (t93 * t92 - t91 * t90) * (t83 * t85 * t88 + t76 * t85 * t65);
+        let t95 = k(0.9424777960769379) * t66.cos();
+        let t96 = t95 * t68;
+        let t97 = k(2.0) * (t33 - t32) * (t95 * t69) - t93 * (t69 * t90 - t72 * t96);
+        let t98 = (t91 * (t69 * t92 + t74 * t96) - t97)
+            * (t81 * t85 * t88 + t84 * t85 * t65);
+        *dy = [
+            outer_ring_sx,
+            outer_ring_sy,
+            outer_ring_sz,
+            -(k(0.5)
+                * (outer_ring_e1 * outer_ring_wx + outer_ring_e2 * outer_ring_wy
+                    + outer_ring_e3 * outer_ring_wz)),
+            k(0.5)
+                * (outer_ring_e0 * outer_ring_wx - outer_ring_e3 * outer_ring_wy
+                    + outer_ring_e2 * outer_ring_wz),
+            k(0.5)
+                * (outer_ring_e3 * outer_ring_wx + outer_ring_e0 * outer_ring_wy
+                    - outer_ring_e1 * outer_ring_wz),
+            -(k(0.5)
+                * (outer_ring_e2 * outer_ring_wx - outer_ring_e1 * outer_ring_wy
+                    - outer_ring_e0 * outer_ring_wz)),
+            inner_ring_sx,
+            inner_ring_sy,
+            inner_ring_sz,
+            -(k(0.5)
+                * (inner_ring_e1 * inner_ring_wx + inner_ring_e2 * inner_ring_wy
+                    + inner_ring_e3 * inner_ring_wz)),
+            k(0.5)
+                * (inner_ring_e0 * inner_ring_wx - inner_ring_e3 * inner_ring_wy
+                    + inner_ring_e2 * inner_ring_wz),
+            k(0.5)
+                * (inner_ring_e3 * inner_ring_wx + inner_ring_e0 * inner_ring_wy
+                    - inner_ring_e1 * inner_ring_wz),
+            -(k(0.5)
+                * (inner_ring_e2 * inner_ring_wx - inner_ring_e1 * inner_ring_wy
+                    - inner_ring_e0 * inner_ring_wz)),
+            rotor_sx,
+            rotor_sy,
+            rotor_sz,
+            -(k(0.5)
+                * (rotor_e1 * rotor_wx + rotor_e2 * rotor_wy + rotor_e3 * rotor_wz)),
+            k(0.5) * (rotor_e0 * rotor_wx - rotor_e3 * rotor_wy + rotor_e2 * rotor_wz),
+            k(0.5) * (rotor_e3 * rotor_wx + rotor_e0 * rotor_wy - rotor_e1 * rotor_wz),
+            -(k(0.5)
+                * (rotor_e2 * rotor_wx - rotor_e1 * rotor_wy - rotor_e0 * rotor_wz)),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            accelerations[6],
+            accelerations[7],
+            accelerations[8],
+            accelerations[9],
+            accelerations[10],
+            accelerations[11],
+            accelerations[12],
+            accelerations[13],
+            accelerations[14],
+            accelerations[15],
+            accelerations[16],
+            accelerations[17],
+            -(t98 + t94),
+        ];
+    }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for PitchingBearings<T> {
     type Velocities = [T; 18];
@@ -2312,6 +2533,787 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for PitchingBearings<T> {
             -t4,
             t67 * t99 * t30 + t28 * (t65 * t99),
             t55 * t99 * t30 + t28 * (t53 * t99),
+        ];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
+    type Joints = [T; 7];
+    type Rates = [T; 3];
+    fn joint_start(&self) -> Self::Joints {
+        let k = T::constant;
+        [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(100.0), k(0.0)]
+    }
+    fn rates(&self) -> Self::Rates {
+        [T::constant(0.0); 3]
+    }
+    /// Writes u̇: 118 operations (36 ±, 81 ×, 1 ÷) and 12 functions.
+    fn joint_accelerations(&self, t: T, x: &Self::Joints, out: &mut Self::Rates) {
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let u0 = x[3];
+        let u1 = x[4];
+        let u2 = x[5];
+        let t0 = x1.sin();
+        let t1 = x1.cos();
+        let t2 = k(1e-6) + (t1 * (k(7.00125e-6) * t1) + t0 * (k(1e-6) * t0));
+        let t3 = x0.cos();
+        let t4 = k(18.84955592153876) * t;
+        let t5 = t4.sin();
+        let t6 = k(0.05) * t5;
+        let t7 = t6.cos();
+        let t8 = k(12.566370614359172) * t;
+        let t9 = k(1.2566370614359172) * t8.cos();
+        let t10 = t9 * t7;
+        let t11 = x0.sin();
+        let t12 = k(0.9424777960769379) * t4.cos();
+        let t13 = t12 * t11 - t10 * t3;
+        let t14 = t12 * t3 + t10 * t11;
+        let t15 = t6.sin();
+        let t16 = t9 * t15 - u0;
+        let t17 = t16 * t1 - t0 * t13;
+        let t18 = u1 * t17;
+        let t19 = u1 + t14;
+        let t20 = t16 * t0 + t1 * t13;
+        let t21 = u2 - t20;
+        let t22 = k(1e-5) * (t20 * (k(0.000125) * t19))
+            + k(5e-6) * (t19 * t21 + u2 * t19);
+        let t23 = t1 * (k(7.00125e-6) * (u1 * t20) + t22)
+            + t0 * (k(1e-6) * (t19 * t17 - t18));
+        let t24 = t8.sin();
+        let t25 = k(0.1) * t24;
+        let t26 = t25.cos();
+        let t27 = k(10.0) * (t26 * t15);
+        let t28 = k(10.0) * t25.sin();
+        let t29 = k(15.791367041742975) * t24;
+        let t30 = t7 * t29 + t9 * (t12 * t15);
+        let t31 = k(17.765287921960844) * t5;
+        let t32 = t31 * t11 - t3 * t30 - u0 * t14;
+        let t33 = t15 * t29 - t9 * (t12 * t7);
+        let t34 = t33 * t2 - (t1 * (k(7.00125e-6) * t0) - t0 * (k(1e-6) * t1)) * t32;
+        let t35 = t34 + k(1e-5) * t1 * (t3 * t28 - t11 * t27)
+            + (t23 - k(1e-6) * (t14 * t13));
+        let t36 = t35 / t2;
+        let t37 = k(1e-5) * (t20 * (k(0.000125) * t17))
+            + k(5e-6) * (t21 * t17 + u2 * t17);
+        let t38 = t1 * (k(10.0) * (t26 * t7)) - t0 * (t11 * t28 + t3 * t27);
+        let t39 = k(6.00125e-6) * (t31 * t3 + t11 * t30 + u0 * t13) - k(1e-5) * t38;
+        *out = [
+            -t36,
+            k(166631.95167673402) * (t39 - (t37 + k(1e-6) * (t20 * t17))),
+            t18 - (t0 * (t33 - t36) + t1 * t32),
+        ];
+    }
+    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 542 operations (192 ±, 348 ×, 2 ÷) and 24 functions.
+    fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
+        let mut rates = gyro_sim::JointSpace::rates(self);
+        gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let u0 = x[3];
+        let u1 = x[4];
+        let u2 = x[5];
+        let (
+            t23,
+            t25,
+            t27,
+            t29,
+            t30,
+            t31,
+            t35,
+            t36,
+            t38,
+            t44,
+            t47,
+            t49,
+            t50,
+            t51,
+            t58,
+            t103,
+            t196,
+            t199,
+        ) = {
+            let t0 = k(0.5) * x0;
+            let t1 = t0.sin();
+            let t2 = k(18.84955592153876) * t;
+            let t3 = t2.sin();
+            let t4 = k(0.025) * t3;
+            let t5 = t4.sin();
+            let t6 = k(12.566370614359172) * t;
+            let t7 = t6.sin();
+            let t8 = k(0.05) * t7;
+            let t9 = t8.cos();
+            let t10 = t9 * t5;
+            let t11 = t0.cos();
+            let t12 = t4.cos();
+            let t13 = t8.sin();
+            let t14 = t13 * t12;
+            let t15 = t14 * t11 - t10 * t1;
+            let t16 = t13 * t5;
+            let t17 = t9 * t12;
+            let t18 = t17 * t11 + t16 * t1;
+            let t19 = t18 * t15;
+            let t20 = t10 * t11 + t14 * t1;
+            let t21 = t16 * t11 - t17 * t1;
+            let t22 = t21 * t20;
+            let t23 = k(2.0) * (t22 - t19);
+            let t24 = k(0.1) * t7;
+            let t25 = t24.sin();
+            let t26 = k(1.2566370614359172) * t6.cos();
+            let t27 = t26 * t25;
+            let t28 = t18 * t18;
+            let t29 = k(2.0) * (k(0.5) - (t28 + t21 * t21));
+            let t30 = t24.cos();
+            let t31 = t26 * t30;
+            let t32 = k(2.0) * (k(0.5) - (t28 + t15 * t15));
+            let t33 = k(0.05) * t3;
+            let t34 = t33.cos();
+            let t35 = t18 * t20;
+            let t36 = t15 * t21;
+            let t37 = k(2.0) * (t36 - t35);
+            let t38 = t33.sin();
+            let t39 = t30 * t38;
+            let t40 = t18 * t21;
+            let t41 = t15 * t20;
+            let t42 = k(2.0) * (t41 + t40);
+            let t43 = t25 * t38;
+            let t44 = t43 * t42 - (t39 * t37 + t34 * t32);
+            let t45 = k(2.0) * (t22 + t19);
+            let t46 = k(2.0) * (k(0.5) - (t28 + t20 * t20));
+            let t47 = t30 * t46 - t25 * t45;
+            let t48 = k(2.0) * (t41 - t40);
+            let t49 = t43 * t46 + (t39 * t45 - t34 * t48);
+            let t50 = t30 * t42 + t25 * t37;
+            let t51 = k(1.0) / (t50 * t49 - t47 * t44);
+            let t52 = k(2.0) * t1;
+            let t53 = t11 * t52;
+            let t54 = t26 * t34;
+            let t55 = k(1.0) - t1 * t52;
+            let t56 = k(0.9424777960769379) * t2.cos();
+            let t57 = t56 * t55 + t54 * t53;
+            let t58 = t56 * t38;
+            let t59 = k(15.791367041742975) * t7;
+            let t60 = t34 * t59 + t26 * t58;
+            let t61 = x0.cos();
+            let t62 = x0.sin();
+            let t63 = k(17.765287921960844) * t3;
+            let t64 = t63 * t62 - t61 * t60;
+            let t65 = t64 - u0 * t57;
+            let t66 = k(0.5) * x1;
+            let t67 = t66.sin();
+            let t68 = t66.cos();
+            let t69 = t15 * t68 - t21 * t67;
+            let t70 = t18 * t68 - t20 * t67;
+            let t71 = t70 * t70;
+            let t72 = k(2.0) * (k(0.5) - (t71 + t69 * t69));
+            let t73 = t20 * t68 + t18 * t67;
+            let t74 = t70 * t73;
+            let t75 = t21 * t68 + t15 * t67;
+            let t76 = t69 * t75;
+            let t77 = k(2.0) * (t76 - t74);
+            let t78 = t70 * t75;
+            let t79 = t69 * t73;
+            let t80 = k(2.0) * (t79 + t78);
+            let t81 = u1 + t57;
+            let t82 = t56 * t53 - t54 * t55;
+            let t83 = k(2.0) * t67;
+            let t84 = t68 * t83;
+            let t85 = k(1.0) - t67 * t83;
+            let t86 = t26 * t38 - u0;
+            let t87 = t86 * t85 - t84 * t82;
+            let t88 = x1.cos();
+            let t89 = x1.sin();
+            let t90 = k(1e-6) + (t88 * (k(7.00125e-6) * t88) + t89 * (k(1e-6) * t89));
+            let t91 = t56 * t62 - t54 * t61;
+            let t92 = t56 * t61 + t54 * t62;
+            let t93 = t86 * t88 - t89 * t91;
+            let t94 = u1 * t93;
+            let t95 = u1 + t92;
+            let t96 = t86 * t89 + t88 * t91;
+            let t97 = u2 - t96;
+            let t98 = k(1e-5) * (t96 * (k(0.000125) * t95))
+                + k(5e-6) * (t95 * t97 + u2 * t95);
+            let t99 = t88 * (k(7.00125e-6) * (u1 * t96) + t98)
+                + t89 * (k(1e-6) * (t95 * t93 - t94));
+            let t100 = k(10.0) * t39;
+            let t101 = k(10.0) * t25;
+            let t102 = t64 - u0 * t92;
+            let t103 = t56 * t34;
+            let t104 = t38 * t59 - t26 * t103;
+            let t105 = t104 * t90
+                - (t88 * (k(7.00125e-6) * t89) - t89 * (k(1e-6) * t88)) * t102;
+            let t106 = t105 + k(1e-5) * t88 * (t61 * t101 - t62 * t100)
+                + (t99 - k(1e-6) * (t92 * t91));
+            let t107 = t104 - t106 / t90;
+            let t108 = t89 * t107;
+            let t109 = t108 + t88 * t65 - u1 * t87;
+            let t110 = k(0.5) * x2;
+            let t111 = t110.sin();
+            let t112 = t110.cos();
+            let t113 = t69 * t112 + t70 * t111;
+            let t114 = t70 * t112 - t69 * t111;
+            let t115 = t114 * t114;
+            let t116 = k(2.0) * (k(0.5) - (t115 + t113 * t113));
+            let t117 = t73 * t112 + t75 * t111;
+            let t118 = t114 * t117;
+            let t119 = t75 * t112 - t73 * t111;
+            let t120 = t113 * t119;
+            let t121 = k(2.0) * (t120 - t118);
+            let t122 = t114 * t119;
+            let t123 = t113 * t117;
+            let t124 = k(2.0) * (t123 + t122);
+            let t125 = k(1e-5) * (t94 - (t108 + t88 * t102) + t109);
+            let t126 = k(2.0) * (t120 + t118);
+            let t127 = k(2.0) * (k(0.5) - (t115 + t119 * t119));
+            let t128 = t114 * t113;
+            let t129 = t119 * t117;
+            let t130 = k(2.0) * (t129 - t128);
+            let t131 = k(2.0) * t111;
+            let t132 = t112 * t131;
+            let t133 = k(1.0) - t111 * t131;
+            let t134 = t133 * t81 + t132 * t87;
+            let t135 = t86 * t84 + t85 * t82;
+            let t136 = u2 - t135;
+            let t137 = t88 * t107 - t89 * t65 + u1 * t135;
+            let t138 = x2.cos();
+            let t139 = t63 * t61 + t62 * t60;
+            let t140 = t139 + u0 * t82;
+            let t141 = k(1e-5) * (t96 * (k(0.000125) * t93))
+                + k(5e-6) * (t97 * t93 + u2 * t93);
+            let t142 = t88 * (k(10.0) * (t30 * t34)) - t89 * (t62 * t101 + t61 * t100);
+            let t143 = k(6.00125e-6) * (t139 + u0 * t91) - k(1e-5) * t142
+                - (t141 + k(1e-6) * (t96 * t93));
+            let t144 = k(166631.95167673402) * t143 - t140;
+            let t145 = x2.sin();
+            let t146 = t145 * t144 + t138 * t137 + u2 * t134 + t136 * t134;
+            let t147 = k(5e-6) * t146;
+            let t148 = t147 * (t80 * t130 - (t77 * t127 + t72 * t126))
+                - t125 * (t80 * t124 + (t77 * t121 + t72 * t116));
+            let t149 = k(2.0) * (t123 - t122);
+            let t150 = k(2.0) * (t129 + t128);
+            let t151 = k(2.0) * (k(0.5) - (t115 + t117 * t117));
+            let t152 = t132 * t81 - t133 * t87;
+            let t153 = t138 * t144 - t145 * t137 - u2 * t152 - t136 * t152;
+            let t154 = k(5e-6) * t153;
+            let t155 = t154 * (t80 * t151 - (t77 * t150 - t72 * t149)) + t148;
+            let t156 = t155 - k(1e-6) * (t109 + t87 * t81);
+            let t157 = t76 + t74;
+            let t158 = k(2.0) * t157;
+            let t159 = k(0.5) - (t71 + t75 * t75);
+            let t160 = k(2.0) * t159;
+            let t161 = t70 * t69;
+            let t162 = t75 * t73;
+            let t163 = t162 - t161;
+            let t164 = k(2.0) * t163;
+            let t165 = t147 * (t164 * t130 + (t160 * t127 + t158 * t126))
+                - t125 * (t164 * t124 - (t160 * t121 + t158 * t116));
+            let t166 = t154 * (t164 * t151 + (t160 * t150 - t158 * t149)) + t165;
+            let t167 = k(0.000125) * t87;
+            let t168 = k(0.000125) * t81;
+            let t169 = t81 * t168 + t87 * t167;
+            let t170 = t167 * t135;
+            let t171 = t168 * t135;
+            let t172 = t79 - t78;
+            let t173 = k(2.0) * t172;
+            let t174 = k(0.00025) * t172;
+            let t175 = k(0.00025) * t157;
+            let t176 = t144 * t175 + t137 * t174
+                + (t173 * t171 + (t158 * t170 - t72 * t169));
+            let t177 = k(0.08) * t176;
+            let t178 = t162 + t161;
+            let t179 = k(2.0) * t178;
+            let t180 = k(0.00025) * t178;
+            let t181 = k(0.00025) * t159;
+            let t182 = t144 * t181 - t137 * t180
+                - (t179 * t171 - (t160 * t170 - t77 * t169));
+            let t183 = k(0.8) - k(0.08) * t182;
+            let t184 = k(0.5) - (t71 + t73 * t73);
+            let t185 = k(2.0) * t184;
+            let t186 = k(0.00025) * t184;
+            let t187 = k(0.00025) * t163;
+            let t188 = t144 * t187 - t137 * t186
+                - (t185 * t171 - (t164 * t170 + t80 * t169));
+            let t189 = k(0.08) * t188;
+            let t190 = t186 * t189 - (t180 * t183 + t174 * t177) - t166 - k(2e-6) * t137;
+            let t191 = t190 * (t42 * t164 - (t37 * t160 + t32 * t158))
+                - t156 * (t42 * t80 + (t37 * t77 + t32 * t72));
+            let t192 = t147 * (t185 * t130 + (t179 * t127 - t173 * t126))
+                - t125 * (t185 * t124 - (t179 * t121 - t173 * t116));
+            let t193 = t154 * (t185 * t151 + (t179 * t150 + t173 * t149)) + t192;
+            let t194 = t187 * t189 - (t181 * t183 - t175 * t177) + t193
+                + k(1e-6) * (t144 + t87 * t135);
+            let t195 = t194 * (t42 * t185 - (t37 * t179 - t32 * t173)) - t191;
+            let t196 = t195 - k(2e-6) * t65;
+            let t197 = t190 * (t46 * t164 + (t45 * t160 - t48 * t158))
+                - t156 * (t46 * t80 - (t45 * t77 - t48 * t72));
+            let t198 = t194 * (t46 * t185 + (t45 * t179 + t48 * t173)) - t197;
+            let t199 = t198 - k(1e-6) * (t140 + t86 * t82);
+            (
+                t23,
+                t25,
+                t27,
+                t29,
+                t30,
+                t31,
+                t35,
+                t36,
+                t38,
+                t44,
+                t47,
+                t49,
+                t50,
+                t51,
+                t58,
+                t103,
+                t196,
+                t199,
+            )
+        };
+        let (t200, t202) = {
+            let t200 = (t199 * (t49 * t51) + t196 * (t44 * t51))
+                * (t31 * t29 + t27 * t23);
+            let t201 = t58 * (k(2.0) * (t36 + t35)) + (t38 * t27 - t30 * t103) * t29;
+            let t202 = (t199 * (t47 * t51) + t196 * (t50 * t51))
+                * (t201 - (t38 * t31 + t25 * t103) * t23);
+            (t200, t202)
+        };
+        *dx = [u0, u1, u2, rates[0], rates[1], rates[2], t200 - t202];
+    }
+    /// Writes the maximal state of a joint state: 127 operations (39 ±, 88 ×, 0 ÷) and 16 functions.
+    fn to_maximal(&self, t: T, x: &Self::Joints, y: &mut Self::State) {
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let u0 = x[3];
+        let u1 = x[4];
+        let u2 = x[5];
+        let t0 = k(0.5) * x0;
+        let t1 = t0.sin();
+        let t2 = k(18.84955592153876) * t;
+        let t3 = t2.sin();
+        let t4 = k(0.025) * t3;
+        let t5 = t4.sin();
+        let t6 = k(12.566370614359172) * t;
+        let t7 = k(0.05) * t6.sin();
+        let t8 = t7.sin();
+        let t9 = t8 * t5;
+        let t10 = t0.cos();
+        let t11 = t4.cos();
+        let t12 = t7.cos();
+        let t13 = t12 * t11;
+        let t14 = t13 * t10 + t9 * t1;
+        let t15 = t12 * t5;
+        let t16 = t8 * t11;
+        let t17 = t16 * t10 - t15 * t1;
+        let t18 = t9 * t10 - t13 * t1;
+        let t19 = t15 * t10 + t16 * t1;
+        let t20 = k(0.5) * x1;
+        let t21 = t20.sin();
+        let t22 = t20.cos();
+        let t23 = t14 * t22 - t19 * t21;
+        let t24 = t17 * t22 - t18 * t21;
+        let t25 = t18 * t22 + t17 * t21;
+        let t26 = t19 * t22 + t14 * t21;
+        let t27 = t23 * t23;
+        let t28 = t23 * t26;
+        let t29 = t24 * t25;
+        let t30 = t23 * t25;
+        let t31 = t24 * t26;
+        let t32 = k(0.5) * x2;
+        let t33 = t32.sin();
+        let t34 = t32.cos();
+        let t35 = k(2.0) * t1;
+        let t36 = k(1.0) - t1 * t35;
+        let t37 = k(0.05) * t3;
+        let t38 = k(1.2566370614359172) * t6.cos();
+        let t39 = t38 * t37.cos();
+        let t40 = t10 * t35;
+        let t41 = k(0.9424777960769379) * t2.cos();
+        let t42 = t41 * t40 - t39 * t36;
+        let t43 = t38 * t37.sin() - u0;
+        let t44 = t41 * t36 + t39 * t40;
+        let t45 = k(2.0) * t21;
+        let t46 = k(1.0) - t21 * t45;
+        let t47 = t22 * t45;
+        let t48 = t43 * t47 + t46 * t42;
+        let t49 = t43 * t46 - t47 * t42;
+        let t50 = u1 + t44;
+        let t51 = k(0.000125) * t50;
+        let t52 = k(0.000125) * t49;
+        let t53 = k(2.0) * (t31 - t30) * t52 - k(2.0) * (t29 + t28) * t51;
+        let t54 = t23 * t24;
+        let t55 = t25 * t26;
+        let t56 = k(2.0) * (t55 + t54) * t52
+            + k(2.0) * (k(0.5) - (t27 + t25 * t25)) * t51;
+        let t57 = k(2.0) * (k(0.5) - (t27 + t26 * t26)) * t52
+            + k(2.0) * (t55 - t54) * t51;
+        let t58 = k(2.0) * t33;
+        let t59 = k(1.0) - t33 * t58;
+        let t60 = t34 * t58;
+        *y = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t14,
+            t17,
+            -t18,
+            t19,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t23,
+            t24,
+            -t25,
+            t26,
+            -(k(0.00025) * (k(0.5) - (t27 + t24 * t24))),
+            -(k(0.00025) * (t29 - t28)),
+            k(0.00025) * (t31 + t30),
+            t23 * t34 - t24 * t33,
+            t24 * t34 + t23 * t33,
+            t26 * t33 - t25 * t34,
+            t26 * t34 + t25 * t33,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t42,
+            -t43,
+            t44,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t48,
+            -t49,
+            t50,
+            t53,
+            -t56,
+            -t57,
+            u2 - t48,
+            t60 * t50 - t59 * t49,
+            t59 * t50 + t60 * t49,
+            x[6],
+        ];
+    }
+    /// Writes the joint state of a maximal state: 154 operations (68 ±, 86 ×, 0 ÷) and 16 functions.
+    fn to_joints(&self, t: T, y: &Self::State, x: &mut Self::Joints) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let t0 = x0.sin();
+        let t1 = outer_ring_e2 * outer_ring_e2;
+        let t2 = outer_ring_e0 * outer_ring_e0;
+        let t3 = t2 + outer_ring_e1 * outer_ring_e1;
+        let t4 = outer_ring_e3 * outer_ring_e3;
+        let t5 = k(1.0) - (t4 + (t3 + t1));
+        let t6 = k(2.0) * (k(0.5) - (t2 + t4)) - t5;
+        let t7 = k(0.05) * (k(18.84955592153876) * t).sin();
+        let t8 = t7.sin();
+        let t9 = k(12.566370614359172) * t;
+        let t10 = k(0.1) * t9.sin();
+        let t11 = t10.sin();
+        let t12 = outer_ring_e0 * outer_ring_e1;
+        let t13 = outer_ring_e2 * outer_ring_e3;
+        let t14 = k(2.0) * (t13 - t12);
+        let t15 = t10.cos();
+        let t16 = outer_ring_e0 * outer_ring_e2;
+        let t17 = outer_ring_e1 * outer_ring_e3;
+        let t18 = t7.cos() * (k(2.0) * (t17 + t16)) + t15 * t8 * t14;
+        let t19 = t18 - t11 * t8 * t6;
+        let t20 = x0.cos();
+        let t21 = t11 * t14 + t15 * t6;
+        let t22 = (t21 * t0 + t19 * t20).atan2(t19 * t0 - t21 * t20);
+        let t23 = x1.sin();
+        let t24 = inner_ring_e0 * inner_ring_e2;
+        let t25 = inner_ring_e1 * inner_ring_e3;
+        let t26 = k(2.0) * (t25 - t24);
+        let t27 = inner_ring_e0 * inner_ring_e3;
+        let t28 = inner_ring_e1 * inner_ring_e2;
+        let t29 = k(2.0) * (t28 + t27);
+        let t30 = inner_ring_e2 * inner_ring_e2;
+        let t31 = inner_ring_e0 * inner_ring_e0;
+        let t32 = t31 + inner_ring_e1 * inner_ring_e1;
+        let t33 = inner_ring_e3 * inner_ring_e3;
+        let t34 = k(1.0) - (t33 + (t32 + t30));
+        let t35 = k(2.0) * (k(0.5) - t32) - t34;
+        let t36 = outer_ring_e0 * outer_ring_e3;
+        let t37 = outer_ring_e1 * outer_ring_e2;
+        let t38 = k(2.0) * (t37 - t36) * t35
+            + t29 * (k(2.0) * (k(0.5) - (t2 + t1)) - t5);
+        let t39 = t38 - k(2.0) * (t13 + t12) * t26;
+        let t40 = x1.cos();
+        let t41 = (k(2.0) * (k(0.5) - t3) - t5) * t35 + k(2.0) * (t37 + t36) * t29;
+        let t42 = t41 + k(2.0) * (t17 - t16) * t26;
+        let t43 = -(t42 * t23 + t39 * t40).atan2(t42 * t40 - t39 * t23);
+        let t44 = x2.sin();
+        let t45 = k(2.0) * (rotor_e2 * rotor_e3 + rotor_e0 * rotor_e1);
+        let t46 = rotor_e2 * rotor_e2;
+        let t47 = rotor_e0 * rotor_e0;
+        let t48 = k(2.0) * (k(0.5) - (t47 + t46))
+            - (k(1.0) - (rotor_e3 * rotor_e3 + (t47 + rotor_e1 * rotor_e1 + t46)));
+        let t49 = inner_ring_e0 * inner_ring_e1;
+        let t50 = inner_ring_e2 * inner_ring_e3;
+        let t51 = k(2.0) * (rotor_e1 * rotor_e2 - rotor_e0 * rotor_e3);
+        let t52 = k(2.0) * (t25 + t24) * t51 - k(2.0) * (t50 - t49) * t48;
+        let t53 = t52 - t45 * (k(2.0) * (k(0.5) - (t31 + t33)) - t34);
+        let t54 = x2.cos();
+        let t55 = k(2.0) * (t28 - t27) * t51
+            + (k(2.0) * (k(0.5) - (t31 + t30)) - t34) * t48;
+        let t56 = t55 + k(2.0) * (t50 + t49) * t45;
+        let t57 = (t53 * t54 - t56 * t44).atan2(t56 * t54 + t53 * t44);
+        x[0] = x0 + t22;
+        x[1] = x1 + t43;
+        x[2] = x2 + t57;
+        x[3] = k(1.2566370614359172) * t9.cos() * t8 + outer_ring_wy;
+        x[4] = inner_ring_wz - outer_ring_wz;
+        x[5] = rotor_wx - inner_ring_wx;
+        x[6] = y[39];
+    }
+    /// Writes u̇ at a state that satisfies the constraints: 148 operations (47 ±, 100 ×, 1 ÷) and 12 functions.
+    fn joint_accelerations_at(&self, t: T, y: &Self::State, out: &mut Self::Rates) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let t0 = outer_ring_wz - inner_ring_wz;
+        let t1 = inner_ring_wy * t0;
+        let t2 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t3 = k(2.0) * t2;
+        let t4 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t5 = t4 * t3;
+        let t6 = inner_ring_wx - rotor_wx;
+        let t7 = inner_ring_wx - t6;
+        let t8 = k(1e-5) * (inner_ring_wx * (k(0.000125) * inner_ring_wz))
+            - k(5e-6) * (inner_ring_wz * t7 - inner_ring_wz * t6);
+        let t9 = k(1.0) - t2 * t3;
+        let t10 = t9 * (k(7.00125e-6) * (inner_ring_wx * t0) - t8)
+            + t5 * (k(1e-6) * (inner_ring_wy * inner_ring_wz + t1));
+        let t11 = k(18.84955592153876) * t;
+        let t12 = t11.sin();
+        let t13 = k(0.05) * t12;
+        let t14 = t13.sin();
+        let t15 = k(12.566370614359172) * t;
+        let t16 = k(1.2566370614359172) * t15.cos();
+        let t17 = t16 * t14 + outer_ring_wy;
+        let t18 = k(0.9424777960769379) * t11.cos();
+        let t19 = t15.sin();
+        let t20 = k(15.791367041742975) * t19;
+        let t21 = t13.cos();
+        let t22 = t21 * t20 + t16 * (t18 * t14);
+        let t23 = k(0.025) * t12;
+        let t24 = t23.cos();
+        let t25 = k(0.05) * t19;
+        let t26 = t25.sin();
+        let t27 = t26 * t24;
+        let t28 = t25.cos();
+        let t29 = t28 * t24;
+        let t30 = t23.sin();
+        let t31 = t28 * t30;
+        let t32 = t26 * t30;
+        let t33 = t32 * outer_ring_e0 - t31 * outer_ring_e1 + t29 * outer_ring_e2
+            + t27 * outer_ring_e3;
+        let t34 = k(2.0) * t33;
+        let t35 = k(1.0) - t33 * t34;
+        let t36 = t29 * outer_ring_e0 + t27 * outer_ring_e1 - t32 * outer_ring_e2
+            + t31 * outer_ring_e3;
+        let t37 = t36 * t34;
+        let t38 = k(17.765287921960844) * t12;
+        let t39 = t38 * t37 - t35 * t22 - outer_ring_wz * t17;
+        let t40 = k(1e-6) + (t9 * (k(7.00125e-6) * t9) + t5 * (k(1e-6) * t5));
+        let t41 = t14 * t20 - t16 * (t18 * t21);
+        let t42 = t41 * t40 + (t9 * (k(7.00125e-6) * t5) - t5 * (k(1e-6) * t9)) * t39;
+        let t43 = k(0.1) * t19;
+        let t44 = t43.cos();
+        let t45 = k(10.0) * (t44 * t14);
+        let t46 = k(10.0) * t43.sin();
+        let t47 = k(1e-5) * t9 * (t35 * t46 - t37 * t45) + t42
+            + (k(1e-6) * (outer_ring_wx * outer_ring_wz) + t10);
+        let t48 = t47 / t40;
+        let t49 = k(1e-5) * (inner_ring_wx * (k(0.000125) * inner_ring_wy))
+            - k(5e-6) * (inner_ring_wy * t7 - inner_ring_wy * t6);
+        let t50 = t9 * (k(10.0) * (t44 * t21)) + t5 * (t37 * t46 + t35 * t45);
+        let t51 = k(1e-5) * t50
+            - k(6.00125e-6) * (t38 * t35 + t37 * t22 - outer_ring_wx * t17);
+        *out = [
+            -t48,
+            -(k(166631.95167673402)
+                * (t51 + (k(1e-6) * (inner_ring_wx * inner_ring_wy) + t49))),
+            t1 + (t5 * (t41 - t48) - t9 * t39),
+        ];
+    }
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 246 operations (86 ±, 159 ×, 1 ÷) and 12 functions.
+    fn corrected_accelerations(
+        &self,
+        t: T,
+        y: &Self::State,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        let t0 = k(18.84955592153876) * t;
+        let t1 = t0.sin();
+        let t2 = k(0.05) * t1;
+        let t3 = t2.sin();
+        let t4 = k(12.566370614359172) * t;
+        let t5 = k(1.2566370614359172) * t4.cos();
+        let t6 = t5 * t3 + outer_ring_wy;
+        let t7 = k(0.9424777960769379) * t0.cos();
+        let t8 = t4.sin();
+        let t9 = k(15.791367041742975) * t8;
+        let t10 = t2.cos();
+        let t11 = t10 * t9 + t5 * (t7 * t3);
+        let t12 = k(0.025) * t1;
+        let t13 = t12.cos();
+        let t14 = k(0.05) * t8;
+        let t15 = t14.sin();
+        let t16 = t15 * t13;
+        let t17 = t14.cos();
+        let t18 = t17 * t13;
+        let t19 = t12.sin();
+        let t20 = t17 * t19;
+        let t21 = t15 * t19;
+        let t22 = t21 * outer_ring_e0 - t20 * outer_ring_e1 + t18 * outer_ring_e2
+            + t16 * outer_ring_e3;
+        let t23 = k(2.0) * t22;
+        let t24 = k(1.0) - t22 * t23;
+        let t25 = t18 * outer_ring_e0 + t16 * outer_ring_e1 - t21 * outer_ring_e2
+            + t20 * outer_ring_e3;
+        let t26 = t25 * t23;
+        let t27 = k(17.765287921960844) * t1;
+        let t28 = t27 * t26 - t24 * t11 - outer_ring_wz * t6;
+        let t29 = outer_ring_wz - inner_ring_wz;
+        let t30 = inner_ring_wy * t29;
+        let t31 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t32 = k(2.0) * t31;
+        let t33 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t34 = t33 * t32;
+        let t35 = inner_ring_wx - rotor_wx;
+        let t36 = inner_ring_wx - t35;
+        let t37 = k(0.000125) * inner_ring_wz;
+        let t38 = inner_ring_wx * t37;
+        let t39 = inner_ring_wx * t29;
+        let t40 = k(7.00125e-6) * t39
+            - (k(1e-5) * t38 - k(5e-6) * (inner_ring_wz * t36 - inner_ring_wz * t35));
+        let t41 = k(1.0) - t31 * t32;
+        let t42 = k(1e-6) * (outer_ring_wx * outer_ring_wz)
+            + (t41 * t40 + t34 * (k(1e-6) * (inner_ring_wy * inner_ring_wz + t30)));
+        let t43 = k(1e-6) + (t41 * (k(7.00125e-6) * t41) + t34 * (k(1e-6) * t34));
+        let t44 = t3 * t9 - t5 * (t7 * t10);
+        let t45 = t44 * t43
+            + (t41 * (k(7.00125e-6) * t34) - t34 * (k(1e-6) * t41)) * t28;
+        let t46 = k(0.1) * t8;
+        let t47 = t46.cos();
+        let t48 = k(10.0) * (t47 * t3);
+        let t49 = k(10.0) * t46.sin();
+        let t50 = k(1e-5) * t41 * (t24 * t49 - t26 * t48) + t45 + t42;
+        let t51 = t44 - t50 / t43;
+        let t52 = t27 * t24 + t26 * t11 - outer_ring_wx * t6;
+        let t53 = t39 + (t34 * t28 + t41 * t51);
+        let t54 = k(0.000125) * inner_ring_wy;
+        let t55 = inner_ring_wx * t54;
+        let t56 = k(1e-6) * (inner_ring_wx * inner_ring_wy)
+            + (k(1e-5) * t55 - k(5e-6) * (inner_ring_wy * t36 - inner_ring_wy * t35));
+        let t57 = t41 * (k(10.0) * (t47 * t10)) + t34 * (t26 * t49 + t24 * t48);
+        let t58 = t52
+            + k(166631.95167673402) * (k(1e-5) * t57 - k(6.00125e-6) * t52 + t56);
+        let t59 = k(0.000125) * t58;
+        let t60 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t61 = k(2.0) * t60;
+        let t62 = k(1.0) - t60 * t61;
+        let t63 = k(0.000125) * t53;
+        let t64 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t65 = t64 * t61;
+        let t66 = t65 * t38 - t62 * t55 - (t65 * t63 - t62 * t59);
+        let t67 = rotor_e0 * rotor_e3;
+        let t68 = rotor_e1 * rotor_e2;
+        let t69 = inner_ring_wy * t54 + inner_ring_wz * t37;
+        let t70 = rotor_e0 * rotor_e0;
+        let t71 = k(2.0) * (k(0.5) - (t70 + rotor_e1 * rotor_e1)) * t69
+            - k(2.0) * (t68 - t67) * t66;
+        let t72 = t62 * t38 + t65 * t55 - (t62 * t63 + t65 * t59);
+        let t73 = rotor_e0 * rotor_e2;
+        let t74 = rotor_e1 * rotor_e3;
+        let t75 = k(2.0) * (t68 + t67) * t69
+            - k(2.0) * (k(0.5) - (t70 + rotor_e2 * rotor_e2)) * t66;
+        let t76 = rotor_e0 * rotor_e1;
+        let t77 = rotor_e2 * rotor_e3;
+        let t78 = k(2.0) * (t74 - t73) * t69 + k(2.0) * (t77 + t76) * t66;
+        *out = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t28,
+            t51,
+            -t52,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -(t30 + (t34 * t51 - t41 * t28)),
+            t53,
+            -t58,
+            k(2.0) * (t74 + t73) * t72 + t71,
+            k(2.0) * (t77 - t76) * t72 - t75,
+            -(k(2.0) * (k(0.5) - (t70 + rotor_e3 * rotor_e3)) * t72 + t78),
+            k(0.0),
+            t65 * t58 + t62 * t53 - rotor_wz * t35,
+            rotor_wy * t35 - (t62 * t58 - t65 * t53),
         ];
     }
 }

@@ -25,6 +25,12 @@
 //! | energy | T and V | 7 | 14 | 0 | 21 | 0 of 2 |
 //! | read_joints | joint coordinates and rates | 30 | 40 | 0 | 70 | 0 of 7 |
 //! | outputs | outputs, the accelerations being known | 53 | 80 | 1 | 134 | 2 of 6 |
+//! | joint_accelerations | u̇ in joint coordinates | 14 | 24 | 2 | 40 | 0 of 3 |
+//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 |
+//! | to_maximal | (q, v) of a joint state | 11 | 17 | 0 | 28 | 5 of 13 |
+//! | to_joints | (x, u) of a maximal state | 33 | 44 | 0 | 77 | 0 of 6 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 15 | 27 | 2 | 44 | 0 of 3 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 49 | 79 | 2 | 130 | 0 of 6 |
 
 /// The mechanism `planar`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -320,6 +326,39 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Planar<T> {
     ) -> ::core::result::Result<(), gyro_sim::Error> {
         gyro_sim::pivoting::solve_velocities(self, t, choice, y)
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let block_e0 = y[3];
+        let block_e1 = y[4];
+        let block_e2 = y[5];
+        let block_e3 = y[6];
+        let block_sx = y[7];
+        let block_sy = y[8];
+        let block_sz = y[9];
+        let block_wx = y[10];
+        let block_wy = y[11];
+        let block_wz = y[12];
+        *dy = [
+            block_sx,
+            block_sy,
+            block_sz,
+            -(k(0.5)
+                * (block_e1 * block_wx + block_e2 * block_wy + block_e3 * block_wz)),
+            k(0.5) * (block_e0 * block_wx - block_e3 * block_wy + block_e2 * block_wz),
+            k(0.5) * (block_e3 * block_wx + block_e0 * block_wy - block_e1 * block_wz),
+            -(k(0.5)
+                * (block_e2 * block_wx - block_e1 * block_wy - block_e0 * block_wz)),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+        ];
+    }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for Planar<T> {
     type Velocities = [T; 6];
@@ -536,14 +575,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Planar<T> {
         let t47 = k(0.05) * (t44 * t20 + (t42 * t17 + t41 * t16)) + (t46 - t45);
         let t48 = k(0.2) * t24 - k(0.1) * t11;
         let t49 = k(0.4) * t24 - k(0.1) * t7;
-        let t50 = t28 * (t32 * t49 - (k(0.004) + t30 * t27))
-            - t26 * (t32 * t48 + (k(0.008) - t30 * t6));
+        let t50 = t28 * (t49 * t32 - (k(0.004) + t27 * t30))
+            - t26 * (t48 * t32 + (k(0.008) - t6 * t30));
         let t51 = (t50 + t47 * (k(0.8) * t37) - t39)
             / (t31 * t32 - (k(0.065) - t29 * t30));
         let t52 = t30 * t51 + (t28 * (k(0.8) * t27) - t26 * (k(0.8) * t6));
-        let t53 = t29 * t51 + (t28 * t27 - t26 * t6) - k(1.25) * (k(1.2) + t52);
+        let t53 = t29 * t51 + (t27 * t28 - t6 * t26) - k(1.25) * (k(1.2) + t52);
         let t54 = t32 * t51 - (t28 * (k(0.8) * t49) - t26 * (k(0.8) * t48));
-        let t55 = t31 * t51 - (t28 * t49 - t26 * t48) - k(1.25) * (k(3.2) + t54);
+        let t55 = t31 * t51 - (t49 * t28 - t48 * t26) - k(1.25) * (k(3.2) + t54);
         let t56 = (k(0.4) * t43 + k(0.1) * t35) * t28
             - (k(0.2) * t43 - k(0.1) * t36) * t26;
         *out = [-t53, t55, -(t47 + (t37 * t51 - t56)), t26, -t28, t51];
@@ -602,6 +641,217 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Planar<T> {
             -t0,
             -(t20 * t23 * t25 + t18 * t23 * t16),
             -(t19 * t23 * t25 + t22 * t23 * t16),
+        ];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Planar<T> {
+    type Joints = [T; 6];
+    type Rates = [T; 3];
+    fn joint_start(&self) -> Self::Joints {
+        let k = T::constant;
+        [k(0.3), k(-0.4), k(0.7), k(1.0), k(2.0), k(-6.0)]
+    }
+    fn rates(&self) -> Self::Rates {
+        [T::constant(0.0); 3]
+    }
+    /// Writes u̇: 40 operations (14 ±, 24 ×, 2 ÷) and 2 functions.
+    fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
+        let k = T::constant;
+        let x2 = x[2];
+        let u2 = x[5];
+        let t0 = x2.sin();
+        let t1 = x2.cos();
+        let t2 = k(0.16) * t1 + k(0.08) * t0;
+        let t3 = u2 * u2;
+        let t4 = k(0.52) * t1 + k(0.56) * t0;
+        let t5 = k(0.16) * t0 - k(0.08) * t1;
+        let t6 = k(15.384615384615385) * t5;
+        let t7 = k(15.384615384615385) * t2;
+        let t8 = t7 * t4 - (k(3.2) + t3 * t5);
+        let t9 = t5 * t7;
+        let t10 = k(1.0) / (k(0.8) - t2 * t7);
+        let t11 = t10 * t9;
+        let t12 = (t11 * t8 + (t6 * t4 - (k(1.2) - t3 * t2)))
+            / (t9 * t11 - (k(0.8) - t5 * t6));
+        let t13 = t11 * t12 - t10 * t8;
+        *out = [t12, -t13, -(t7 * t13 + (t6 * t12 - k(15.384615384615385) * t4))];
+    }
+    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
+    fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
+        let mut rates = gyro_sim::JointSpace::rates(self);
+        gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
+        let u0 = x[3];
+        let u1 = x[4];
+        let u2 = x[5];
+        *dx = [u0, u1, u2, rates[0], rates[1], rates[2]];
+    }
+    /// Writes the maximal state of a joint state: 28 operations (11 ±, 17 ×, 0 ÷) and 2 functions.
+    fn to_maximal(&self, _t: T, x: &Self::Joints, y: &mut Self::State) {
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let u0 = x[3];
+        let u1 = x[4];
+        let u2 = x[5];
+        let t0 = k(0.5) * x2;
+        let t1 = t0.cos();
+        let t2 = t0.sin();
+        let t3 = t2 * t1;
+        let t4 = t1 * t1;
+        let t5 = k(0.5) - t4;
+        let t6 = k(0.2) * u2;
+        let t7 = k(2.0) * t3;
+        let t8 = k(0.1) * u2;
+        let t9 = k(2.0) * t5;
+        *y = [
+            x0 + (k(0.4) * t5 - k(0.2) * t3),
+            x1 - (k(0.4) * t3 + k(0.2) * t5),
+            k(0.1) * (k(0.5) - (t4 + t2 * t2)),
+            t1,
+            k(0.0),
+            k(0.0),
+            t2,
+            u0 + (t9 * t8 + t7 * t6),
+            u1 - (t7 * t8 - t9 * t6),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            u2,
+        ];
+    }
+    /// Writes the joint state of a maximal state: 77 operations (33 ±, 44 ×, 0 ÷) and 3 functions.
+    fn to_joints(&self, _t: T, y: &Self::State, x: &mut Self::Joints) {
+        let k = T::constant;
+        let block_rx = y[0];
+        let block_ry = y[1];
+        let block_e0 = y[3];
+        let block_e1 = y[4];
+        let block_e2 = y[5];
+        let block_e3 = y[6];
+        let block_sx = y[7];
+        let block_sy = y[8];
+        let block_wx = y[10];
+        let block_wy = y[11];
+        let block_wz = y[12];
+        let x2 = x[2];
+        let t0 = block_e0 * block_e0;
+        let t1 = t0 + block_e1 * block_e1;
+        let t2 = k(0.5) - t1;
+        let t3 = block_e0 * block_e3;
+        let t4 = block_e1 * block_e2;
+        let t5 = t4 - t3;
+        let t6 = block_e1 * block_e3 + block_e0 * block_e2;
+        let t7 = t4 + t3;
+        let t8 = block_e2 * block_e2;
+        let t9 = k(0.5) - (t0 + t8);
+        let t10 = block_e2 * block_e3 - block_e0 * block_e1;
+        let t11 = x2.sin();
+        let t12 = k(2.0) * t7;
+        let t13 = x2.cos();
+        let t14 = k(2.0) * t2;
+        let t15 = t14 - (k(1.0) - (block_e3 * block_e3 + (t1 + t8)));
+        let t16 = (t15 * t11 + t12 * t13).atan2(t12 * t11 - t15 * t13);
+        let t17 = k(2.0) * t5;
+        let t18 = k(2.0) * t6;
+        let t19 = k(0.2) * (t18 * block_wy - t17 * block_wz)
+            + k(0.1) * (t18 * block_wx + t14 * block_wz);
+        let t20 = k(2.0) * t9;
+        let t21 = k(2.0) * t10;
+        let t22 = k(0.2) * (t21 * block_wy + t20 * block_wz)
+            + k(0.1) * (t21 * block_wx - t12 * block_wz);
+        x[0] = block_rx + (k(0.1) * t6 - (k(0.2) * t5 + k(0.4) * t2));
+        x[1] = block_ry + (k(0.1) * t10 + (k(0.2) * t9 + k(0.4) * t7));
+        x[2] = x2 + t16;
+        x[3] = block_sx - (t19 + k(0.05) * (t17 * block_wx + t14 * block_wy));
+        x[4] = block_sy - (t22 - k(0.05) * (t20 * block_wx + t12 * block_wy));
+        x[5] = block_wz;
+    }
+    /// Writes u̇ at a state that satisfies the constraints: 44 operations (15 ±, 27 ×, 2 ÷).
+    fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
+        let k = T::constant;
+        let block_e0 = y[3];
+        let block_e3 = y[6];
+        let block_wz = y[12];
+        let t0 = k(2.0) * block_e3;
+        let t1 = block_e0 * t0;
+        let t2 = k(1.0) - block_e3 * t0;
+        let t3 = k(0.16) * t2 + k(0.08) * t1;
+        let t4 = block_wz * block_wz;
+        let t5 = k(0.52) * t2 + k(0.56) * t1;
+        let t6 = k(0.16) * t1 - k(0.08) * t2;
+        let t7 = k(15.384615384615385) * t6;
+        let t8 = k(15.384615384615385) * t3;
+        let t9 = t8 * t5 - (k(3.2) + t4 * t6);
+        let t10 = t6 * t8;
+        let t11 = k(1.0) / (k(0.8) - t3 * t8);
+        let t12 = t11 * t10;
+        let t13 = (t12 * t9 + (t7 * t5 - (k(1.2) - t4 * t3)))
+            / (t10 * t12 - (k(0.8) - t6 * t7));
+        let t14 = t12 * t13 - t11 * t9;
+        *out = [t13, -t14, -(t8 * t14 + (t7 * t13 - k(15.384615384615385) * t5))];
+    }
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 130 operations (49 ±, 79 ×, 2 ÷).
+    fn corrected_accelerations(
+        &self,
+        _t: T,
+        y: &Self::State,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let block_e0 = y[3];
+        let block_e1 = y[4];
+        let block_e2 = y[5];
+        let block_e3 = y[6];
+        let block_wx = y[10];
+        let block_wy = y[11];
+        let block_wz = y[12];
+        let t0 = k(2.0) * block_e3;
+        let t1 = k(1.0) - block_e3 * t0;
+        let t2 = block_e0 * t0;
+        let t3 = k(0.16) * t2 - k(0.08) * t1;
+        let t4 = block_wz * block_wz;
+        let t5 = k(0.52) * t1 + k(0.56) * t2;
+        let t6 = k(0.16) * t1 + k(0.08) * t2;
+        let t7 = k(15.384615384615385) * t6;
+        let t8 = t7 * t5 - (k(3.2) + t4 * t3);
+        let t9 = k(1.0) / (k(0.8) - t6 * t7);
+        let t10 = k(15.384615384615385) * t3;
+        let t11 = t3 * t7;
+        let t12 = t9 * t11;
+        let t13 = (t12 * t8 + (t10 * t5 - (k(1.2) - t4 * t6)))
+            / (t11 * t12 - (k(0.8) - t3 * t10));
+        let t14 = t12 * t13 - t9 * t8;
+        let t15 = k(0.2) * block_wz - k(0.05) * block_wx;
+        let t16 = k(0.1) * block_wx + k(0.2) * block_wy;
+        let t17 = t1 * t13 + (block_wy * t16 + block_wz * t15 - t2 * t14);
+        let t18 = t7 * t14 + (t10 * t13 - k(15.384615384615385) * t5);
+        let t19 = block_wx * block_wz;
+        let t20 = k(0.05) * t19 + k(0.1) * t18 + t17;
+        let t21 = block_e0 * block_e0;
+        let t22 = k(0.05) * block_wy + k(0.1) * block_wz;
+        let t23 = t2 * t13 + (block_wz * t22 + block_wx * t16 + t1 * t14);
+        let t24 = block_wy * block_wz;
+        let t25 = k(0.05) * t24 + k(0.2) * t18 - t23;
+        let t26 = block_e0 * block_e3;
+        let t27 = block_e1 * block_e2;
+        let t28 = k(2.0) * (t27 - t26) * t25
+            - k(2.0) * (k(0.5) - (t21 + block_e1 * block_e1)) * t20;
+        let t29 = block_wx * t15 - block_wy * t22 + (k(0.2) * t19 - k(0.1) * t24);
+        let t30 = block_e0 * block_e2;
+        let t31 = block_e1 * block_e3;
+        let t32 = k(2.0) * (k(0.5) - (t21 + block_e2 * block_e2)) * t25
+            - k(2.0) * (t27 + t26) * t20;
+        let t33 = block_e0 * block_e1;
+        let t34 = block_e2 * block_e3;
+        let t35 = k(2.0) * (t34 + t33) * t25 + k(2.0) * (t31 - t30) * t20;
+        *out = [
+            t28 - k(2.0) * (t31 + t30) * t29,
+            -(k(2.0) * (t34 - t33) * t29 + t32),
+            k(2.0) * (k(0.5) - (t21 + block_e3 * block_e3)) * t29 + t35,
+            t24,
+            -t19,
+            -t18,
         ];
     }
 }

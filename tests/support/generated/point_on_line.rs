@@ -25,6 +25,12 @@
 //! | energy | T and V | 6 | 13 | 0 | 19 | 0 of 2 |
 //! | read_joints | joint coordinates and rates | 4 | 6 | 0 | 10 | 0 of 2 |
 //! | outputs | outputs, the accelerations being known | 15 | 17 | 0 | 32 | 3 of 6 |
+//! | joint_accelerations | u̇ in joint coordinates | 0 | 6 | 0 | 6 | 0 of 4 |
+//! | joint_derivative | ẋ but for u̇ | 8 | 16 | 0 | 24 | 0 of 5 |
+//! | to_maximal | (q, v) of a joint state | 0 | 4 | 0 | 4 | 0 of 13 |
+//! | to_joints | (x, u) of a maximal state | 4 | 6 | 0 | 10 | 0 of 9 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 0 | 6 | 0 | 6 | 0 of 4 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 24 | 46 | 0 | 70 | 0 of 6 |
 
 /// The mechanism `point_on_line`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -264,6 +270,37 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for PointOnLine<T> {
     ) -> ::core::result::Result<(), gyro_sim::Error> {
         gyro_sim::pivoting::solve_velocities(self, t, choice, y)
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let bead_e0 = y[3];
+        let bead_e1 = y[4];
+        let bead_e2 = y[5];
+        let bead_e3 = y[6];
+        let bead_sx = y[7];
+        let bead_sy = y[8];
+        let bead_sz = y[9];
+        let bead_wx = y[10];
+        let bead_wy = y[11];
+        let bead_wz = y[12];
+        *dy = [
+            bead_sx,
+            bead_sy,
+            bead_sz,
+            -(k(0.5) * (bead_e1 * bead_wx + bead_e2 * bead_wy + bead_e3 * bead_wz)),
+            k(0.5) * (bead_e0 * bead_wx - bead_e3 * bead_wy + bead_e2 * bead_wz),
+            k(0.5) * (bead_e3 * bead_wx + bead_e0 * bead_wy - bead_e1 * bead_wz),
+            -(k(0.5) * (bead_e2 * bead_wx - bead_e1 * bead_wy - bead_e0 * bead_wz)),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+        ];
+    }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for PointOnLine<T> {
     type Velocities = [T; 6];
@@ -378,6 +415,183 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for PointOnLine<T> {
         *lambda = [
             t1 - k(0.23333333333333334) * bead_dsy - k(0.6666666666666666) * t0,
             t1 + k(0.4666666666666667) * bead_dsy + k(0.3333333333333333) * t0,
+        ];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PointOnLine<T> {
+    type Joints = [T; 9];
+    type Rates = [T; 4];
+    fn joint_start(&self) -> Self::Joints {
+        let k = T::constant;
+        [
+            k(0.4),
+            k(0.8512565307587486),
+            k(0.4256282653793743),
+            k(-0.2553769592276246),
+            k(0.17025130615174974),
+            k(0.0),
+            k(3.0),
+            k(0.1),
+            k(-4.0),
+        ]
+    }
+    fn rates(&self) -> Self::Rates {
+        [T::constant(0.0); 4]
+    }
+    /// Writes u̇: 6 operations (0 ±, 6 ×, 0 ÷).
+    fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
+        let k = T::constant;
+        let u1 = x[6];
+        let u2 = x[7];
+        let u3 = x[8];
+        *out = [k(6.64), k(0.5) * (u2 * u3), k(0.4) * (u1 * u3), -(k(0.75) * (u1 * u2))];
+    }
+    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
+    fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
+        let mut rates = gyro_sim::JointSpace::rates(self);
+        gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
+        let k = T::constant;
+        let x1 = x[1];
+        let x2 = x[2];
+        let x3 = x[3];
+        let x4 = x[4];
+        let u0 = x[5];
+        let u1 = x[6];
+        let u2 = x[7];
+        let u3 = x[8];
+        *dx = [
+            u0,
+            -(k(0.5) * (x2 * u1 + x3 * u2 + x4 * u3)),
+            k(0.5) * (x1 * u1 - x4 * u2 + x3 * u3),
+            k(0.5) * (x4 * u1 + x1 * u2 - x2 * u3),
+            -(k(0.5) * (x3 * u1 - x2 * u2 - x1 * u3)),
+            rates[0],
+            rates[1],
+            rates[2],
+            rates[3],
+        ];
+    }
+    /// Writes the maximal state of a joint state: 4 operations (0 ±, 4 ×, 0 ÷).
+    fn to_maximal(&self, _t: T, x: &Self::Joints, y: &mut Self::State) {
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let x3 = x[3];
+        let x4 = x[4];
+        let u0 = x[5];
+        let u1 = x[6];
+        let u2 = x[7];
+        let u3 = x[8];
+        let t0 = k(0.6666666666666666) * x0;
+        let t1 = k(0.6666666666666666) * u0;
+        *y = [
+            k(0.3333333333333333) * x0,
+            t0,
+            -t0,
+            x1,
+            x2,
+            x3,
+            x4,
+            k(0.3333333333333333) * u0,
+            t1,
+            -t1,
+            u1,
+            u2,
+            u3,
+        ];
+    }
+    /// Writes the joint state of a maximal state: 10 operations (4 ±, 6 ×, 0 ÷).
+    fn to_joints(&self, _t: T, y: &Self::State, x: &mut Self::Joints) {
+        let k = T::constant;
+        let bead_rx = y[0];
+        let bead_ry = y[1];
+        let bead_rz = y[2];
+        let bead_e0 = y[3];
+        let bead_e1 = y[4];
+        let bead_e2 = y[5];
+        let bead_e3 = y[6];
+        let bead_sx = y[7];
+        let bead_sy = y[8];
+        let bead_sz = y[9];
+        let bead_wx = y[10];
+        let bead_wy = y[11];
+        let bead_wz = y[12];
+        x[0] = k(0.6666666666666666) * bead_ry + k(0.3333333333333333) * bead_rx
+            - k(0.6666666666666666) * bead_rz;
+        x[1] = bead_e0;
+        x[2] = bead_e1;
+        x[3] = bead_e2;
+        x[4] = bead_e3;
+        x[5] = k(0.3333333333333333) * bead_sx + k(0.6666666666666666) * bead_sy
+            - k(0.6666666666666666) * bead_sz;
+        x[6] = bead_wx;
+        x[7] = bead_wy;
+        x[8] = bead_wz;
+    }
+    /// Writes u̇ at a state that satisfies the constraints: 6 operations (0 ±, 6 ×, 0 ÷).
+    fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
+        let k = T::constant;
+        let bead_wx = y[10];
+        let bead_wy = y[11];
+        let bead_wz = y[12];
+        *out = [
+            k(6.64),
+            k(0.5) * (bead_wy * bead_wz),
+            k(0.4) * (bead_wx * bead_wz),
+            -(k(0.75) * (bead_wx * bead_wy)),
+        ];
+    }
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 70 operations (24 ±, 46 ×, 0 ÷).
+    fn corrected_accelerations(
+        &self,
+        _t: T,
+        y: &Self::State,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let bead_e0 = y[3];
+        let bead_e1 = y[4];
+        let bead_e2 = y[5];
+        let bead_e3 = y[6];
+        let bead_wx = y[10];
+        let bead_wy = y[11];
+        let bead_wz = y[12];
+        let t0 = bead_e0 * bead_e0;
+        let t1 = k(0.5) - (t0 + bead_e1 * bead_e1);
+        let t2 = bead_e0 * bead_e3;
+        let t3 = bead_e1 * bead_e2;
+        let t4 = t3 + t2;
+        let t5 = bead_e0 * bead_e2;
+        let t6 = bead_e1 * bead_e3;
+        let t7 = t6 - t5;
+        let t8 = k(6.64)
+            * (k(1.3333333333333333) * t7
+                - (k(1.3333333333333333) * t4 - k(0.6666666666666666) * t1));
+        let t9 = t3 - t2;
+        let t10 = k(0.5) - (t0 + bead_e2 * bead_e2);
+        let t11 = bead_e0 * bead_e1;
+        let t12 = bead_e2 * bead_e3;
+        let t13 = t12 + t11;
+        let t14 = k(6.64)
+            * (k(1.3333333333333333) * t13
+                + (k(1.3333333333333333) * t10 - k(0.6666666666666666) * t9));
+        let t15 = t6 + t5;
+        let t16 = t12 - t11;
+        let t17 = k(0.5) - (t0 + bead_e3 * bead_e3);
+        let t18 = k(6.64)
+            * (k(1.3333333333333333) * t17
+                + (k(1.3333333333333333) * t16 + k(0.6666666666666666) * t15));
+        let t19 = k(2.0) * t15 * t18 - (k(2.0) * t9 * t14 - k(2.0) * t1 * t8);
+        let t20 = k(2.0) * t16 * t18 + (k(2.0) * t10 * t14 - k(2.0) * t4 * t8);
+        let t21 = k(2.0) * t17 * t18 + (k(2.0) * t13 * t14 + k(2.0) * t7 * t8);
+        *out = [
+            t19,
+            t20,
+            -t21,
+            k(0.5) * (bead_wy * bead_wz),
+            k(0.4) * (bead_wx * bead_wz),
+            -(k(0.75) * (bead_wx * bead_wy)),
         ];
     }
 }

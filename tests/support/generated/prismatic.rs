@@ -25,6 +25,12 @@
 //! | energy | T and V | 28 | 38 | 0 | 66 | 0 of 2 |
 //! | read_joints | joint coordinates and rates | 28 | 43 | 0 | 71 | 0 of 2 |
 //! | outputs | outputs, the accelerations being known | 126 | 193 | 1 | 320 | 1 of 6 |
+//! | joint_accelerations | u̇ in joint coordinates | 1 | 1 | 0 | 2 | 0 of 1 |
+//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 1 |
+//! | to_maximal | (q, v) of a joint state | 2 | 4 | 0 | 6 | 7 of 13 |
+//! | to_joints | (x, u) of a maximal state | 28 | 43 | 0 | 71 | 0 of 2 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 16 | 18 | 0 | 34 | 0 of 1 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 34 | 51 | 0 | 85 | 3 of 6 |
 
 /// The mechanism `prismatic`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -401,6 +407,45 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Prismatic<T> {
     ) -> ::core::result::Result<(), gyro_sim::Error> {
         gyro_sim::pivoting::solve_velocities(self, t, choice, y)
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let carriage_e0 = y[3];
+        let carriage_e1 = y[4];
+        let carriage_e2 = y[5];
+        let carriage_e3 = y[6];
+        let carriage_sx = y[7];
+        let carriage_sy = y[8];
+        let carriage_sz = y[9];
+        let carriage_wx = y[10];
+        let carriage_wy = y[11];
+        let carriage_wz = y[12];
+        *dy = [
+            carriage_sx,
+            carriage_sy,
+            carriage_sz,
+            -(k(0.5)
+                * (carriage_e1 * carriage_wx + carriage_e2 * carriage_wy
+                    + carriage_e3 * carriage_wz)),
+            k(0.5)
+                * (carriage_e0 * carriage_wx - carriage_e3 * carriage_wy
+                    + carriage_e2 * carriage_wz),
+            k(0.5)
+                * (carriage_e3 * carriage_wx + carriage_e0 * carriage_wy
+                    - carriage_e1 * carriage_wz),
+            -(k(0.5)
+                * (carriage_e2 * carriage_wx - carriage_e1 * carriage_wy
+                    - carriage_e0 * carriage_wz)),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+        ];
+    }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for Prismatic<T> {
     type Velocities = [T; 6];
@@ -673,9 +718,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Prismatic<T> {
         let t9 = carriage_e2 * carriage_e3 - carriage_e0 * carriage_e1;
         let t10 = k(0.6) * (carriage_ry - (k(0.04) * t9 + (k(0.1) * t8 - k(0.2) * t7)));
         let t11 = k(0.2) - (t10 + t6);
-        let t12 = k(37.0) * t11;
-        let t13 = k(1.6) * t5 + k(1.2) * t9;
-        let t14 = k(1.2) * t8 - k(1.6) * t4;
+        let t12 = k(1.6) * t5 + k(1.2) * t9;
+        let t13 = k(1.2) * t8 - k(1.6) * t4;
+        let t14 = k(37.0) * t11;
         let t15 = carriage_wy * carriage_wy;
         let t16 = carriage_wz * carriage_wz;
         let t17 = k(0.001) * carriage_wz;
@@ -693,9 +738,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Prismatic<T> {
             k(29.6) * t11,
             k(22.2) * t11 - k(12.753),
             k(0.0),
-            t19 - (k(0.02) * t14 - k(0.05) * t13) * t12,
-            -(t23 + t12 * (k(0.1) * t13 - k(0.02) * t20)),
-            t12 * (k(0.05) * t20 - k(0.1) * t14) - t24,
+            t19 - t14 * (k(0.02) * t13 - k(0.05) * t12),
+            -(t23 + t14 * (k(0.1) * t12 - k(0.02) * t20)),
+            t14 * (k(0.05) * t20 - k(0.1) * t13) - t24,
         ];
     }
     /// Solves eq. (17): 276 operations (101 ±, 174 ×, 1 ÷).
@@ -853,10 +898,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Prismatic<T> {
         let t16 = k(1.3) * carriage_dsx - k(29.6) * t15;
         let t17 = k(1.3) * carriage_dsy + (k(12.753) - k(22.2) * t15);
         let t18 = k(1.3) * carriage_dsz;
-        let t19 = k(37.0) * t15;
-        let t20 = k(1.6) * t7 + k(1.2) * t13;
-        let t21 = k(1.6) * t4;
-        let t22 = k(1.2) * t10 - t21;
+        let t19 = k(1.6) * t7 + k(1.2) * t13;
+        let t20 = k(1.6) * t4;
+        let t21 = k(1.2) * t10 - t20;
+        let t22 = k(37.0) * t15;
         let t23 = carriage_wy * carriage_wy;
         let t24 = carriage_wz * carriage_wz;
         let t25 = k(0.001) * carriage_wz;
@@ -864,7 +909,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Prismatic<T> {
         let t27 = carriage_wx * (t26 + t25)
             + (k(0.005) * (carriage_wy * carriage_wz) + k(0.003) * (t24 - t23));
         let t28 = k(0.01) * carriage_dwx + k(0.001) * carriage_dwy
-            - k(0.002) * carriage_dwz - (t27 - (k(0.02) * t22 - k(0.05) * t20) * t19);
+            - k(0.002) * carriage_dwz - (t27 - t22 * (k(0.02) * t21 - k(0.05) * t19));
         let t29 = (k(0.1) * t13 - k(0.04) * t10) * t17
             + (k(0.1) * t7 + k(0.04) * t4) * t16;
         let t30 = t12 + t11;
@@ -878,7 +923,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Prismatic<T> {
         let t38 = k(1.6) * t31;
         let t39 = k(1.6) * t10;
         let t40 = k(1.2) * t9;
-        let t41 = k(0.6) * (t21 + t33) + k(0.8) * (t40 + t39);
+        let t41 = k(0.6) * (t20 + t33) + k(0.8) * (t40 + t39);
         let t42 = t41 * t38 + t37 * t36;
         let t43 = k(1.2) * t4 + t39;
         let t44 = k(1.2) * t31;
@@ -891,7 +936,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Prismatic<T> {
         let t51 = carriage_wy * (t25 - t50)
             - (k(0.005) * (carriage_wx * carriage_wz) + k(0.002) * (t24 - t49));
         let t52 = k(0.001) * carriage_dwx + k(0.02) * carriage_dwy
-            + k(0.003) * carriage_dwz + (t51 + t19 * (k(0.1) * t20 - k(0.02) * t48));
+            + k(0.003) * carriage_dwz + (t51 + t22 * (k(0.1) * t19 - k(0.02) * t48));
         let t53 = (k(0.2) * t13 + k(0.04) * t9) * t17
             + (k(0.2) * t7 - k(0.04) * t1) * t16;
         let t54 = t18 * (k(0.2) * t31 - k(0.04) * t35) - t53 - t52;
@@ -899,7 +944,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Prismatic<T> {
         let t56 = carriage_wz * (t26 + t50)
             + (k(0.01) * (carriage_wx * carriage_wy) - k(0.001) * (t23 - t49));
         let t57 = k(0.002) * carriage_dwx - k(0.003) * carriage_dwy
-            - k(0.015) * carriage_dwz - (t56 - t19 * (k(0.05) * t48 - k(0.1) * t22));
+            - k(0.015) * carriage_dwz - (t56 - t22 * (k(0.05) * t48 - k(0.1) * t21));
         let t58 = (k(0.2) * t10 + k(0.1) * t9) * t17 - (k(0.2) * t4 + k(0.1) * t1) * t16;
         let t59 = t18 * (k(0.2) * t30 - k(0.1) * t35) - t58 + t57;
         let t60 = t47 * (t41 * t43) * t54 + t47 * (t41 * t34) * t32;
@@ -911,6 +956,171 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Prismatic<T> {
             t55 - t47 * (t38 * t43 + t44 * t34) * t59,
             t47 * (t45 * t34 + t37 * t43) * t59 + t60,
             t61,
+        ];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Prismatic<T> {
+    type Joints = [T; 2];
+    type Rates = [T; 1];
+    fn joint_start(&self) -> Self::Joints {
+        let k = T::constant;
+        [k(0.5), k(1.5)]
+    }
+    fn rates(&self) -> Self::Rates {
+        [T::constant(0.0); 1]
+    }
+    /// Writes u̇: 2 operations (1 ±, 1 ×, 0 ÷).
+    fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
+        let k = T::constant;
+        let x0 = x[0];
+        *out = [-(k(28.46153846153846) * x0 + k(0.1936923076923077))];
+    }
+    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
+    fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
+        let mut rates = gyro_sim::JointSpace::rates(self);
+        gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
+        let u0 = x[1];
+        *dx = [u0, rates[0]];
+    }
+    /// Writes the maximal state of a joint state: 6 operations (2 ±, 4 ×, 0 ÷).
+    fn to_maximal(&self, _t: T, x: &Self::Joints, y: &mut Self::State) {
+        let k = T::constant;
+        let x0 = x[0];
+        let u0 = x[1];
+        *y = [
+            k(0.8) * x0 - k(0.1),
+            k(0.6) * x0 - k(0.05),
+            k(0.02),
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.8) * u0,
+            k(0.6) * u0,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+        ];
+    }
+    /// Writes the joint state of a maximal state: 71 operations (28 ±, 43 ×, 0 ÷).
+    fn to_joints(&self, _t: T, y: &Self::State, x: &mut Self::Joints) {
+        let k = T::constant;
+        let carriage_rx = y[0];
+        let carriage_ry = y[1];
+        let carriage_e0 = y[3];
+        let carriage_e1 = y[4];
+        let carriage_e2 = y[5];
+        let carriage_e3 = y[6];
+        let carriage_sx = y[7];
+        let carriage_sy = y[8];
+        let carriage_wx = y[10];
+        let carriage_wy = y[11];
+        let carriage_wz = y[12];
+        let t0 = carriage_e0 * carriage_e0;
+        let t1 = k(0.5) - (t0 + carriage_e1 * carriage_e1);
+        let t2 = carriage_e0 * carriage_e3;
+        let t3 = carriage_e1 * carriage_e2;
+        let t4 = t3 - t2;
+        let t5 = carriage_e1 * carriage_e3 + carriage_e0 * carriage_e2;
+        let t6 = k(0.8) * (carriage_rx - (k(0.04) * t5 - (k(0.1) * t4 - k(0.2) * t1)));
+        let t7 = t3 + t2;
+        let t8 = k(0.5) - (t0 + carriage_e2 * carriage_e2);
+        let t9 = carriage_e2 * carriage_e3 - carriage_e0 * carriage_e1;
+        let t10 = k(0.6) * (carriage_ry - (k(0.04) * t9 + (k(0.1) * t8 - k(0.2) * t7)));
+        let t11 = k(2.0) * t7;
+        let t12 = k(2.0) * t8;
+        let t13 = k(2.0) * t9;
+        let t14 = k(0.1) * (t13 * carriage_wy + t12 * carriage_wz)
+            - k(0.05) * (t13 * carriage_wx - t11 * carriage_wz);
+        let t15 = k(0.6)
+            * (carriage_sy - (t14 + k(0.02) * (t12 * carriage_wx + t11 * carriage_wy)));
+        let t16 = k(2.0) * t1;
+        let t17 = k(2.0) * t4;
+        let t18 = k(2.0) * t5;
+        let t19 = k(0.1) * (t18 * carriage_wy - t17 * carriage_wz)
+            - k(0.05) * (t18 * carriage_wx + t16 * carriage_wz);
+        let t20 = k(0.8)
+            * (carriage_sx - (t19 - k(0.02) * (t17 * carriage_wx + t16 * carriage_wy)));
+        x[0] = t10 + t6;
+        x[1] = t20 + t15;
+    }
+    /// Writes u̇ at a state that satisfies the constraints: 34 operations (16 ±, 18 ×, 0 ÷).
+    fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
+        let k = T::constant;
+        let carriage_rx = y[0];
+        let carriage_ry = y[1];
+        let carriage_e0 = y[3];
+        let carriage_e1 = y[4];
+        let carriage_e2 = y[5];
+        let carriage_e3 = y[6];
+        let t0 = carriage_e0 * carriage_e0;
+        let t1 = carriage_e0 * carriage_e3;
+        let t2 = carriage_e1 * carriage_e2;
+        let t3 = k(0.1) * (t2 - t1)
+            - k(0.2) * (k(0.5) - (t0 + carriage_e1 * carriage_e1));
+        let t4 = k(0.8)
+            * (carriage_rx
+                - (k(0.04) * (carriage_e1 * carriage_e3 + carriage_e0 * carriage_e2)
+                    - t3));
+        let t5 = k(0.1) * (k(0.5) - (t0 + carriage_e2 * carriage_e2))
+            - k(0.2) * (t2 + t1);
+        let t6 = k(0.6)
+            * (carriage_ry
+                - (k(0.04) * (carriage_e2 * carriage_e3 - carriage_e0 * carriage_e1)
+                    + t5));
+        *out = [-(k(0.1936923076923077) + k(28.46153846153846) * (t6 + t4))];
+    }
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 85 operations (34 ±, 51 ×, 0 ÷).
+    fn corrected_accelerations(
+        &self,
+        _t: T,
+        y: &Self::State,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let carriage_rx = y[0];
+        let carriage_ry = y[1];
+        let carriage_e0 = y[3];
+        let carriage_e1 = y[4];
+        let carriage_e2 = y[5];
+        let carriage_e3 = y[6];
+        let carriage_wx = y[10];
+        let carriage_wy = y[11];
+        let carriage_wz = y[12];
+        let t0 = carriage_e0 * carriage_e0;
+        let t1 = k(0.5) - (t0 + carriage_e1 * carriage_e1);
+        let t2 = carriage_e0 * carriage_e3;
+        let t3 = carriage_e1 * carriage_e2;
+        let t4 = t3 - t2;
+        let t5 = carriage_e0 * carriage_e2;
+        let t6 = carriage_e1 * carriage_e3;
+        let t7 = t6 + t5;
+        let t8 = k(0.8) * (carriage_rx - (k(0.04) * t7 - (k(0.1) * t4 - k(0.2) * t1)));
+        let t9 = t3 + t2;
+        let t10 = k(0.5) - (t0 + carriage_e2 * carriage_e2);
+        let t11 = carriage_e0 * carriage_e1;
+        let t12 = carriage_e2 * carriage_e3;
+        let t13 = t12 - t11;
+        let t14 = k(0.6)
+            * (carriage_ry - (k(0.04) * t13 + (k(0.1) * t10 - k(0.2) * t9)));
+        let t15 = k(0.1936923076923077) + k(28.46153846153846) * (t14 + t8);
+        let t16 = k(0.1) * carriage_wz + k(0.02) * carriage_wx;
+        let t17 = k(0.05) * carriage_wx - k(0.1) * carriage_wy;
+        let t18 = carriage_wy * t17 - carriage_wz * t16 + k(0.8) * t15;
+        let t19 = k(0.02) * carriage_wy + k(0.05) * carriage_wz;
+        let t20 = carriage_wz * t19 + carriage_wx * t17 - k(0.6) * t15;
+        let t21 = carriage_wx * t16 + carriage_wy * t19;
+        let t22 = k(2.0) * t7 * t21 - (k(2.0) * t4 * t20 + k(2.0) * t1 * t18);
+        let t23 = k(2.0) * t13 * t21 + (k(2.0) * t10 * t20 + k(2.0) * t9 * t18);
+        let t24 = k(2.0) * (t12 + t11) * t20 - k(2.0) * (t6 - t5) * t18;
+        *out = [
+            -t22,
+            -t23,
+            k(2.0) * (k(0.5) - (t0 + carriage_e3 * carriage_e3)) * t21 + t24,
+            k(0.0),
+            k(0.0),
+            k(0.0),
         ];
     }
 }
@@ -965,10 +1175,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Prismatic<T> {
         let t22 = t12 + t11;
         let t23 = k(0.5) - (t0 + carriage_e3 * carriage_e3);
         let t24 = t19 * (k(0.1) * t23 - k(0.04) * t22);
-        let t25 = k(37.0) * t15;
-        let t26 = k(1.6) * t7 + k(1.2) * t13;
-        let t27 = k(1.6) * t4;
-        let t28 = k(1.2) * t10 - t27;
+        let t25 = k(1.6) * t7 + k(1.2) * t13;
+        let t26 = k(1.6) * t4;
+        let t27 = k(1.2) * t10 - t26;
+        let t28 = k(37.0) * t15;
         let t29 = carriage_wy * carriage_wy;
         let t30 = carriage_wz * carriage_wz;
         let t31 = k(0.001) * carriage_wz;
@@ -976,7 +1186,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Prismatic<T> {
         let t33 = carriage_wx * (t32 + t31)
             + (k(0.005) * (carriage_wy * carriage_wz) + k(0.003) * (t30 - t29));
         let t34 = k(0.01) * carriage_dwx + k(0.001) * carriage_dwy
-            - k(0.002) * carriage_dwz - (t33 - (k(0.02) * t28 - k(0.05) * t26) * t25);
+            - k(0.002) * carriage_dwz - (t33 - t28 * (k(0.02) * t27 - k(0.05) * t25));
         let t35 = t24 - (t20 * t17 + t21 * t16) + t34;
         let t36 = k(1.2) * t1;
         let t37 = k(1.6) * t9 + t36;
@@ -986,7 +1196,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Prismatic<T> {
         let t41 = k(1.6) * t23;
         let t42 = k(1.6) * t10;
         let t43 = k(1.2) * t9;
-        let t44 = k(0.6) * (t27 + t36) + k(0.8) * (t43 + t42);
+        let t44 = k(0.6) * (t26 + t36) + k(0.8) * (t43 + t42);
         let t45 = t44 * t41 + t40 * t39;
         let t46 = k(1.2) * t4 + t42;
         let t47 = k(1.2) * t23;
@@ -999,7 +1209,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Prismatic<T> {
         let t54 = carriage_wy * (t31 - t53)
             - (k(0.005) * (carriage_wx * carriage_wz) + k(0.002) * (t30 - t52));
         let t55 = k(0.001) * carriage_dwx + k(0.02) * carriage_dwy
-            + k(0.003) * carriage_dwz + (t54 + t25 * (k(0.1) * t26 - k(0.02) * t51));
+            + k(0.003) * carriage_dwz + (t54 + t28 * (k(0.1) * t25 - k(0.02) * t51));
         let t56 = k(0.2) * t7 - k(0.04) * t1;
         let t57 = k(0.2) * t13 + k(0.04) * t9;
         let t58 = t19 * (k(0.2) * t23 - k(0.04) * t38);
@@ -1008,7 +1218,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Prismatic<T> {
         let t61 = carriage_wz * (t32 + t53)
             + (k(0.01) * (carriage_wx * carriage_wy) - k(0.001) * (t29 - t52));
         let t62 = k(0.002) * carriage_dwx - k(0.003) * carriage_dwy
-            - k(0.015) * carriage_dwz - (t61 - t25 * (k(0.05) * t51 - k(0.1) * t28));
+            - k(0.015) * carriage_dwz - (t61 - t28 * (k(0.05) * t51 - k(0.1) * t27));
         let t63 = k(0.2) * t4 + k(0.1) * t1;
         let t64 = k(0.2) * t10 + k(0.1) * t9;
         let t65 = t19 * (k(0.2) * t22 - k(0.1) * t38);

@@ -25,6 +25,12 @@
 //! | energy | T and V | 5 | 12 | 0 | 17 | 0 of 2 |
 //! | read_joints | joint coordinates and rates | 7 | 8 | 0 | 15 | 0 of 3 |
 //! | outputs | outputs, the accelerations being known | 31 | 65 | 2 | 98 | 0 of 6 |
+//! | joint_accelerations | u̇ in joint coordinates | 0 | 0 | 0 | 0 | 0 of 1 |
+//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 1 |
+//! | to_maximal | (q, v) of a joint state | 0 | 3 | 0 | 3 | 8 of 14 |
+//! | to_joints | (x, u) of a maximal state | 10 | 12 | 0 | 22 | 0 of 2 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 0 | 0 | 0 | 0 | 0 of 1 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 4 | 11 | 0 | 15 | 0 of 6 |
 
 /// The mechanism `screw`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -298,6 +304,38 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Screw<T> {
     ) -> ::core::result::Result<(), gyro_sim::Error> {
         gyro_sim::pivoting::solve_velocities(self, t, choice, y)
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let nut_e0 = y[3];
+        let nut_e1 = y[4];
+        let nut_e2 = y[5];
+        let nut_e3 = y[6];
+        let nut_sx = y[7];
+        let nut_sy = y[8];
+        let nut_sz = y[9];
+        let nut_wx = y[10];
+        let nut_wy = y[11];
+        let nut_wz = y[12];
+        *dy = [
+            nut_sx,
+            nut_sy,
+            nut_sz,
+            -(k(0.5) * (nut_e1 * nut_wx + nut_e2 * nut_wy + nut_e3 * nut_wz)),
+            k(0.5) * (nut_e0 * nut_wx - nut_e3 * nut_wy + nut_e2 * nut_wz),
+            k(0.5) * (nut_e3 * nut_wx + nut_e0 * nut_wy - nut_e1 * nut_wz),
+            -(k(0.5) * (nut_e2 * nut_wx - nut_e1 * nut_wy - nut_e0 * nut_wz)),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            nut_wz,
+        ];
+    }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for Screw<T> {
     type Velocities = [T; 6];
@@ -563,6 +601,100 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Screw<T> {
         let t15 = t7 * t8;
         let t16 = t13 * t15 + t12 * (t3 * t8) - t0 * (t11 * t15);
         *lambda = [-(k(2.0) * nut_dsx), -(k(2.0) * nut_dsy), -t0, t14, t16];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Screw<T> {
+    type Joints = [T; 2];
+    type Rates = [T; 1];
+    fn joint_start(&self) -> Self::Joints {
+        let k = T::constant;
+        [k(0.5), k(4.0)]
+    }
+    fn rates(&self) -> Self::Rates {
+        [T::constant(0.0); 1]
+    }
+    /// Writes u̇: 0 operations (0 ±, 0 ×, 0 ÷).
+    fn joint_accelerations(&self, _t: T, _y: &Self::Joints, out: &mut Self::Rates) {
+        let k = T::constant;
+        *out = [k(-103.26315789473684)];
+    }
+    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
+    fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
+        let mut rates = gyro_sim::JointSpace::rates(self);
+        gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
+        let u0 = x[1];
+        *dx = [u0, rates[0]];
+    }
+    /// Writes the maximal state of a joint state: 3 operations (0 ±, 3 ×, 0 ÷) and 2 functions.
+    fn to_maximal(&self, _t: T, x: &Self::Joints, y: &mut Self::State) {
+        let k = T::constant;
+        let x0 = x[0];
+        let u0 = x[1];
+        let t0 = k(0.5) * x0;
+        *y = [
+            k(0.0),
+            k(0.0),
+            k(0.02) * x0,
+            t0.cos(),
+            k(0.0),
+            k(0.0),
+            t0.sin(),
+            k(0.0),
+            k(0.0),
+            k(0.02) * u0,
+            k(0.0),
+            k(0.0),
+            u0,
+            x0,
+        ];
+    }
+    /// Writes the joint state of a maximal state: 22 operations (10 ±, 12 ×, 0 ÷) and 3 functions.
+    fn to_joints(&self, _t: T, y: &Self::State, x: &mut Self::Joints) {
+        let k = T::constant;
+        let nut_e0 = y[3];
+        let nut_e1 = y[4];
+        let nut_e2 = y[5];
+        let nut_e3 = y[6];
+        let nut_wz = y[12];
+        let x0 = x[0];
+        let t0 = x0.sin();
+        let t1 = k(2.0) * (nut_e1 * nut_e2 + nut_e0 * nut_e3);
+        let t2 = x0.cos();
+        let t3 = nut_e0 * nut_e0 + nut_e1 * nut_e1;
+        let t4 = k(2.0) * (k(0.5) - t3)
+            - (k(1.0) - (nut_e3 * nut_e3 + (t3 + nut_e2 * nut_e2)));
+        let t5 = (t4 * t0 + t1 * t2).atan2(t1 * t0 - t4 * t2);
+        x[0] = x0 + t5;
+        x[1] = nut_wz;
+    }
+    /// Writes u̇ at a state that satisfies the constraints: 0 operations (0 ±, 0 ×, 0 ÷).
+    fn joint_accelerations_at(&self, _t: T, _y: &Self::State, out: &mut Self::Rates) {
+        let k = T::constant;
+        *out = [k(-103.26315789473684)];
+    }
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 15 operations (4 ±, 11 ×, 0 ÷).
+    fn corrected_accelerations(
+        &self,
+        _t: T,
+        y: &Self::State,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let nut_e0 = y[3];
+        let nut_e1 = y[4];
+        let nut_e2 = y[5];
+        let nut_e3 = y[6];
+        let nut_wx = y[10];
+        let nut_wy = y[11];
+        let nut_wz = y[12];
+        *out = [
+            -(k(4.130526315789473) * (nut_e1 * nut_e3 + nut_e0 * nut_e2)),
+            -(k(4.130526315789473) * (nut_e2 * nut_e3 - nut_e0 * nut_e1)),
+            k(4.130526315789473) * (k(0.5) - (nut_e0 * nut_e0 + nut_e3 * nut_e3)),
+            nut_wy * nut_wz,
+            -(nut_wx * nut_wz),
+            k(-103.26315789473684),
+        ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Ports for Screw<T> {

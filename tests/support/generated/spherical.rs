@@ -28,6 +28,12 @@
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 4 |
 //! | newton_step | dependent positions, one Newton step | 29 | 29 | 1 | 59 | 0 of 7 |
 //! | solve_velocities | dependent velocities, eq. (19) | 27 | 46 | 0 | 73 | 0 of 6 |
+//! | joint_accelerations | u̇ in joint coordinates | 25 | 36 | 0 | 61 | 0 of 3 |
+//! | joint_derivative | ẋ but for u̇ | 8 | 16 | 0 | 24 | 0 of 4 |
+//! | to_maximal | (q, v) of a joint state | 27 | 40 | 0 | 67 | 0 of 13 |
+//! | to_joints | (x, u) of a maximal state | 0 | 0 | 0 | 0 | 0 of 7 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 25 | 36 | 0 | 61 | 0 of 3 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 53 | 76 | 0 | 129 | 0 of 6 |
 
 /// The mechanism `spherical`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -380,6 +386,37 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Spherical<T> {
         y[9] = t18 + k(0.2) * (t16 * top_wx - t15 * top_wy);
         Ok(())
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let top_e0 = y[3];
+        let top_e1 = y[4];
+        let top_e2 = y[5];
+        let top_e3 = y[6];
+        let top_sx = y[7];
+        let top_sy = y[8];
+        let top_sz = y[9];
+        let top_wx = y[10];
+        let top_wy = y[11];
+        let top_wz = y[12];
+        *dy = [
+            top_sx,
+            top_sy,
+            top_sz,
+            -(k(0.5) * (top_e1 * top_wx + top_e2 * top_wy + top_e3 * top_wz)),
+            k(0.5) * (top_e0 * top_wx - top_e3 * top_wy + top_e2 * top_wz),
+            k(0.5) * (top_e3 * top_wx + top_e0 * top_wy - top_e1 * top_wz),
+            -(k(0.5) * (top_e2 * top_wx - top_e1 * top_wy - top_e0 * top_wz)),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+        ];
+    }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for Spherical<T> {
     type Velocities = [T; 6];
@@ -702,6 +739,228 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Spherical<T> {
             -(k(15.0) * top_dsx),
             -(k(15.0) * top_dsy),
             -(k(147.15) + k(15.0) * top_dsz),
+        ];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Spherical<T> {
+    type Joints = [T; 7];
+    type Rates = [T; 3];
+    fn joint_start(&self) -> Self::Joints {
+        let k = T::constant;
+        [k(1.0), k(0.0), k(0.0), k(0.0), k(3.0), k(20.0), k(-5.0)]
+    }
+    fn rates(&self) -> Self::Rates {
+        [T::constant(0.0); 3]
+    }
+    /// Writes u̇: 61 operations (25 ±, 36 ×, 0 ÷).
+    fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let x3 = x[3];
+        let u0 = x[4];
+        let u1 = x[5];
+        let u2 = x[6];
+        let t0 = x1 * x3 - x0 * x2;
+        let t1 = x2 * x3 + x0 * x1;
+        let t2 = k(0.88) * u2 - k(2.24) * u1;
+        let t3 = k(2.24) * u0 - k(1.53) * u2;
+        let t4 = u0 * (t3 + k(2.15) * u1) + (u1 * t2 - (k(88.29) * t1 - k(147.15) * t0));
+        let t5 = k(0.5) - (x1 * x1 + x2 * x2);
+        let t6 = k(0.88) * u0 + k(1.53) * u1;
+        let t7 = u0 * (t6 + k(0.875) * u2) + (k(88.29) * t5 + (k(58.86) * t0 - u2 * t2));
+        let t8 = t7 - k(0.27945205479452057) * t4;
+        let t9 = u2 * (t3 + k(3.025) * u1)
+            + (k(147.15) * t5 + (k(58.86) * t1 + u1 * t6));
+        let t10 = t9 + k(0.16073059360730593) * t4 - k(1.2291686422194827) * t8;
+        let t11 = k(0.49445264769232855) * t8 - k(0.876134676932097) * t10;
+        *out = [
+            -(k(0.7127863881640194) * t10),
+            t11,
+            k(0.182648401826484) * t4 + k(0.11456657928481043) * t10
+                - k(0.27945205479452057) * t11,
+        ];
+    }
+    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
+    fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
+        let mut rates = gyro_sim::JointSpace::rates(self);
+        gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let x3 = x[3];
+        let u0 = x[4];
+        let u1 = x[5];
+        let u2 = x[6];
+        *dx = [
+            -(k(0.5) * (x1 * u0 + x2 * u1 + x3 * u2)),
+            k(0.5) * (x0 * u0 - x3 * u1 + x2 * u2),
+            k(0.5) * (x3 * u0 + x0 * u1 - x1 * u2),
+            -(k(0.5) * (x2 * u0 - x1 * u1 - x0 * u2)),
+            rates[0],
+            rates[1],
+            rates[2],
+        ];
+    }
+    /// Writes the maximal state of a joint state: 67 operations (27 ±, 40 ×, 0 ÷).
+    fn to_maximal(&self, _t: T, x: &Self::Joints, y: &mut Self::State) {
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let x3 = x[3];
+        let u0 = x[4];
+        let u1 = x[5];
+        let u2 = x[6];
+        let t0 = x0 * x2;
+        let t1 = x1 * x3;
+        let t2 = t1 + t0;
+        let t3 = x0 * x0;
+        let t4 = k(0.5) - (t3 + x1 * x1);
+        let t5 = x0 * x3;
+        let t6 = x1 * x2;
+        let t7 = t6 - t5;
+        let t8 = x0 * x1;
+        let t9 = x2 * x3;
+        let t10 = t9 - t8;
+        let t11 = t6 + t5;
+        let t12 = k(0.5) - (t3 + x2 * x2);
+        let t13 = k(0.5) - (t3 + x3 * x3);
+        let t14 = t1 - t0;
+        let t15 = t9 + t8;
+        let t16 = k(0.5) * u0 - k(0.3) * u1;
+        let t17 = k(0.3) * u2 + k(0.2) * u0;
+        let t18 = k(0.2) * u1 + k(0.5) * u2;
+        let t19 = k(2.0) * t4 * t18 + k(2.0) * t7 * t17 + k(2.0) * t2 * t16;
+        let t20 = k(2.0) * t11 * t18 + k(2.0) * t12 * t17 - k(2.0) * t10 * t16;
+        let t21 = k(2.0) * t14 * t18 - k(2.0) * t15 * t17 + k(2.0) * t13 * t16;
+        *y = [
+            t7 - k(0.6) * t4 - k(0.4) * t2,
+            -(t12 - k(0.6) * t11 + k(0.4) * t10),
+            t15 + k(0.6) * t14 + k(0.4) * t13,
+            x0,
+            x1,
+            x2,
+            x3,
+            t19,
+            -t20,
+            -t21,
+            u0,
+            u1,
+            u2,
+        ];
+    }
+    /// Writes the joint state of a maximal state: 0 operations (0 ±, 0 ×, 0 ÷).
+    fn to_joints(&self, _t: T, y: &Self::State, x: &mut Self::Joints) {
+        let top_e0 = y[3];
+        let top_e1 = y[4];
+        let top_e2 = y[5];
+        let top_e3 = y[6];
+        let top_wx = y[10];
+        let top_wy = y[11];
+        let top_wz = y[12];
+        x[0] = top_e0;
+        x[1] = top_e1;
+        x[2] = top_e2;
+        x[3] = top_e3;
+        x[4] = top_wx;
+        x[5] = top_wy;
+        x[6] = top_wz;
+    }
+    /// Writes u̇ at a state that satisfies the constraints: 61 operations (25 ±, 36 ×, 0 ÷).
+    fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
+        let k = T::constant;
+        let top_e0 = y[3];
+        let top_e1 = y[4];
+        let top_e2 = y[5];
+        let top_e3 = y[6];
+        let top_wx = y[10];
+        let top_wy = y[11];
+        let top_wz = y[12];
+        let t0 = k(1.53) * top_wz - k(2.24) * top_wx;
+        let t1 = k(0.5) - (top_e1 * top_e1 + top_e2 * top_e2);
+        let t2 = top_e2 * top_e3 + top_e0 * top_e1;
+        let t3 = k(1.53) * top_wy + k(0.88) * top_wx;
+        let t4 = top_wy * t3 + k(58.86) * t2 + k(147.15) * t1
+            - top_wz * (t0 - k(3.025) * top_wy);
+        let t5 = k(2.24) * top_wy - k(0.88) * top_wz;
+        let t6 = top_e1 * top_e3 - top_e0 * top_e2;
+        let t7 = k(147.15) * t6 - k(88.29) * t2 - top_wy * t5
+            + top_wx * (k(2.15) * top_wy - t0);
+        let t8 = top_wz * t5 + k(58.86) * t6 + k(88.29) * t1
+            + top_wx * (k(0.875) * top_wz + t3);
+        let t9 = k(0.27945205479452057) * t7 - t8;
+        let t10 = k(1.2291686422194827) * t9 + (k(0.16073059360730593) * t7 + t4);
+        let t11 = k(0.876134676932097) * t10 + k(0.49445264769232855) * t9;
+        *out = [
+            -(k(0.7127863881640194) * t10),
+            -t11,
+            k(0.27945205479452057) * t11
+                + (k(0.11456657928481043) * t10 + k(0.182648401826484) * t7),
+        ];
+    }
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 129 operations (53 ±, 76 ×, 0 ÷).
+    fn corrected_accelerations(
+        &self,
+        _t: T,
+        y: &Self::State,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let top_e0 = y[3];
+        let top_e1 = y[4];
+        let top_e2 = y[5];
+        let top_e3 = y[6];
+        let top_wx = y[10];
+        let top_wy = y[11];
+        let top_wz = y[12];
+        let t0 = k(1.53) * top_wy + k(0.88) * top_wx;
+        let t1 = top_e2 * top_e2;
+        let t2 = top_e1 * top_e1;
+        let t3 = k(0.5) - (t2 + t1);
+        let t4 = top_e0 * top_e2;
+        let t5 = top_e1 * top_e3;
+        let t6 = t5 - t4;
+        let t7 = k(2.24) * top_wy - k(0.88) * top_wz;
+        let t8 = top_wz * t7 + k(58.86) * t6 + k(88.29) * t3
+            + top_wx * (k(0.875) * top_wz + t0);
+        let t9 = k(1.53) * top_wz - k(2.24) * top_wx;
+        let t10 = top_e0 * top_e1;
+        let t11 = top_e2 * top_e3;
+        let t12 = t11 + t10;
+        let t13 = k(147.15) * t6 - k(88.29) * t12 - top_wy * t7
+            + top_wx * (k(2.15) * top_wy - t9);
+        let t14 = k(0.27945205479452057) * t13 - t8;
+        let t15 = top_wy * t0 + k(58.86) * t12 + k(147.15) * t3
+            - top_wz * (t9 - k(3.025) * top_wy);
+        let t16 = k(1.2291686422194827) * t14 + (k(0.16073059360730593) * t13 + t15);
+        let t17 = k(0.876134676932097) * t16 + k(0.49445264769232855) * t14;
+        let t18 = k(0.27945205479452057) * t17
+            + (k(0.11456657928481043) * t16 + k(0.182648401826484) * t13);
+        let t19 = k(0.3) * top_wz + k(0.2) * top_wx;
+        let t20 = k(0.5) * top_wx - k(0.3) * top_wy;
+        let t21 = top_wy * t20 - top_wz * t19 - (k(0.5) * t18 - k(0.2) * t17);
+        let t22 = top_e0 * top_e0;
+        let t23 = k(0.2) * top_wy + k(0.5) * top_wz;
+        let t24 = top_wz * t23 + top_wx * t20
+            - (k(0.3) * t18 - k(0.14255727763280387) * t16);
+        let t25 = top_e0 * top_e3;
+        let t26 = top_e1 * top_e2;
+        let t27 = k(2.0) * (t26 - t25) * t24 + k(2.0) * (k(0.5) - (t22 + t2)) * t21;
+        let t28 = top_wx * t19 + top_wy * t23
+            + (k(0.3) * t17 - k(0.3563931940820097) * t16);
+        let t29 = k(2.0) * (k(0.5) - (t22 + t1)) * t24 + k(2.0) * (t26 + t25) * t21;
+        let t30 = k(2.0) * (k(0.5) - (t22 + top_e3 * top_e3)) * t28
+            + (k(2.0) * t12 * t24 - k(2.0) * t6 * t21);
+        *out = [
+            k(2.0) * (t5 + t4) * t28 - t27,
+            k(2.0) * (t11 - t10) * t28 + t29,
+            -t30,
+            -(k(0.7127863881640194) * t16),
+            -t17,
+            t18,
         ];
     }
 }

@@ -23,6 +23,12 @@
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 42 | 59 | 3 | 104 | 0 of 16 |
 //! | energy | T and V | 12 | 23 | 0 | 35 | 0 of 2 |
 //! | read_joints | joint coordinates and rates | 7 | 8 | 0 | 15 | 0 of 5 |
+//! | joint_accelerations | u̇ in joint coordinates | 20 | 15 | 3 | 38 | 0 of 2 |
+//! | joint_derivative | ẋ but for u̇ | 20 | 17 | 3 | 40 | 0 of 3 |
+//! | to_maximal | (q, v) of a joint state | 0 | 1 | 0 | 1 | 19 of 27 |
+//! | to_joints | (x, u) of a maximal state | 10 | 12 | 0 | 22 | 0 of 4 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 26 | 25 | 3 | 54 | 0 of 2 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 30 | 39 | 3 | 72 | 6 of 12 |
 
 /// The mechanism `stops`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -434,6 +440,90 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Stops<T> {
         y: &mut Self::State,
     ) -> ::core::result::Result<(), gyro_sim::Error> {
         gyro_sim::pivoting::solve_velocities(self, t, choice, y)
+    }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 104 operations (42 ±, 59 ×, 3 ÷) and 7 functions.
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let hammer_rz = y[2];
+        let hammer_e0 = y[3];
+        let hammer_e1 = y[4];
+        let hammer_e2 = y[5];
+        let hammer_e3 = y[6];
+        let disc_e0 = y[10];
+        let disc_e1 = y[11];
+        let disc_e2 = y[12];
+        let disc_e3 = y[13];
+        let hammer_sx = y[14];
+        let hammer_sy = y[15];
+        let hammer_sz = y[16];
+        let disc_sx = y[20];
+        let disc_sy = y[21];
+        let disc_sz = y[22];
+        let hammer_wx = y[17];
+        let hammer_wy = y[18];
+        let hammer_wz = y[19];
+        let disc_wx = y[23];
+        let disc_wy = y[24];
+        let disc_wz = y[25];
+        let turn0 = y[27];
+        let t0 = turn0.cos();
+        let t1 = k(2.0) * (k(0.5) - (disc_e0 * disc_e0 + disc_e1 * disc_e1));
+        let t2 = turn0.sin();
+        let t3 = k(2.0) * (disc_e1 * disc_e2 + disc_e0 * disc_e3);
+        let t4 = (t3 * t0 + t1 * t2).atan2(t3 * t2 - t1 * t0);
+        let t5 = turn0 + t4;
+        let t6 = k(15.7) - t5;
+        let t7 = (k(0.0025) + t6 * t6).sqrt();
+        let t8 = disc_wz * (k(0.05) * (k(1.0) - t6 / t7)) - k(25.0) * (t6 - t7);
+        let t9 = hammer_rz - k(0.8);
+        let t10 = (t9 * t9 + k(0.0004)).sqrt();
+        let t11 = k(1500.0) * (t9 + t10) + hammer_sz * (k(1.0) + t9 / t10);
+        let t12 = (hammer_rz * hammer_rz + k(0.0001)).sqrt();
+        let t13 = k(2000.0) * (hammer_rz - t12)
+            + hammer_sz * (k(2.5) * (k(1.0) - hammer_rz / t12));
+        let t14 = k(9.5) + t5;
+        let t15 = disc_wz * (k(20.0) * (t14 - (k(0.0025) + t14 * t14).sqrt()))
+            + (hammer_sz * t13 + hammer_sz * t11 + disc_wz * t8);
+        *dy = [
+            hammer_sx,
+            hammer_sy,
+            hammer_sz,
+            -(k(0.5)
+                * (hammer_e1 * hammer_wx + hammer_e2 * hammer_wy
+                    + hammer_e3 * hammer_wz)),
+            k(0.5)
+                * (hammer_e0 * hammer_wx - hammer_e3 * hammer_wy
+                    + hammer_e2 * hammer_wz),
+            k(0.5)
+                * (hammer_e3 * hammer_wx + hammer_e0 * hammer_wy
+                    - hammer_e1 * hammer_wz),
+            -(k(0.5)
+                * (hammer_e2 * hammer_wx - hammer_e1 * hammer_wy
+                    - hammer_e0 * hammer_wz)),
+            disc_sx,
+            disc_sy,
+            disc_sz,
+            -(k(0.5) * (disc_e1 * disc_wx + disc_e2 * disc_wy + disc_e3 * disc_wz)),
+            k(0.5) * (disc_e0 * disc_wx - disc_e3 * disc_wy + disc_e2 * disc_wz),
+            k(0.5) * (disc_e3 * disc_wx + disc_e0 * disc_wy - disc_e1 * disc_wz),
+            -(k(0.5) * (disc_e2 * disc_wx - disc_e1 * disc_wy - disc_e0 * disc_wz)),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            accelerations[6],
+            accelerations[7],
+            accelerations[8],
+            accelerations[9],
+            accelerations[10],
+            accelerations[11],
+            -t15,
+            disc_wz,
+        ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for Stops<T> {
@@ -868,6 +958,206 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Stops<T> {
             -(k(39.24) + k(4.0) * disc_dsz),
             -(t20 * t22 * t24 + t23 * (t17 * t22)),
             -(t18 * t22 * t24 + t23 * (t21 * t22)),
+        ];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Stops<T> {
+    type Joints = [T; 5];
+    type Rates = [T; 2];
+    fn joint_start(&self) -> Self::Joints {
+        let k = T::constant;
+        [k(0.5), k(0.0), k(4.0), k(12.0), k(0.0)]
+    }
+    fn rates(&self) -> Self::Rates {
+        [T::constant(0.0); 2]
+    }
+    /// Writes u̇: 38 operations (20 ±, 15 ×, 3 ÷) and 4 functions.
+    fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let u0 = x[2];
+        let u1 = x[3];
+        let t0 = k(0.8) - x0;
+        let t1 = (k(0.0004) + t0 * t0).sqrt();
+        let t2 = k(1500.0) * (t0 - t1) - u0 * (k(1.0) - t0 / t1);
+        let t3 = (k(0.0001) + x0 * x0).sqrt();
+        let t4 = k(2000.0) * (x0 - t3) + u0 * (k(2.5) * (k(1.0) - x0 / t3));
+        let t5 = k(9.5) + x1;
+        let t6 = k(15.7) - x1;
+        let t7 = (k(0.0025) + t6 * t6).sqrt();
+        let t8 = k(25.0) * (t6 - t7) - u1 * (k(0.05) * (k(1.0) - t6 / t7));
+        let t9 = k(50.0) * (t8 - k(20.0) * (t5 - (k(0.0025) + t5 * t5).sqrt()));
+        *out = [-(k(2.0) * (k(4.905) + (t4 - t2))), t9];
+    }
+    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 40 operations (20 ±, 17 ×, 3 ÷) and 4 functions.
+    fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
+        let mut rates = gyro_sim::JointSpace::rates(self);
+        gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let u0 = x[2];
+        let u1 = x[3];
+        let t0 = (k(0.0001) + x0 * x0).sqrt();
+        let t1 = k(2000.0) * (x0 - t0) + u0 * (k(2.5) * (k(1.0) - x0 / t0));
+        let t2 = k(0.8) - x0;
+        let t3 = (k(0.0004) + t2 * t2).sqrt();
+        let t4 = k(1500.0) * (t2 - t3) - u0 * (k(1.0) - t2 / t3);
+        let t5 = k(15.7) - x1;
+        let t6 = (k(0.0025) + t5 * t5).sqrt();
+        let t7 = k(25.0) * (t5 - t6) - u1 * (k(0.05) * (k(1.0) - t5 / t6));
+        let t8 = k(9.5) + x1;
+        let t9 = u1 * (k(20.0) * (t8 - (k(0.0025) + t8 * t8).sqrt()))
+            - (u1 * t7 + (u0 * t4 - u0 * t1));
+        *dx = [u0, u1, rates[0], rates[1], -t9];
+    }
+    /// Writes the maximal state of a joint state: 1 operations (0 ±, 1 ×, 0 ÷) and 2 functions.
+    fn to_maximal(&self, _t: T, x: &Self::Joints, y: &mut Self::State) {
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let u0 = x[2];
+        let u1 = x[3];
+        let t0 = k(0.5) * x1;
+        *y = [
+            k(0.0),
+            k(0.0),
+            x0,
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            t0.cos(),
+            k(0.0),
+            k(0.0),
+            t0.sin(),
+            k(0.0),
+            k(0.0),
+            u0,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            u1,
+            x[4],
+            x1,
+        ];
+    }
+    /// Writes the joint state of a maximal state: 22 operations (10 ±, 12 ×, 0 ÷) and 3 functions.
+    fn to_joints(&self, _t: T, y: &Self::State, x: &mut Self::Joints) {
+        let k = T::constant;
+        let hammer_rz = y[2];
+        let disc_e0 = y[10];
+        let disc_e1 = y[11];
+        let disc_e2 = y[12];
+        let disc_e3 = y[13];
+        let hammer_sz = y[16];
+        let disc_wz = y[25];
+        let x1 = x[1];
+        let t0 = x1.sin();
+        let t1 = k(2.0) * (disc_e1 * disc_e2 + disc_e0 * disc_e3);
+        let t2 = x1.cos();
+        let t3 = disc_e0 * disc_e0 + disc_e1 * disc_e1;
+        let t4 = k(2.0) * (k(0.5) - t3)
+            - (k(1.0) - (disc_e3 * disc_e3 + (t3 + disc_e2 * disc_e2)));
+        let t5 = (t4 * t0 + t1 * t2).atan2(t1 * t0 - t4 * t2);
+        x[0] = hammer_rz;
+        x[1] = x1 + t5;
+        x[2] = hammer_sz;
+        x[3] = disc_wz;
+        x[4] = y[26];
+    }
+    /// Writes u̇ at a state that satisfies the constraints: 54 operations (26 ±, 25 ×, 3 ÷) and 7 functions.
+    fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
+        let k = T::constant;
+        let hammer_rz = y[2];
+        let disc_e0 = y[10];
+        let disc_e1 = y[11];
+        let disc_e2 = y[12];
+        let disc_e3 = y[13];
+        let hammer_sz = y[16];
+        let disc_wz = y[25];
+        let turn0 = y[27];
+        let t0 = hammer_rz - k(0.8);
+        let t1 = (t0 * t0 + k(0.0004)).sqrt();
+        let t2 = k(1500.0) * (t0 + t1) + hammer_sz * (k(1.0) + t0 / t1);
+        let t3 = (hammer_rz * hammer_rz + k(0.0001)).sqrt();
+        let t4 = k(2000.0) * (hammer_rz - t3)
+            + hammer_sz * (k(2.5) * (k(1.0) - hammer_rz / t3));
+        let t5 = turn0.cos();
+        let t6 = k(2.0) * (k(0.5) - (disc_e0 * disc_e0 + disc_e1 * disc_e1));
+        let t7 = turn0.sin();
+        let t8 = k(2.0) * (disc_e1 * disc_e2 + disc_e0 * disc_e3);
+        let t9 = (t8 * t5 + t6 * t7).atan2(t8 * t7 - t6 * t5);
+        let t10 = turn0 + t9;
+        let t11 = k(15.7) - t10;
+        let t12 = (k(0.0025) + t11 * t11).sqrt();
+        let t13 = disc_wz * (k(0.05) * (k(1.0) - t11 / t12)) - k(25.0) * (t11 - t12);
+        let t14 = k(9.5) + t10;
+        let t15 = k(50.0) * (k(20.0) * (t14 - (k(0.0025) + t14 * t14).sqrt()) + t13);
+        *out = [-(k(2.0) * (t4 + t2 + k(4.905))), -t15];
+    }
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 72 operations (30 ±, 39 ×, 3 ÷) and 7 functions.
+    fn corrected_accelerations(
+        &self,
+        _t: T,
+        y: &Self::State,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let hammer_rz = y[2];
+        let hammer_e0 = y[3];
+        let hammer_e1 = y[4];
+        let hammer_e2 = y[5];
+        let hammer_e3 = y[6];
+        let disc_e0 = y[10];
+        let disc_e1 = y[11];
+        let disc_e2 = y[12];
+        let disc_e3 = y[13];
+        let hammer_sz = y[16];
+        let disc_wx = y[23];
+        let disc_wy = y[24];
+        let disc_wz = y[25];
+        let turn0 = y[27];
+        let t0 = hammer_rz - k(0.8);
+        let t1 = (t0 * t0 + k(0.0004)).sqrt();
+        let t2 = k(1500.0) * (t0 + t1) + hammer_sz * (k(1.0) + t0 / t1);
+        let t3 = (hammer_rz * hammer_rz + k(0.0001)).sqrt();
+        let t4 = k(2000.0) * (hammer_rz - t3)
+            + hammer_sz * (k(2.5) * (k(1.0) - hammer_rz / t3));
+        let t5 = k(2.0) * (t4 + t2 + k(4.905));
+        let t6 = turn0.cos();
+        let t7 = k(2.0) * (k(0.5) - (disc_e0 * disc_e0 + disc_e1 * disc_e1));
+        let t8 = turn0.sin();
+        let t9 = k(2.0) * (disc_e1 * disc_e2 + disc_e0 * disc_e3);
+        let t10 = (t9 * t6 + t7 * t8).atan2(t9 * t8 - t7 * t6);
+        let t11 = turn0 + t10;
+        let t12 = k(15.7) - t11;
+        let t13 = (k(0.0025) + t12 * t12).sqrt();
+        let t14 = disc_wz * (k(0.05) * (k(1.0) - t12 / t13)) - k(25.0) * (t12 - t13);
+        let t15 = k(9.5) + t11;
+        let t16 = k(50.0) * (k(20.0) * (t15 - (k(0.0025) + t15 * t15).sqrt()) + t14);
+        *out = [
+            -(k(2.0) * (hammer_e1 * hammer_e3 + hammer_e0 * hammer_e2) * t5),
+            -(k(2.0) * (hammer_e2 * hammer_e3 - hammer_e0 * hammer_e1) * t5),
+            k(2.0) * (k(0.5) - (hammer_e0 * hammer_e0 + hammer_e3 * hammer_e3)) * t5,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            disc_wy * disc_wz,
+            -(disc_wx * disc_wz),
+            -t16,
         ];
     }
 }

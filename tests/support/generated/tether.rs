@@ -20,6 +20,12 @@
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 4 |
 //! | newton_step | dependent positions, one Newton step | 11 | 13 | 1 | 25 | 0 of 7 |
 //! | solve_velocities | dependent velocities, eq. (19) | 0 | 0 | 0 | 0 | 0 of 6 |
+//! | joint_accelerations | u̇ in joint coordinates | 37 | 64 | 1 | 102 | 0 of 6 |
+//! | joint_derivative | ẋ but for u̇ | 12 | 27 | 1 | 40 | 0 of 8 |
+//! | to_maximal | (q, v) of a joint state | 0 | 0 | 0 | 0 | 0 of 13 |
+//! | to_joints | (x, u) of a maximal state | 0 | 0 | 0 | 0 | 0 of 13 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 37 | 64 | 1 | 102 | 0 of 6 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 49 | 82 | 1 | 132 | 0 of 6 |
 
 /// The mechanism `tether`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -254,6 +260,44 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Tether<T> {
     ) -> ::core::result::Result<(), gyro_sim::Error> {
         Ok(())
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 40 operations (12 ±, 27 ×, 1 ÷) and 1 functions.
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let bob_rx = y[0];
+        let bob_ry = y[1];
+        let bob_rz = y[2];
+        let bob_e0 = y[3];
+        let bob_e1 = y[4];
+        let bob_e2 = y[5];
+        let bob_e3 = y[6];
+        let bob_sx = y[7];
+        let bob_sy = y[8];
+        let bob_sz = y[9];
+        let bob_wx = y[10];
+        let bob_wy = y[11];
+        let bob_wz = y[12];
+        let t0 = k(1.0) / (bob_rx * bob_rx + bob_ry * bob_ry + bob_rz * bob_rz).sqrt();
+        let t1 = bob_sx * (bob_rx * t0) + bob_sy * (bob_ry * t0)
+            + bob_sz * (bob_rz * t0);
+        *dy = [
+            bob_sx,
+            bob_sy,
+            bob_sz,
+            -(k(0.5) * (bob_e1 * bob_wx + bob_e2 * bob_wy + bob_e3 * bob_wz)),
+            k(0.5) * (bob_e0 * bob_wx - bob_e3 * bob_wy + bob_e2 * bob_wz),
+            k(0.5) * (bob_e3 * bob_wx + bob_e0 * bob_wy - bob_e1 * bob_wz),
+            -(k(0.5) * (bob_e2 * bob_wx - bob_e1 * bob_wy - bob_e0 * bob_wz)),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            -(t1 * (k(0.3) * t1)),
+        ];
+    }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for Tether<T> {
     type Velocities = [T; 6];
@@ -365,6 +409,280 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Tether<T> {
         lambda: &mut Self::Rows,
     ) {
         *lambda = [];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Tether<T> {
+    type Joints = [T; 14];
+    type Rates = [T; 6];
+    fn joint_start(&self) -> Self::Joints {
+        let k = T::constant;
+        [
+            k(0.5),
+            k(-0.2),
+            k(-0.4),
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.3),
+            k(1.5),
+            k(-0.2),
+            k(1.0),
+            k(2.0),
+            k(3.0),
+            k(0.0),
+        ]
+    }
+    fn rates(&self) -> Self::Rates {
+        [T::constant(0.0); 6]
+    }
+    /// Writes u̇: 102 operations (37 ±, 64 ×, 1 ÷) and 1 functions.
+    fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let x3 = x[3];
+        let x4 = x[4];
+        let x5 = x[5];
+        let x6 = x[6];
+        let u0 = x[7];
+        let u1 = x[8];
+        let u2 = x[9];
+        let u3 = x[10];
+        let u4 = x[11];
+        let u5 = x[12];
+        let t0 = x3 * x3;
+        let t1 = x3 * x6;
+        let t2 = x4 * x5;
+        let t3 = x1 * (k(2.0) * (t2 + t1)) - x0 * (k(2.0) * (k(0.5) - (t0 + x4 * x4)));
+        let t4 = x3 * x5;
+        let t5 = x4 * x6;
+        let t6 = x2 * (k(2.0) * (t5 - t4)) + t3;
+        let t7 = x3 * x4;
+        let t8 = x5 * x6;
+        let t9 = x1 * (k(2.0) * (k(0.5) - (t0 + x5 * x5))) - x0 * (k(2.0) * (t2 - t1));
+        let t10 = t9 - x2 * (k(2.0) * (t8 + t7));
+        let t11 = x0 * (k(2.0) * (t5 + t4)) + x1 * (k(2.0) * (t8 - t7));
+        let t12 = t11 - x2 * (k(2.0) * (k(0.5) - (t0 + x6 * x6)));
+        let t13 = x5 * t12 + x6 * t10;
+        let t14 = x5 * t6 + x4 * t10;
+        let t15 = x6 * t6 - x4 * t12;
+        let t16 = x6 * t15 + x5 * t14 - (x3 * t13 + k(0.5) * t6);
+        let t17 = k(1.0) / (x0 * x0 + (x2 * x2 + x1 * x1)).sqrt();
+        let t18 = k(1.2) * ((x1 * u1 + x0 * u0 + x2 * u2) * t17);
+        let t19 = k(160.0) - t17 * (k(96.0) - t18);
+        let t20 = x6 * t13 - k(0.5) * t10 + (x3 * t15 + x4 * t14);
+        let t21 = x4 * t15 - x3 * t14 + (k(0.5) * t12 - x5 * t13);
+        *out = [
+            t19 * t16,
+            -(t19 * t20),
+            -(k(9.81) + t19 * t21),
+            -(k(0.5) * (u4 * u5)),
+            k(0.6666666666666666) * (u3 * u5),
+            -(k(0.25) * (u3 * u4)),
+        ];
+    }
+    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 40 operations (12 ±, 27 ×, 1 ÷) and 1 functions.
+    fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
+        let mut rates = gyro_sim::JointSpace::rates(self);
+        gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let x3 = x[3];
+        let x4 = x[4];
+        let x5 = x[5];
+        let x6 = x[6];
+        let u0 = x[7];
+        let u1 = x[8];
+        let u2 = x[9];
+        let u3 = x[10];
+        let u4 = x[11];
+        let u5 = x[12];
+        let t0 = k(1.0) / (x2 * x2 + (x1 * x1 + x0 * x0)).sqrt();
+        let t1 = u2 * (x2 * t0) + (u1 * (x1 * t0) + u0 * (x0 * t0));
+        *dx = [
+            u0,
+            u1,
+            u2,
+            -(k(0.5) * (x4 * u3 + x5 * u4 + x6 * u5)),
+            k(0.5) * (x3 * u3 - x6 * u4 + x5 * u5),
+            k(0.5) * (x6 * u3 + x3 * u4 - x4 * u5),
+            -(k(0.5) * (x5 * u3 - x4 * u4 - x3 * u5)),
+            rates[0],
+            rates[1],
+            rates[2],
+            rates[3],
+            rates[4],
+            rates[5],
+            -(t1 * (k(0.3) * t1)),
+        ];
+    }
+    /// Writes the maximal state of a joint state: 0 operations (0 ±, 0 ×, 0 ÷).
+    fn to_maximal(&self, _t: T, x: &Self::Joints, y: &mut Self::State) {
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let x3 = x[3];
+        let x4 = x[4];
+        let x5 = x[5];
+        let x6 = x[6];
+        let u0 = x[7];
+        let u1 = x[8];
+        let u2 = x[9];
+        let u3 = x[10];
+        let u4 = x[11];
+        let u5 = x[12];
+        *y = [x0, x1, x2, x3, x4, x5, x6, u0, u1, u2, u3, u4, u5, x[13]];
+    }
+    /// Writes the joint state of a maximal state: 0 operations (0 ±, 0 ×, 0 ÷).
+    fn to_joints(&self, _t: T, y: &Self::State, x: &mut Self::Joints) {
+        let bob_rx = y[0];
+        let bob_ry = y[1];
+        let bob_rz = y[2];
+        let bob_e0 = y[3];
+        let bob_e1 = y[4];
+        let bob_e2 = y[5];
+        let bob_e3 = y[6];
+        let bob_sx = y[7];
+        let bob_sy = y[8];
+        let bob_sz = y[9];
+        let bob_wx = y[10];
+        let bob_wy = y[11];
+        let bob_wz = y[12];
+        x[0] = bob_rx;
+        x[1] = bob_ry;
+        x[2] = bob_rz;
+        x[3] = bob_e0;
+        x[4] = bob_e1;
+        x[5] = bob_e2;
+        x[6] = bob_e3;
+        x[7] = bob_sx;
+        x[8] = bob_sy;
+        x[9] = bob_sz;
+        x[10] = bob_wx;
+        x[11] = bob_wy;
+        x[12] = bob_wz;
+        x[13] = y[13];
+    }
+    /// Writes u̇ at a state that satisfies the constraints: 102 operations (37 ±, 64 ×, 1 ÷) and 1 functions.
+    fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
+        let k = T::constant;
+        let bob_rx = y[0];
+        let bob_ry = y[1];
+        let bob_rz = y[2];
+        let bob_e0 = y[3];
+        let bob_e1 = y[4];
+        let bob_e2 = y[5];
+        let bob_e3 = y[6];
+        let bob_sx = y[7];
+        let bob_sy = y[8];
+        let bob_sz = y[9];
+        let bob_wx = y[10];
+        let bob_wy = y[11];
+        let bob_wz = y[12];
+        let t0 = bob_e0 * bob_e0;
+        let t1 = bob_e0 * bob_e3;
+        let t2 = bob_e1 * bob_e2;
+        let t3 = k(2.0) * (t2 + t1) * bob_ry
+            - k(2.0) * (k(0.5) - (t0 + bob_e1 * bob_e1)) * bob_rx;
+        let t4 = bob_e0 * bob_e2;
+        let t5 = bob_e1 * bob_e3;
+        let t6 = k(2.0) * (t5 - t4) * bob_rz + t3;
+        let t7 = bob_e0 * bob_e1;
+        let t8 = bob_e2 * bob_e3;
+        let t9 = k(2.0) * (k(0.5) - (t0 + bob_e2 * bob_e2)) * bob_ry
+            - k(2.0) * (t2 - t1) * bob_rx;
+        let t10 = t9 - k(2.0) * (t8 + t7) * bob_rz;
+        let t11 = k(2.0) * (t5 + t4) * bob_rx + k(2.0) * (t8 - t7) * bob_ry;
+        let t12 = t11 - k(2.0) * (k(0.5) - (t0 + bob_e3 * bob_e3)) * bob_rz;
+        let t13 = bob_e2 * t12 + bob_e3 * t10;
+        let t14 = bob_e2 * t6 + bob_e1 * t10;
+        let t15 = bob_e3 * t6 - bob_e1 * t12;
+        let t16 = bob_e3 * t15 + bob_e2 * t14 - (bob_e0 * t13 + k(0.5) * t6);
+        let t17 = k(1.0)
+            / (bob_rx * bob_rx + (bob_ry * bob_ry + bob_rz * bob_rz)).sqrt();
+        let t18 = k(1.2)
+            * (t17 * (bob_rz * bob_sz + (bob_rx * bob_sx + bob_ry * bob_sy)));
+        let t19 = k(160.0) - t17 * (k(96.0) - t18);
+        let t20 = bob_e3 * t13 - k(0.5) * t10 + (bob_e0 * t15 + bob_e1 * t14);
+        let t21 = bob_e1 * t15 - bob_e0 * t14 + (k(0.5) * t12 - bob_e2 * t13);
+        *out = [
+            t19 * t16,
+            -(t19 * t20),
+            -(k(9.81) + t19 * t21),
+            -(k(0.5) * (bob_wy * bob_wz)),
+            k(0.6666666666666666) * (bob_wx * bob_wz),
+            -(k(0.25) * (bob_wx * bob_wy)),
+        ];
+    }
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 132 operations (49 ±, 82 ×, 1 ÷) and 1 functions.
+    fn corrected_accelerations(
+        &self,
+        _t: T,
+        y: &Self::State,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let bob_rx = y[0];
+        let bob_ry = y[1];
+        let bob_rz = y[2];
+        let bob_e0 = y[3];
+        let bob_e1 = y[4];
+        let bob_e2 = y[5];
+        let bob_e3 = y[6];
+        let bob_sx = y[7];
+        let bob_sy = y[8];
+        let bob_sz = y[9];
+        let bob_wx = y[10];
+        let bob_wy = y[11];
+        let bob_wz = y[12];
+        let t0 = bob_e0 * bob_e1;
+        let t1 = bob_e2 * bob_e3;
+        let t2 = k(2.0) * (t1 + t0);
+        let t3 = bob_e0 * bob_e3;
+        let t4 = bob_e1 * bob_e2;
+        let t5 = k(2.0) * (t4 - t3);
+        let t6 = bob_e0 * bob_e0;
+        let t7 = k(2.0) * (k(0.5) - (t6 + bob_e2 * bob_e2));
+        let t8 = t7 * bob_ry - t5 * bob_rx - t2 * bob_rz;
+        let t9 = k(2.0) * (k(0.5) - (t6 + bob_e3 * bob_e3));
+        let t10 = k(2.0) * (t1 - t0);
+        let t11 = bob_e0 * bob_e2;
+        let t12 = bob_e1 * bob_e3;
+        let t13 = k(2.0) * (t12 + t11);
+        let t14 = t13 * bob_rx + t10 * bob_ry - t9 * bob_rz;
+        let t15 = bob_e2 * t14 + bob_e3 * t8;
+        let t16 = k(2.0) * (k(0.5) - (t6 + bob_e1 * bob_e1));
+        let t17 = k(2.0) * (t4 + t3);
+        let t18 = k(2.0) * (t12 - t11);
+        let t19 = t18 * bob_rz + (t17 * bob_ry - t16 * bob_rx);
+        let t20 = bob_e2 * t19 + bob_e1 * t8;
+        let t21 = bob_e3 * t19 - bob_e1 * t14;
+        let t22 = bob_e1 * t21 - bob_e0 * t20 + (k(0.5) * t14 - bob_e2 * t15);
+        let t23 = k(1.0)
+            / (bob_rx * bob_rx + (bob_ry * bob_ry + bob_rz * bob_rz)).sqrt();
+        let t24 = k(1.2)
+            * (t23 * (bob_rz * bob_sz + (bob_rx * bob_sx + bob_ry * bob_sy)));
+        let t25 = k(160.0) - t23 * (k(96.0) - t24);
+        let t26 = k(9.81) + t25 * t22;
+        let t27 = bob_e3 * t15 - k(0.5) * t8 + (bob_e0 * t21 + bob_e1 * t20);
+        let t28 = t25 * t27;
+        let t29 = bob_e3 * t21 + bob_e2 * t20 - (bob_e0 * t15 + k(0.5) * t19);
+        let t30 = t25 * t29;
+        let t31 = t16 * t30 + (t17 * t28 + t18 * t26);
+        let t32 = t5 * t30 + (t7 * t28 - t2 * t26);
+        let t33 = t13 * t30 - (t10 * t28 - t9 * t26);
+        *out = [
+            t13 * t33 + (t5 * t32 + t16 * t31),
+            t10 * t33 - (t7 * t32 + t17 * t31),
+            t2 * t32 - t18 * t31 - t9 * t33,
+            -(k(0.5) * (bob_wy * bob_wz)),
+            k(0.6666666666666666) * (bob_wx * bob_wz),
+            -(k(0.25) * (bob_wx * bob_wy)),
+        ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Ports for Tether<T> {

@@ -24,6 +24,12 @@
 //! | energy | T and V | 19 | 31 | 0 | 50 | 0 of 2 |
 //! | read_joints | joint coordinates and rates | 14 | 18 | 0 | 32 | 0 of 6 |
 //! | outputs | outputs, the accelerations being known | 78 | 108 | 1 | 187 | 0 of 6 |
+//! | joint_accelerations | u̇ in joint coordinates | 18 | 29 | 1 | 48 | 0 of 2 |
+//! | joint_derivative | ẋ but for u̇ | 0 | 2 | 0 | 2 | 0 of 3 |
+//! | to_maximal | (q, v) of a joint state | 28 | 54 | 0 | 82 | 0 of 14 |
+//! | to_joints | (x, u) of a maximal state | 20 | 26 | 0 | 46 | 0 of 4 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 30 | 50 | 1 | 81 | 0 of 2 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 63 | 99 | 1 | 163 | 0 of 6 |
 
 /// The mechanism `universal`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -166,19 +172,19 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Universal<T> {
         let bob_wx = y[10];
         let bob_wy = y[11];
         let bob_wz = y[12];
-        let t0 = bob_e0 * bob_e0;
-        let t1 = k(2.0) * (k(0.5) - (t0 + bob_e1 * bob_e1));
-        let t2 = bob_e0 * bob_e3;
-        let t3 = bob_e1 * bob_e2;
-        let t4 = k(2.0) * (t3 - t2);
+        let t0 = bob_e0 * bob_e3;
+        let t1 = bob_e1 * bob_e2;
+        let t2 = k(2.0) * (t1 - t0);
+        let t3 = bob_e0 * bob_e0;
+        let t4 = k(2.0) * (k(0.5) - (t3 + bob_e1 * bob_e1));
         let t5 = bob_e0 * bob_e2;
         let t6 = bob_e1 * bob_e3;
         let t7 = k(2.0) * (t6 + t5);
-        let t8 = t7 * bob_wx + t1 * bob_wz;
-        let t9 = k(0.03) * (t7 * bob_wy - t4 * bob_wz) + k(0.02) * t8
-            - k(0.4) * (t4 * bob_wx + t1 * bob_wy);
-        let t10 = k(2.0) * (t3 + t2);
-        let t11 = k(2.0) * (k(0.5) - (t0 + bob_e2 * bob_e2));
+        let t8 = t7 * bob_wx + t4 * bob_wz;
+        let t9 = k(0.03) * (t7 * bob_wy - t2 * bob_wz) + k(0.02) * t8
+            - k(0.4) * (t4 * bob_wy + t2 * bob_wx);
+        let t10 = k(2.0) * (t1 + t0);
+        let t11 = k(2.0) * (k(0.5) - (t3 + bob_e2 * bob_e2));
         let t12 = bob_e0 * bob_e1;
         let t13 = bob_e2 * bob_e3;
         let t14 = k(2.0) * (t13 - t12);
@@ -186,7 +192,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Universal<T> {
             + k(0.02) * (t14 * bob_wx - t10 * bob_wz);
         let t16 = k(2.0) * (t6 - t5);
         let t17 = k(2.0) * (t13 + t12);
-        let t18 = k(2.0) * (k(0.5) - (t0 + bob_e3 * bob_e3));
+        let t18 = k(2.0) * (k(0.5) - (t3 + bob_e3 * bob_e3));
         let t19 = k(0.03) * (t18 * bob_wy + t17 * bob_wz)
             + k(0.02) * (t18 * bob_wx + t16 * bob_wz);
         *out = [
@@ -342,6 +348,41 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Universal<T> {
         y: &mut Self::State,
     ) -> ::core::result::Result<(), gyro_sim::Error> {
         gyro_sim::pivoting::solve_velocities(self, t, choice, y)
+    }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 44 operations (14 ±, 30 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let bob_e0 = y[3];
+        let bob_e1 = y[4];
+        let bob_e2 = y[5];
+        let bob_e3 = y[6];
+        let bob_sx = y[7];
+        let bob_sy = y[8];
+        let bob_sz = y[9];
+        let bob_wx = y[10];
+        let bob_wy = y[11];
+        let bob_wz = y[12];
+        let t0 = k(2.0) * (bob_e1 * bob_e2 - bob_e0 * bob_e3) * bob_wy
+            - k(2.0) * (k(0.5) - (bob_e0 * bob_e0 + bob_e1 * bob_e1)) * bob_wx;
+        *dy = [
+            bob_sx,
+            bob_sy,
+            bob_sz,
+            -(k(0.5) * (bob_e1 * bob_wx + bob_e2 * bob_wy + bob_e3 * bob_wz)),
+            k(0.5) * (bob_e0 * bob_wx - bob_e3 * bob_wy + bob_e2 * bob_wz),
+            k(0.5) * (bob_e3 * bob_wx + bob_e0 * bob_wy - bob_e1 * bob_wz),
+            -(k(0.5) * (bob_e2 * bob_wx - bob_e1 * bob_wy - bob_e0 * bob_wz)),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            -(bob_wy * (k(0.05) * bob_wy)),
+            k(2.0) * (bob_e1 * bob_e3 + bob_e0 * bob_e2) * bob_wz + t0,
+        ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for Universal<T> {
@@ -613,9 +654,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Universal<T> {
         let t12 = k(2.0) * t11;
         let t13 = k(2.0) * t2;
         let t14 = k(0.04) * t9;
-        let t15 = k(0.06) * t2 - t14;
+        let t15 = t14 - k(0.06) * t2;
         let t16 = k(2.0) * t5;
-        let t17 = t16 * (k(2.0) * t15) - (t13 * t12 - t10 * (k(2.0) * t7));
+        let t17 = t16 * (k(2.0) * t15) + (t13 * t12 - t10 * (k(2.0) * t7));
         let t18 = bob_wy * bob_wy;
         let t19 = bob_wz * bob_wz;
         let t20 = t19 + t18;
@@ -660,8 +701,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Universal<T> {
         let t57 = k(0.4) * (t55 * t28 + (t54 * t25 + t53 * t22)) - t56;
         let t58 = k(1.0) / (t10 * t10 + t16 * t16);
         let t59 = t26 * (t16 * t58);
-        let t60 = t6 + (k(0.0064) * t2 - k(0.7416) * t9);
-        let t61 = k(0.026) * t5 - (k(0.7636) * t2 - k(0.0064) * t9);
+        let t60 = t6 - (k(0.7416) * t9 - k(0.0064) * t2);
+        let t61 = k(0.026) * t5 + (k(0.0064) * t9 - k(0.7636) * t2);
         let t62 = k(0.0652) * t5 - (t14 + k(0.026) * t2);
         let t63 = k(1.0) / (t16 * t62 - (t13 * t61 + t10 * t60));
         let t64 = t61 * t63;
@@ -678,20 +719,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Universal<T> {
         let t75 = t13 * t74 + t10 * (t71 - t10 * t68 - k(19.62) * t47);
         let t76 = bob_wz * (t70 + t72) + (k(0.01) * t21 - k(0.002) * (t18 - t23));
         let t77 = t16 * (t76 - t16 * t68 + k(19.62) * t51) + t75;
-        let t78 = t44 * (t37 + t61 * (t63 * t39)) + t29 * (t12 - t61 * (t63 * t17));
+        let t78 = t44 * (t37 + t61 * (t63 * t39)) + t29 * (t12 + t61 * (t63 * t17));
         let t79 = t26 * (t10 * t58);
         let t80 = t79 * (k(0.013) - t62 * t64) - t59 * (k(0.0032) + t61 * (t60 * t63));
         let t81 = t80 - (t57 * (t50 + t61 * (t63 * t52)) + t78)
             + (t74 + t61 * (t63 * t77));
         let t82 = t81 / (k(0.3818) - t61 * t64);
         let t83 = t79 * t62 - (t61 * t82 - t60 * t59)
-            + (t57 * t52 + (t44 * t39 - t29 * t17));
+            + (t57 * t52 + (t44 * t39 + t29 * t17));
         let t84 = t63 * (t77 - t83);
         let t85 = t59 - t10 * t84;
         let t86 = t82 + t13 * t84;
         let t87 = t79 + t16 * t84;
         *out = [
-            t29 - (t15 * t87 - (t11 * t86 + t7 * t85)),
+            t29 + (t15 * t87 + (t11 * t86 + t7 * t85)),
             t44 + (t38 * t87 + (t36 * t86 + t34 * t85)),
             -(t57 + (t51 * t87 + (t49 * t86 + t47 * t85))),
             -t85,
@@ -760,10 +801,247 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Universal<T> {
         let t31 = k(0.004) * bob_dwx - k(0.003) * bob_dwy - k(0.03) * bob_dwz
             - (t30 - t28 * t13);
         let t32 = t1 * (k(0.06) * t5 - k(0.04) * (t21 + t20))
-            - t0 * (k(0.06) * t22 - k(0.04) * t14);
+            + t0 * (k(0.04) * t14 - k(0.06) * t22);
         let t33 = t2 * (k(0.06) * t10 + k(0.04) * (t24 - t23)) - t32 - t31;
         let t34 = t15 * t29 * t33 + t28 * t29 * (t27 - t26 + t19);
         *lambda = [-t0, -t1, -t2, -t34];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Universal<T> {
+    type Joints = [T; 5];
+    type Rates = [T; 2];
+    fn joint_start(&self) -> Self::Joints {
+        let k = T::constant;
+        [k(0.9), k(-0.5), k(1.5000000000000004), k(2.0), k(0.0)]
+    }
+    fn rates(&self) -> Self::Rates {
+        [T::constant(0.0); 2]
+    }
+    /// Writes u̇: 48 operations (18 ±, 29 ×, 1 ÷) and 4 functions.
+    fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let u0 = x[2];
+        let u1 = x[3];
+        let t0 = x1.cos();
+        let t1 = x1.sin();
+        let t2 = u0 * (k(0.5) - t1 * (t1 + k(8.455) * t0));
+        let t3 = k(0.0032) * (u1 * (k(25.0) * t2 - u1 * (t1 + k(4.0625) * t0)));
+        let t4 = x0.cos();
+        let t5 = k(1.5) * x0 - (k(0.3) + k(0.3924) * t4)
+            + k(0.5886) * (x0.sin() * (t1 + k(13.333333333333334) * t0));
+        let t6 = k(0.05) * u1 + k(7.848) * (t4 * (t1 - k(0.075) * t0))
+            - k(0.04) * (u0 * t2);
+        let t7 = k(0.013) * t1 - k(0.0032) * t0;
+        let t8 = k(2.6191723415400734) * t7;
+        let t9 = t7 * t8
+            - (k(0.3708) - k(0.3382) * (t1 * (t1 - k(0.11827321111768184) * t0)));
+        let t10 = (t8 * t6 + (t5 + t3)) / t9;
+        *out = [t10, t8 * t10 - k(2.6191723415400734) * t6];
+    }
+    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 2 operations (0 ±, 2 ×, 0 ÷).
+    fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
+        let mut rates = gyro_sim::JointSpace::rates(self);
+        gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
+        let k = T::constant;
+        let u0 = x[2];
+        let u1 = x[3];
+        *dx = [u0, u1, rates[0], rates[1], -(u1 * (k(0.05) * u1))];
+    }
+    /// Writes the maximal state of a joint state: 82 operations (28 ±, 54 ×, 0 ÷) and 4 functions.
+    fn to_maximal(&self, _t: T, x: &Self::Joints, y: &mut Self::State) {
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let u0 = x[2];
+        let u1 = x[3];
+        let t0 = k(0.5) * x1;
+        let t1 = t0.sin();
+        let t2 = k(0.5) * x0;
+        let t3 = t2.cos();
+        let t4 = t3 * t1;
+        let t5 = t0.cos();
+        let t6 = t3 * t5;
+        let t7 = t6 * t4;
+        let t8 = t2.sin();
+        let t9 = t8 * t1;
+        let t10 = t8 * t5;
+        let t11 = t10 * t9;
+        let t12 = t11 + t7;
+        let t13 = t6 * t9;
+        let t14 = t10 * t4;
+        let t15 = t14 - t13;
+        let t16 = t6 * t6;
+        let t17 = k(0.5) - (t16 + t10 * t10);
+        let t18 = t6 * t10;
+        let t19 = t4 * t9;
+        let t20 = t19 - t18;
+        let t21 = k(0.5) - (t16 + t4 * t4);
+        let t22 = t14 + t13;
+        let t23 = k(0.5) - (t16 + t9 * t9);
+        let t24 = t19 + t18;
+        let t25 = t11 - t7;
+        let t26 = k(2.0) * t1;
+        let t27 = u0 * (t5 * t26);
+        let t28 = k(0.4) * u1 - k(0.02) * t27;
+        let t29 = u0 * (k(1.0) - t1 * t26);
+        let t30 = k(0.4) * t29 + k(0.03) * t27;
+        let t31 = k(0.03) * u1 + k(0.02) * t29;
+        let t32 = k(2.0) * t12 * t31 - (k(2.0) * t15 * t30 + k(2.0) * t17 * t28);
+        let t33 = k(2.0) * t20 * t31 + (k(2.0) * t21 * t30 + k(2.0) * t22 * t28);
+        let t34 = k(2.0) * t23 * t31 + (k(2.0) * t24 * t30 - k(2.0) * t25 * t28);
+        *y = [
+            -(k(0.06) * t17 + k(0.04) * t15 + k(0.8) * t12),
+            k(0.06) * t22 + k(0.04) * t21 - k(0.8) * t20,
+            k(0.06) * t25 - k(0.04) * t24 + k(0.8) * t23,
+            t6,
+            t10,
+            t4,
+            t9,
+            -t32,
+            -t33,
+            t34,
+            t29,
+            u1,
+            t27,
+            x[4],
+            x0,
+        ];
+    }
+    /// Writes the joint state of a maximal state: 46 operations (20 ±, 26 ×, 0 ÷) and 6 functions.
+    fn to_joints(&self, _t: T, y: &Self::State, x: &mut Self::Joints) {
+        let k = T::constant;
+        let bob_e0 = y[3];
+        let bob_e1 = y[4];
+        let bob_e2 = y[5];
+        let bob_e3 = y[6];
+        let bob_wx = y[10];
+        let bob_wy = y[11];
+        let bob_wz = y[12];
+        let x0 = x[0];
+        let x1 = x[1];
+        let t0 = x0.sin();
+        let t1 = k(2.0) * (bob_e2 * bob_e3 + bob_e0 * bob_e1);
+        let t2 = x0.cos();
+        let t3 = bob_e2 * bob_e2;
+        let t4 = bob_e0 * bob_e0;
+        let t5 = t4 + bob_e1 * bob_e1;
+        let t6 = k(1.0) - (bob_e3 * bob_e3 + (t5 + t3));
+        let t7 = k(2.0) * (k(0.5) - (t4 + t3)) - t6;
+        let t8 = (t7 * t0 + t1 * t2).atan2(t1 * t0 - t7 * t2);
+        let t9 = x1.sin();
+        let t10 = k(2.0) * (bob_e1 * bob_e3 + bob_e0 * bob_e2);
+        let t11 = x1.cos();
+        let t12 = k(2.0) * (k(0.5) - t5);
+        let t13 = t12 - t6;
+        let t14 = (t13 * t9 + t10 * t11).atan2(t10 * t9 - t13 * t11);
+        let t15 = k(2.0) * (bob_e1 * bob_e2 - bob_e0 * bob_e3) * bob_wy - t12 * bob_wx;
+        x[0] = x0 + t8;
+        x[1] = x1 + t14;
+        x[2] = t10 * bob_wz + t15;
+        x[3] = bob_wy;
+        x[4] = y[13];
+    }
+    /// Writes u̇ at a state that satisfies the constraints: 81 operations (30 ±, 50 ×, 1 ÷) and 3 functions.
+    fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
+        let k = T::constant;
+        let bob_e0 = y[3];
+        let bob_e1 = y[4];
+        let bob_e2 = y[5];
+        let bob_e3 = y[6];
+        let bob_wx = y[10];
+        let bob_wy = y[11];
+        let bob_wz = y[12];
+        let turn0 = y[14];
+        let t0 = bob_e0 * bob_e0;
+        let t1 = k(0.5) - (t0 + bob_e1 * bob_e1);
+        let t2 = bob_e1 * bob_e3 + bob_e0 * bob_e2;
+        let t3 = k(2.0) * t2;
+        let t4 = k(2.0) * (bob_e1 * bob_e2 - bob_e0 * bob_e3) * bob_wy
+            - k(2.0) * t1 * bob_wx;
+        let t5 = t3 * bob_wz + t4;
+        let t6 = t5 * (k(0.5) - t3 * (t3 - k(16.91) * t1));
+        let t7 = k(0.0032) * (bob_wy * (k(25.0) * t6 - bob_wy * (t3 - k(8.125) * t1)));
+        let t8 = k(2.0) * (bob_e2 * bob_e3 + bob_e0 * bob_e1);
+        let t9 = turn0.cos();
+        let t10 = k(0.5) - (t0 + bob_e2 * bob_e2);
+        let t11 = k(2.0) * t10;
+        let t12 = turn0.sin();
+        let t13 = (t8 * t9 + t11 * t12).atan2(t8 * t12 - t11 * t9);
+        let t14 = k(0.3) - k(0.7848) * t10 - k(1.5) * (turn0 + t13)
+            - k(0.5886) * (t8 * (t3 - k(26.666666666666668) * t1));
+        let t15 = k(0.05) * bob_wy - k(7.848) * (t11 * (t3 + k(0.15) * t1))
+            - k(0.04) * (t5 * t6);
+        let t16 = k(0.026) * t2 + k(0.0064) * t1;
+        let t17 = k(2.6191723415400734) * t16;
+        let t18 = t16 * t17
+            - (k(0.3708) - k(0.3382) * (t3 * (t3 + k(0.23654642223536368) * t1)));
+        let t19 = (t17 * t15 - (t14 - t7)) / t18;
+        *out = [t19, t17 * t19 - k(2.6191723415400734) * t15];
+    }
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 163 operations (63 ±, 99 ×, 1 ÷) and 3 functions.
+    fn corrected_accelerations(
+        &self,
+        _t: T,
+        y: &Self::State,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let bob_e0 = y[3];
+        let bob_e1 = y[4];
+        let bob_e2 = y[5];
+        let bob_e3 = y[6];
+        let bob_wx = y[10];
+        let bob_wy = y[11];
+        let bob_wz = y[12];
+        let turn0 = y[14];
+        let t0 = bob_e0 * bob_e0;
+        let t1 = k(0.5) - (t0 + bob_e1 * bob_e1);
+        let t2 = k(2.0) * t1;
+        let t3 = bob_e0 * bob_e3;
+        let t4 = bob_e1 * bob_e2;
+        let t5 = k(2.0) * (t4 - t3);
+        let t6 = bob_e0 * bob_e2;
+        let t7 = bob_e1 * bob_e3;
+        let t8 = t7 + t6;
+        let t9 = k(2.0) * t8;
+        let t10 = t9 * bob_wz + (t5 * bob_wy - t2 * bob_wx);
+        let t11 = t2 * t10;
+        let t12 = t9 * t10;
+        let t13 = t10 * (t2 * t12 - t9 * t11) - (bob_wx * t12 + bob_wz * t11);
+        let t14 = t10 * (k(0.5) - t9 * (t9 - k(16.91) * t1));
+        let t15 = k(0.5) - (t0 + bob_e2 * bob_e2);
+        let t16 = k(2.0) * t15;
+        let t17 = k(0.05) * bob_wy - k(7.848) * (t16 * (t9 + k(0.15) * t1))
+            - k(0.04) * (t10 * t14);
+        let t18 = k(0.0032) * (bob_wy * (k(25.0) * t14 - bob_wy * (t9 - k(8.125) * t1)));
+        let t19 = bob_e0 * bob_e1;
+        let t20 = bob_e2 * bob_e3;
+        let t21 = k(2.0) * (t20 + t19);
+        let t22 = turn0.cos();
+        let t23 = turn0.sin();
+        let t24 = (t21 * t22 + t16 * t23).atan2(t21 * t23 - t16 * t22);
+        let t25 = k(0.3) - k(0.7848) * t15 - k(1.5) * (turn0 + t24)
+            - k(0.5886) * (t21 * (t9 - k(26.666666666666668) * t1));
+        let t26 = k(0.026) * t8 + k(0.0064) * t1;
+        let t27 = k(2.6191723415400734) * t26;
+        let t28 = t26 * t27
+            - (k(0.3708) - k(0.3382) * (t9 * (t9 + k(0.23654642223536368) * t1)));
+        let t29 = (t27 * t17 - (t25 - t18)) / t28;
+        let t30 = t27 * t29 - k(2.6191723415400734) * t17 + t13;
+        let t31 = t10 * (t2 * bob_wy) - (bob_wx * bob_wy + bob_wy * t11) - t9 * t29;
+        let t32 = k(0.03) * bob_wz + k(0.4) * bob_wx;
+        let t33 = k(0.02) * bob_wx + k(0.03) * bob_wy;
+        let t34 = bob_wy * t33 + bob_wz * t32 + (k(0.02) * t31 + k(0.4) * t30);
+        let t35 = t10 * (t9 * bob_wy) + (bob_wy * bob_wz - bob_wy * t12) + t2 * t29;
+        let t36 = k(0.4) * bob_wy - k(0.02) * bob_wz;
+        let t37 = bob_wz * t36 - bob_wx * t33 + (k(0.03) * t31 + k(0.4) * t35);
+        let t38 = bob_wx * t32 + bob_wy * t36 - (k(0.03) * t30 - k(0.02) * t35);
+        let t39 = k(2.0) * (t20 - t19) * t38 + (t16 * t37 - k(2.0) * (t4 + t3) * t34);
+        let t40 = k(2.0) * (k(0.5) - (t0 + bob_e3 * bob_e3)) * t38
+            + (t21 * t37 + k(2.0) * (t7 - t6) * t34);
+        *out = [t9 * t38 - (t5 * t37 - t2 * t34), t39, -t40, -t35, t30, -t31];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Ports for Universal<T> {
@@ -834,7 +1112,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Universal<T> {
             - (t32 - t30 * t13);
         let t34 = t21 + t20;
         let t35 = t0 * (k(0.06) * t5 - k(0.04) * t34)
-            - t2 * (k(0.06) * t22 - k(0.04) * t14);
+            + t2 * (k(0.04) * t14 - k(0.06) * t22);
         let t36 = t24 - t23;
         let t37 = t1 * (k(0.06) * t10 + k(0.04) * t36) - t35;
         let t38 = t15 * t31 * (t37 - t33) + t30 * t31 * (t29 + t19);

@@ -28,6 +28,12 @@
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 4 |
 //! | newton_step | dependent positions, one Newton step | 107 | 187 | 2 | 296 | 0 of 14 |
 //! | solve_velocities | dependent velocities, eq. (19) | 73 | 131 | 2 | 206 | 0 of 12 |
+//! | joint_accelerations | u̇ in joint coordinates | 0 | 1 | 0 | 1 | 0 of 1 |
+//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 1 |
+//! | to_maximal | (q, v) of a joint state | 13 | 26 | 0 | 39 | 9 of 26 |
+//! | to_joints | (x, u) of a maximal state | 10 | 12 | 0 | 22 | 0 of 2 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 2 | 2 | 0 | 4 | 0 of 1 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 52 | 74 | 0 | 126 | 0 of 12 |
 
 /// The mechanism `weld`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -681,6 +687,64 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Weld<T> {
         y[24] = t54;
         y[25] = t56;
         Ok(())
+    }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 48 operations (16 ±, 32 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let inner_e0 = y[3];
+        let inner_e1 = y[4];
+        let inner_e2 = y[5];
+        let inner_e3 = y[6];
+        let outer_e0 = y[10];
+        let outer_e1 = y[11];
+        let outer_e2 = y[12];
+        let outer_e3 = y[13];
+        let inner_sx = y[14];
+        let inner_sy = y[15];
+        let inner_sz = y[16];
+        let outer_sx = y[20];
+        let outer_sy = y[21];
+        let outer_sz = y[22];
+        let inner_wx = y[17];
+        let inner_wy = y[18];
+        let inner_wz = y[19];
+        let outer_wx = y[23];
+        let outer_wy = y[24];
+        let outer_wz = y[25];
+        *dy = [
+            inner_sx,
+            inner_sy,
+            inner_sz,
+            -(k(0.5)
+                * (inner_e1 * inner_wx + inner_e2 * inner_wy + inner_e3 * inner_wz)),
+            k(0.5) * (inner_e0 * inner_wx - inner_e3 * inner_wy + inner_e2 * inner_wz),
+            k(0.5) * (inner_e3 * inner_wx + inner_e0 * inner_wy - inner_e1 * inner_wz),
+            -(k(0.5)
+                * (inner_e2 * inner_wx - inner_e1 * inner_wy - inner_e0 * inner_wz)),
+            outer_sx,
+            outer_sy,
+            outer_sz,
+            -(k(0.5)
+                * (outer_e1 * outer_wx + outer_e2 * outer_wy + outer_e3 * outer_wz)),
+            k(0.5) * (outer_e0 * outer_wx - outer_e3 * outer_wy + outer_e2 * outer_wz),
+            k(0.5) * (outer_e3 * outer_wx + outer_e0 * outer_wy - outer_e1 * outer_wz),
+            -(k(0.5)
+                * (outer_e2 * outer_wx - outer_e1 * outer_wy - outer_e0 * outer_wz)),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            accelerations[6],
+            accelerations[7],
+            accelerations[8],
+            accelerations[9],
+            accelerations[10],
+            accelerations[11],
+        ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for Weld<T> {
@@ -1537,6 +1601,186 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Weld<T> {
             t62,
             t63 - t43 * (t61 * (t42 * t42)),
             -(t60 * t61 * t34),
+        ];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Weld<T> {
+    type Joints = [T; 2];
+    type Rates = [T; 1];
+    fn joint_start(&self) -> Self::Joints {
+        let k = T::constant;
+        [k(1.5707963267948966), k(0.0)]
+    }
+    fn rates(&self) -> Self::Rates {
+        [T::constant(0.0); 1]
+    }
+    /// Writes u̇: 1 operations (0 ±, 1 ×, 0 ÷) and 1 functions.
+    fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
+        let k = T::constant;
+        let x0 = x[0];
+        *out = [-(k(14.715) * x0.sin())];
+    }
+    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
+    fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
+        let mut rates = gyro_sim::JointSpace::rates(self);
+        gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
+        let u0 = x[1];
+        *dx = [u0, rates[0]];
+    }
+    /// Writes the maximal state of a joint state: 39 operations (13 ±, 26 ×, 0 ÷) and 2 functions.
+    fn to_maximal(&self, _t: T, x: &Self::Joints, y: &mut Self::State) {
+        let k = T::constant;
+        let x0 = x[0];
+        let u0 = x[1];
+        let t0 = k(0.5) * x0;
+        let t1 = t0.cos();
+        let t2 = t0.sin();
+        let t3 = t2 + t1;
+        let t4 = k(0.7071067811865476) * t3;
+        let t5 = k(0.5) - t4 * t4;
+        let t6 = t2 - t1;
+        let t7 = k(0.7071067811865476) * t6;
+        let t8 = t4 * t7;
+        let t9 = k(0.3535533905932738) * (t3 - t6);
+        let t10 = k(0.3535533905932738) * (t3 + t6);
+        let t11 = t10 * t9;
+        let t12 = t9 * t9;
+        let t13 = t10 * t10;
+        let t14 = k(0.25) * u0;
+        let t15 = t14 * (k(2.0) * t8);
+        let t16 = t14 * (k(2.0) * t5);
+        *y = [
+            -(k(0.5) * t5),
+            k(0.5) * t8,
+            k(0.0),
+            -t4,
+            k(0.0),
+            k(0.0),
+            -t7,
+            t11 - t5,
+            t8 + k(0.5) * (t13 - t12),
+            -(k(0.5) * (k(0.5) - (t13 + t12))),
+            -t9,
+            -t9,
+            -t10,
+            -t10,
+            -t15,
+            -t16,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            u0,
+            -(k(2.0) * t15 + t14 * (k(2.0) * (k(0.5) - k(2.0) * t12))),
+            t14 * (k(4.0) * t11) - k(2.0) * t16,
+            k(0.0),
+            k(0.0),
+            u0,
+            k(0.0),
+        ];
+    }
+    /// Writes the joint state of a maximal state: 22 operations (10 ±, 12 ×, 0 ÷) and 3 functions.
+    fn to_joints(&self, _t: T, y: &Self::State, x: &mut Self::Joints) {
+        let k = T::constant;
+        let inner_e0 = y[3];
+        let inner_e1 = y[4];
+        let inner_e2 = y[5];
+        let inner_e3 = y[6];
+        let inner_wz = y[19];
+        let x0 = x[0];
+        let t0 = x0.sin();
+        let t1 = inner_e0 * inner_e0 + inner_e1 * inner_e1;
+        let t2 = k(2.0) * (k(0.5) - t1)
+            - (k(1.0) - (inner_e3 * inner_e3 + (t1 + inner_e2 * inner_e2)));
+        let t3 = x0.cos();
+        let t4 = k(2.0) * (inner_e1 * inner_e2 + inner_e0 * inner_e3);
+        let t5 = (t4 * t0 - t2 * t3).atan2(-(t4 * t3 + t2 * t0));
+        x[0] = x0 + t5;
+        x[1] = inner_wz;
+    }
+    /// Writes u̇ at a state that satisfies the constraints: 4 operations (2 ±, 2 ×, 0 ÷).
+    fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
+        let k = T::constant;
+        let inner_e0 = y[3];
+        let inner_e3 = y[6];
+        *out = [-(k(14.715) * ((inner_e0 + inner_e3) * (inner_e0 - inner_e3)))];
+    }
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 126 operations (52 ±, 74 ×, 0 ÷).
+    fn corrected_accelerations(
+        &self,
+        _t: T,
+        y: &Self::State,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let inner_e0 = y[3];
+        let inner_e1 = y[4];
+        let inner_e2 = y[5];
+        let inner_e3 = y[6];
+        let outer_e0 = y[10];
+        let outer_e1 = y[11];
+        let outer_e2 = y[12];
+        let outer_e3 = y[13];
+        let inner_wx = y[17];
+        let inner_wy = y[18];
+        let inner_wz = y[19];
+        let outer_wx = y[23];
+        let outer_wy = y[24];
+        let outer_wz = y[25];
+        let t0 = k(0.25) * inner_wz;
+        let t1 = k(0.25) * inner_wy;
+        let t2 = inner_wy * t1 + inner_wz * t0;
+        let t3 = inner_e0 * inner_e0;
+        let t4 = (inner_e0 + inner_e3) * (inner_e0 - inner_e3);
+        let t5 = k(3.67875) * t4;
+        let t6 = inner_wx * t1;
+        let t7 = t6 - t5;
+        let t8 = inner_e0 * inner_e3;
+        let t9 = inner_e1 * inner_e2;
+        let t10 = k(2.0) * (t9 - t8) * t7
+            + k(2.0) * (k(0.5) - (t3 + inner_e1 * inner_e1)) * t2;
+        let t11 = inner_wx * inner_wz;
+        let t12 = k(0.25) * t11;
+        let t13 = inner_wx * t0;
+        let t14 = t13 + t12;
+        let t15 = inner_e0 * inner_e2;
+        let t16 = inner_e1 * inner_e3;
+        let t17 = k(2.0) * (k(0.5) - (t3 + inner_e2 * inner_e2)) * t7
+            + k(2.0) * (t9 + t8) * t2;
+        let t18 = inner_e0 * inner_e1;
+        let t19 = inner_e2 * inner_e3;
+        let t20 = k(2.0) * (t19 + t18) * t7 - k(2.0) * (t16 - t15) * t2;
+        let t21 = inner_wy * inner_wz;
+        let t22 = k(14.715) * t4;
+        let t23 = k(0.25) * outer_wx;
+        let t24 = t5 - (t6 + outer_wz * t23 - (t5 - t7));
+        let t25 = outer_e0 * outer_e0;
+        let t26 = k(0.25) * outer_wy;
+        let t27 = t12 + (t13 + outer_wz * t26 + (t12 + t14));
+        let t28 = outer_e0 * outer_e3;
+        let t29 = outer_e1 * outer_e2;
+        let t30 = k(2.0) * (t29 - t28) * t27
+            + k(2.0) * (k(0.5) - (t25 + outer_e1 * outer_e1)) * t24;
+        let t31 = t2 + (t2 + (outer_wx * t23 + outer_wy * t26));
+        let t32 = outer_e0 * outer_e2;
+        let t33 = outer_e1 * outer_e3;
+        let t34 = k(2.0) * (k(0.5) - (t25 + outer_e2 * outer_e2)) * t27
+            + k(2.0) * (t29 + t28) * t24;
+        let t35 = outer_e0 * outer_e1;
+        let t36 = outer_e2 * outer_e3;
+        let t37 = k(2.0) * (t36 + t35) * t27 - k(2.0) * (t33 - t32) * t24;
+        *out = [
+            k(2.0) * (t16 + t15) * t14 + t10,
+            k(2.0) * (t19 - t18) * t14 - t17,
+            t20 - k(2.0) * (k(0.5) - (t3 + inner_e3 * inner_e3)) * t14,
+            t21,
+            -t11,
+            -t22,
+            t30 - k(2.0) * (t33 + t32) * t31,
+            -(k(2.0) * (t36 - t35) * t31 + t34),
+            k(2.0) * (k(0.5) - (t25 + outer_e3 * outer_e3)) * t31 + t37,
+            -t11,
+            -t22,
+            t21,
         ];
     }
 }

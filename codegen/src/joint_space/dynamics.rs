@@ -1,0 +1,268 @@
+//! The accelerations of the joint coordinates: by a recursion over the tree, or through its reduced mass matrix `Bᵀ M B`.
+//!
+//! Both work in the bodies' own frames, on what [`Carriage`] says. Gravity enters as an acceleration of the ground.
+
+use super::carriage::{Bias, Carriage};
+use super::layout::Layout;
+use crate::coordinate::Load;
+use crate::dynamics::gyroscopic_torque;
+use crate::forces::{self, Readings};
+use crate::freedom::{Freedom, Parent, Twist};
+use crate::graph::{ExprId, Graph};
+use crate::ldl::Elimination;
+use crate::linear::{UNIT3, Vec3, ZERO3};
+use crate::normal_form::normal_form;
+use crate::null_space::{Arm, EliminatedTree, Excitation, Inertia};
+use crate::outputs::time_derivative;
+use crate::symbol::Symbol;
+use crate::system::System;
+use gyro_model::JointCoordinate;
+use std::collections::BTreeMap;
+
+/// Joint coordinates and rates as they are.
+struct OfJoints<'a>(&'a Layout);
+
+impl Readings for OfJoints<'_> {
+    fn value(&self, system: &mut System, on: JointCoordinate) -> ExprId {
+        let scalar = self.0.scalar(on).expect("joints of a tree have their coordinates");
+        system.graph.symbol(Symbol::Coordinate(scalar.place.x))
+    }
+
+    fn rate(&self, system: &mut System, on: JointCoordinate) -> ExprId {
+        let scalar = self.0.scalar(on).expect("joints of a tree have their coordinates");
+        system.graph.symbol(Symbol::Rate(scalar.place.u))
+    }
+}
+
+/// The force along each rate.
+pub fn forces_along(system: &mut System, layout: &Layout) -> Vec<ExprId> {
+    let mut along = vec![Graph::ZERO; layout.n_rates];
+    for part in forces::along_coordinates(system, &OfJoints(layout)) {
+        let at = layout.scalar(part.on).expect("joints of a tree have their coordinates").place.u;
+        along[at] = system.graph.add(along[at], part.force);
+    }
+    along
+}
+
+/// A tree in joint coordinates, ready to be solved.
+#[derive(Debug)]
+pub struct Reduced {
+    /// Rates of each link's free twists, root first.
+    rates: Vec<Vec<usize>>,
+    freedoms: Vec<Freedom>,
+    /// In the bodies' own frames.
+    bias: Vec<Twist>,
+    forced: Vec<Twist>,
+    along: Vec<Vec<ExprId>>,
+    n_rates: usize,
+}
+
+impl Reduced {
+    /// `loads` act on each body of the model besides gravity; `along` is the force along each rate.
+    pub fn new(
+        system: &mut System,
+        layout: &Layout,
+        carriages: &[Carriage],
+        spins: &[Vec3],
+        loads: &[Load],
+        along: &[ExprId],
+    ) -> Self {
+        let freedoms = carriages.iter().map(|carriage| local_freedom(system, carriage)).collect();
+        let gravity = system.numbers(&system.model.gravity);
+        let forced = carriages.iter().map(|carriage| {
+            let bias = bias(system, carriage, spins);
+            let graph = &mut system.graph;
+            let at_joint = graph.transposed_vec(&carriage.rotation, &bias.on_parent);
+            let own = Twist { t: graph.add_vec(&at_joint, &bias.on_body), rho: bias.rho };
+            let ground = of_ground(system, carriage, &gravity);
+            own.plus(&mut system.graph, &ground)
+        });
+        let forced = forced.collect();
+        let bias = (0..spins.len()).map(|slot| inertial(system, slot, &spins[slot], loads)).collect();
+        let rates: Vec<Vec<_>> =
+            carriages.iter().map(|carriage| carriage.free.iter().map(|free| free.rate).collect()).collect();
+        let along = rates.iter().map(|rates| rates.iter().map(|&rate| along[rate]).collect()).collect();
+        Self { rates, freedoms, bias, forced, along, n_rates: layout.n_rates }
+    }
+
+    /// u̇ by elimination from the leaves to the roots: operations grow linearly with the number of bodies.
+    pub fn recursion(&self, system: &mut System) -> Vec<ExprId> {
+        let tree = EliminatedTree::new(system, self.freedoms.clone());
+        let (bias, forced, along) = (self.bias.clone(), self.forced.clone(), self.along.clone());
+        let response = tree.respond(&mut system.graph, Excitation { bias, forced, along });
+        self.scattered(&response.rates)
+    }
+
+    /// u̇ by factoring the reduced mass matrix, all entries in polynomial normal form as long as pivots are constant.
+    pub fn factored(&self, system: &mut System, unit: &[Vec<ExprId>]) -> Vec<ExprId> {
+        let matrix = self.mass_matrix(system);
+        let forces = self.generalised_forces(system);
+        let graph = &mut system.graph;
+        let mut elimination = Elimination::new(matrix, forces);
+        elimination.rewrite(|old| normal_form(graph, unit, &old));
+        for unknown in self.rates.iter().flatten().rev().copied() {
+            let is_constant = graph.as_constant(elimination.diagonal(unknown)).is_some();
+            elimination.pivot(graph, unknown);
+            if is_constant {
+                elimination.rewrite(|old| normal_form(graph, unit, &old));
+            }
+        }
+        let solution = elimination.substitute_back(graph);
+        normal_form(graph, unit, &solution)
+    }
+
+    fn scattered(&self, rates: &[Vec<ExprId>]) -> Vec<ExprId> {
+        let mut all = vec![Graph::ZERO; self.n_rates];
+        for (places, values) in self.rates.iter().zip(rates) {
+            for (&place, &value) in places.iter().zip(values) {
+                all[place] = value;
+            }
+        }
+        all
+    }
+
+    /// Lower triangle of `Bᵀ M B`: what a unit acceleration of one rate takes along each rate nearer to the root, the inertia
+    /// beyond it moving as one body.
+    fn mass_matrix(&self, system: &mut System) -> BTreeMap<(usize, usize), ExprId> {
+        let mut bodies: Vec<_> = (0..self.bias.len()).map(|slot| Inertia::rigid(system, slot)).collect();
+        let graph = &mut system.graph;
+        let mut matrix = BTreeMap::new();
+        for (freedom, rates) in self.freedoms.iter().zip(&self.rates).rev() {
+            let arm = Arm::on_body(graph, freedom);
+            let beyond = bodies[freedom.slot].seen_through(graph, &arm);
+            for (k, (twist, &rate)) in freedom.free.iter().zip(rates).enumerate() {
+                let mut wrench = beyond.times(graph, twist);
+                for (other, &other_rate) in freedom.free[..=k].iter().zip(rates) {
+                    let entry = other.dot(graph, &wrench);
+                    matrix.insert((rate.max(other_rate), rate.min(other_rate)), entry);
+                }
+                let mut link = freedom;
+                while let Some(parent) = link.parent {
+                    let carried = parent.wrench(graph, &wrench);
+                    let at = self.place_of(parent.slot);
+                    link = &self.freedoms[at];
+                    wrench = Arm::on_body(graph, link).wrench(graph, &carried);
+                    for (other, &other_rate) in link.free.iter().zip(&self.rates[at]) {
+                        let entry = other.dot(graph, &wrench);
+                        matrix.insert((rate.max(other_rate), rate.min(other_rate)), entry);
+                    }
+                }
+            }
+            if let Some(parent) = freedom.parent {
+                let load = beyond.on_parent(graph, &parent);
+                let arm = Arm::on_parent(graph, &parent);
+                let load = load.seen_through(graph, &arm);
+                bodies[parent.slot].add(graph, &load);
+            }
+        }
+        matrix.retain(|_, entry| *entry != Graph::ZERO);
+        matrix
+    }
+
+    fn place_of(&self, slot: usize) -> usize {
+        self.freedoms.iter().position(|freedom| freedom.slot == slot).expect("every slot is a link")
+    }
+
+    /// What drives each rate: forces less what the motion at constant rates takes.
+    fn generalised_forces(&self, system: &mut System) -> Vec<ExprId> {
+        let bodies: Vec<_> = (0..self.bias.len()).map(|slot| Inertia::rigid(system, slot)).collect();
+        let graph = &mut system.graph;
+        let mut motions = vec![Twist::ZERO; self.bias.len()];
+        for (freedom, forced) in self.freedoms.iter().zip(&self.forced) {
+            let mut motion = *forced;
+            if let Some(parent) = freedom.parent {
+                let carried = parent.twist(graph, &motions[parent.slot]);
+                motion = motion.plus(graph, &carried);
+            }
+            motions[freedom.slot] = Arm::on_body(graph, freedom).twist(graph, &motion);
+        }
+        let mut taken: Vec<_> = (motions.iter().zip(&bodies).zip(&self.bias))
+            .map(|((motion, inertia), bias)| inertia.times(graph, motion).plus(graph, bias))
+            .collect();
+        let mut forces = vec![Graph::ZERO; self.n_rates];
+        for ((freedom, rates), along) in self.freedoms.iter().zip(&self.rates).zip(&self.along).rev() {
+            let wrench = Arm::on_body(graph, freedom).wrench(graph, &taken[freedom.slot]);
+            for ((twist, &rate), &along) in freedom.free.iter().zip(rates).zip(along) {
+                let resisted = twist.dot(graph, &wrench);
+                forces[rate] = graph.sub(along, resisted);
+            }
+            if let Some(parent) = freedom.parent {
+                let carried = parent.wrench(graph, &wrench);
+                taken[parent.slot] = taken[parent.slot].plus(graph, &carried);
+            }
+        }
+        forces
+    }
+}
+
+/// Translations in the body's own frame.
+pub fn local_freedom(system: &System, carriage: &Carriage) -> Freedom {
+    let parent = carriage.parent.and_then(|body| system.slot_of(body)).map(|slot| Parent {
+        slot,
+        point: carriage.on_parent,
+        relative: carriage.rotation,
+        frame: UNIT3,
+        carried: carriage.rotation,
+    });
+    Freedom {
+        slot: carriage.slot,
+        parent,
+        point: carriage.on_body,
+        frame: UNIT3,
+        free: carriage.free.iter().map(|free| free.twist).collect(),
+        rows: 0..0,
+        forced: Vec::new(),
+    }
+}
+
+/// w' of each slot, from the rates.
+pub fn spins(system: &mut System, carriages: &[Carriage]) -> Vec<Vec3> {
+    let mut spins = vec![ZERO3; system.slots.len()];
+    for carriage in carriages {
+        let of_parent = spin_of(system, carriage.parent, &spins);
+        spins[carriage.slot] = carriage.spin(&mut system.graph, &of_parent);
+    }
+    spins
+}
+
+/// w' of a carrier.
+pub fn spin_of(system: &System, body: Option<usize>, spins: &[Vec3]) -> Vec3 {
+    body.map_or(ZERO3, |body| system.slot_of(body).map_or(system.poses[body].w, |slot| spins[slot]))
+}
+
+pub fn bias(system: &mut System, carriage: &Carriage, spins: &[Vec3]) -> Bias {
+    let of_parent = spin_of(system, carriage.parent, spins);
+    carriage.bias(&mut system.graph, &of_parent, &spins[carriage.slot])
+}
+
+/// The acceleration of the joint point and the angular acceleration that a carrier without coordinates imposes, centripetal
+/// parts left out, less gravity; in the body's frame.
+pub fn of_ground(system: &mut System, carriage: &Carriage, gravity: &Vec3) -> Twist {
+    let (linear, angular, a) = match carriage.parent {
+        Some(body) if system.slot_of(body).is_some() => return Twist::ZERO,
+        Some(body) => {
+            let pose = system.poses[body];
+            (time_derivative(system, &pose.s), time_derivative(system, &pose.w), pose.a)
+        }
+        None => (ZERO3, ZERO3, UNIT3),
+    };
+    let graph = &mut system.graph;
+    let felt = graph.sub_vec(&linear, gravity);
+    let felt = graph.transposed_vec(&a, &felt);
+    let tangential = graph.cross(&angular, &carriage.on_parent);
+    let at_joint = graph.add_vec(&felt, &tangential);
+    Twist {
+        t: graph.transposed_vec(&carriage.rotation, &at_joint),
+        rho: graph.transposed_vec(&carriage.rotation, &angular),
+    }
+}
+
+/// What a body at constant velocity takes: `w̃'J'w'`, less the loads on it.
+fn inertial(system: &mut System, slot: usize, spin: &Vec3, loads: &[Load]) -> Twist {
+    let (inertia, body) = (system.inertia(slot), system.slots[slot]);
+    let (load, a) = (&loads[body], system.poses[body].a);
+    let graph = &mut system.graph;
+    let gyroscopic = gyroscopic_torque(graph, &inertia, spin);
+    let force = graph.transposed_vec(&a, &load.force);
+    Twist { t: graph.neg_vec(&force), rho: graph.sub_vec(&gyroscopic, &load.torque) }
+}

@@ -1,0 +1,95 @@
+//! Where each joint's coordinates and rates stand.
+
+use crate::system::System;
+use gyro_model::{Attachment, CoordinateKind, JointCoordinate, JointKind, Link};
+
+/// The joint coordinates x and rates u of a tree: joints in the order of the page, then free bodies.
+#[derive(Clone, Debug)]
+pub struct Layout {
+    /// One for each link of the tree, root first.
+    pub links: Vec<LinkCoordinates>,
+    /// Length of x.
+    pub n_coordinates: usize,
+    /// Length of u.
+    pub n_rates: usize,
+}
+
+/// The coordinates of one link, in this order.
+#[derive(Clone, Debug)]
+pub struct LinkCoordinates {
+    pub link: Link,
+    /// Angles and displacements; the rate of each is its derivative.
+    pub scalars: Vec<Scalar>,
+    /// Free bodies: r, and its derivative.
+    pub position: Option<Place>,
+    /// Spherical joints and points on a line: Euler parameters of the second body in the first's frame and the angular velocity
+    /// relative to the first, in the second's frame. Free bodies: p and w'.
+    pub orientation: Option<Place>,
+}
+
+/// An angle or a displacement.
+#[derive(Clone, Copy, Debug)]
+pub struct Scalar {
+    pub coordinate: JointCoordinate,
+    pub kind: CoordinateKind,
+    pub place: Place,
+}
+
+/// Index of the first coordinate and of the first rate.
+#[derive(Clone, Copy, Debug)]
+pub struct Place {
+    pub x: usize,
+    pub u: usize,
+}
+
+impl Layout {
+    pub fn of(system: &System) -> Self {
+        let mut links = system.tree.links.clone();
+        links.sort_by_key(|link| match link.attachment {
+            Attachment::Joint { joint, .. } => (0, joint),
+            Attachment::Free | Attachment::Constrained => (1, link.body),
+        });
+        let mut layout = Self { links: Vec::new(), n_coordinates: 0, n_rates: 0 };
+        for link in links {
+            let coordinates = layout.place(system, link);
+            layout.links.push(coordinates);
+        }
+        let order = |link: &LinkCoordinates| system.tree.links.iter().position(|l| l.body == link.link.body);
+        layout.links.sort_by_key(order);
+        layout
+    }
+
+    fn place(&mut self, system: &System, link: Link) -> LinkCoordinates {
+        let mut coordinates = LinkCoordinates { link, scalars: Vec::new(), position: None, orientation: None };
+        match link.attachment {
+            Attachment::Constrained => {}
+            Attachment::Free => {
+                coordinates.position = Some(self.take(3, 3));
+                coordinates.orientation = Some(self.take(4, 3));
+            }
+            Attachment::Joint { joint, .. } => {
+                let kind = system.joints[joint].kind;
+                for (coordinate, &kind) in kind.coordinates().iter().enumerate() {
+                    let coordinate = JointCoordinate { joint, coordinate };
+                    coordinates.scalars.push(Scalar { coordinate, kind, place: self.take(1, 1) });
+                }
+                if matches!(kind, JointKind::Spherical | JointKind::PointOnLine) {
+                    coordinates.orientation = Some(self.take(4, 3));
+                }
+            }
+        }
+        coordinates
+    }
+
+    fn take(&mut self, coordinates: usize, rates: usize) -> Place {
+        let place = Place { x: self.n_coordinates, u: self.n_rates };
+        self.n_coordinates += coordinates;
+        self.n_rates += rates;
+        place
+    }
+
+    /// Where a scalar coordinate of a joint stands.
+    pub fn scalar(&self, coordinate: JointCoordinate) -> Option<&Scalar> {
+        self.links.iter().flat_map(|link| &link.scalars).find(|scalar| scalar.coordinate == coordinate)
+    }
+}

@@ -1,0 +1,285 @@
+//! Between joint coordinates and maximal ones, both ways.
+
+use super::carriage::{Carriage, at_zero};
+use super::dynamics;
+use super::layout::{Layout, LinkCoordinates, Scalar};
+use crate::coordinate::{self, relative_spin};
+use crate::definitions::Expansion;
+use crate::evaluate::evaluate;
+use crate::graph::{ExprId, Graph};
+use crate::linear::{Mat3, UNIT3, Vec3, Vec4, ZERO3};
+use crate::readings::{raw_angle, relative_euler};
+use crate::symbol::Symbol;
+use crate::system::{JointFrames, System};
+use gyro_model::{Attachment, CoordinateKind};
+use std::array::from_fn;
+use std::collections::HashMap;
+
+/// Symbols and what they are.
+pub type Values = HashMap<Symbol, ExprId>;
+
+/// Maximal positions and velocities in terms of joint coordinates and rates.
+pub fn of_bodies(system: &mut System, layout: &Layout, carriages: &[Carriage]) -> Values {
+    let mut values = Values::new();
+    let spins = dynamics::spins(system, carriages);
+    for (link, carriage) in layout.links.iter().zip(carriages) {
+        let slot = carriage.slot;
+        let carrier = Carrier::of(system, carriage.parent, &values);
+        let p = orientation(system, link, &carrier);
+        let a = system.graph.rotation(&p);
+        let own = spins[slot];
+        let parent_spin = dynamics::spin_of(system, carriage.parent, &spins);
+        let graph = &mut system.graph;
+        let (arm, own_arm) = (graph.mat_vec(&carrier.a, &carriage.on_parent), graph.mat_vec(&a, &carriage.on_body));
+        let point = graph.add_vec(&carrier.r, &arm);
+        let r = graph.sub_vec(&point, &own_arm);
+        let slid = carriage.sliding_velocity(graph);
+        let turned = graph.cross(&parent_spin, &carriage.on_parent);
+        let on_parent = graph.add_vec(&turned, &slid.on_parent);
+        let turned = graph.cross(&own, &carriage.on_body);
+        let on_body = graph.sub_vec(&slid.on_body, &turned);
+        let (on_parent, on_body) = (graph.mat_vec(&carrier.a, &on_parent), graph.mat_vec(&a, &on_body));
+        let point = graph.add_vec(&carrier.s, &on_parent);
+        let s = graph.add_vec(&point, &on_body);
+        for k in 0..3 {
+            values.insert(Symbol::Position { slot, k }, r[k]);
+            values.insert(Symbol::Velocity { slot, k }, s[k]);
+            values.insert(Symbol::Spin { slot, k }, own[k]);
+            for column in 0..3 {
+                values.insert(Symbol::Rotation { slot, row: k, column }, a[k][column]);
+            }
+        }
+        for (k, &e) in p.iter().enumerate() {
+            values.insert(Symbol::Euler { slot, k }, e);
+        }
+    }
+    in_half_angles(system, layout, values)
+}
+
+/// Sines and cosines by those of half the angle, which the orientations need anyhow.
+fn in_half_angles(system: &mut System, layout: &Layout, values: Values) -> Values {
+    let mut of_angles = Values::new();
+    for scalar in layout.links.iter().flat_map(|link| &link.scalars).filter(|s| s.kind.is_angle()) {
+        let x = scalar.place.x;
+        let (sine, cosine) = whole(&mut system.graph, x);
+        of_angles.insert(Symbol::Sine(x), sine);
+        of_angles.insert(Symbol::Cosine(x), cosine);
+    }
+    expanded(system, of_angles, values)
+}
+
+/// Values in which nothing is left to be expanded.
+pub fn expanded(system: &mut System, by: Values, values: Values) -> Values {
+    let mut expansion = Expansion::with_values(&system.definitions, by);
+    let mut values: Vec<_> = values.into_iter().collect();
+    values.sort_unstable();
+    let graph = &mut system.graph;
+    values.into_iter().map(|(symbol, value)| (symbol, expansion.of(graph, value))).collect()
+}
+
+/// Where a carrier is, in terms of joint coordinates.
+struct Carrier {
+    r: Vec3,
+    p: Vec4,
+    a: Mat3,
+    s: Vec3,
+}
+
+impl Carrier {
+    fn of(system: &mut System, body: Option<usize>, values: &Values) -> Self {
+        let Some(body) = body else {
+            let p = [Graph::ONE, Graph::ZERO, Graph::ZERO, Graph::ZERO];
+            return Self { r: ZERO3, p, a: UNIT3, s: ZERO3 };
+        };
+        let pose = system.poses[body];
+        let Some(slot) = system.slot_of(body) else {
+            return Self { r: pose.r, p: pose.p, a: pose.a, s: pose.s };
+        };
+        Self {
+            r: from_fn(|k| values[&Symbol::Position { slot, k }]),
+            p: from_fn(|k| values[&Symbol::Euler { slot, k }]),
+            a: from_fn(|row| from_fn(|column| values[&Symbol::Rotation { slot, row, column }])),
+            s: from_fn(|k| values[&Symbol::Velocity { slot, k }]),
+        }
+    }
+}
+
+/// Euler parameters of a body.
+fn orientation(system: &mut System, link: &LinkCoordinates, carrier: &Carrier) -> Vec4 {
+    let own = link.orientation.map(|place| from_fn(|k| system.graph.symbol(Symbol::Coordinate(place.x + k))));
+    let (joint, reversed) = match link.link.attachment {
+        Attachment::Free => return own.expect("a free body has an orientation"),
+        Attachment::Constrained => return system.fixed_pose(link.link.body).p,
+        Attachment::Joint { joint, reversed, .. } => (joint, reversed),
+    };
+    let frames = system.joints[joint];
+    let relative = match own {
+        Some(p) => p,
+        None => relative_orientation(system, &frames, &link.scalars),
+    };
+    let graph = &mut system.graph;
+    if reversed {
+        let [e0, e1, e2, e3] = relative;
+        let [e1, e2, e3] = graph.neg_vec(&[e1, e2, e3]);
+        graph.compose(&carrier.p, &[e0, e1, e2, e3])
+    } else {
+        graph.compose(&carrier.p, &relative)
+    }
+}
+
+/// Euler parameters of the second body in the first's frame.
+fn relative_orientation(system: &mut System, joint: &JointFrames, scalars: &[Scalar]) -> Vec4 {
+    let at_zero = orientation_at_zero(system, joint);
+    let graph = &mut system.graph;
+    let square = graph.dot(&at_zero, &at_zero);
+    let norm = graph.sqrt(square);
+    let inverse = graph.recip(norm);
+    let mut p = graph.scale_vec(inverse, &at_zero);
+    for scalar in scalars.iter().filter(|scalar| scalar.kind.is_angle()) {
+        let (sine, cosine) = half(graph, scalar.place.x);
+        let about = |graph: &mut Graph, axis: &Vec3| {
+            let [x, y, z] = graph.scale_vec(sine, axis);
+            [cosine, x, y, z]
+        };
+        p = if scalar.kind == CoordinateKind::FirstAngle {
+            let turn = about(graph, &joint.first.h);
+            graph.compose(&turn, &p)
+        } else {
+            let turn = about(graph, &joint.second.h);
+            graph.compose(&p, &turn)
+        };
+    }
+    p
+}
+
+/// Sine and cosine of half a joint coordinate.
+fn half(graph: &mut Graph, x: usize) -> (ExprId, ExprId) {
+    let (x, half) = (graph.symbol(Symbol::Coordinate(x)), graph.fraction(1, 2));
+    let x = graph.mul(half, x);
+    (graph.sin(x), graph.cos(x))
+}
+
+/// Sine and cosine of a joint coordinate from those of its half.
+fn whole(graph: &mut Graph, x: usize) -> (ExprId, ExprId) {
+    let half = half(graph, x);
+    doubled(graph, half, Graph::ONE)
+}
+
+/// `2 s c / square` and `1 − 2 s² / square`.
+fn doubled(graph: &mut Graph, (sine, cosine): (ExprId, ExprId), square: ExprId) -> (ExprId, ExprId) {
+    let two = graph.integer(2);
+    let factor = graph.div(two, square);
+    let twice = graph.mul(factor, sine);
+    let (whole, versed) = (graph.mul(twice, cosine), graph.mul(twice, sine));
+    (whole, graph.sub(Graph::ONE, versed))
+}
+
+/// Euler parameters, up to a factor, of the second body in the first's frame where all angles are zero: of the four ways to read
+/// them off a rotation matrix the one farthest from a division by zero.
+fn orientation_at_zero(system: &mut System, joint: &JointFrames) -> Vec4 {
+    let r = at_zero(&mut system.graph, joint);
+    let graph = &mut system.graph;
+    let d = [r[0][0], r[1][1], r[2][2]];
+    let mut sum = |signs: [i64; 3]| {
+        let mut sum = Graph::ONE;
+        for (sign, &entry) in signs.iter().zip(&d) {
+            sum = if *sign > 0 { graph.add(sum, entry) } else { graph.sub(sum, entry) };
+        }
+        sum
+    };
+    let squares = [sum([1, 1, 1]), sum([1, -1, -1]), sum([-1, 1, -1]), sum([-1, -1, 1])];
+    let skew = [(2, 1), (0, 2), (1, 0)].map(|(i, j)| graph.sub(r[i][j], r[j][i]));
+    let even = [(1, 2), (2, 0), (0, 1)].map(|(i, j)| graph.add(r[i][j], r[j][i]));
+    let rows = [
+        [squares[0], skew[0], skew[1], skew[2]],
+        [skew[0], squares[1], even[2], even[1]],
+        [skew[1], even[2], squares[2], even[0]],
+        [skew[2], even[1], even[0], squares[3]],
+    ];
+    let parameters = &system.model.parameters;
+    let values = evaluate(&system.graph, &squares, |symbol| match symbol {
+        Symbol::Parameter(index) => gyro_model::to_f64(&parameters[index].value),
+        _ => f64::NAN,
+    });
+    let largest = (0..4).max_by(|&a, &b| values[a].total_cmp(&values[b])).expect("four of them");
+    // The nicest multiple: the largest component one.
+    let graph = &mut system.graph;
+    let inverse = graph.recip(squares[largest]);
+    graph.scale_vec(inverse, &rows[largest])
+}
+
+/// Joint coordinates and rates in terms of a maximal state that satisfies the constraints. Of an angle on which nothing acts
+/// only the sine and cosine are given.
+pub fn of_joints(system: &mut System, layout: &Layout) -> Values {
+    let mut values = Values::new();
+    for link in &layout.links {
+        for scalar in &link.scalars {
+            scalar_of_joint(system, scalar, &mut values);
+        }
+        let slot = system.slot_of(link.link.body).expect("links have coordinates");
+        let pose = system.poses[link.link.body];
+        if let Some(place) = link.position {
+            for k in 0..3 {
+                values.insert(Symbol::Coordinate(place.x + k), pose.r[k]);
+                values.insert(Symbol::Rate(place.u + k), pose.s[k]);
+            }
+        }
+        if let Some(place) = link.orientation {
+            let (p, w) = match link.link.attachment {
+                Attachment::Joint { joint, .. } => {
+                    let frames = system.joints[joint];
+                    (relative_euler(system, &frames), relative_spin(system, &frames))
+                }
+                _ => (system.poses[system.slots[slot]].p, pose.w),
+            };
+            values.extend((0..4).map(|k| (Symbol::Coordinate(place.x + k), p[k])));
+            values.extend((0..3).map(|k| (Symbol::Rate(place.u + k), w[k])));
+        }
+    }
+    expanded(system, Values::new(), values)
+}
+
+fn scalar_of_joint(system: &mut System, scalar: &Scalar, values: &mut Values) {
+    let (coordinate, x) = (scalar.coordinate, scalar.place.x);
+    let rate = coordinate::rate(system, coordinate);
+    values.insert(Symbol::Rate(scalar.place.u), rate);
+    if !scalar.kind.is_angle() {
+        let value = coordinate::value(system, coordinate);
+        values.insert(Symbol::Coordinate(x), value);
+        return;
+    }
+    let joint = system.joints[coordinate.joint];
+    let (sine, cosine) = if scalar.kind == CoordinateKind::Angle {
+        // p_i* p_j = ± p0 ∘ (cos ½θ, h sin ½θ).
+        let (at_zero, relative) = (orientation_at_zero(system, &joint), relative_euler(system, &joint));
+        let graph = &mut system.graph;
+        let [x, y, z] = joint.second.h;
+        let quarter = graph.compose(&at_zero, &[Graph::ZERO, x, y, z]);
+        let half = (graph.dot(&quarter, &relative), graph.dot(&at_zero, &relative));
+        let square = graph.dot(&at_zero, &at_zero);
+        doubled(graph, half, square)
+    } else {
+        coordinate::sine_and_cosine(&mut system.graph, scalar.kind, &joint, &joint.relative)
+    };
+    values.insert(Symbol::Sine(x), sine);
+    values.insert(Symbol::Cosine(x), cosine);
+    if system.model.turn_references().contains(&coordinate) {
+        let angle = coordinate::value(system, coordinate);
+        values.insert(Symbol::Coordinate(x), angle);
+    }
+}
+
+/// x and u from any maximal state: angles continue from the value that x holds before.
+pub fn reduced(system: &mut System, layout: &Layout) -> Vec<ExprId> {
+    let values = of_joints(system, layout);
+    let mut all: Vec<_> = (0..layout.n_coordinates)
+        .map(|x| values.get(&Symbol::Coordinate(x)).copied().unwrap_or(Graph::ZERO))
+        .collect();
+    for scalar in layout.links.iter().flat_map(|link| &link.scalars).filter(|s| s.kind.is_angle()) {
+        let before = system.graph.symbol(Symbol::Coordinate(scalar.place.x));
+        let (sine, cosine) = raw_angle(system, scalar.coordinate, scalar.kind);
+        all[scalar.place.x] = system.graph.continued(before, sine, cosine);
+    }
+    all.extend((0..layout.n_rates).map(|u| values[&Symbol::Rate(u)]));
+    all
+}

@@ -1,0 +1,130 @@
+//! Joint coordinates.
+
+use super::ModuleWriter;
+use crate::emit::{float, ident, index};
+use crate::graph::ExprId;
+use proc_macro2::TokenStream;
+use quote::quote;
+
+impl ModuleWriter<'_> {
+    /// Nothing for mechanisms that are no trees.
+    pub fn joint_space(&self) -> Option<TokenStream> {
+        let space = self.equations.joint_space.as_ref()?;
+        let (name, f) = (ident(self.type_name), &self.functions);
+        let (n_x, n_u) = (space.layout.n_coordinates, space.layout.n_rates);
+        let n_work = usize::from(self.equations.power.is_some());
+        let start: Vec<_> = space.start.iter().copied().chain((0..n_work).map(|_| 0.0)).collect();
+        let start = start.iter().map(|&x| if x == 0.0 { float(0.0) } else { float(x) });
+        let (n_joints, n_rates) = (index(n_x + n_u + n_work), index(n_u));
+        let accelerations = self.of_joints(
+            "joint_accelerations",
+            "Writes u̇",
+            &quote! { out: &mut Self::Rates },
+            &f.joint_accelerations,
+            |values| quote! { *out = [#(#values),*]; },
+        );
+        let derivative = self.joint_derivative(n_x, n_u);
+        let to_maximal = self.to_maximal(n_x + n_u);
+        let to_joints = self.to_joints(n_x + n_u);
+        let at = self.filling(
+            "joint_accelerations_at",
+            "Writes u̇ at a state that satisfies the constraints",
+            "Rates",
+            &f.joint_accelerations_at,
+        );
+        let corrected = self.filling(
+            "corrected_accelerations",
+            "Writes (s̈, ẇ') at a state that satisfies the constraints",
+            "Velocities",
+            &f.corrected_accelerations,
+        );
+        Some(quote! {
+            impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for #name<T> {
+                type Joints = [T; #n_joints];
+                type Rates = [T; #n_rates];
+
+                fn joint_start(&self) -> Self::Joints {
+                    let k = T::constant;
+                    [#(k(#start)),*]
+                }
+                fn rates(&self) -> Self::Rates {
+                    [T::constant(0.0); #n_rates]
+                }
+
+                #accelerations
+                #derivative
+                #to_maximal
+                #to_joints
+                #at
+                #corrected
+            }
+        })
+    }
+
+    /// A function of time and joint state.
+    fn of_joints(
+        &self,
+        name: &str,
+        what: &str,
+        out: &TokenStream,
+        roots: &[ExprId],
+        write: impl Fn(&[TokenStream]) -> TokenStream,
+    ) -> TokenStream {
+        let name = ident(name);
+        self.function(what, roots, |body, t, x| {
+            let (statements, written) = (&body.statements, write(&body.values));
+            quote! {
+                fn #name(&self, #t: T, #x: &Self::Joints, #out) {
+                    #statements
+                    #written
+                }
+            }
+        })
+    }
+
+    fn joint_derivative(&self, n_x: usize, n_u: usize) -> TokenStream {
+        let what = "Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes";
+        self.function(what, &self.functions.joint_derivative, |body, _, _| {
+            let (statements, (coordinates, rest)) = (&body.statements, body.values.split_at(n_x));
+            let places = (0..n_u).map(index);
+            quote! {
+                fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
+                    let mut rates = gyro_sim::JointSpace::rates(self);
+                    gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
+                    #statements
+                    *dx = [#(#coordinates,)* #(rates[#places],)* #(#rest),*];
+                }
+            }
+        })
+    }
+
+    fn to_maximal(&self, work_at: usize) -> TokenStream {
+        let n_state = 13 * self.equations.n_slots();
+        let work = self.equations.power.is_some().then(|| index(work_at));
+        let work = work.map(|at| quote! { x[#at], });
+        let out = quote! { y: &mut Self::State };
+        let what = "Writes the maximal state of a joint state";
+        self.of_joints("to_maximal", what, &out, &self.functions.to_maximal, |values| {
+            let (state, turns) = values.split_at(n_state);
+            quote! { *y = [#(#state,)* #work #(#turns),*]; }
+        })
+    }
+
+    fn to_joints(&self, n: usize) -> TokenStream {
+        let work = self.equations.power.is_some().then(|| index(13 * self.equations.n_slots()));
+        let places: Vec<_> = (0..n).map(index).collect();
+        let at = index(n);
+        let work = work.map(|work| quote! { x[#at] = y[#work]; });
+        let what = "Writes the joint state of a maximal state";
+        self.function(what, &self.functions.to_joints, |body, t, y| {
+            let (statements, values) = (&body.statements, &body.values);
+            quote! {
+                fn to_joints(&self, #t: T, #y: &Self::State, x: &mut Self::Joints) {
+                    #statements
+                    #(x[#places] = #values;)*
+                    #work
+                }
+            }
+        })
+    }
+}

@@ -1,0 +1,134 @@
+//! A cheaper form of some expressions: as polynomials, reduced by `sin² + cos² = 1` and its like, then factored.
+//!
+//! What is built by a recursion over bodies carries terms that cancel or repeat. Written out as polynomials over sines,
+//! cosines, rates and parameters (`expand`), equal things are equal and opposite ones vanish; common factors, sums and
+//! terms are then found among all roots together (`factor`), and constant factors put where they cost least (`rescale`).
+
+mod expand;
+mod factor;
+mod polynomial;
+mod rescale;
+mod sums;
+
+use crate::graph::{ExprId, Graph, Node};
+use crate::schedule::Operations;
+use expand::Expansion;
+use factor::factor;
+use polynomial::Polynomial;
+use rescale::{rescale, rescale_pairs};
+use std::rc::Rc;
+use sums::Sums;
+
+/// Bounds the time of expansion: terms that are worked out.
+const MAX_TERMS: usize = 80_000;
+
+/// Bounds the time of factoring: comparisons of terms.
+const MAX_STEPS: usize = 100_000;
+
+/// Ways of factoring that are tried to choose between identities, and after that choice.
+const FEW: u64 = 2;
+const MANY: u64 = 40;
+
+/// The cheapest form found of the roots: equal to them wherever the identities hold, and the roots themselves if nothing
+/// is cheaper or if they are too large.
+///
+/// `unit` names points of unit circles and spheres, such as the four Euler parameters: the squares of each add up to one.
+/// The sine and cosine of one operand need no mention.
+pub fn normal_form(graph: &mut Graph, unit: &[Vec<ExprId>], roots: &[ExprId]) -> Vec<ExprId> {
+    let relations = relations(graph, unit, roots);
+    let cost = Operations::count(graph, roots).total();
+    match search(graph, &relations, roots) {
+        Some(form) if form.cost < cost => form.system.build(graph),
+        _ => roots.to_vec(),
+    }
+}
+
+/// The given points that the roots depend on, and the sines and cosines among what they depend on.
+fn relations(graph: &mut Graph, unit: &[Vec<ExprId>], roots: &[ExprId]) -> Vec<Vec<ExprId>> {
+    let reachable = graph.reachable(roots);
+    let mut relations: Vec<Vec<ExprId>> =
+        unit.iter().filter(|point| point.iter().any(|x| reachable.contains(x))).cloned().collect();
+    for &id in &reachable {
+        if let Node::Cos(operand) = *graph.node(id) {
+            let sin = graph.sin(operand);
+            let known = relations.iter().flatten().any(|&x| x == id || x == sin);
+            if reachable.contains(&sin) && !known {
+                relations.push(vec![id, sin]);
+            }
+        }
+    }
+    relations
+}
+
+/// A factored system and what it costs.
+struct Form {
+    system: Sums,
+    cost: usize,
+}
+
+/// First each relation in turn replaces another square than its first, if that is cheaper; then more ways of factoring are
+/// tried. `None` if the roots are too large.
+fn search(graph: &Graph, relations: &[Vec<ExprId>], roots: &[ExprId]) -> Option<Form> {
+    let (mut terms, mut steps) = (MAX_TERMS, MAX_STEPS);
+    let mut choice = vec![0; relations.len()];
+    let (mut system, used) = expand(graph, relations, &choice, roots, &mut terms)?;
+    let mut best = factored(&system, 0..FEW, &mut steps)?;
+    for (at, relation) in relations.iter().enumerate().filter(|&(at, _)| used[at]) {
+        for reduced in 1..relation.len() {
+            let kept = std::mem::replace(&mut choice[at], reduced);
+            let other = expand(graph, relations, &choice, roots, &mut terms);
+            let form = other.and_then(|(other, _)| Some((factored(&other, 0..FEW, &mut steps)?, other)));
+            match form {
+                Some((form, other)) if form.cost < best.cost => (best, system) = (form, other),
+                _ => choice[at] = kept,
+            }
+        }
+    }
+    if let Some(form) = factored(&system, FEW..MANY, &mut steps).filter(|form| form.cost < best.cost) {
+        best = form;
+    }
+    let mut system = best.system.clone();
+    rescale_pairs(&mut system);
+    let cost = cost(&system);
+    Some(if cost < best.cost { Form { system, cost } } else { best })
+}
+
+/// The roots as a system of polynomials, each relation replacing the chosen square, and which relations had any to replace.
+fn expand(
+    graph: &Graph,
+    relations: &[Vec<ExprId>],
+    choice: &[usize],
+    roots: &[ExprId],
+    terms: &mut usize,
+) -> Option<(Sums, Vec<bool>)> {
+    let mut expansion = Expansion::new(graph, terms);
+    for (relation, &reduced) in relations.iter().zip(choice) {
+        let others: Vec<_> = relation.iter().copied().filter(|&x| x != relation[reduced]).collect();
+        expansion.relate(relation[reduced], &others)?;
+    }
+    let polynomials: Option<Vec<Rc<Polynomial>>> = roots.iter().map(|&root| expansion.of(root)).collect();
+    let system = Sums::new(&expansion, &polynomials?);
+    let pairs = relations.iter().zip(choice);
+    let used = pairs.map(|(relation, &reduced)| expansion.was_used(relation[reduced])).collect();
+    Some((system, used))
+}
+
+/// The cheapest of several ways of factoring, as far as the steps reach.
+fn factored(system: &Sums, seeds: std::ops::Range<u64>, steps: &mut usize) -> Option<Form> {
+    let forms = seeds.map_while(|seed| {
+        let mut system = factor(system.clone(), seed, steps)?;
+        rescale(&mut system);
+        let cost = cost(&system);
+        Some(Form { system, cost })
+    });
+    forms.reduce(|best, other| if other.cost < best.cost { other } else { best })
+}
+
+fn cost(system: &Sums) -> usize {
+    let mut graph = Graph::new();
+    let roots = system.build(&mut graph);
+    Operations::count(&graph, &roots).total()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,156 @@
+//! Joint coordinates against maximal ones: the maps lead there and back, and both describe one motion.
+
+use gyro_model::{JointKind, Model, Support};
+use gyro_sim::{JointForm, JointSpace, Ode, Partition, Rk4, generated as shipped};
+use gyro_sim_suite::generated as own;
+use gyro_sim_suite::Random;
+use gyro_sim_suite::model;
+
+/// What coordinates the joints of a page have.
+enum Kind {
+    Angle,
+    Length,
+    Orientation,
+    Position,
+}
+
+fn coordinates(model: &Model) -> Vec<Kind> {
+    let mut kinds = Vec::new();
+    for joint in &model.joints {
+        let scalars = joint.kind.coordinates().iter();
+        kinds.extend(scalars.map(|kind| if kind.is_angle() { Kind::Angle } else { Kind::Length }));
+        if matches!(joint.kind, JointKind::Spherical | JointKind::PointOnLine) {
+            kinds.push(Kind::Orientation);
+        }
+    }
+    for _ in model.bodies.iter().filter(|body| body.support == Support::Free) {
+        kinds.extend([Kind::Position, Kind::Orientation]);
+    }
+    kinds
+}
+
+/// A joint state anyhow, its Euler parameters unit vectors.
+fn random_state<M: JointSpace<Scalar = f64>>(model: &Model, mechanism: &M, random: &mut Random) -> M::Joints {
+    let mut state = mechanism.joint_start();
+    let (mut x, mut n_x, mut n_u) = (Vec::new(), 0, 0);
+    for kind in coordinates(model) {
+        match kind {
+            Kind::Angle => x.push(4.0 * random.signed()),
+            Kind::Length => x.push(0.3 * random.signed()),
+            Kind::Position => x.extend(random.vector(1.0)),
+            Kind::Orientation => x.extend(random.unit()),
+        }
+        n_u += x.len() - n_x - usize::from(matches!(kind, Kind::Orientation));
+        n_x = x.len();
+    }
+    x.extend((0..n_u).map(|_| RATE * random.signed()));
+    state.as_mut()[..x.len()].copy_from_slice(&x);
+    state
+}
+
+/// rad/s or m/s.
+const RATE: f64 = 3.0;
+
+/// Rounding of some hundred operations; of accelerations, on states without luck.
+const MAPS: f64 = 1e-12;
+const ACCELERATIONS: f64 = 1e-9;
+/// Central differences with a step of 1e-5.
+const DIFFERENCES: f64 = 1e-7;
+
+/// The largest difference, relative to the largest number.
+fn difference(a: &[f64], b: &[f64]) -> f64 {
+    let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
+    let size = largest(&mut a.iter().chain(b).map(|x| x.abs())).max(1.0);
+    largest(&mut a.iter().zip(b).map(|(a, b)| (a - b).abs())) / size
+}
+
+fn check<M: JointSpace<Scalar = f64> + Partition>(page: &str, mechanism: &M) {
+    let (model, mut random) = (model(page), Random::new(7));
+    let mut worst = [0.0_f64; 6];
+    for _ in 0..200 {
+        let t = random.signed();
+        let x = random_state(&model, mechanism, &mut random);
+        let mut y = mechanism.start();
+        mechanism.to_maximal(t, &x, &mut y);
+
+        // The state satisfies the constraints, and leads back to the joint state.
+        let (mut phi, mut residual) = (mechanism.constraints(), mechanism.rows());
+        mechanism.phi(t, &y, &mut phi);
+        mechanism.velocity_residual(t, &y, &mut residual);
+        let zeros = vec![0.0; phi.as_ref().len()];
+        worst[0] = worst[0].max(difference(phi.as_ref(), &zeros));
+        worst[0] = worst[0].max(difference(residual.as_ref(), &zeros[..residual.as_ref().len()]));
+        let mut back = x.clone();
+        mechanism.to_joints(t, &y, &mut back);
+        worst[1] = worst[1].max(difference(back.as_ref(), x.as_ref()));
+
+        // One acceleration, three ways.
+        let mut exact = mechanism.accelerations_buffer();
+        mechanism.accelerations(t, &y, &mut exact);
+        let mut corrected = mechanism.velocities();
+        mechanism.corrected_accelerations(t, &y, &mut corrected);
+        worst[2] = worst[2].max(difference(exact.as_ref(), corrected.as_ref()));
+        let (mut rates, mut rates_at) = (mechanism.rates(), mechanism.rates());
+        mechanism.joint_accelerations(t, &x, &mut rates);
+        mechanism.joint_accelerations_at(t, &y, &mut rates_at);
+        worst[3] = worst[3].max(difference(rates.as_ref(), rates_at.as_ref()));
+        let (mut derivative, mut short) = (y.clone(), y.clone());
+        mechanism.derivative(t, &y, &mut derivative);
+        mechanism.corrected_derivative(t, &y, &mut short);
+        worst[4] = worst[4].max(difference(derivative.as_ref(), short.as_ref()));
+
+        // The map carries one motion into the other.
+        let mut dx = x.clone();
+        mechanism.joint_derivative(t, &x, &mut dx);
+        let at = |h: f64| {
+            let (mut moved, mut y) = (x.clone(), mechanism.start());
+            moved.as_mut().iter_mut().zip(dx.as_ref()).for_each(|(x, dx)| *x += h * dx);
+            mechanism.to_maximal(t + h, &moved, &mut y);
+            y
+        };
+        let (after, before) = (at(1e-5), at(-1e-5));
+        let slope: Vec<_> =
+            after.as_ref().iter().zip(before.as_ref()).map(|(a, b)| (a - b) / 2e-5).collect();
+        worst[5] = worst[5].max(difference(&slope, derivative.as_ref()));
+    }
+    println!("{page}: Φ {:.1e}, back {:.1e}, (s̈, ẇ') {:.1e}, u̇ {:.1e}, ẏ {:.1e}, slope {:.1e}", worst[0], worst[1], worst[2], worst[3], worst[4], worst[5]);
+    let allowed = [MAPS, MAPS, ACCELERATIONS, ACCELERATIONS, ACCELERATIONS, DIFFERENCES];
+    assert!(worst.iter().zip(allowed).all(|(worst, allowed)| *worst <= allowed), "{page}: {worst:?}");
+}
+
+#[test]
+fn joint_coordinates_describe_the_motion_of_every_tree() {
+    check("compound-pendulum", &shipped::compound_pendulum::CompoundPendulum::default());
+    check("free-body", &shipped::free_body::FreeBody::default());
+    check("gyroscope", &shipped::gyroscope::Gyroscope::default());
+    check("gyroscope-combined-offsets", &shipped::gyroscope_combined_offsets::GyroscopeCombinedOffsets::default());
+    check("gyroscope-maximal", &shipped::gyroscope_maximal::GyroscopeMaximal::default());
+    check("gyroscope-radial-imbalance", &shipped::gyroscope_radial_imbalance::GyroscopeRadialImbalance::default());
+    check("gyroscope-viscous", &shipped::gyroscope_viscous::GyroscopeViscous::default());
+    check("heavy-top", &shipped::heavy_top::HeavyTop::default());
+    check("pitching-gyroscope", &shipped::pitching_gyroscope::PitchingGyroscope::default());
+    check("spinning-top", &shipped::spinning_top::SpinningTop::default());
+    check("cylindrical", &own::cylindrical::Cylindrical::default());
+    check("loads", &own::loads::Loads::default());
+    check("motor", &own::motor::Motor::default());
+    check("pendulum", &own::pendulum::Pendulum::default());
+    check("pitching-bearings", &own::pitching_bearings::PitchingBearings::default());
+    check("planar", &own::planar::Planar::default());
+    check("point-on-line", &own::point_on_line::PointOnLine::default());
+    check("screw", &own::screw::Screw::default());
+    check("spherical", &own::spherical::Spherical::default());
+    check("weld", &own::weld::Weld::default());
+}
+
+/// The paper's second in joint coordinates.
+#[test]
+fn the_papers_motion_is_the_same_in_joint_coordinates() {
+    let mechanism = shipped::gyroscope::Gyroscope::<f64>::default();
+    let form = JointForm(&mechanism);
+    let mut x = form.start();
+    let mut rk4 = Rk4::new(&x);
+    for step in 0..10_000 {
+        rk4.step(&form, f64::from(step) * 1e-4, 1e-4, &mut x);
+    }
+    println!("{x:?}");
+}
