@@ -1,11 +1,10 @@
 //! Every kind of joint, force and output in one mechanism with loops, a coupler and a driver: generated code against the twin.
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
-use gyro_assembled::Dense;
 use gyro_model::{Model, to_f64};
 use gyro_runner::{Input, JointSample, Sample, Settings};
 use gyro_sim_suite::generated::all_joints::AllJoints;
-use gyro_sim_suite::{Engine, Run, fed, model, simulate, worst};
+use gyro_sim_suite::{Engine, Run, dense, fed, generated, model, simulate, worst};
 
 /// Long enough for all of it to move, at the page's step.
 const SETTINGS: Settings = Settings { t_end: 0.3, step: 1e-3, correct_every: Some(5e-3), sample_every: 0.03 };
@@ -20,7 +19,7 @@ const VIOLATION: f64 = 1e-12;
 /// RK4 at a step of a millisecond, with a stop that sets in over a hundredth of a metre.
 const BALANCE: f64 = 1e-8;
 
-fn run<M: Engine<f64>>(mechanism: &M, model: &Model) -> Run {
+fn run(mechanism: &Engine, model: &Model) -> Run {
     let rows = vec![[0.0, 0.02], [0.1, 0.3], [0.2, -0.1]];
     let (samples, outcome) = fed(mechanism, model, &SETTINGS, vec![Input { index: 0, rows }]);
     Run { samples, summary: outcome.unwrap_or_else(|failure| panic!("{failure}")) }
@@ -53,7 +52,7 @@ fn differences(a: &Run, b: &Run) -> [f64; 2] {
 fn both_engines_move_alike() {
     let model = model("all-joints");
     assert_eq!((model.degrees_of_freedom(), model.redundant.len()), (2, 0));
-    let (generated, dense) = (AllJoints::<f64>::default(), Dense::<f64>::new(&model).unwrap());
+    let (generated, dense) = (generated("all-joints"), dense(&model));
     let (generated, dense) = (run(&generated, &model), run(&dense, &model));
     let found = differences(&generated, &dense);
     println!("all joints: coordinates and outputs differ by {found:?}; {:?}", generated.summary);
@@ -74,14 +73,17 @@ fn parameters_are_the_fields_of_the_mechanism() {
     let [first, second] = text;
     let model =
         model("all-joints").with_parameters(&[(first, ratio.clone()), (second, mass.clone())]).unwrap();
-    let mechanism =
-        AllJoints { gear_ratio: to_f64(&ratio), puck_mass: to_f64(&mass), ..AllJoints::default() };
-    let (generated, dense) = (run(&mechanism, &model), run(&Dense::<f64>::new(&model).unwrap(), &model));
-    let found = differences(&generated, &dense);
+    let mechanism = Engine::new(AllJoints {
+        gear_ratio: to_f64(&ratio),
+        puck_mass: to_f64(&mass),
+        ..AllJoints::default()
+    });
+    let run = [&mechanism, &dense(&model)].map(|engine| run(engine, &model));
+    let found = differences(&run[0], &run[1]);
     println!("all joints, other parameters: {found:?}");
     assert!(found.iter().all(|error| *error <= AGREEMENT), "{found:?}");
-    let unchanged = simulate(&AllJoints::<f64>::default(), &model_as_written(), &SETTINGS);
-    assert!(differences(&generated, &unchanged)[0] > 1e-3, "the parameters change nothing");
+    let unchanged = simulate(&generated("all-joints"), &model_as_written(), &SETTINGS);
+    assert!(differences(&run[0], &unchanged)[0] > 1e-3, "the parameters change nothing");
 }
 
 fn model_as_written() -> Model {

@@ -1,12 +1,9 @@
 //! Halving the step divides the error by sixteen: RK4 keeps its order through constraints and corrections.
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
-use gyro_assembled::Careful;
 use gyro_reference::{Gyroscope as Reference, Sample};
 use gyro_runner::Settings;
-use gyro_sim::generated::{gyroscope::Gyroscope, gyroscope_combined_offsets::GyroscopeCombinedOffsets};
-use gyro_sim::{Partition, Ports};
-use gyro_sim_suite::{PAPER, coordinate, model, simulate};
+use gyro_sim_suite::{Engine, PAPER, careful, coordinate, generated, model, simulate};
 
 /// Truncation dominates: at a tenth of these rounding shows, and at four times these the damping of the nutation, of the
 /// fifth order, is as large as its change of phase.
@@ -19,12 +16,7 @@ const ORDER: std::ops::Range<f64> = 3.9..4.1;
 const STEPS_PER_CORRECTION: f64 = 5.0;
 
 /// The largest errors of α and φ over the second. (β is nutation alone: the damping shows longer.)
-fn errors<M: Partition + Ports + Clone>(
-    mechanism: &M,
-    page: &str,
-    reference: &[Sample],
-    settings: &Settings,
-) -> [f64; 2] {
+fn errors(mechanism: &Engine, page: &str, reference: &[Sample], settings: &Settings) -> [f64; 2] {
     let run = simulate(mechanism, &model(page), settings);
     let error = |joint: usize| {
         let expected = |sample: &Sample| if joint == 0 { sample.alpha } else { sample.phi };
@@ -35,7 +27,7 @@ fn errors<M: Partition + Ports + Clone>(
     [0, 2].map(error)
 }
 
-fn check<M: Partition + Ports + Clone>(mechanism: &M, page: &str, reference: &Reference) {
+fn check(mechanism: &Engine, page: &str, reference: &Reference) {
     let times: Vec<f64> = (0..=50).map(|k| f64::from(k) / 50.0).collect();
     let reference = reference.solve(&times);
     let at = |step: f64| {
@@ -51,13 +43,13 @@ fn check<M: Partition + Ports + Clone>(mechanism: &M, page: &str, reference: &Re
 
 #[test]
 fn generated_mechanisms_converge_with_order_four() {
-    check(&Gyroscope::<f64>::default(), "gyroscope", &Reference::paper());
-    let combined = GyroscopeCombinedOffsets::<f64>::default();
+    check(&generated("gyroscope"), "gyroscope", &Reference::paper());
+    let combined = generated("gyroscope-combined-offsets");
     check(&combined, "gyroscope-combined-offsets", &Reference::combined_offsets());
 }
 
 #[test]
 fn the_twin_converges_with_order_four() {
-    let twin = Careful::<f64>::new(&model("gyroscope")).unwrap();
+    let twin = careful(&model("gyroscope"));
     check(&twin, "gyroscope", &Reference::paper());
 }

@@ -6,11 +6,10 @@
 //! polynomials; there the step is small and the formula's own error allowed for.
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
-use gyro_assembled::{Careful, Dense};
 use gyro_model::Model;
-use gyro_sim::Coordinate;
+use gyro_sim::{Coordinate, Equations, Mechanism};
 use gyro_sim_suite::{
-    Check, Engine, Random, difference, for_each_generated, model, phi_pi, phi_q, state, state_of,
+    Engine, Random, careful, dense, difference, for_each_generated, generated, model, phi_pi, phi_q, state,
 };
 
 const STATES: usize = 100;
@@ -46,7 +45,7 @@ fn line(model: &Model) -> Line {
 }
 
 /// A random state; where angles are acted on, one in which all of them are well defined.
-fn drawn<M: Engine<f64>>(mechanism: &M, model: &Model, random: &mut Random) -> Vec<f64> {
+fn drawn(mechanism: &Engine, model: &Model, random: &mut Random) -> Vec<f64> {
     loop {
         let values = state(mechanism, RATE, random);
         if model.turn_references().is_empty() || least_angle(mechanism, &values) >= DEFINED {
@@ -56,14 +55,14 @@ fn drawn<M: Engine<f64>>(mechanism: &M, model: &Model, random: &mut Random) -> V
 }
 
 /// The least length of (sine, cosine) of all angles.
-fn least_angle<M: Engine<f64>>(mechanism: &M, values: &[f64]) -> f64 {
+fn least_angle(mechanism: &Engine, values: &[f64]) -> f64 {
     let mut readings = mechanism.readings();
-    mechanism.read_joints(T, &state_of(mechanism, values), &mut readings);
+    mechanism.read_joints(T, &values.to_vec(), &mut readings);
     let joints = (0..mechanism.n_joints()).flat_map(|joint| mechanism.joint(joint).coordinates);
     let (mut least, mut at) = (f64::INFINITY, 0);
     for coordinate in joints {
         if *coordinate == Coordinate::Angle {
-            least = least.min(f64::hypot(readings.as_ref()[at], readings.as_ref()[at + 1]));
+            least = least.min(f64::hypot(readings[at], readings[at + 1]));
         }
         at += coordinate.n_readings();
     }
@@ -81,22 +80,22 @@ fn moved(values: &[f64], direction: &[f64], by: f64) -> Vec<f64> {
     moved.chain(values[direction.len()..].iter().copied()).collect()
 }
 
-fn phi<M: Engine<f64>>(mechanism: &M, t: f64, values: &[f64]) -> Vec<f64> {
+fn phi(mechanism: &Engine, t: f64, values: &[f64]) -> Vec<f64> {
     let mut out = mechanism.constraints();
-    mechanism.phi(t, &state_of(mechanism, values), &mut out);
-    out.as_ref().to_vec()
+    mechanism.phi(t, &values.to_vec(), &mut out);
+    out
 }
 
-fn velocity_residual<M: Engine<f64>>(mechanism: &M, t: f64, values: &[f64]) -> Vec<f64> {
+fn velocity_residual(mechanism: &Engine, t: f64, values: &[f64]) -> Vec<f64> {
     let mut out = mechanism.rows();
-    mechanism.velocity_residual(t, &state_of(mechanism, values), &mut out);
-    out.as_ref().to_vec()
+    mechanism.velocity_residual(t, &values.to_vec(), &mut out);
+    out
 }
 
-fn gamma<M: Engine<f64>>(mechanism: &M, values: &[f64]) -> Vec<f64> {
+fn gamma(mechanism: &Engine, values: &[f64]) -> Vec<f64> {
     let mut out = mechanism.rows();
-    mechanism.gamma(T, &state_of(mechanism, values), &mut out);
-    out.as_ref().to_vec()
+    mechanism.gamma(T, &values.to_vec(), &mut out);
+    out
 }
 
 /// q̇ = (s, ½ G(p)ᵀ w'), eq. (14), body after body.
@@ -117,15 +116,15 @@ fn q_dot(values: &[f64], n_bodies: usize) -> Vec<f64> {
 }
 
 /// ν.
-fn nu<M: Engine<f64>>(mechanism: &M, values: &[f64]) -> Vec<f64> {
+fn nu(mechanism: &Engine, values: &[f64]) -> Vec<f64> {
     let mut out = mechanism.rows();
-    mechanism.nu(T, &state_of(mechanism, values), &mut out);
-    out.as_ref().to_vec()
+    mechanism.nu(T, &values.to_vec(), &mut out);
+    out
 }
 
 /// The three comparisons at a state, each as the difference relative to its largest value.
-fn errors<M: Engine<f64>>(mechanism: &M, line: &Line, values: &[f64]) -> [f64; 3] {
-    let (y, n_bodies) = (state_of(mechanism, values), mechanism.n_bodies());
+fn errors(mechanism: &Engine, line: &Line, values: &[f64]) -> [f64; 3] {
+    let (y, n_bodies) = (values.to_vec(), mechanism.n_bodies());
     let jacobian = phi_q(mechanism, T, &y);
     let in_column = |column: usize| {
         let mut direction = vec![0.0; 7 * n_bodies];
@@ -136,7 +135,7 @@ fn errors<M: Engine<f64>>(mechanism: &M, line: &Line, values: &[f64]) -> [f64; 3
     };
     let direction = q_dot(values, n_bodies);
     let step = line.step / direction.iter().map(|x| x.abs()).fold(1.0, f64::max);
-    let n_rows = mechanism.rows().as_ref().len();
+    let n_rows = mechanism.rows().len();
     // The motion of a moment, time included.
     let phi_dot =
         derivative(step, |by| phi(mechanism, T + by, &moved(values, &direction, by))[..n_rows].to_vec());
@@ -155,43 +154,38 @@ fn errors<M: Engine<f64>>(mechanism: &M, line: &Line, values: &[f64]) -> [f64; 3
     ]
 }
 
-/// The worst of all states of every mechanism.
-struct Differences;
-
-impl Check<f64> for Differences {
-    fn check<M: Engine<f64>>(&mut self, page: &str, mechanism: &M) {
-        let (mut random, model) = (Random::new(11), model(page));
-        let line = line(&model);
-        let mut worst = [0.0; 3];
-        for index in 0..STATES {
-            let values = drawn(mechanism, &model, &mut random);
-            let errors = errors(mechanism, &line, &values);
-            let exact = errors.iter().all(|error| *error <= line.tolerance);
-            assert!(exact, "{page}, state {index}: Φ_q, Φ_π' v, γ off by {errors:?} at {values:?}");
-            worst = std::array::from_fn(|k| errors[k].max(worst[k]));
-        }
-        println!("{page}: Φ_q, Φ_π' v, γ: {worst:?}");
+/// The worst of all states of a mechanism.
+fn check(page: &str, mechanism: &Engine) {
+    let (mut random, model) = (Random::new(11), model(page));
+    let line = line(&model);
+    let mut worst = [0.0; 3];
+    for index in 0..STATES {
+        let values = drawn(mechanism, &model, &mut random);
+        let errors = errors(mechanism, &line, &values);
+        let exact = errors.iter().all(|error| *error <= line.tolerance);
+        assert!(exact, "{page}, state {index}: Φ_q, Φ_π' v, γ off by {errors:?} at {values:?}");
+        worst = std::array::from_fn(|k| errors[k].max(worst[k]));
     }
+    println!("{page}: Φ_q, Φ_π' v, γ: {worst:?}");
 }
 
 #[test]
 fn generated_derivatives_are_those_of_phi() {
-    for_each_generated(&mut Differences);
+    for_each_generated(check);
 }
 
 #[test]
 fn the_derivatives_of_both_twins_are_those_of_phi() {
     for page in ["gyroscope-maximal", "gyroscope-combined-offsets", "heavy-top"] {
-        Differences.check(page, &Careful::new(&model(page)).unwrap());
-        Differences.check(page, &Dense::new(&model(page)).unwrap());
+        check(page, &careful(&model(page)));
+        check(page, &dense(&model(page)));
     }
 }
 
 #[test]
 fn off_the_unit_sphere_the_velocities_are_another_matter() {
     // The check must be able to fail. Besides, it states a convention: w' and π' belong to unit Euler parameters.
-    let mechanism =
-        gyro_sim::generated::gyroscope_combined_offsets::GyroscopeCombinedOffsets::<f64>::default();
+    let mechanism = generated("gyroscope-combined-offsets");
     let mut values = state(&mechanism, RATE, &mut Random::new(11));
     values[3..7].iter_mut().for_each(|e| *e *= 1.0 + 1e-6);
     let [of_phi_q, of_velocity, of_gamma] = errors(&mechanism, &EXACT, &values);

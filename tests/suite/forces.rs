@@ -2,9 +2,9 @@
 
 use gyro_reference::{AxisForce, AxisSample, OneAxis, SampledInput, Side, Tether};
 use gyro_runner::{Input, JointSample, Settings};
-use gyro_sim::generated::torsion::Torsion;
-use gyro_sim_suite::generated as own;
-use gyro_sim_suite::{Run, as_paged, check, coordinate, fed, model, output, pair, played, simulate, times};
+use gyro_sim_suite::{
+    Run, as_paged, check, coordinate, fed, generated, model, output, pair, played, simulate, times,
+};
 
 /// Coordinates (rad, m) and rates at the pages' steps.
 const MOTION: f64 = 1e-9;
@@ -29,7 +29,7 @@ fn check_axis(what: &str, run: &Run, index: usize, allowed: f64, reference: &[Ax
 fn torsion() -> Run {
     let model = model("torsion");
     let settings = Settings { step: 5e-5, correct_every: Some(2.5e-4), ..as_paged(&model, 0.2) };
-    simulate(&Torsion::<f64>::default(), &model, &settings)
+    simulate(&generated("torsion"), &model, &settings)
 }
 
 #[test]
@@ -45,7 +45,7 @@ fn a_torsional_spring_over_three_turns() {
 
 #[test]
 fn friction() {
-    let run = played(&own::friction::Friction::<f64>::default(), &model("friction"));
+    let run = played(&generated("friction"), &model("friction"));
     let disc = OneAxis {
         inertia: 0.02,
         forces: vec![
@@ -81,7 +81,7 @@ fn stop(limit: f64, side: Side, [stiffness, damping, softness]: [f64; 3]) -> Axi
 
 #[test]
 fn end_stops() {
-    let run = played(&own::stops::Stops::<f64>::default(), &model("stops"));
+    let run = played(&generated("stops"), &model("stops"));
     let hammer = OneAxis {
         inertia: 0.5,
         forces: vec![
@@ -107,7 +107,7 @@ fn end_stops() {
 #[test]
 fn a_motor_that_is_fed_from_a_table() {
     let rows = vec![[0.1, 0.0], [0.3, 0.5], [0.55, -0.8], [0.8, 0.2]];
-    let (mechanism, model) = (own::motor::Motor::<f64>::default(), model("motor"));
+    let (mechanism, model) = (generated("motor"), model("motor"));
     let settings = as_paged(&model, 0.05);
     let input = Input { index: 0, rows: rows.clone() };
     let (samples, outcome) = fed(&mechanism, &model, &settings, vec![input]);
@@ -121,7 +121,7 @@ fn a_motor_that_is_fed_from_a_table() {
 
 #[test]
 fn a_spring_and_damper_between_two_points() {
-    let run = played(&own::tether::Tether::<f64>::default(), &model("tether"));
+    let run = played(&generated("tether"), &model("tether"));
     let tether = Tether {
         mass: 0.5,
         stiffness: 40.0,
@@ -142,7 +142,7 @@ fn a_spring_and_damper_between_two_points() {
 
 #[test]
 fn loads_in_both_frames() {
-    let run = played(&own::loads::Loads::<f64>::default(), &model("loads"));
+    let run = played(&generated("loads"), &model("loads"));
     // (0.3 · 0.2 − 0.01) / 0.02 rad/s², and 5 · 3/5 / 2 m/s².
     let uniform = |rate: f64, acceleration: f64, t: f64| {
         pair([rate * t + 0.5 * acceleration * t * t, rate + acceleration * t, acceleration])
@@ -190,7 +190,7 @@ fn push(t: f64) -> [f64; 3] {
 
 #[test]
 fn drivers_by_a_table_and_by_sums_and_products() {
-    let mechanism = own::cam::Cam::<f64>::default();
+    let mechanism = generated("cam");
     let run = played(&mechanism, &model("cam"));
     check("cam", &run, MOTION, |_, sample| {
         let [lift, push] = [lift(sample.t), push(sample.t)];

@@ -5,11 +5,9 @@
 use gyro_model::{Model, RowOwner};
 use gyro_reference::{Bar, FourBar as Reference, FourBarSample, Pendulum};
 use gyro_runner::Settings;
-use gyro_sim::generated::{four_bar::FourBar, four_bar_revolute::FourBarRevolute};
-use gyro_sim_suite::generated::{driven_four_bar::DrivenFourBar, parallelogram::Parallelogram};
 use gyro_sim_suite::{
-    Engine, Run, as_paged, check, check_pairs, coordinate, fed, model, output, page, played, simulate, times,
-    worst,
+    Engine, Run, as_paged, check, check_pairs, coordinate, fed, generated, model, output, page, played,
+    simulate, times, worst,
 };
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::sync::LazyLock;
@@ -43,7 +41,7 @@ fn settings(model: &Model) -> Settings {
 
 static MOTION_OF_CRANK: LazyLock<(Run, Vec<FourBarSample>)> = LazyLock::new(|| {
     let model = model("four-bar");
-    let run = simulate(&FourBar::<f64>::default(), &model, &settings(&model));
+    let run = simulate(&generated("four-bar"), &model, &settings(&model));
     let reference = Reference::crank_rocker().solve(&times(&run));
     (run, reference)
 });
@@ -85,7 +83,7 @@ fn the_redundant_rows_of_four_revolute_joints_are_named() {
 #[test]
 fn four_revolute_joints_move_alike() {
     let model = model("four-bar-revolute");
-    let run = simulate(&FourBarRevolute::<f64>::default(), &model, &settings(&model));
+    let run = simulate(&generated("four-bar-revolute"), &model, &settings(&model));
     let (other, reference) = &*MOTION_OF_CRANK;
     check_pairs("four revolute joints", &run, MOTION, |k| {
         // Crank and rocker, then elbow and knee.
@@ -104,7 +102,7 @@ fn four_revolute_joints_move_alike() {
 
 #[test]
 fn a_driven_crank_takes_the_torque_of_the_reduction() {
-    let mechanism = DrivenFourBar::<f64>::default();
+    let mechanism = generated("driven-four-bar");
     let run = played(&mechanism, &model("driven-four-bar"));
     let reference = Reference { start: 1.0, rate: 6.6, ..Reference::crank_rocker() };
     check("driven crank", &run, TORQUE, |_, sample| {
@@ -129,7 +127,7 @@ fn as_pendulum(rate: f64) -> Pendulum {
 
 /// Runs the parallelogram; it must move as the pendulum as long as it goes, and if it stops before the end, say why. Returns
 /// whether it came to the end, and the largest angle of the crank.
-fn check_parallelogram<M: Engine<f64>>(mechanism: &M, rate: f64, (step, allowed): (f64, f64)) -> (bool, f64) {
+fn check_parallelogram(mechanism: &Engine, rate: f64, (step, allowed): (f64, f64)) -> (bool, f64) {
     let text = page("parallelogram").replace("rate = 9\n", &format!("rate = {rate}\n"));
     let model = gyro_model::read("parallelogram.toml", &text).unwrap_or_else(|mistakes| panic!("{mistakes}"));
     let settings = Settings { t_end: 1.0, step, correct_every: Some(step), sample_every: step };
@@ -164,7 +162,7 @@ fn check_parallelogram<M: Engine<f64>>(mechanism: &M, rate: f64, (step, allowed)
 
 #[test]
 fn the_parallelogram_passes_the_pose_in_line_or_says_why_not() {
-    let mechanism = Parallelogram::<f64>::default();
+    let mechanism = generated("parallelogram");
     // With 8.1 rad/s it would just come there.
     for rate in [8.2, 9.0, 9.3, 11.0] {
         for step in STEPS {

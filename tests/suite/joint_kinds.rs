@@ -7,10 +7,8 @@ use gyro_reference::{
     Pendulum, PlanarBlock, RodPendulum, Slider,
 };
 use gyro_runner::Sample;
-use gyro_sim::generated::spinning_top::SpinningTop;
-use gyro_sim_suite::generated as own;
 use gyro_sim_suite::{
-    Engine, Run, along, body, check, check_pairs, cross, model, multipliers, output, pair, played,
+    Engine, Run, along, body, check, check_pairs, cross, generated, model, multipliers, output, pair, played,
     reference_body, times, worst,
 };
 
@@ -49,12 +47,7 @@ fn check_coordinates(what: &str, run: &Run, expected: impl Fn(usize) -> Vec<(f64
     check_pairs(what, run, MOTION, expected);
 }
 
-fn check_reaction<M: Engine<f64>>(
-    name: &str,
-    mechanism: &M,
-    run: &Run,
-    expected: impl Fn(usize, &Sample) -> [f64; 6],
-) {
+fn check_reaction(name: &str, mechanism: &Engine, run: &Run, expected: impl Fn(usize, &Sample) -> [f64; 6]) {
     check(&format!("{name}: reaction"), run, REACTION, |k, sample| {
         (output(mechanism, sample, "load"), expected(k, sample).to_vec())
     });
@@ -75,14 +68,14 @@ fn joints_leave_as_many_freedoms_as_they_should() {
 
 #[test]
 fn revolute() {
-    let run = played(&own::pendulum::Pendulum::<f64>::default(), &model("pendulum"));
+    let run = played(&generated("pendulum"), &model("pendulum"));
     let reference = Pendulum::slender_rod().solve(&times(&run));
     check_coordinates("revolute", &run, |k| vec![(reference[k].angle, reference[k].rate)]);
 }
 
 #[test]
 fn fixed() {
-    let mechanism = own::weld::Weld::<f64>::default();
+    let mechanism = generated("weld");
     let run = played(&mechanism, &model("weld"));
     let reference = Pendulum::slender_rod().solve(&times(&run));
     check_coordinates("fixed", &run, |k| vec![(reference[k].angle, reference[k].rate)]);
@@ -115,7 +108,7 @@ fn universal() {
         ..Link::turning([0.0, 1.0, 0.0])
     };
     let chain = Chain { gravity: [0.0, 0.0, -9.81], base: BaseMotion::default(), links: [first, second] };
-    let mechanism = own::universal::Universal::<f64>::default();
+    let mechanism = generated("universal");
     let run = played(&mechanism, &model("universal"));
     let reference = chain.solve(&times(&run));
     check_coordinates("universal", &run, |k| {
@@ -141,7 +134,7 @@ fn cylindrical() {
         angle: [0.4, 11.0],
         displacement: [0.5, 2.0],
     };
-    let mechanism = own::cylindrical::Cylindrical::<f64>::default();
+    let mechanism = generated("cylindrical");
     let run = played(&mechanism, &model("cylindrical"));
     let times = times(&run);
     check_coordinates("cylindrical", &run, |k| reference.at(times[k]).map(pair).to_vec());
@@ -154,7 +147,7 @@ fn cylindrical() {
 #[test]
 fn prismatic() {
     let reference = Slider { mass: 1.3, gravity: -5.886, stiffness: 37.0, free: 0.2, start: [0.5, 1.5] };
-    let mechanism = own::prismatic::Prismatic::<f64>::default();
+    let mechanism = generated("prismatic");
     let run = played(&mechanism, &model("prismatic"));
     let times = times(&run);
     check_coordinates("prismatic", &run, |k| vec![pair(reference.at(times[k]))]);
@@ -177,7 +170,7 @@ fn planar() {
         start: [0.3, -0.4, 0.7],
         rates: [1.0, 2.0, -6.0],
     };
-    let mechanism = own::planar::Planar::<f64>::default();
+    let mechanism = generated("planar");
     let run = played(&mechanism, &model("planar"));
     let times = times(&run);
     check_coordinates("planar", &run, |k| reference.at(times[k]).map(pair).to_vec());
@@ -222,7 +215,7 @@ fn planar_between_moving_bodies() {
         ..Link::turning([1.0, 2.0, 2.0])
     };
     let chain = Chain { gravity: [1.0, -9.0, 3.0], base: BaseMotion::default(), links: [arm, x, y, block] };
-    let mechanism = own::carried_block::CarriedBlock::<f64>::default();
+    let mechanism = generated("carried-block");
     let run = played(&mechanism, &model("carried-block"));
     let reference = chain.solve(&times(&run));
     check_coordinates("planar, carried", &run, |k| {
@@ -245,7 +238,7 @@ fn planar_between_moving_bodies() {
 #[test]
 fn screw() {
     let reference = FallingScrew { mass: 2.0, inertia: 0.003, gravity: 9.81, lead: 0.02, start: [0.5, 4.0] };
-    let mechanism = own::screw::Screw::<f64>::default();
+    let mechanism = generated("screw");
     let run = played(&mechanism, &model("screw"));
     let times = times(&run);
     check_coordinates("screw", &run, |k| vec![pair(reference.at(times[k]))]);
@@ -267,7 +260,7 @@ fn carried_body() -> FreeBody {
 fn point_on_line() {
     let bead =
         Bead { body: carried_body(), line: [1.0, 2.0, -2.0], gravity: [0.3, 0.0, -9.81], start: [0.4, 0.0] };
-    let mechanism = own::point_on_line::PointOnLine::<f64>::default();
+    let mechanism = generated("point-on-line");
     let run = played(&mechanism, &model("point-on-line"));
     let reference = bead.solve(&times(&run));
     check_coordinates("point on line", &run, |k| {
@@ -287,7 +280,7 @@ fn rod() {
         position: [0.3, 0.0, -0.4],
         velocity: [0.4, 1.2, 0.3],
     };
-    let (mechanism, model) = (own::rod::Rod::<f64>::default(), model("rod"));
+    let (mechanism, model) = (generated("rod"), model("rod"));
     let run = played(&mechanism, &model);
     let reference = pendulum.solve(&times(&run));
     check_body("rod: body", &run, |k| reference[k].body);
@@ -309,7 +302,7 @@ fn spherical() {
         orientation: [1.0, 0.0, 0.0, 0.0],
         angular_velocity: [3.0, 20.0, -5.0],
     };
-    let mechanism = own::spherical::Spherical::<f64>::default();
+    let mechanism = generated("spherical");
     let run = played(&mechanism, &model("spherical"));
     let reference = top.solve(&times(&run));
     check_body("spherical: body", &run, |k| reference[k].body);
@@ -322,7 +315,7 @@ fn spherical() {
 #[test]
 fn the_benchmark_top_is_where_it_should_be_after_a_second() {
     let model = model("spinning-top");
-    let run = played(&SpinningTop::<f64>::default(), &model);
+    let run = played(&generated("spinning-top"), &model);
     let reference = HeavyTop::benchmark().solve(&times(&run));
     check("spinning top: centre", &run, TOP, |k, sample| {
         (sample.bodies[0].pose[..3].to_vec(), reference[k].body.position.to_vec())
@@ -344,7 +337,7 @@ fn gear() {
         free: -0.2,
         start: [0.1, 3.0],
     };
-    let (mechanism, model) = (own::gear::Gear::<f64>::default(), model("gear"));
+    let (mechanism, model) = (generated("gear"), model("gear"));
     let run = played(&mechanism, &model);
     let times = times(&run);
     check_coordinates("gear", &run, |k| reference.at(times[k]).map(pair).to_vec());
@@ -359,7 +352,7 @@ fn a_motion_that_is_a_little_wrong_is_noticed() {
     // The check must be able to fail: the rail is a part in a million less steep.
     let reference =
         Slider { mass: 1.3, gravity: -5.886 * (1.0 - 1e-6), stiffness: 37.0, free: 0.2, start: [0.5, 1.5] };
-    let run = played(&own::prismatic::Prismatic::<f64>::default(), &model("prismatic"));
+    let run = played(&generated("prismatic"), &model("prismatic"));
     let times = times(&run);
     let wrong = || check_coordinates("prismatic", &run, |k| vec![pair(reference.at(times[k]))]);
     assert!(std::panic::catch_unwind(std::panic::AssertUnwindSafe(wrong)).is_err());

@@ -1,11 +1,11 @@
 //! What the joints show of a planted pose is what was planted, turns and all.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
-use gyro_assembled::{Careful, Dense};
+use gyro_assembled::Careful;
 use gyro_model::{JointStart, Model, Start};
-use gyro_sim::{JointCoordinate, Turns, violation};
+use gyro_sim::{JointCoordinate, Mechanism, Turns, violation};
 use gyro_sim_suite::{
-    Check, Engine, Random, for_each_generated, is_open, model, posed, state_at, state_of, worst,
+    Engine, Random, careful, dense, for_each_generated, is_open, model, posed, state_at, worst,
 };
 
 const STATES: usize = 200;
@@ -35,8 +35,8 @@ fn agrees(found: JointCoordinate<f64>, planted: &JointStart, index: usize) -> bo
     }
 }
 
-fn check_pose<M: Engine<f64>>(what: &str, mechanism: &M, model: &Model, start: &Start) {
-    let y = state_of(mechanism, &state_at(model, start));
+fn check_pose(what: &str, mechanism: &Engine, model: &Model, start: &Start) {
+    let y = state_at(model, start);
     let joints = start.joints.iter().enumerate();
     let places = joints.map(|(joint, planted)| (joint, planted, mechanism.joint(joint).coordinates.len()));
     let places: Vec<_> =
@@ -51,29 +51,25 @@ fn check_pose<M: Engine<f64>>(what: &str, mechanism: &M, model: &Model, start: &
     let (mut phi, mut residual) = (mechanism.constraints(), mechanism.rows());
     mechanism.phi(0.0, &y, &mut phi);
     mechanism.velocity_residual(0.0, &y, &mut residual);
-    let n_rows = residual.as_ref().len();
-    assert!(violation(mechanism, &phi.as_ref()[..n_rows]).value <= ROUNDING, "{what}: {phi:?}");
-    assert!(violation(mechanism, residual.as_ref()).value <= RATE * ROUNDING, "{what}: {residual:?}");
+    let n_rows = residual.len();
+    assert!(violation(mechanism, &phi[..n_rows]).value <= ROUNDING, "{what}: {phi:?}");
+    assert!(violation(mechanism, &residual).value <= RATE * ROUNDING, "{what}: {residual:?}");
 }
 
-struct Planted;
-
-impl Check<f64> for Planted {
-    fn check<M: Engine<f64>>(&mut self, page: &str, mechanism: &M) {
-        let (model, mut random) = (model(page), Random::new(3));
-        if !is_open(&model) {
-            return;
-        }
-        for index in 0..STATES {
-            let start = posed(&model, RATE, &mut random).assemble().unwrap();
-            check_pose(&format!("{page}, pose {index}"), mechanism, &model, &start);
-        }
+fn check(page: &str, mechanism: &Engine) {
+    let (model, mut random) = (model(page), Random::new(3));
+    if !is_open(&model) {
+        return;
+    }
+    for index in 0..STATES {
+        let start = posed(&model, RATE, &mut random).assemble().unwrap();
+        check_pose(&format!("{page}, pose {index}"), mechanism, &model, &start);
     }
 }
 
 #[test]
 fn generated_mechanisms_show_what_was_planted() {
-    for_each_generated(&mut Planted);
+    for_each_generated(check);
 }
 
 #[test]
@@ -81,9 +77,9 @@ fn the_twins_show_what_was_planted() {
     for page in gyro_sim_suite::pages() {
         let model = model(&page);
         if Careful::<f64>::supports(&model).is_ok() {
-            Planted.check(&page, &Careful::new(&model).unwrap());
+            check(&page, &careful(&model));
         }
-        Planted.check(&page, &Dense::new(&model).unwrap());
+        check(&page, &dense(&model));
     }
 }
 

@@ -7,7 +7,7 @@ use gyro_reference::{Gyroscope as Reference, Scheme};
 use gyro_runner::Settings;
 use gyro_sim::generated::gyroscope::Gyroscope;
 use gyro_sim::{Direct, Error, Mechanism, Ode, Partition, Partitioned, Turns, violation};
-use gyro_sim_suite::{PAPER, coordinate, model, simulate};
+use gyro_sim_suite::{PAPER, coordinate, generated, model, simulate};
 use std::sync::LazyLock;
 
 const T_END: f64 = 100.0;
@@ -35,7 +35,7 @@ static ALPHA_AT_END: LazyLock<f64> = LazyLock::new(|| {
 #[test]
 fn the_partition_lasts_a_hundred_seconds() {
     let settings = Settings { t_end: T_END, sample_every: 0.1, ..PAPER };
-    let run = simulate(&Gyroscope::<f64>::default(), &model("gyroscope"), &settings);
+    let run = simulate(&generated("gyroscope"), &model("gyroscope"), &settings);
     let (summary, alpha) = (run.summary, coordinate(run.last(), 0).0);
     let error = (alpha - *ALPHA_AT_END).abs();
     println!("{summary:?}, error of alpha {error:e} rad");
@@ -49,7 +49,7 @@ fn the_partition_lasts_a_hundred_seconds() {
 #[test]
 fn direct_integration_leaves_the_constraints() {
     let settings = Settings { t_end: 10.0, correct_every: None, sample_every: 1.0, ..PAPER };
-    let direct = simulate(&Gyroscope::<f64>::default(), &model("gyroscope"), &settings);
+    let direct = simulate(&generated("gyroscope"), &model("gyroscope"), &settings);
     let [early, late] = [direct.at(1.0), direct.at(10.0)].map(|sample| sample.position_violation);
     println!("direct integration: violation {early:e} after 1 s, {late:e} after 10 s");
     assert!(early > VIOLATION, "{early:e}");

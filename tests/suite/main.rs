@@ -1,6 +1,8 @@
-//! The integration tests that need nothing of their own: one program, so that what they share is compiled once.
+//! The integration tests: one program, so that what they share is compiled once, and builds of other packages run beside the rest.
 
 mod all_joints;
+mod allocation;
+mod build_script;
 mod closed_forms;
 mod convergence;
 mod finite_differences;
@@ -12,6 +14,7 @@ mod joint_readings;
 mod joint_space;
 mod long_run;
 mod moving_base;
+mod no_std_probe;
 mod paper_scenes;
 mod reactions;
 mod robustness;

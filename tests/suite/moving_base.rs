@@ -2,10 +2,8 @@
 
 use gyro_reference::{BaseMotion, Chain, ChainSample, Link, Sinusoid, moving_base};
 use gyro_runner::energy_error;
-use gyro_sim::generated::{driven_gyroscope::DrivenGyroscope, pitching_gyroscope::PitchingGyroscope};
-use gyro_sim_suite::generated::carried::Carried;
 use gyro_sim_suite::{
-    Engine, PAPER, Run, check, check_pairs, coordinate, model, output, played, simulate, times,
+    Engine, PAPER, Run, check, check_pairs, coordinate, generated, model, output, played, simulate, times,
 };
 
 /// Angles, rad, as the issue asks; the rotor makes a hundred radians.
@@ -22,7 +20,7 @@ const ARM: f64 = 1e-9;
 const REACTIONS: f64 = 1e-8;
 
 /// Angles and rates of the rings and the rotor, the work of whoever moves the base, and the balance.
-fn check_gyroscope<M: Engine<f64>>(page: &str, mechanism: &M, chain: &Chain<3>) -> Run {
+fn check_gyroscope(page: &str, mechanism: &Engine, chain: &Chain<3>) -> Run {
     let run = simulate(mechanism, &model(page), &PAPER);
     let reference = chain.solve(&times(&run));
     let angles = |k: usize| reference[k].positions.to_vec();
@@ -49,8 +47,7 @@ fn check_work<const N: usize>(what: &str, run: &Run, reference: &[ChainSample<N>
 
 #[test]
 fn the_gyroscope_on_a_rolling_base() {
-    let run =
-        check_gyroscope("driven-gyroscope", &DrivenGyroscope::<f64>::default(), &moving_base::rolling());
+    let run = check_gyroscope("driven-gyroscope", &generated("driven-gyroscope"), &moving_base::rolling());
     // The base does work that matters.
     assert!(run.samples.iter().any(|sample| sample.work.abs() > 1e-5 * run.samples[0].kinetic));
 }
@@ -58,7 +55,7 @@ fn the_gyroscope_on_a_rolling_base() {
 #[test]
 fn the_gyroscope_on_a_base_that_rolls_and_pitches() {
     let chain = moving_base::rolling_and_pitching();
-    check_gyroscope("pitching-gyroscope", &PitchingGyroscope::<f64>::default(), &chain);
+    check_gyroscope("pitching-gyroscope", &generated("pitching-gyroscope"), &chain);
 }
 
 #[test]
@@ -66,7 +63,7 @@ fn another_motion_of_the_base_does_not_pass() {
     // The check must be able to fail.
     let wrong = || {
         let chain = moving_base::rolling();
-        check_gyroscope("pitching-gyroscope", &PitchingGyroscope::<f64>::default(), &chain)
+        check_gyroscope("pitching-gyroscope", &generated("pitching-gyroscope"), &chain)
     };
     assert!(std::panic::catch_unwind(wrong).is_err());
 }
@@ -106,7 +103,7 @@ fn arm_and_slider() -> Chain<2> {
 
 #[test]
 fn springs_and_dampers_on_a_shaken_base() {
-    let (mechanism, chain) = (Carried::<f64>::default(), arm_and_slider());
+    let (mechanism, chain) = (generated("carried"), arm_and_slider());
     let run = played(&mechanism, &model("carried"));
     let reference = chain.solve(&times(&run));
     check_pairs("carried", &run, ARM, |k| {

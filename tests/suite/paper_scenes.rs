@@ -1,10 +1,9 @@
 //! The paper's settings at every tabulated time of every scene, by both engines, in both forms.
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
-use gyro_assembled::{Careful, Dense};
 use gyro_model::Model;
 use gyro_reference::{DoubleDouble, Sample, Scene, tabulated};
-use gyro_sim_suite::{Check, Engine, PAPER, Run, coordinate, model, simulate, with_generated};
+use gyro_sim_suite::{Engine, PAPER, Run, careful, coordinate, dense, generated, model, simulate};
 
 /// Which scene of the table each page shows.
 const PAGES: [(&str, &str); 7] = [
@@ -70,30 +69,26 @@ fn check(page: &str, run: &Run) {
     assert!(violation <= VIOLATION, "{page}: violation {violation:e}");
 }
 
-struct InTheTable;
-
-impl Check<f64> for InTheTable {
-    fn check<M: Engine<f64>>(&mut self, page: &str, mechanism: &M) {
-        check(page, &simulate(mechanism, &model(page), &PAPER));
-    }
+fn check_engine(page: &str, mechanism: &Engine) {
+    check(page, &simulate(mechanism, &model(page), &PAPER));
 }
 
 #[test]
 fn generated_mechanisms_follow_the_table() {
-    PAGES.iter().for_each(|(page, _)| with_generated(page, &mut InTheTable));
+    PAGES.iter().for_each(|(page, _)| check_engine(page, &generated(page)));
 }
 
 #[test]
 fn the_careful_twin_follows_the_table() {
     for (page, _) in PAGES {
-        InTheTable.check(page, &Careful::new(&model(page)).unwrap());
+        check_engine(page, &careful(&model(page)));
     }
 }
 
 #[test]
 fn the_dense_twin_follows_the_table() {
     // The paper's own 45 equations are slow: the folded form shows the algorithm as well.
-    InTheTable.check("gyroscope", &Dense::new(&model("gyroscope")).unwrap());
+    check_engine("gyroscope", &dense(&model("gyroscope")));
 }
 
 #[test]
@@ -108,7 +103,7 @@ fn every_tabulated_scene_is_shipped() {
 fn another_scene_does_not_pass() {
     // The check must be able to fail: the paper's run is not in another scene's table.
     let model: Model = model("gyroscope");
-    let run = simulate(&Careful::<f64>::new(&model).unwrap(), &model, &PAPER);
+    let run = simulate(&careful(&model), &model, &PAPER);
     let errors = errors(&scene("viscous-bearings"), &run);
     assert!(errors.iter().all(|(position, _)| *position > 1e-4), "{errors:?}");
 }

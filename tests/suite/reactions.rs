@@ -1,10 +1,7 @@
 //! What bearings bear and sensors read, against Newton's and Euler's laws.
 
 use gyro_reference::{Chain, Pendulum, moving_base};
-use gyro_sim_suite::generated::{
-    gyroscope_bearings::GyroscopeBearings, pendulum, pitching_bearings::PitchingBearings,
-};
-use gyro_sim_suite::{Engine, PAPER, check, model, output, played, simulate, times};
+use gyro_sim_suite::{Engine, PAPER, check, generated, model, output, played, simulate, times};
 
 /// N and N·m, as the issue asks; m/s and m/s² for what is at the tip.
 const REACTION: f64 = 1e-9;
@@ -18,7 +15,7 @@ const POWER: f64 = 1e-9;
 
 #[test]
 fn the_pendulum_hangs_on_its_bearing() {
-    let mechanism = pendulum::Pendulum::<f64>::default();
+    let mechanism = generated("pendulum");
     let run = played(&mechanism, &model("pendulum"));
     let reference = Pendulum::slender_rod().solve(&times(&run));
     check("pendulum: bearing", &run, REACTION, |k, sample| {
@@ -48,7 +45,7 @@ fn the_pendulum_hangs_on_its_bearing() {
     });
 }
 
-fn check_bearings<M: Engine<f64>>(page: &str, mechanism: &M, chain: &Chain<3>) {
+fn check_bearings(page: &str, mechanism: &Engine, chain: &Chain<3>) {
     let run = simulate(mechanism, &model(page), &PAPER);
     let reference = chain.solve(&times(&run));
     check(&format!("{page}: bearings"), &run, REACTION, |k, sample| {
@@ -63,12 +60,12 @@ fn check_bearings<M: Engine<f64>>(page: &str, mechanism: &M, chain: &Chain<3>) {
 
 #[test]
 fn the_gyroscope_hangs_on_its_bearings() {
-    check_bearings("gyroscope-bearings", &GyroscopeBearings::<f64>::default(), &moving_base::resting());
+    check_bearings("gyroscope-bearings", &generated("gyroscope-bearings"), &moving_base::resting());
 }
 
 #[test]
 fn the_gyroscope_on_a_base_that_moves_hangs_on_its_bearings() {
-    let (mechanism, chain) = (PitchingBearings::<f64>::default(), moving_base::rolling_and_pitching());
+    let (mechanism, chain) = (generated("pitching-bearings"), moving_base::rolling_and_pitching());
     check_bearings("pitching-bearings", &mechanism, &chain);
     let run = simulate(&mechanism, &model("pitching-bearings"), &PAPER);
     let reference = chain.solve(&times(&run));
@@ -80,7 +77,7 @@ fn the_gyroscope_on_a_base_that_moves_hangs_on_its_bearings() {
 #[test]
 fn a_bearing_on_another_base_bears_something_else() {
     // The check must be able to fail.
-    let mechanism = GyroscopeBearings::<f64>::default();
+    let mechanism = generated("gyroscope-bearings");
     let wrong = || check_bearings("gyroscope-bearings", &mechanism, &moving_base::rolling());
-    assert!(std::panic::catch_unwind(wrong).is_err());
+    assert!(std::panic::catch_unwind(std::panic::AssertUnwindSafe(wrong)).is_err());
 }

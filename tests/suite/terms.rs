@@ -3,11 +3,12 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
-use gyro_assembled::{Careful, Dense};
+use gyro_assembled::Careful;
 use gyro_model::Model;
+use gyro_sim::{Equations, Mechanism, Ode, Ports};
 use gyro_sim_suite::{
-    Check, Engine, Matrix, Random, difference, for_each_generated, is_open, model, phi_pi, phi_q, state,
-    state_of,
+    Engine, Matrix, Random, careful, dense, difference, for_each_generated, is_open, model, phi_pi, phi_q,
+    state,
 };
 use nalgebra::{DMatrix, Matrix3, Matrix6};
 
@@ -50,28 +51,28 @@ fn kind(name: &'static str, values: Vec<f64>) -> Kind {
 }
 
 /// Everything that a mechanism says of a state, kind by kind.
-fn terms<M: Engine<f64>>(mechanism: &M, model: &Model, values: &[f64]) -> Vec<Kind> {
-    let (t, y) = (T, state_of(mechanism, values));
+fn terms(mechanism: &Engine, model: &Model, values: &[f64]) -> Vec<Kind> {
+    let (t, y) = (T, values.to_vec());
     let mut kinds = Vec::new();
     let mut constraints = mechanism.constraints();
     mechanism.phi(t, &y, &mut constraints);
-    let n_rows = mechanism.rows().as_ref().len();
-    let (rows, normalisations) = constraints.as_ref().split_at(n_rows);
+    let n_rows = mechanism.rows().len();
+    let (rows, normalisations) = constraints.split_at(n_rows);
     kinds.extend(by_unit(mechanism, ["Φ, lengths", "Φ, pure"], rows));
     // |p| = 1 to rounding: what is left is rounding, of the scale of one.
     kinds.push(Kind { scale: 1.0, ..kind("normalisations", normalisations.to_vec()) });
     let mut out = mechanism.rows();
     mechanism.nu(t, &y, &mut out);
-    kinds.push(kind("ν", out.as_ref().to_vec()));
+    kinds.push(kind("ν", out.clone()));
     mechanism.gamma(t, &y, &mut out);
-    kinds.extend(by_unit(mechanism, ["γ, lengths", "γ, pure"], out.as_ref()));
+    kinds.extend(by_unit(mechanism, ["γ, lengths", "γ, pure"], &out));
     mechanism.velocity_residual(t, &y, &mut out);
-    kinds.extend(by_unit(mechanism, ["velocity, lengths", "velocity, pure"], out.as_ref()));
+    kinds.extend(by_unit(mechanism, ["velocity, lengths", "velocity, pure"], &out));
     kinds.extend(by_block(["Φ_r of Φ_q", "Φ_p"], 7, &phi_q(mechanism, T, &y)));
     kinds.extend(by_block(["Φ_r", "Φ_π'"], 6, &phi_pi(mechanism, T, &y)));
     let mut force = mechanism.velocities();
     mechanism.applied_force(t, &y, &mut force);
-    let mut forces = halves(["f", "n' − w̃'J'w'"], 6, force.as_ref());
+    let mut forces = halves(["f", "n' − w̃'J'w'"], 6, &force);
     // A body with equal moments has no gyroscopic torque but rounding.
     let moments = model.bodies.iter().flat_map(|body| model.values(&body.inertia));
     forces[1].scale = RATE * RATE * moments.fold(0.0, |largest: f64, x| largest.max(x.abs()));
@@ -81,14 +82,14 @@ fn terms<M: Engine<f64>>(mechanism: &M, model: &Model, values: &[f64]) -> Vec<Ki
 }
 
 /// Readings: sines and cosines, Euler parameters and rates all have values up to 2π or 2 · [`RATE`].
-fn readings_and_energy<M: Engine<f64>>(mechanism: &M, model: &Model, y: &M::State) -> Vec<Kind> {
+fn readings_and_energy(mechanism: &Engine, model: &Model, y: &Vec<f64>) -> Vec<Kind> {
     let mut readings = mechanism.readings();
     mechanism.read_joints(T, y, &mut readings);
     let energy = mechanism.energy(T, y);
     let weight: f64 = model.values(&model.gravity).map(f64::abs).iter().sum::<f64>();
     let masses = model.coordinate_bodies().into_iter().map(|body| model.value(&model.bodies[body].mass));
     vec![
-        kind("readings", readings.as_ref().to_vec()),
+        kind("readings", readings),
         kind("kinetic energy", vec![energy.kinetic]),
         Kind {
             scale: weight * masses.sum::<f64>() * mechanism.size(),
@@ -98,7 +99,7 @@ fn readings_and_energy<M: Engine<f64>>(mechanism: &M, model: &Model, y: &M::Stat
 }
 
 /// A random state with the condition number of its rows, which is one for trees.
-fn drawn<M: Engine<f64>>(mechanism: &M, model: &Model, random: &mut Random) -> (Vec<f64>, f64) {
+fn drawn(mechanism: &Engine, model: &Model, random: &mut Random) -> (Vec<f64>, f64) {
     loop {
         let values = state(mechanism, RATE, random);
         let condition = if is_open(model) { 1.0 } else { condition(mechanism, model, &values) };
@@ -109,8 +110,8 @@ fn drawn<M: Engine<f64>>(mechanism: &M, model: &Model, random: &mut Random) -> (
 }
 
 /// The condition number of `Φ_π' M⁻¹ Φ_π'ᵀ`, rows of lengths and pure rows scaled so that the largest element of the diagonal is one.
-fn condition<M: Engine<f64>>(mechanism: &M, model: &Model, values: &[f64]) -> f64 {
-    let rows = phi_pi(mechanism, T, &state_of(mechanism, values)).rows;
+fn condition(mechanism: &Engine, model: &Model, values: &[f64]) -> f64 {
+    let rows = phi_pi(mechanism, T, &values.to_vec()).rows;
     let n_columns = 6 * mechanism.n_bodies();
     let jacobian = DMatrix::from_fn(rows.len(), n_columns, |row, column| rows[row][column]);
     let mut mobility = DMatrix::zeros(n_columns, n_columns);
@@ -136,17 +137,17 @@ fn condition<M: Engine<f64>>(mechanism: &M, model: &Model, values: &[f64]) -> f6
 }
 
 /// What follows from eq. (17).
-fn solutions<M: Engine<f64>>(mechanism: &M, model: &Model, values: &[f64]) -> Vec<Kind> {
-    let y = &state_of(mechanism, values);
+fn solutions(mechanism: &Engine, model: &Model, values: &[f64]) -> Vec<Kind> {
+    let y = &values.to_vec();
     let (mut accelerations, mut lambda) = (mechanism.accelerations_buffer(), mechanism.rows());
     mechanism.accelerations(T, y, &mut accelerations);
     mechanism.multipliers(T, y, &accelerations, &mut lambda);
     let n_velocities = 6 * mechanism.n_bodies();
-    let mut kinds = halves(["s̈", "ẇ'"], 6, &accelerations.as_ref()[..n_velocities]);
-    kinds.extend(by_unit(mechanism, ["λ, forces", "λ, torques"], lambda.as_ref()));
+    let mut kinds = halves(["s̈", "ẇ'"], 6, &accelerations[..n_velocities]);
+    kinds.extend(by_unit(mechanism, ["λ, forces", "λ, torques"], &lambda));
     let mut dy = mechanism.start();
     mechanism.derivative(T, y, &mut dy);
-    let (q_dot, rest) = dy.as_ref().split_at(7 * mechanism.n_bodies());
+    let (q_dot, rest) = dy.split_at(7 * mechanism.n_bodies());
     let (v_dot, others) = rest.split_at(n_velocities);
     let (power, turns) = others.split_at(usize::from(model.has_work()));
     kinds.extend(halves(["ṙ", "ṗ"], 7, q_dot));
@@ -158,10 +159,9 @@ fn solutions<M: Engine<f64>>(mechanism: &M, model: &Model, values: &[f64]) -> Ve
 }
 
 /// Each output by itself, numbers of one unit together. A torque is as inexact as the forces at an arm of the mechanism's size.
-fn outputs<M: Engine<f64>>(mechanism: &M, y: &M::State) -> Vec<Kind> {
+fn outputs(mechanism: &Engine, y: &Vec<f64>) -> Vec<Kind> {
     let mut out = mechanism.outputs_buffer();
     mechanism.outputs(T, y, &mut out);
-    let out = out.as_ref();
     let unit = |index: usize| (mechanism.output(index).name, mechanism.output(index).unit);
     let places: Vec<usize> = (0..mechanism.n_outputs()).collect();
     let groups = places.chunk_by(|&a, &b| unit(a) == unit(b));
@@ -175,7 +175,7 @@ fn outputs<M: Engine<f64>>(mechanism: &M, y: &M::State) -> Vec<Kind> {
 }
 
 /// Rows apart by what they measure.
-fn by_unit<M: Engine<f64>>(mechanism: &M, names: [&'static str; 2], rows: &[f64]) -> Vec<Kind> {
+fn by_unit(mechanism: &Engine, names: [&'static str; 2], rows: &[f64]) -> Vec<Kind> {
     let of = |is_length: bool| {
         let rows = rows.iter().enumerate().filter(|(row, _)| mechanism.row(*row).is_length == is_length);
         rows.map(|(_, value)| *value).collect()
@@ -240,58 +240,44 @@ impl Worst {
 }
 
 /// Compares with both forms of the twin.
-#[derive(Default)]
-struct WithTwins {
-    /// Pages that do not agree.
-    failed: Vec<String>,
-}
-
-impl Check<f64> for WithTwins {
-    fn check<M: Engine<f64>>(&mut self, page: &str, mechanism: &M) {
-        let agrees = || Self::compare(page, mechanism);
-        if std::panic::catch_unwind(std::panic::AssertUnwindSafe(agrees)).is_err() {
-            self.failed.push(page.to_owned());
+fn compare(page: &str, mechanism: &Engine) {
+    let model = model(page);
+    let careful = Careful::<f64>::supports(&model).ok().map(|()| careful(&model));
+    let dense = dense(&model);
+    let (mut random, mut to_careful, mut to_dense) = (Random::new(7), Worst::default(), Worst::default());
+    let mut most_lost = 0.0_f64;
+    for index in 0..STATES {
+        let (values, condition) = drawn(mechanism, &model, &mut random);
+        let (what, lost) =
+            (format!("{page}, state {index}: {values:?}"), (ROUNDINGS * f64::EPSILON * condition).min(LOST));
+        let state = (what.as_str(), lost);
+        most_lost = most_lost.max(lost);
+        let mut generated = terms(mechanism, &model, &values);
+        generated.extend(solutions(mechanism, &model, &values));
+        let all = |twin: &dyn Fn() -> [Vec<Kind>; 2]| twin().into_iter().flatten().collect::<Vec<_>>();
+        if let Some(careful) = &careful {
+            let twin = all(&|| [terms(careful, &model, &values), solutions(careful, &model, &values)]);
+            to_careful.compare(state, &generated, &twin);
         }
+        let twin = all(&|| [terms(&dense, &model, &values), solutions(&dense, &model, &values)]);
+        to_dense.compare(state, &generated, &twin);
     }
-}
-
-impl WithTwins {
-    fn compare<M: Engine<f64>>(page: &str, mechanism: &M) {
-        let model = model(page);
-        let careful = Careful::<f64>::supports(&model).ok().map(|()| Careful::new(&model).unwrap());
-        let dense = Dense::new(&model).unwrap();
-        let (mut random, mut to_careful, mut to_dense) = (Random::new(7), Worst::default(), Worst::default());
-        let mut most_lost = 0.0_f64;
-        for index in 0..STATES {
-            let (values, condition) = drawn(mechanism, &model, &mut random);
-            let (what, lost) = (
-                format!("{page}, state {index}: {values:?}"),
-                (ROUNDINGS * f64::EPSILON * condition).min(LOST),
-            );
-            let state = (what.as_str(), lost);
-            most_lost = most_lost.max(lost);
-            let mut generated = terms(mechanism, &model, &values);
-            generated.extend(solutions(mechanism, &model, &values));
-            let all = |twin: &dyn Fn() -> [Vec<Kind>; 2]| twin().into_iter().flatten().collect::<Vec<_>>();
-            if let Some(careful) = &careful {
-                let twin = all(&|| [terms(careful, &model, &values), solutions(careful, &model, &values)]);
-                to_careful.compare(state, &generated, &twin);
-            }
-            let twin = all(&|| [terms(&dense, &model, &values), solutions(&dense, &model, &values)]);
-            to_dense.compare(state, &generated, &twin);
-        }
-        let summaries = (to_careful.summary(), to_dense.summary());
-        println!("{page}: {}; dense: {}; allowed {most_lost:.0e}", summaries.0, summaries.1);
-        let differ = to_dense.differ && (careful.is_none() || to_careful.differ);
-        assert!(differ, "{page}: bit for bit the same: one is compared with itself");
-    }
+    let summaries = (to_careful.summary(), to_dense.summary());
+    println!("{page}: {}; dense: {}; allowed {most_lost:.0e}", summaries.0, summaries.1);
+    let differ = to_dense.differ && (careful.is_none() || to_careful.differ);
+    assert!(differ, "{page}: bit for bit the same: one is compared with itself");
 }
 
 #[test]
 fn generated_terms_agree_with_the_twins() {
-    let mut twins = WithTwins::default();
-    for_each_generated(&mut twins);
-    assert!(twins.failed.is_empty(), "these do not agree: {:?}", twins.failed);
+    let mut failed = Vec::new();
+    for_each_generated(|page, mechanism| {
+        let agrees = std::panic::AssertUnwindSafe(|| compare(page, mechanism));
+        if std::panic::catch_unwind(agrees).is_err() {
+            failed.push(page.to_owned());
+        }
+    });
+    assert!(failed.is_empty(), "these do not agree: {failed:?}");
 }
 
 #[test]
@@ -299,9 +285,9 @@ fn a_wrong_offset_is_noticed() {
     // The check must be able to fail: the twin's rotor is a hundredth of a nanometre off.
     let text = gyro_sim_suite::page("gyroscope").replace("0.000125", "0.00012500001");
     let (right, wrong) = (model("gyroscope"), gyro_model::read("wrong.toml", &text).unwrap());
-    let (a, b) = (Careful::<f64>::new(&right).unwrap(), Careful::<f64>::new(&wrong).unwrap());
+    let (a, b) = (careful(&right), careful(&wrong));
     let values = state(&a, RATE, &mut Random::new(7));
-    let kinds = |mechanism: &Careful<f64>| {
+    let kinds = |mechanism: &Engine| {
         let mut kinds = terms(mechanism, &right, &values);
         kinds.extend(solutions(mechanism, &right, &values));
         kinds

@@ -1,6 +1,7 @@
-//! What the integration tests share: the pages with their generated mechanisms, seeded random states, runs, nested builds.
+//! What the integration tests share: the pages with their mechanisms, seeded random states, runs, nested builds.
 
 mod against;
+mod engine;
 pub mod generated;
 mod matrix;
 mod nested;
@@ -9,10 +10,12 @@ mod runs;
 mod shelves;
 
 pub use against::{along, body, check, check_pairs, cross, pair, reference_body, times, worst};
+pub use engine::{Choice, Engine};
 pub use matrix::{Matrix, difference, phi_pi, phi_q};
 pub use nested::{Said, cargo, say};
-pub use random::{Random, posed, state, state_at, state_of, violated_start};
+pub use random::{Random, posed, state, state_at, violated_start};
 pub use runs::{PAPER, Run, as_paged, coordinate, fed, multipliers, output, played, simulate, start_of};
 pub use shelves::{
-    Check, Engine, Shelf, for_each_generated, is_open, model, module, page, pages, shelves, with_generated,
+    Shelf, careful, dense, for_each_generated, generated, in_single_precision, is_open, model, module, page,
+    pages, shelves,
 };

@@ -1,6 +1,7 @@
 //! Dense copies of sparse values, and how far two lists of numbers differ.
 
-use gyro_sim::Equations;
+use crate::Engine;
+use gyro_sim::{Equations, Mechanism};
 
 /// A dense matrix, row by row.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,19 +27,19 @@ impl Matrix {
 }
 
 /// Φ_q with respect to (r, p), normalisation rows included.
-pub fn phi_q<M: Equations<Scalar = f64>>(mechanism: &M, t: f64, y: &M::State) -> Matrix {
+pub fn phi_q(mechanism: &Engine, t: f64, y: &Vec<f64>) -> Matrix {
     let mut values = mechanism.phi_q_values();
     mechanism.phi_q(t, y, &mut values);
-    let (n_rows, n_columns) = (mechanism.constraints().as_ref().len(), 7 * mechanism.n_bodies());
-    Matrix::scattered(n_rows, n_columns, mechanism.phi_q_pattern(), values.as_ref())
+    let (n_rows, n_columns) = (mechanism.constraints().len(), 7 * mechanism.n_bodies());
+    Matrix::scattered(n_rows, n_columns, mechanism.phi_q_pattern(), &values)
 }
 
 /// (Φ_r, Φ_π').
-pub fn phi_pi<M: Equations<Scalar = f64>>(mechanism: &M, t: f64, y: &M::State) -> Matrix {
+pub fn phi_pi(mechanism: &Engine, t: f64, y: &Vec<f64>) -> Matrix {
     let mut values = mechanism.phi_pi_values();
     mechanism.phi_pi(t, y, &mut values);
-    let (n_rows, n_columns) = (mechanism.rows().as_ref().len(), 6 * mechanism.n_bodies());
-    Matrix::scattered(n_rows, n_columns, mechanism.phi_pi_pattern(), values.as_ref())
+    let (n_rows, n_columns) = (mechanism.rows().len(), 6 * mechanism.n_bodies());
+    Matrix::scattered(n_rows, n_columns, mechanism.phi_pi_pattern(), &values)
 }
 
 /// The largest difference of two lists over their largest magnitude, or over `scale` where that is larger; NaN if

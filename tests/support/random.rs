@@ -1,9 +1,10 @@
 //! Seeded random states.
 
+use crate::Engine;
 use gyro_model::{
     CoordinateKind, JointCoordinate, JointKind, JointStartSpec, Model, Number, Start, Support, parse_decimal,
 };
-use gyro_sim::{Mechanism, Scalar};
+use gyro_sim::{Mechanism, Ode};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -47,9 +48,8 @@ impl Random {
 /// A state with every joint row violated: mass centres anywhere within the mechanism's size of where they start, any
 /// orientations with |p| = 1, angular velocities up to `rate` rad/s and velocities up to `rate` sizes a second; work and turn
 /// references up to one.
-pub fn state<M: Mechanism<Scalar = f64>>(mechanism: &M, rate: f64, random: &mut Random) -> Vec<f64> {
-    let (mut y, n_bodies, size) =
-        (mechanism.start().as_ref().to_vec(), mechanism.n_bodies(), mechanism.size());
+pub fn state(mechanism: &Engine, rate: f64, random: &mut Random) -> Vec<f64> {
+    let (mut y, n_bodies, size) = (mechanism.start(), mechanism.n_bodies(), mechanism.size());
     let (positions, rest) = y.split_at_mut(7 * n_bodies);
     for q in positions.as_chunks_mut::<7>().0 {
         q[..3].iter_mut().for_each(|r| *r += size * random.signed());
@@ -61,16 +61,6 @@ pub fn state<M: Mechanism<Scalar = f64>>(mechanism: &M, rate: f64, random: &mut 
         v[3..].iter_mut().for_each(|w| *w = rate * random.signed());
     }
     others.iter_mut().for_each(|other| *other = random.signed());
-    y
-}
-
-/// The mechanism's own state with these values.
-pub fn state_of<M: Mechanism>(mechanism: &M, values: &[f64]) -> M::State {
-    let mut y = mechanism.start();
-    assert_eq!(y.as_ref().len(), values.len(), "the values are not of this mechanism");
-    for (y, value) in y.as_mut().iter_mut().zip(values) {
-        *y = Scalar::constant(*value);
-    }
     y
 }
 

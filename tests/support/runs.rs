@@ -1,8 +1,9 @@
 //! Runs of a mechanism from its model's start, by the loop that the command line uses.
 
+use crate::Engine;
 use gyro_model::{Joint, JointKind, Model};
 use gyro_runner::{Event, Failure, Input, JointSample, Sample, Settings, Start, Summary, run};
-use gyro_sim::{Equations, Partition, Ports};
+use gyro_sim::{Equations, Mechanism, Ports};
 
 /// The paper's settings for one second, section 7.
 pub const PAPER: Settings =
@@ -59,15 +60,15 @@ pub fn start_of(model: &Model) -> Start {
 ///
 /// # Panics
 /// If the run fails.
-pub fn simulate<M: Partition + Ports + Clone>(mechanism: &M, model: &Model, settings: &Settings) -> Run {
+pub fn simulate(mechanism: &Engine, model: &Model, settings: &Settings) -> Run {
     let (samples, outcome) = fed(mechanism, model, settings, Vec::new());
     let summary = outcome.unwrap_or_else(|failure| panic!("{}: {failure}", model.name));
     Run { samples, summary }
 }
 
 /// The same with inputs; a run that fails gives the samples up to there.
-pub fn fed<M: Partition + Ports + Clone>(
-    mechanism: &M,
+pub fn fed(
+    mechanism: &Engine,
     model: &Model,
     settings: &Settings,
     inputs: Vec<Input>,
@@ -90,7 +91,7 @@ pub fn as_paged(model: &Model, sample_every: f64) -> Settings {
 }
 
 /// Runs the mechanism of a page as the page asks, sampled twenty times.
-pub fn played<M: Partition + Ports + Clone>(mechanism: &M, model: &Model) -> Run {
+pub fn played(mechanism: &Engine, model: &Model) -> Run {
     simulate(mechanism, model, &as_paged(model, model.simulation.t_end / 20.0))
 }
 
@@ -109,7 +110,7 @@ pub fn coordinate(sample: &Sample, index: usize) -> (f64, f64) {
 ///
 /// # Panics
 /// If there is none.
-pub fn output<M: Ports>(mechanism: &M, sample: &Sample, name: &str) -> Vec<f64> {
+pub fn output(mechanism: &Engine, sample: &Sample, name: &str) -> Vec<f64> {
     let is_asked = |index: &usize| mechanism.output(*index).name == name;
     let found: Vec<f64> = (0..mechanism.n_outputs()).filter(is_asked).map(|k| sample.outputs[k]).collect();
     assert!(!found.is_empty(), "there is no output `{name}`");
@@ -117,18 +118,17 @@ pub fn output<M: Ports>(mechanism: &M, sample: &Sample, name: &str) -> Vec<f64> 
 }
 
 /// λ of all rows at a sample of all bodies.
-pub fn multipliers<M: Equations<Scalar = f64>>(mechanism: &M, model: &Model, sample: &Sample) -> Vec<f64> {
+pub fn multipliers(mechanism: &Engine, model: &Model, sample: &Sample) -> Vec<f64> {
     let mut values: Vec<f64> = sample.bodies.iter().flat_map(|body| body.pose).collect();
     values.extend(sample.bodies.iter().flat_map(|body| body.velocity));
     values.extend(model.has_work().then_some(sample.work));
     let first = |joint: usize| -> usize { model.joints[..joint].iter().map(n_samples).sum() };
     let turns = model.turn_references().into_iter();
     values.extend(turns.map(|turn| coordinate(sample, first(turn.joint) + turn.coordinate).0));
-    let y = crate::state_of(mechanism, &values);
     let (mut accelerations, mut lambda) = (mechanism.accelerations_buffer(), mechanism.rows());
-    mechanism.accelerations(sample.t, &y, &mut accelerations);
-    mechanism.multipliers(sample.t, &y, &accelerations, &mut lambda);
-    lambda.as_ref().to_vec()
+    mechanism.accelerations(sample.t, &values, &mut accelerations);
+    mechanism.multipliers(sample.t, &values, &accelerations, &mut lambda);
+    lambda
 }
 
 /// How many coordinates a sample has of a joint: an orientation is one.

@@ -1,10 +1,11 @@
 //! The pages of models with their generated mechanisms: those that are shipped and those for tests alone.
 
+use crate::Engine;
 use crate::generated as own;
+use gyro_assembled::{Careful, Dense};
 use gyro_codegen::Module;
 use gyro_model::{Model, Tree};
 use gyro_sim::generated as shipped;
-use gyro_sim::{Equations, Partition, Ports, Real};
 use std::path::{Path, PathBuf};
 
 /// A folder of pages and the folder of their generated modules.
@@ -16,79 +17,110 @@ pub struct Shelf {
     pub generated: PathBuf,
 }
 
-/// A mechanism that does everything there is to do.
-pub trait Engine<T>: Partition<Scalar = T> + Equations + Ports + Clone {}
-impl<T, M: Partition<Scalar = T> + Equations + Ports + Clone> Engine<T> for M {}
-
-/// What a test does with a mechanism of any type.
-pub trait Check<T: Real> {
-    /// Checks the mechanism of a page, named without its extension.
-    fn check<M: Engine<T>>(&mut self, page: &str, mechanism: &M);
-}
-
-/// Checks the generated mechanism of every page, shipped or not.
-pub fn for_each_generated<T: Real>(check: &mut impl Check<T>) {
+/// Does something with the generated mechanism of every page, shipped or not.
+pub fn for_each_generated(mut check: impl FnMut(&str, &Engine)) {
     for page in pages() {
-        with_generated(&page, check);
+        check(&page, &generated(&page));
     }
 }
 
-/// Checks the generated mechanism of one page.
+/// The generated mechanism of a page.
 ///
 /// # Panics
 /// If the page has no generated mechanism here: every page must have one.
-pub fn with_generated<T: Real>(page: &str, check: &mut impl Check<T>) {
+pub fn generated(page: &str) -> Engine {
     match page {
-        "all-joints" => check.check(page, &own::all_joints::AllJoints::default()),
-        "cam" => check.check(page, &own::cam::Cam::default()),
-        "carried" => check.check(page, &own::carried::Carried::default()),
-        "carried-block" => check.check(page, &own::carried_block::CarriedBlock::default()),
-        "compound-pendulum" => check.check(page, &shipped::compound_pendulum::CompoundPendulum::default()),
-        "cylindrical" => check.check(page, &own::cylindrical::Cylindrical::default()),
-        "driven-four-bar" => check.check(page, &own::driven_four_bar::DrivenFourBar::default()),
-        "driven-gyroscope" => check.check(page, &shipped::driven_gyroscope::DrivenGyroscope::default()),
-        "four-bar" => check.check(page, &shipped::four_bar::FourBar::default()),
-        "four-bar-revolute" => check.check(page, &shipped::four_bar_revolute::FourBarRevolute::default()),
-        "free-body" => check.check(page, &shipped::free_body::FreeBody::default()),
-        "friction" => check.check(page, &own::friction::Friction::default()),
-        "gear" => check.check(page, &own::gear::Gear::default()),
-        "gyroscope" => check.check(page, &shipped::gyroscope::Gyroscope::default()),
-        "gyroscope-bearings" => check.check(page, &own::gyroscope_bearings::GyroscopeBearings::default()),
+        "all-joints" => Engine::new(own::all_joints::AllJoints::default()),
+        "cam" => Engine::new(own::cam::Cam::default()),
+        "carried" => Engine::new(own::carried::Carried::default()),
+        "carried-block" => Engine::new(own::carried_block::CarriedBlock::default()),
+        "compound-pendulum" => Engine::new(shipped::compound_pendulum::CompoundPendulum::default()),
+        "cylindrical" => Engine::new(own::cylindrical::Cylindrical::default()),
+        "driven-four-bar" => Engine::new(own::driven_four_bar::DrivenFourBar::default()),
+        "driven-gyroscope" => Engine::new(shipped::driven_gyroscope::DrivenGyroscope::default()),
+        "four-bar" => Engine::new(shipped::four_bar::FourBar::default()),
+        "four-bar-revolute" => Engine::new(shipped::four_bar_revolute::FourBarRevolute::default()),
+        "free-body" => Engine::new(shipped::free_body::FreeBody::default()),
+        "friction" => Engine::new(own::friction::Friction::default()),
+        "gear" => Engine::new(own::gear::Gear::default()),
+        "gyroscope" => Engine::new(shipped::gyroscope::Gyroscope::default()),
+        "gyroscope-bearings" => Engine::new(own::gyroscope_bearings::GyroscopeBearings::default()),
         "gyroscope-combined-offsets" => {
-            check.check(page, &shipped::gyroscope_combined_offsets::GyroscopeCombinedOffsets::default())
+            Engine::new(shipped::gyroscope_combined_offsets::GyroscopeCombinedOffsets::default())
         }
         "gyroscope-free-nutation" => {
-            check.check(page, &shipped::gyroscope_free_nutation::GyroscopeFreeNutation::default())
+            Engine::new(shipped::gyroscope_free_nutation::GyroscopeFreeNutation::default())
         }
-        "gyroscope-maximal" => check.check(page, &shipped::gyroscope_maximal::GyroscopeMaximal::default()),
-        "gyroscope-parameters" => {
-            check.check(page, &shipped::gyroscope_parameters::GyroscopeParameters::default())
-        }
+        "gyroscope-maximal" => Engine::new(shipped::gyroscope_maximal::GyroscopeMaximal::default()),
+        "gyroscope-parameters" => Engine::new(shipped::gyroscope_parameters::GyroscopeParameters::default()),
         "gyroscope-radial-imbalance" => {
-            check.check(page, &shipped::gyroscope_radial_imbalance::GyroscopeRadialImbalance::default())
+            Engine::new(shipped::gyroscope_radial_imbalance::GyroscopeRadialImbalance::default())
         }
-        "gyroscope-viscous" => check.check(page, &shipped::gyroscope_viscous::GyroscopeViscous::default()),
-        "heavy-top" => check.check(page, &shipped::heavy_top::HeavyTop::default()),
-        "loads" => check.check(page, &own::loads::Loads::default()),
-        "motor" => check.check(page, &own::motor::Motor::default()),
-        "parallelogram" => check.check(page, &own::parallelogram::Parallelogram::default()),
-        "pendulum" => check.check(page, &own::pendulum::Pendulum::default()),
-        "pitching-bearings" => check.check(page, &own::pitching_bearings::PitchingBearings::default()),
-        "pitching-gyroscope" => check.check(page, &shipped::pitching_gyroscope::PitchingGyroscope::default()),
-        "planar" => check.check(page, &own::planar::Planar::default()),
-        "point-on-line" => check.check(page, &own::point_on_line::PointOnLine::default()),
-        "prismatic" => check.check(page, &own::prismatic::Prismatic::default()),
-        "rod" => check.check(page, &own::rod::Rod::default()),
-        "screw" => check.check(page, &own::screw::Screw::default()),
-        "spherical" => check.check(page, &own::spherical::Spherical::default()),
-        "spinning-top" => check.check(page, &shipped::spinning_top::SpinningTop::default()),
-        "stops" => check.check(page, &own::stops::Stops::default()),
-        "tether" => check.check(page, &own::tether::Tether::default()),
-        "torsion" => check.check(page, &shipped::torsion::Torsion::default()),
-        "universal" => check.check(page, &own::universal::Universal::default()),
-        "weld" => check.check(page, &own::weld::Weld::default()),
+        "gyroscope-viscous" => Engine::new(shipped::gyroscope_viscous::GyroscopeViscous::default()),
+        "heavy-top" => Engine::new(shipped::heavy_top::HeavyTop::default()),
+        "loads" => Engine::new(own::loads::Loads::default()),
+        "motor" => Engine::new(own::motor::Motor::default()),
+        "parallelogram" => Engine::new(own::parallelogram::Parallelogram::default()),
+        "pendulum" => Engine::new(own::pendulum::Pendulum::default()),
+        "pitching-bearings" => Engine::new(own::pitching_bearings::PitchingBearings::default()),
+        "pitching-gyroscope" => Engine::new(shipped::pitching_gyroscope::PitchingGyroscope::default()),
+        "planar" => Engine::new(own::planar::Planar::default()),
+        "point-on-line" => Engine::new(own::point_on_line::PointOnLine::default()),
+        "prismatic" => Engine::new(own::prismatic::Prismatic::default()),
+        "rod" => Engine::new(own::rod::Rod::default()),
+        "screw" => Engine::new(own::screw::Screw::default()),
+        "spherical" => Engine::new(own::spherical::Spherical::default()),
+        "spinning-top" => Engine::new(shipped::spinning_top::SpinningTop::default()),
+        "stops" => Engine::new(own::stops::Stops::default()),
+        "tether" => Engine::new(own::tether::Tether::default()),
+        "torsion" => Engine::new(shipped::torsion::Torsion::default()),
+        "universal" => Engine::new(own::universal::Universal::default()),
+        "weld" => Engine::new(own::weld::Weld::default()),
         _ => panic!("{page}.toml has no line in tests/support/shelves.rs: add it"),
     }
+}
+
+/// Generated mechanisms in single precision: each kind of joint, force, motion and partition is in one of them, but not every
+/// page, as each costs its compilation.
+pub fn in_single_precision() -> Vec<(&'static str, Engine<f32>)> {
+    vec![
+        ("cam", Engine::new(own::cam::Cam::default())),
+        ("cylindrical", Engine::new(own::cylindrical::Cylindrical::default())),
+        ("driven-gyroscope", Engine::new(shipped::driven_gyroscope::DrivenGyroscope::default())),
+        ("four-bar-revolute", Engine::new(shipped::four_bar_revolute::FourBarRevolute::default())),
+        ("free-body", Engine::new(shipped::free_body::FreeBody::default())),
+        ("friction", Engine::new(own::friction::Friction::default())),
+        ("gear", Engine::new(own::gear::Gear::default())),
+        ("gyroscope-maximal", Engine::new(shipped::gyroscope_maximal::GyroscopeMaximal::default())),
+        ("gyroscope-parameters", Engine::new(shipped::gyroscope_parameters::GyroscopeParameters::default())),
+        ("loads", Engine::new(own::loads::Loads::default())),
+        ("pendulum", Engine::new(own::pendulum::Pendulum::default())),
+        ("planar", Engine::new(own::planar::Planar::default())),
+        ("point-on-line", Engine::new(own::point_on_line::PointOnLine::default())),
+        ("rod", Engine::new(own::rod::Rod::default())),
+        ("screw", Engine::new(own::screw::Screw::default())),
+        ("stops", Engine::new(own::stops::Stops::default())),
+        ("tether", Engine::new(own::tether::Tether::default())),
+        ("motor", Engine::new(own::motor::Motor::default())),
+        ("universal", Engine::new(own::universal::Universal::default())),
+        ("weld", Engine::new(own::weld::Weld::default())),
+    ]
+}
+
+/// The careful twin of a model.
+///
+/// # Panics
+/// If it does not support the model.
+pub fn careful(model: &Model) -> Engine {
+    Engine::new(Careful::<f64>::new(model).unwrap_or_else(|error| panic!("{}: {error}", model.name)))
+}
+
+/// The dense twin of a model.
+///
+/// # Panics
+/// If the model cannot be assembled.
+pub fn dense(model: &Model) -> Engine {
+    Engine::new(Dense::<f64>::new(model).unwrap_or_else(|error| panic!("{}: {error}", model.name)))
 }
 
 /// Where pages and modules are: the shipped ones, then those for tests.

@@ -3,6 +3,7 @@
 #[path = "../support/mod.rs"]
 mod support;
 
+mod allocation;
 mod closed_forms;
 mod energy;
 mod equations_of_motion;

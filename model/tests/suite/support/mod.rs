@@ -1,5 +1,7 @@
 //! What several tests of the reader share: the pages that are shipped.
 
+pub(crate) mod random_page;
+
 use std::path::{Path, PathBuf};
 
 /// A folder of the repository.

@@ -1,8 +1,6 @@
 //! Every page in `tests/bad-models` is refused with the message beside it. `UPDATE_EXPECT=1` writes the messages anew:
 //! read them before they are kept.
 
-mod support;
-
 use std::path::Path;
 
 use gyro_model::{Diagnostics, Model, read_with};
@@ -35,7 +33,7 @@ fn difference(path: &Path, text: &str) -> Option<String> {
 
 #[test]
 fn bad_pages_are_refused_with_the_message_beside_them() {
-    let pages = support::pages("tests/bad-models");
+    let pages = crate::support::pages("tests/bad-models");
     assert!(pages.len() >= 75);
     let differences: Vec<String> = pages.iter().filter_map(|(path, text)| difference(path, text)).collect();
     assert!(differences.is_empty(), "{}", differences.join("\n"));
@@ -43,7 +41,7 @@ fn bad_pages_are_refused_with_the_message_beside_them() {
 
 #[test]
 fn every_message_shows_its_place_and_a_cure() {
-    for (path, text) in support::pages("tests/bad-models") {
+    for (path, text) in crate::support::pages("tests/bad-models") {
         let name = path.file_name().and_then(|name| name.to_str()).expect("a name");
         let mistakes = read_beside(&path, &text).expect_err(name);
         for mistake in mistakes.mistakes() {

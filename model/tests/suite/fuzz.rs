@@ -1,10 +1,5 @@
 //! No text makes the reader panic, and what it accepts has a finite start.
 
-mod support;
-
-#[path = "support/random_page.rs"]
-mod random_page;
-
 use gyro_model::{ForceKind, JointCoordinate, Model, OutputKind, Rational, RowOwner, read, read_with};
 use proptest::prelude::*;
 use proptest::sample::Index;
@@ -258,7 +253,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(500))]
 
     #[test]
-    fn random_pages_are_read_or_refused(page in random_page::page(), table in random_page::table()) {
+    fn random_pages_are_read_or_refused(page in crate::support::random_page::page(), table in crate::support::random_page::table()) {
         check_with(&page, &table);
     }
 }
@@ -268,7 +263,7 @@ proptest! {
 
     #[test]
     fn edited_pages_are_read_or_refused(page in any::<Index>(), edits in prop::collection::vec(edit(), 1..6)) {
-        let pages = [support::pages("models"), support::pages("tests/models")].concat();
+        let pages = [crate::support::pages("models"), crate::support::pages("tests/models")].concat();
         let (_, text) = page.get(&pages);
         check(&edits.iter().fold(text.clone(), |text, edit| edit.apply(&text)));
     }
@@ -285,7 +280,7 @@ proptest! {
 
     #[test]
     fn parameters_of_any_value_give_a_start_or_a_message(numerator: i64, exponent in -250..250_i32, which in 0..5_usize) {
-        let pages = support::pages("models");
+        let pages = crate::support::pages("models");
         let (_, text) = pages.iter().find(|(p, _)| p.ends_with("gyroscope-parameters.toml")).expect("a page");
         let model = read("gyroscope-parameters.toml", text).unwrap_or_else(|mistakes| panic!("{mistakes}"));
         let power = Rational::from_integer(10.into()).pow(exponent);

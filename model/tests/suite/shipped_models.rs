@@ -1,7 +1,5 @@
 //! The pages in `models/` are good, named after their files, and start as their sources say.
 
-mod support;
-
 use gyro_model::{JointKind, JointStart, Model, OutputKind, RowOwner, Start, Support, read};
 
 fn model(stem: &str) -> Model {
@@ -9,7 +7,7 @@ fn model(stem: &str) -> Model {
 }
 
 fn model_in(folder: &str, stem: &str) -> Model {
-    let path = support::folder(folder).join(format!("{stem}.toml"));
+    let path = crate::support::folder(folder).join(format!("{stem}.toml"));
     let text = std::fs::read_to_string(path).expect("a shipped page");
     read(stem, &text).unwrap_or_else(|mistakes| panic!("{mistakes}"))
 }
@@ -24,7 +22,7 @@ fn rates(stem: &str) -> Vec<f64> {
 
 #[test]
 fn every_page_is_named_after_its_file() {
-    let pages = support::pages("models");
+    let pages = crate::support::pages("models");
     assert!(pages.len() >= 16);
     for (path, _) in pages {
         let stem = path.file_stem().and_then(|s| s.to_str()).expect("a name");

@@ -1,7 +1,5 @@
 //! The interpreter over `f64` computes what the compiler makes of the same text, bit by bit.
 
-mod support;
-
 use gyro_sim::{Equations, Mechanism, Ode, Ports};
 use gyro_verifier::atoms::Elementary;
 use gyro_verifier::interpreter::{Given, constants, run};
@@ -11,11 +9,11 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeSet;
 
-#[path = "../../gyro-sim/src/generated/four_bar.rs"]
+#[path = "../../../gyro-sim/src/generated/four_bar.rs"]
 #[rustfmt::skip]
 #[allow(warnings, clippy::all, reason = "generated code is checked for what it computes, not for its style")]
 mod four_bar;
-#[path = "../../gyro-sim/src/generated/torsion.rs"]
+#[path = "../../../gyro-sim/src/generated/torsion.rs"]
 #[rustfmt::skip]
 #[allow(warnings, clippy::all, reason = "generated code is checked for what it computes, not for its style")]
 mod torsion;
@@ -26,7 +24,7 @@ const STATES: usize = 20;
 fn an_interpreted_tree_is_a_compiled_one() {
     check(
         "torsion",
-        include_str!("../../gyro-sim/src/generated/torsion.rs"),
+        include_str!("../../../gyro-sim/src/generated/torsion.rs"),
         &torsion::Torsion::<f64>::default(),
     );
 }
@@ -35,7 +33,7 @@ fn an_interpreted_tree_is_a_compiled_one() {
 fn an_interpreted_loop_is_a_compiled_one() {
     check(
         "four-bar",
-        include_str!("../../gyro-sim/src/generated/four_bar.rs"),
+        include_str!("../../../gyro-sim/src/generated/four_bar.rs"),
         &four_bar::FourBar::<f64>::default(),
     );
 }
@@ -53,7 +51,7 @@ fn check<M>(page: &str, code: &str, mechanism: &M)
 where
     M: Ode<Scalar = f64> + Mechanism + Equations + Ports,
 {
-    let page = support::page(page);
+    let page = crate::support::page(page);
     // The start has literals that no formula has.
     let formulas = code.split("fn derivative").nth(1).expect("formulas after the start");
     let module = Module::read(&page.model, code, &literals(formulas)).expect("the emitted subset");

@@ -2,10 +2,8 @@
 //!
 //! Formulas are mutated after they were read, so that a mutant differs in nothing but its formula; the text is mutated as text.
 
-mod faults;
-mod support;
-
-use faults::{Fault, apply, faults};
+use crate::faults::{Fault, apply, faults};
+use crate::support::Page;
 use gyro_verifier::field::Prime;
 use gyro_verifier::module::Module;
 use gyro_verifier::proof::{Claim, Decider, Verdict, prime};
@@ -13,7 +11,6 @@ use gyro_verifier::{Depth, verify};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeMap;
-use support::Page;
 
 /// Pages whose modules are mutated, and how many mutants of each are tried.
 const MUTATED: [(&str, usize); 12] = [
@@ -39,7 +36,7 @@ fn no_inequivalent_mutant_of_a_formula_survives() {
     let (mut count, mut equivalent, mut survivors) = (0, Vec::new(), Vec::new());
     let mut kinds = BTreeMap::<String, usize>::new();
     for (name, mutants) in MUTATED {
-        let page = support::page(name);
+        let page = crate::support::page(name);
         let module = Module::read(&page.model, &page.code, &page.constants).expect("the emitted subset");
         let prime: Prime<9> = prime(&page.model, &module, SEED).expect("room for all roots");
         let decider = Decider::new(&page.model, prime);
@@ -91,7 +88,7 @@ fn no_mutant_of_a_text_survives() {
     let mut survivors = Vec::new();
     let mut count = 0;
     for name in ["spinning-top", "pendulum"] {
-        let page = support::page(name);
+        let page = crate::support::page(name);
         let mut random = ChaCha8Rng::seed_from_u64(SEED);
         let whole = verify(&page.model, &page.code, &page.constants, Depth::Quick);
         assert!(whole.is_proved(), "{whole}");
@@ -156,7 +153,7 @@ fn edited(page: &Page) -> Vec<(String, String)> {
 /// A module of a page that was changed since, or with other constants.
 #[test]
 fn stale_files_and_wrong_constants_are_not_proved() {
-    let page = support::page("heavy-top");
+    let page = crate::support::page("heavy-top");
     let proves =
         |model, code: &str, constants: &str| verify(model, code, constants, Depth::Quick).is_proved();
     assert!(proves(&page.model, &page.code, &page.constants));

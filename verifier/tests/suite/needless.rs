@@ -1,7 +1,5 @@
 //! Operations whose results are known without them are found.
 
-mod support;
-
 use gyro_verifier::field::Prime;
 use gyro_verifier::module::Module;
 use gyro_verifier::program::Node;
@@ -9,7 +7,7 @@ use gyro_verifier::proof::{Decider, Needless, prime};
 
 #[test]
 fn planted_operations_are_found() {
-    let page = support::page("pendulum");
+    let page = crate::support::page("pendulum");
     let mut module = Module::read(&page.model, &page.code, &page.constants).expect("the emitted subset");
     let prime: Prime<9> = prime(&page.model, &module, 1).expect("room for all roots");
     let decider = Decider::new(&page.model, prime);

@@ -1,7 +1,5 @@
 //! The assembled start satisfies every constraint row and its derivative, typed here by hand.
 
-mod support;
-
 use std::fmt::Write as _;
 
 use gyro_model::{
@@ -217,7 +215,7 @@ fn check_coordinates(model: &Model, joint: &Joint, own: &JointStart, states: &[S
 
 #[test]
 fn shipped_models_start_on_the_constraints() {
-    for (path, text) in support::pages("models") {
+    for (path, text) in crate::support::pages("models") {
         let model = read(&path.display().to_string(), &text).unwrap_or_else(|mistakes| panic!("{mistakes}"));
         // The turning rates reach 200 rad/s, and are aligned with the axes.
         if model.is_driven() || !model.couplers.is_empty() {

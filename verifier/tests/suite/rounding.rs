@@ -1,7 +1,5 @@
 //! Rounding of emitted kernels.
 
-mod support;
-
 use gyro_verifier::field::{Precision, Real};
 use gyro_verifier::module::Module;
 use gyro_verifier::rounding::{self, DOUBLE_DIGITS, Kind};
@@ -12,7 +10,7 @@ const NEAR_START: f64 = 100.0;
 
 #[test]
 fn kernels_of_the_paper_lose_little_near_the_start() {
-    let page = support::page("gyroscope");
+    let page = crate::support::page("gyroscope");
     let module = Module::read(&page.model, &page.code, &page.constants).expect("the emitted subset");
     let measured = rounding::measure(&page.model, &module, 20, 1);
     let functions = module.programs.values().filter(|program| !program.results.is_empty()).count();

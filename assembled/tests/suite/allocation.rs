@@ -1,13 +1,11 @@
 //! The careful form allocates nothing once it is built: neither in a derivative nor in a corrected step.
 #![allow(unsafe_code, reason = "a counting allocator must implement an unsafe trait")]
 
-mod support;
-
+use crate::support::careful_models;
 use gyro_assembled::{Careful, Dense};
 use gyro_sim::{Equations, Partition, Partitioned, Ports};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
-use support::careful_models;
 
 struct Counting;
 

@@ -1,0 +1,14 @@
+//! Reading, checking and assembling. One program: each of its parts would be linked with all of it anew.
+
+mod assembly;
+mod bad_models;
+mod closing;
+mod closing_kinds;
+mod elements;
+mod format_page;
+mod fuzz;
+mod kinematics;
+mod redundancy;
+mod shipped_models;
+mod support;
+mod tree;

@@ -1,0 +1,11 @@
+//! Proofs of right modules, refutations of wrong ones. One program: each of its parts would compile the prover anew.
+
+#[path = "../support/mod.rs"]
+mod support;
+
+mod compiled;
+mod faults;
+mod mutants;
+mod needless;
+mod proofs;
+mod rounding;
