@@ -38,6 +38,7 @@ impl ModuleWriter<'_> {
             "Velocities",
             &f.corrected_accelerations,
         );
+        let multipliers = self.multipliers("corrected_multipliers", "Velocities", &f.corrected_multipliers);
         Some(quote! {
             impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for #name<T> {
                 type Joints = [T; #n_joints];
@@ -57,6 +58,7 @@ impl ModuleWriter<'_> {
                 #to_joints
                 #at
                 #corrected
+                #multipliers
             }
         })
     }
@@ -83,7 +85,8 @@ impl ModuleWriter<'_> {
     }
 
     fn joint_derivative(&self, n_x: usize, n_u: usize) -> TokenStream {
-        let what = "Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes";
+        let what =
+            "Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes";
         self.function(what, &self.functions.joint_derivative, |body, _, _| {
             let (statements, (coordinates, rest)) = (&body.statements, body.values.split_at(n_x));
             let places = (0..n_u).map(index);
