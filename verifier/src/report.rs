@@ -15,7 +15,7 @@ pub struct Report {
     pub mechanism: String,
     /// Bits of the prime.
     pub prime_bits: u64,
-    /// Whether the prime is 2^521 − 1; otherwise it was drawn so that the constants have their roots.
+    /// Whether the prime is the Mersenne prime of these bits; otherwise it was drawn so that the constants have their roots.
     pub is_mersenne: bool,
     /// Points at which each claim was tested.
     pub points: u32,
@@ -25,6 +25,8 @@ pub struct Report {
     pub refusals: Vec<Refusal>,
     /// What is wrong with the patterns, the start or the signs of readings.
     pub problems: Vec<String>,
+    /// What could not be decided, besides findings.
+    pub undecided: Vec<String>,
 }
 
 /// A claim with its verdict.
@@ -42,6 +44,11 @@ impl Finding {
         matches!(self.verdict, Verdict::Proved { error_log10, .. } if error_log10 <= ACCEPTED_LOG10)
     }
 
+    /// Whether the claim was shown to be false.
+    pub fn is_refuted(&self) -> bool {
+        matches!(self.verdict, Verdict::Refuted { .. } | Verdict::Divides { .. })
+    }
+
     fn functions(&self) -> String {
         self.claim.functions().join(", ")
     }
@@ -52,7 +59,8 @@ impl Finding {
                 ("proved", json!({ "error_log10": error_log10, "degree_log2": degree_log2 }))
             }
             Verdict::Refuted { residual } => ("refuted", json!({ "residual": residual })),
-            Verdict::Undecided { line } => ("undecided", json!({ "line": line })),
+            Verdict::Divides { line } => ("refuted", json!({ "line": line })),
+            Verdict::Undecided => ("undecided", json!({})),
         };
         json!({
             "functions": self.claim.functions(),
@@ -71,6 +79,12 @@ impl Report {
             && self.findings.iter().all(Finding::is_proved)
             && self.refusals.is_empty()
             && self.problems.is_empty()
+            && self.undecided.is_empty()
+    }
+
+    /// Whether something was shown to be wrong. What is neither proved nor refuted is undecided.
+    pub fn is_refuted(&self) -> bool {
+        !self.refusals.is_empty() || !self.problems.is_empty() || self.findings.iter().any(Finding::is_refuted)
     }
 
     /// The bound on the probability that any claim of the report is false, as a logarithm to base ten.
@@ -89,28 +103,35 @@ impl Report {
         json!({
             "mechanism": self.mechanism,
             "is_proved": self.is_proved(),
+            "is_refuted": self.is_refuted(),
+            "error_log10": self.error_log10(),
             "prime": self.prime(),
             "prime_bits": self.prime_bits,
             "points": self.points,
             "findings": self.findings.iter().map(Finding::to_json).collect::<Vec<_>>(),
             "refusals": refusals.collect::<Vec<_>>(),
             "problems": self.problems,
+            "undecided": self.undecided,
         })
     }
 
     fn prime(&self) -> String {
-        if self.is_mersenne { "2^521 - 1".to_owned() } else { format!("random, {} bits", self.prime_bits) }
+        if self.is_mersenne { format!("2^{} - 1", self.prime_bits) } else { format!("random, {} bits", self.prime_bits) }
     }
 }
 
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let verdict = if self.is_proved() { "proved" } else { "NOT PROVED" };
+        let verdict = match (self.is_proved(), self.is_refuted()) {
+            (true, _) => "proved",
+            (_, true) => "REFUTED",
+            _ => "NOT PROVED",
+        };
         writeln!(f, "{}: {verdict} (prime: {}; points: {})", self.mechanism, self.prime(), self.points)?;
         for refusal in &self.refusals {
             writeln!(f, "  {refusal}")?;
         }
-        for problem in &self.problems {
+        for problem in self.problems.iter().chain(&self.undecided) {
             writeln!(f, "  {problem}")?;
         }
         for finding in &self.findings {
@@ -119,10 +140,8 @@ impl fmt::Display for Report {
                     format!("degree < 2^{:.0}, error < 1e{:.0}", degree_log2.ceil(), error_log10.ceil())
                 }
                 Verdict::Refuted { residual } => format!("REFUTED: number {residual} is not zero"),
-                Verdict::Undecided { line: Some(line) } => format!("UNDECIDED: line {line} divides by zero"),
-                Verdict::Undecided { line: None } => {
-                    "UNDECIDED: no point has all roots and quotients".to_owned()
-                }
+                Verdict::Divides { line } => format!("REFUTED: line {line} divides by zero"),
+                Verdict::Undecided => "UNDECIDED: no point has all roots and quotients".to_owned(),
             };
             writeln!(f, "  {:26} {:58} {verdict}", finding.functions(), finding.claim.words())?;
         }
