@@ -8,6 +8,9 @@ use std::fmt;
 /// The largest probability of a false proof that is accepted, as a logarithm to base ten.
 pub const ACCEPTED_LOG10: f64 = -30.0;
 
+/// There are no more claims than this, so that the sum of their errors is less than so many times the largest.
+const MOST_CLAIMS: f64 = 16.0;
+
 /// All that was found out about a module.
 #[derive(Clone, Debug, Default)]
 pub struct Report {
@@ -42,6 +45,14 @@ impl Finding {
     /// Whether the claim is proved well enough.
     pub fn is_proved(&self) -> bool {
         matches!(self.verdict, Verdict::Proved { error_log10, .. } if error_log10 <= ACCEPTED_LOG10)
+    }
+
+    /// The bound on the probability that the claim is false, as a logarithm to base ten.
+    fn error_log10(&self) -> f64 {
+        match self.verdict {
+            Verdict::Proved { error_log10, .. } => error_log10,
+            _ => 0.0,
+        }
     }
 
     /// Whether the claim was shown to be false.
@@ -84,17 +95,44 @@ impl Report {
 
     /// Whether something was shown to be wrong. What is neither proved nor refuted is undecided.
     pub fn is_refuted(&self) -> bool {
-        !self.refusals.is_empty() || !self.problems.is_empty() || self.findings.iter().any(Finding::is_refuted)
+        !self.refusals.is_empty()
+            || !self.problems.is_empty()
+            || self.findings.iter().any(Finding::is_refuted)
     }
 
     /// The bound on the probability that any claim of the report is false, as a logarithm to base ten.
     pub fn error_log10(&self) -> f64 {
-        let errors = self.findings.iter().map(|finding| match finding.verdict {
-            Verdict::Proved { error_log10, .. } => error_log10,
-            _ => 0.0,
-        });
-        // No more claims than 16, so their sum is less than 16 times the largest.
-        errors.fold(f64::NEG_INFINITY, f64::max) + 16.0_f64.log10()
+        let errors = self.findings.iter().map(Finding::error_log10);
+        errors.fold(f64::NEG_INFINITY, f64::max) + MOST_CLAIMS.log10()
+    }
+
+    /// What the data sheet of the module says of the proof: a section of lines.
+    pub fn sheet(&self) -> Vec<String> {
+        let (proved, open): (Vec<&Finding>, Vec<&Finding>) =
+            self.findings.iter().partition(|f| f.is_proved());
+        let points = if self.points == 1 { "a random point" } else { "random points" };
+        let mut lines = vec![
+            "# Proof".to_owned(),
+            String::new(),
+            format!("Equal to the textbook's at {points} modulo a prime of {} bits:", self.prime_bits),
+        ];
+        for group in proved.chunk_by(|a, b| a.claim.against() == b.claim.against()) {
+            let functions: Vec<String> = group.iter().map(|finding| finding.functions()).collect();
+            lines.push(format!("* {}: {}", functions.join(", "), group[0].claim.against()));
+        }
+        let errors = proved.iter().map(|finding| finding.error_log10());
+        let worst = errors.fold(f64::NEG_INFINITY, f64::max) + MOST_CLAIMS.log10();
+        lines.extend([
+            String::new(),
+            format!("All of it holds but with a probability below 1e{:.0}.", worst.ceil()),
+        ]);
+        let open = open.into_iter().map(Finding::functions).chain(self.undecided.iter().cloned());
+        let has_charts = self.findings.iter().any(|finding| finding.claim == Claim::NewtonStep);
+        let pivoting = (!has_charts).then(|| "the choice of coordinates (pivoting at run time)".to_owned());
+        let not_proved: Vec<String> =
+            open.chain(pivoting).chain(["the size of rounding errors".to_owned()]).collect();
+        lines.push(format!("Not proved: {}.", not_proved.join(", ")));
+        lines
     }
 
     /// The report as JSON.
@@ -116,7 +154,11 @@ impl Report {
     }
 
     fn prime(&self) -> String {
-        if self.is_mersenne { format!("2^{} - 1", self.prime_bits) } else { format!("random, {} bits", self.prime_bits) }
+        if self.is_mersenne {
+            format!("2^{} - 1", self.prime_bits)
+        } else {
+            format!("random, {} bits", self.prime_bits)
+        }
     }
 }
 

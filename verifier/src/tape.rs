@@ -13,6 +13,7 @@ use num_traits::{One, Zero};
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::fmt;
+use std::hash::{BuildHasherDefault, Hasher};
 
 /// What was written down.
 #[derive(Debug, Default)]
@@ -29,8 +30,27 @@ pub struct Formulas {
 #[derive(Default)]
 pub struct Tape {
     formulas: RefCell<Formulas>,
-    known: RefCell<HashMap<Node, Id>>,
+    known: RefCell<HashMap<Node, Id, BuildHasherDefault<Mixer>>>,
     places: RefCell<HashMap<(Rational, Option<Rational>), usize>>,
+}
+
+/// A hash of a few small numbers: millions of nodes are looked up, and nobody chooses them to collide.
+#[derive(Default)]
+struct Mixer(u64);
+
+impl Hasher for Mixer {
+    fn write(&mut self, bytes: &[u8]) {
+        bytes.iter().for_each(|&byte| self.write_usize(byte.into()));
+    }
+
+    fn write_usize(&mut self, number: usize) {
+        // An odd number near 2^64 divided by the golden ratio.
+        self.0 = (self.0.rotate_left(5) ^ number as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    }
+
+    fn finish(&self) -> u64 {
+        self.0 ^ (self.0 >> 32)
+    }
 }
 
 /// A place on a tape: a number of which only the formula is known.

@@ -41,7 +41,11 @@ impl Degree {
 /// Logarithm to base two of the sum of two numbers given by theirs.
 pub fn sum_log2(a: f64, b: f64) -> f64 {
     let (small, large) = (a.min(b), a.max(b));
-    if small == f64::NEG_INFINITY { large } else { large + (small - large).exp2().ln_1p() / std::f64::consts::LN_2 }
+    if small == f64::NEG_INFINITY {
+        large
+    } else {
+        large + (small - large).exp2().ln_1p() / std::f64::consts::LN_2
+    }
 }
 
 impl Field for Degree {

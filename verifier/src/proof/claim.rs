@@ -109,6 +109,21 @@ impl Claim {
         }
     }
 
+    /// What its functions are proved against, for the data sheet of a module: claims next to each other share it.
+    pub fn against(self) -> &'static str {
+        match self {
+            Self::Phi => "Φ of eqs. (7) to (12)",
+            Self::PhiQ | Self::PhiPi | Self::Nu | Self::Gamma | Self::VelocityResidual => {
+                "the derivatives of Φ by dual numbers"
+            }
+            Self::AppliedForce | Self::Motion => "eq. (17)",
+            Self::Derivative => "eqs. (14) and (16)",
+            Self::Energy | Self::Readings | Self::Outputs => "their definitions",
+            Self::ChartVectors | Self::NewtonStep => "Newton's step for Φ = 0",
+            Self::SolveVelocities => "eq. (19)",
+        }
+    }
+
     /// The numbers that must be zero; `None` where the textbook divides by the number zero.
     pub(super) fn residuals<'a>(self, case: &Case<'a>) -> Option<Vec<Term<'a>>> {
         let point = &case.point;

@@ -127,10 +127,8 @@ impl<'a> Statements<'a> {
     /// divide by what is zero everywhere.
     pub fn degrees_log2(&self) -> Vec<Option<f64>> {
         let all = vec![true; self.formulas.program.nodes.len()];
-        let degrees =
-            self.formulas.evaluate(&all, (), &Formal, &|source| point::degree(self.model, source));
-        let of_claim =
-            |residuals: &Option<Vec<Id>>| self.degree_log2(residuals.as_ref()?, &degrees);
+        let degrees = self.formulas.evaluate(&all, (), &Formal, &|source| point::degree(self.model, source));
+        let of_claim = |residuals: &Option<Vec<Id>>| self.degree_log2(residuals.as_ref()?, &degrees);
         self.claims.iter().map(of_claim).collect()
     }
 
@@ -162,7 +160,12 @@ impl<'a> Statements<'a> {
     }
 
     /// Whether all of some residuals are zero.
-    fn outcome<F: Field>(&self, residuals: &[Id], values: &[Option<F>], is_zero: impl Fn(&F) -> bool) -> Outcome {
+    fn outcome<F: Field>(
+        &self,
+        residuals: &[Id],
+        values: &[Option<F>],
+        is_zero: impl Fn(&F) -> bool,
+    ) -> Outcome {
         for (residual, &id) in residuals.iter().enumerate() {
             match &values[id] {
                 Some(value) if is_zero(value) => {}
@@ -211,7 +214,9 @@ impl<'a, const L: usize> Decider<'a, L> {
 
     /// Tests the claims that are open at one point.
     fn test(&self, statements: &Statements<'_>, seed: u64, refutations: &mut [Option<Verdict>]) {
-        let is_open = |(residuals, refutation): (_, &Option<Verdict>)| if refutation.is_none() { residuals } else { None };
+        let is_open = |(residuals, refutation): (_, &Option<Verdict>)| {
+            if refutation.is_none() { residuals } else { None }
+        };
         let open: Vec<Option<&Vec<Id>>> =
             statements.claims.iter().map(Option::as_ref).zip(refutations.iter()).map(is_open).collect();
         let reach = statements.formulas.reach(open.iter().flatten().copied().flatten().copied());
@@ -238,12 +243,7 @@ impl<'a, const L: usize> Decider<'a, L> {
     }
 
     /// A point.
-    fn draw(
-        &self,
-        module: &Module,
-        seed: u64,
-        number: u64,
-    ) -> Option<(Draw<Modular<'_, L>>, Drawn<'_, L>)> {
+    fn draw(&self, module: &Module, seed: u64, number: u64) -> Option<(Draw<Modular<'_, L>>, Drawn<'_, L>)> {
         let mut random = ChaCha8Rng::seed_from_u64(seed.wrapping_add(number));
         let atoms = Drawn::new(&self.prime, ChaCha8Rng::from_rng(&mut random));
         Some((point::modular(self.model, module, &self.prime, &mut random)?, atoms))
@@ -251,12 +251,7 @@ impl<'a, const L: usize> Decider<'a, L> {
 
     /// Decides a claim whose residuals are not all zero, or do not exist, at a point at which roots may have been missed. `None` if they
     /// are all zero where all roots exist.
-    fn look_closer(
-        &self,
-        statements: &Statements<'_>,
-        residuals: &[Id],
-        seed: u64,
-    ) -> Option<Verdict> {
+    fn look_closer(&self, statements: &Statements<'_>, residuals: &[Id], seed: u64) -> Option<Verdict> {
         let reach = statements.formulas.reach(residuals.iter().copied());
         let roots = statements.roots(&reach);
         let roots_reach = statements.formulas.reach(roots.iter().map(|&(root, _)| root));

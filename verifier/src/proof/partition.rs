@@ -148,7 +148,12 @@ fn others_kept<'a>(case: &Case<'a>, start: &Point<Term<'a>>, moved: &Point<Term<
 }
 
 /// What the step does along p and in the special Euler parameter, for p of any length.
-fn lengths<'a>(case: &Case<'a>, body: &Held, start: &Point<Term<'a>>, moved: &Point<Term<'a>>) -> Vec<Term<'a>> {
+fn lengths<'a>(
+    case: &Case<'a>,
+    body: &Held,
+    start: &Point<Term<'a>>,
+    moved: &Point<Term<'a>>,
+) -> Vec<Term<'a>> {
     let (p, corrected) = (euler(start, body.slot), euler(moved, body.slot));
     let number = |n| Term::integer(start.context, n);
     let square = dot(p, p);
@@ -173,7 +178,12 @@ fn lengths<'a>(case: &Case<'a>, body: &Held, start: &Point<Term<'a>>, moved: &Po
 }
 
 /// Of a free body the position that it had; of a constrained one what the page gives.
-fn held_position<'a>(case: &Case<'a>, body: &Held, start: &Point<Term<'a>>, moved: &Point<Term<'a>>) -> Vec<Term<'a>> {
+fn held_position<'a>(
+    case: &Case<'a>,
+    body: &Held,
+    start: &Point<Term<'a>>,
+    moved: &Point<Term<'a>>,
+) -> Vec<Term<'a>> {
     let (before, after) = (start.position(body.slot), moved.position(body.slot));
     match body.hold {
         Hold::Free => differences(&before[..3], &after[..3]),
@@ -208,8 +218,7 @@ fn linearised_rows<'a>(case: &Case<'a>, body: &Held, moved: &Point<Term<'a>>) ->
     let mut before = moved.clone();
     before.state[own.clone()].clone_from_slice(&case.point.state[own.clone()]);
     let textbook = case.textbook(&before)?;
-    let (phi, phi_q) =
-        (textbook.phi()?, textbook.phi_q()?);
+    let (phi, phi_q) = (textbook.phi()?, textbook.phi_q()?);
     let change = differences(&moved.state[own.clone()], &before.state[own.clone()]);
     let rows = body.rows(case).skip(3);
     Some(rows.map(|row| phi[row].add(&dot(&phi_q[row][own.clone()], &change))).collect())

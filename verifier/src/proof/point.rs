@@ -30,7 +30,12 @@ impl<F: Field> Draw<F> {
 
     /// A random point with |p| = 1: Euler parameters are `(1 − u·u, 2u) / (1 + u·u)` of a random vector u, which reaches
     /// every unit vector but one. `None` where `1 + u·u` vanishes.
-    fn with(model: &Model, module: &Module, context: F::Context, mut draw: impl FnMut() -> F) -> Option<Self> {
+    fn with(
+        model: &Model,
+        module: &Module,
+        context: F::Context,
+        mut draw: impl FnMut() -> F,
+    ) -> Option<Self> {
         let n = model.coordinate_bodies().len();
         let mut state = Vec::new();
         for _ in 0..n {
@@ -67,7 +72,8 @@ pub(super) fn real<'c>(
     precision: &'c Precision,
     random: &mut impl Rng,
 ) -> Option<Draw<Real<'c>>> {
-    let mut draw = Draw::with(model, module, precision, || Real::new(precision, random.random_range(-1.0..1.0)))?;
+    let mut draw =
+        Draw::with(model, module, precision, || Real::new(precision, random.random_range(-1.0..1.0)))?;
     for (value, parameter) in draw.point.parameters.iter_mut().zip(&model.parameters) {
         *value = Real::new(precision, to_f64(&parameter.value) * random.random_range(0.75..1.25));
     }

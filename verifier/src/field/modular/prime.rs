@@ -21,7 +21,6 @@ pub struct Prime<const L: usize> {
     /// Every divisor of this number is a square.
     squares: BigUint,
     root_exponent: BigUint,
-    inverse_exponent: BigUint,
     missed: RefCell<Vec<Rational>>,
     /// Rationals and roots of rationals met so far: to divide takes long.
     rationals: Known<L>,
@@ -67,7 +66,6 @@ impl<const L: usize> Prime<L> {
             square: self::limbs(&(&one * &one % &value)),
             one: self::limbs(&one),
             root_exponent: (&value + 1_u32) >> 2_u32,
-            inverse_exponent: &value - 2_u32,
             squares,
             missed: RefCell::default(),
             rationals: RefCell::default(),
@@ -140,10 +138,6 @@ impl<const L: usize> Prime<L> {
 
     pub(super) fn root_exponent(&self) -> &BigUint {
         &self.root_exponent
-    }
-
-    pub(super) fn inverse_exponent(&self) -> &BigUint {
-        &self.inverse_exponent
     }
 
     pub(super) fn in_montgomery_form(&self, value: &BigUint) -> [u64; L] {
