@@ -53,6 +53,7 @@ pub mod refusal;
 mod report;
 pub mod rounding;
 pub mod structure;
+mod tape;
 pub mod textbook;
 mod verify;
 

@@ -14,6 +14,7 @@ use gyro_model::{Model, Spline};
 use matching::{Hole, Matched};
 use proc_macro2::{TokenStream, TokenTree};
 use skeleton::Choice;
+pub(crate) use skeleton::n_state;
 use std::collections::BTreeMap;
 use syn::Block;
 
@@ -93,7 +94,7 @@ impl Module {
         let n_accelerations = number("accelerations").unwrap_or(0);
         let n_charts = number("charts");
         let sizes = Sizes {
-            state: skeleton::n_state(model),
+            state: n_state(model),
             accelerations: n_accelerations,
             charts: n_charts.unwrap_or(0),
             tables: tables.len(),
@@ -143,7 +144,7 @@ impl Module {
         let number = |name: &str| matched.numbers.get(name).copied().unwrap_or(0);
         let outputs = model.outputs.iter().map(|output| output.kind.columns().len()).sum();
         let expected = [
-            ("derivative", skeleton::n_state(model)),
+            ("derivative", n_state(model)),
             ("phi", rows + n),
             ("velocity_residual", rows),
             ("energy", 2),
@@ -162,7 +163,7 @@ impl Module {
         let patterns = [
             ("phi_q_pattern", self.phi_q_pattern.len(), number("phi_q")),
             ("phi_pi_pattern", self.phi_pi_pattern.len(), number("phi_pi")),
-            ("start", self.start.len(), skeleton::n_state(model)),
+            ("start", self.start.len(), n_state(model)),
         ];
         let sizes = expected.map(|(name, size)| (name, found(name), size)).into_iter().chain(patterns);
         for (name, found, expected) in sizes {

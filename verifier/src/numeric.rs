@@ -1,10 +1,13 @@
 //! What only numbers can show: the start, and that angles are read with the right sign.
 
-use crate::atoms::{Atoms, Elementary};
+use crate::atoms::Elementary;
 use crate::field::{Field, Precision, Real};
 use crate::interpreter::{self, Given};
 use crate::module::Module;
 use crate::point::Point;
+use crate::program::{Id, Source};
+use crate::proof::point_of_terms;
+use crate::tape::{Tape, Term, Written};
 use crate::textbook::{Reading, Textbook};
 use gyro_model::{Model, RowUnit, to_f64};
 use rand::{RngExt, SeedableRng};
@@ -40,24 +43,31 @@ fn start_differs(model: &Model, module: &Module) -> Option<String> {
 
 /// The start must satisfy the textbook's rows, at time zero.
 fn start_violates(model: &Model, module: &Module) -> Option<String> {
+    let (tape, textbook) = (Tape::new(), Textbook::new(model));
+    let [phi, rates] = {
+        let point = point_of_terms(model, &tape);
+        let evaluation = textbook.at(&point, &Written);
+        let rows = evaluation.and_then(|e| Some([e.phi()?, e.velocity_residual()?]));
+        let Some(rows) = rows else { return Some("the textbook divides by zero".to_owned()) };
+        rows.map(|rows| rows.into_iter().map(Term::id).collect::<Vec<Id>>())
+    };
+    let formulas = tape.finish();
     let precision = Precision::new();
     let point = point(model, &precision, &module.start, 0.0, |x| Real::new(&precision, x));
-    let textbook = Textbook::new(model);
-    let Some((phi, rates)) =
-        textbook.at(&point, &Elementary).and_then(|e| Some((e.phi()?, e.velocity_residual()?)))
-    else {
-        return Some("the textbook divides by zero at the start".to_owned());
-    };
+    let reach = formulas.reach(phi.iter().chain(&rates).copied());
+    let values = formulas.evaluate(&reach, &precision, &Elementary, &|source| read(&point, source));
     let fastest =
         module.start[7 * model.coordinate_bodies().len()..].iter().fold(1.0, |a: f64, b| a.max(b.abs()));
     let rows = model.rows();
     let size = |row: usize| {
         if rows.get(row).is_some_and(|r| r.unit == RowUnit::Length) { model.size() } else { 1.0 }
     };
-    let violated = |values: &[Real], scale: f64| {
-        let is_within =
-            |(row, value): (usize, &Real)| value.to_f64().abs() <= START_TOLERANCE * scale * size(row);
-        values.iter().enumerate().position(|row| !is_within(row))
+    let violated = |ids: &[Id], scale: f64| {
+        let is_within = |(row, id): (usize, &Id)| {
+            let value = values[*id].as_ref();
+            value.is_some_and(|value| value.to_f64().abs() <= START_TOLERANCE * scale * size(row))
+        };
+        ids.iter().enumerate().position(|row| !is_within(row))
     };
     let row = violated(&phi, 1.0).or_else(|| violated(&rates, fastest));
     row.map(|row| format!("the start violates row {row}"))
@@ -65,33 +75,48 @@ fn start_violates(model: &Model, module: &Module) -> Option<String> {
 
 /// Angles are proved up to a factor: here it must be positive.
 fn wrong_signs(model: &Model, module: &Module) -> Option<String> {
-    let textbook = Textbook::new(model);
+    let (tape, textbook) = (Tape::new(), Textbook::new(model));
+    let angles = angles(model, &textbook, &tape)?;
+    let formulas = tape.finish();
+    let reach = formulas.reach(angles.iter().flat_map(|(_, ids)| *ids));
     let constants: Vec<f64> = interpreter::constants((), module);
     let mut random = ChaCha8Rng::seed_from_u64(1);
     for _ in 0..STATES {
         let state = random_state(model, &mut random);
         let point = point(model, (), &state, random.random_range(-1.0..1.0), |x| x);
         let given = Given { point: &point, accelerations: &[], charts: &[] };
-        let expected = textbook.at(&point, &Elementary).and_then(|evaluation| evaluation.readings());
         let program = &module.programs["read_joints"];
-        let found = interpreter::run(module, program, &constants, &Elementary as &dyn Atoms<f64>, &given);
-        let (Some(expected), Ok(found)) = (expected, found) else { continue };
-        let mut found = found.as_slice();
-        for reading in expected {
-            let count = match reading {
-                Reading::Angle { sine, cosine, .. } => {
-                    if sine * found[0] + cosine * found[1] <= 0.0 {
-                        return Some("an angle is read with the wrong sign".to_owned());
-                    }
-                    3
-                }
-                Reading::Length(_) => 2,
-                Reading::Orientation(_) => 7,
-            };
-            found = &found[count..];
+        let Ok(found) = interpreter::run(module, program, &constants, &Elementary, &given) else { continue };
+        let values = formulas.evaluate(&reach, (), &Elementary, &|source| read(&point, source));
+        for (place, ids) in &angles {
+            let [Some(sine), Some(cosine)] = ids.map(|id| values[id]) else { continue };
+            if sine * found[*place] + cosine * found[place + 1] <= 0.0 {
+                return Some("an angle is read with the wrong sign".to_owned());
+            }
         }
     }
     None
+}
+
+/// Of each angle where its reading starts, and its sine and cosine.
+fn angles(model: &Model, textbook: &Textbook, tape: &Tape) -> Option<Vec<(usize, [Id; 2])>> {
+    let point = point_of_terms(model, tape);
+    let (mut angles, mut place) = (Vec::new(), 0);
+    for reading in textbook.at(&point, &Written)?.readings()? {
+        place += match reading {
+            Reading::Angle { sine, cosine, .. } => {
+                angles.push((place, [sine.id(), cosine.id()]));
+                3
+            }
+            Reading::Length(numbers) => numbers.len(),
+            Reading::Orientation(numbers) => numbers.len(),
+        };
+    }
+    Some(angles)
+}
+
+fn read<F: Field>(point: &Point<F>, source: Source) -> F {
+    point.given(source).cloned().expect("the textbook reads what the model says there is")
 }
 
 /// A state of numbers between −1 and 1 with |p| = 1 to rounding.

@@ -6,5 +6,7 @@ mod decide;
 mod partition;
 mod point;
 
+pub(crate) use case::point as point_of_terms;
+
 pub use claim::Claim;
-pub use decide::{Decider, Needless, Verdict, prime};
+pub use decide::{Decider, Needless, Statements, Verdict, prime};

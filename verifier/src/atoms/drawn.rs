@@ -19,6 +19,8 @@ pub struct Drawn<'p, const L: usize> {
     tanh: Table<[u64; L], Modular<'p, L>>,
     atan2: Table<([u64; L], [u64; L]), Modular<'p, L>>,
     splines: Table<(Vec<u64>, [u64; L]), [Modular<'p, L>; 3]>,
+    /// What stands for roots that do not exist.
+    roots: Table<[u64; L], Modular<'p, L>>,
     missed: Cell<bool>,
 }
 
@@ -34,11 +36,12 @@ impl<'p, const L: usize> Drawn<'p, L> {
             tanh: RefCell::default(),
             atan2: RefCell::default(),
             splines: RefCell::default(),
+            roots: RefCell::default(),
             missed: Cell::new(false),
         }
     }
 
-    /// Whether a root was asked for that does not exist: another point is needed.
+    /// Whether a root was asked for that does not exist.
     pub fn missed_root(&self) -> bool {
         self.missed.get()
     }
@@ -129,10 +132,11 @@ impl<'p, const L: usize> Atoms<Modular<'p, L>> for Drawn<'p, L> {
         signed(&value, key.is_some_and(|((_, negated), _)| negated))
     }
 
+    /// Where there is no root, any number in its place.
     fn sqrt(&self, x: &Modular<'p, L>) -> Modular<'p, L> {
         x.sqrt().unwrap_or_else(|| {
             self.missed.set(true);
-            Modular::undefined(self.prime)
+            self.value(&self.roots, x.key())
         })
     }
 

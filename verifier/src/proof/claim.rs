@@ -1,10 +1,11 @@
 //! What is proved of each function: numbers that must be zero wherever they exist.
 
-use super::case::{Case, Undecided};
+use super::case::Case;
 use super::partition;
 use super::point::stretched;
 use crate::field::Field;
 use crate::point::Point;
+use crate::tape::Term;
 use crate::textbook::Reading;
 
 /// A claim.
@@ -108,13 +109,27 @@ impl Claim {
         }
     }
 
-    /// The numbers that must be zero.
-    pub fn residuals<F: Field>(self, case: &Case<F>) -> Result<Vec<F>, Undecided> {
+    /// What its functions are proved against, for the data sheet of a module: claims next to each other share it.
+    pub fn against(self) -> &'static str {
+        match self {
+            Self::Phi => "Φ of eqs. (7) to (12)",
+            Self::PhiQ | Self::PhiPi | Self::Nu | Self::Gamma | Self::VelocityResidual => {
+                "the derivatives of Φ by dual numbers"
+            }
+            Self::AppliedForce | Self::Motion => "eq. (17)",
+            Self::Derivative => "eqs. (14) and (16)",
+            Self::Energy | Self::Readings | Self::Outputs => "their definitions",
+            Self::ChartVectors | Self::NewtonStep => "Newton's step for Φ = 0",
+            Self::SolveVelocities => "eq. (19)",
+        }
+    }
+
+    /// The numbers that must be zero; `None` where the textbook divides by the number zero.
+    pub(super) fn residuals<'a>(self, case: &Case<'a>) -> Option<Vec<Term<'a>>> {
         let point = &case.point;
         let textbook = case.textbook(point)?;
-        let exists = |values: Option<Vec<F>>| values.ok_or(Undecided::Textbook);
-        let equal = |function: &str, values: Option<Vec<F>>| {
-            Ok(differences(&case.run(function, point)?, &exists(values)?))
+        let equal = |function: &str, values: Option<Vec<Term<'a>>>| {
+            Some(differences(&case.run(function, point), &values?))
         };
         match self {
             Self::Phi => equal("phi", textbook.phi()),
@@ -124,28 +139,28 @@ impl Claim {
             Self::AppliedForce => equal("applied_force", textbook.applied_force()),
             Self::Energy => equal("energy", textbook.energy().map(|energies| energies.to_vec())),
             Self::PhiQ => {
-                let matrix = textbook.phi_q().ok_or(Undecided::Textbook)?;
-                let (values, pattern) = (case.run("phi_q", point)?, &case.module.phi_q_pattern);
-                Ok(sparse_differences(&values, pattern, matrix).concat())
+                let matrix = textbook.phi_q()?;
+                let (values, pattern) = (case.run("phi_q", point), &case.module.phi_q_pattern);
+                Some(sparse_differences(&values, pattern, matrix).concat())
             }
             Self::PhiPi => {
-                let matrix = textbook.phi_pi().ok_or(Undecided::Textbook)?;
-                let (values, pattern) = (case.run("phi_pi", point)?, &case.module.phi_pi_pattern);
-                Ok(sparse_differences(&values, pattern, matrix).concat())
+                let matrix = textbook.phi_pi()?;
+                let (values, pattern) = (case.run("phi_pi", point), &case.module.phi_pi_pattern);
+                Some(sparse_differences(&values, pattern, matrix).concat())
             }
             Self::Motion => {
-                let (accelerations, multipliers) = case.motion()?;
-                exists(textbook.residual_of_motion(&accelerations[..6 * case.n_bodies()], &multipliers))
+                let (accelerations, multipliers) = case.motion();
+                textbook.residual_of_motion(&accelerations[..6 * case.n_bodies()], &multipliers)
             }
             Self::Derivative => derivative(case),
             Self::Outputs => {
-                let (accelerations, multipliers) = case.motion()?;
+                let (accelerations, multipliers) = case.motion();
                 let values = textbook.outputs(&accelerations[..6 * case.n_bodies()], &multipliers);
-                Ok(differences(&case.run_with("outputs", point, &accelerations)?, &exists(values)?))
+                Some(differences(&case.run_with("outputs", point, &accelerations), &values?))
             }
             Self::Readings => {
                 let stretched = stretched(point, &case.factors);
-                Ok([readings(case, point)?, angles(case, &stretched)?].concat())
+                Some([readings(case, point)?, angles(case, &stretched)?].concat())
             }
             Self::ChartVectors => partition::chart_vectors(case),
             Self::NewtonStep => partition::newton_step(case),
@@ -178,22 +193,22 @@ fn sparse_differences<F: Field>(
     differences
 }
 
-fn derivative<F: Field>(case: &Case<F>) -> Result<Vec<F>, Undecided> {
+fn derivative<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     let textbook = case.textbook(&case.point)?;
-    let (accelerations, multipliers) = case.motion()?;
+    let (accelerations, multipliers) = case.motion();
     let mut expected = textbook.position_rates();
     expected.extend(accelerations[..6 * case.n_bodies()].iter().cloned());
     if case.model.has_work() {
-        let [forces, drivers] = textbook.power(&multipliers).ok_or(Undecided::Textbook)?;
+        let [forces, drivers] = textbook.power(&multipliers)?;
         expected.push(forces.add(&drivers));
     }
     expected.extend(textbook.turn_rates());
-    Ok(differences(&case.run_with("derivative", &case.point, &accelerations)?, &expected))
+    Some(differences(&case.run_with("derivative", &case.point, &accelerations), &expected))
 }
 
-fn readings<F: Field>(case: &Case<F>, point: &Point<F>) -> Result<Vec<F>, Undecided> {
-    let expected = case.textbook(point)?.readings().ok_or(Undecided::Textbook)?;
-    let found = case.run("read_joints", point)?;
+fn readings<'a>(case: &Case<'a>, point: &Point<Term<'a>>) -> Option<Vec<Term<'a>>> {
+    let expected = case.textbook(point)?.readings()?;
+    let found = case.run("read_joints", point);
     let (mut found, mut residuals) = (found.as_slice(), Vec::new());
     for reading in expected {
         let count = match reading {
@@ -213,13 +228,13 @@ fn readings<F: Field>(case: &Case<F>, point: &Point<F>) -> Result<Vec<F>, Undeci
         };
         found = &found[count..];
     }
-    Ok(residuals)
+    Some(residuals)
 }
 
 /// That angles read off longer Euler parameters are those of the unit ones.
-fn angles<F: Field>(case: &Case<F>, stretched: &Point<F>) -> Result<Vec<F>, Undecided> {
-    let expected = case.textbook(&case.point)?.readings().ok_or(Undecided::Textbook)?;
-    let found = case.run("read_joints", stretched)?;
+fn angles<'a>(case: &Case<'a>, stretched: &Point<Term<'a>>) -> Option<Vec<Term<'a>>> {
+    let expected = case.textbook(&case.point)?.readings()?;
+    let found = case.run("read_joints", stretched);
     let (mut found, mut residuals) = (found.as_slice(), Vec::new());
     for reading in expected {
         let count = match reading {
@@ -232,7 +247,7 @@ fn angles<F: Field>(case: &Case<F>, stretched: &Point<F>) -> Result<Vec<F>, Unde
         };
         found = &found[count..];
     }
-    Ok(residuals)
+    Some(residuals)
 }
 
 /// `a₀ b₁ − a₁ b₀`: zero where the pairs are parallel.
