@@ -12,10 +12,12 @@ use gyro_model::Spline;
 pub struct Given<'a, F: Field> {
     /// Time, state, parameters, inputs.
     pub point: &'a Point<F>,
-    /// Elements of `Equations::Accelerations`.
+    /// What [`Source::Acceleration`] is.
     pub accelerations: &'a [F],
     /// For each joint with a chart the vector that stands for it: of a chart that is chosen a unit vector.
     pub charts: &'a [[F; 4]],
+    /// Joint state.
+    pub joints: &'a [F],
 }
 
 /// Something divided by zero.
@@ -111,7 +113,8 @@ fn read<F: Field>(source: Source, given: &Given<F>) -> F {
         Source::Input(k) => point.inputs[k].clone(),
         Source::Acceleration(k) => given.accelerations[k].clone(),
         Source::Chart(chart, k) => given.charts[chart][k].clone(),
-        Source::Factor(_) => unreachable!("no module reads the factors of claims"),
+        Source::Joint(k) => given.joints[k].clone(),
+        Source::Factor(_) | Source::Before(_) => unreachable!("no module reads what claims vary"),
     }
 }
 

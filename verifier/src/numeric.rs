@@ -3,6 +3,7 @@
 use crate::atoms::Elementary;
 use crate::field::{Field, Precision, Real};
 use crate::interpreter::{self, Given};
+use crate::joints::Freedom;
 use crate::module::Module;
 use crate::point::Point;
 use crate::program::{Id, Source};
@@ -24,6 +25,7 @@ pub fn problems(model: &Model, module: &Module) -> Vec<String> {
     let mut problems: Vec<String> = start_differs(model, module).into_iter().collect();
     problems.extend(start_violates(model, module));
     problems.extend(wrong_signs(model, module));
+    problems.extend(joint_start_differs(model, module));
     problems
 }
 
@@ -73,6 +75,44 @@ fn start_violates(model: &Model, module: &Module) -> Option<String> {
     row.map(|row| format!("the start violates row {row}"))
 }
 
+/// The start in joint coordinates must be the assembled one too: as turned, and leading to the same state but for the sign of
+/// Euler parameters.
+fn joint_start_differs(model: &Model, module: &Module) -> Option<String> {
+    let (layout, assembled) = (module.joints.as_ref()?, model.assemble().ok()?);
+    let precision = Precision::new();
+    let number = |x: f64| Real::new(&precision, x);
+    let joints: Vec<_> = module.joint_start.iter().map(|&x| number(x)).collect();
+    let point = point(model, &precision, &module.start, 0.0, number);
+    let constants = interpreter::constants(&precision, module);
+    let given = Given { point: &point, accelerations: &[], charts: &[], joints: &joints };
+    let program = &module.programs["to_maximal"];
+    let Ok(state) = interpreter::run(module, program, &constants, &Elementary, &given) else {
+        return Some("the start in joint coordinates leads nowhere".to_owned());
+    };
+    let state: Vec<f64> = state.iter().map(Real::to_f64).collect();
+    let largest = |numbers: &[f64]| numbers.iter().fold(1.0, |a: f64, b| a.max(b.abs()));
+    let is_near = |a: f64, b: f64, scale: f64| (a - b).abs() <= START_TOLERANCE * scale;
+    let turned = layout.places.iter().all(|place| match place.of {
+        Freedom::Scalar(on) => {
+            let expected = assembled.joints[on.joint].position[on.coordinate];
+            is_near(module.joint_start[place.x], expected, largest(&[expected]))
+        }
+        Freedom::Orientation { .. } | Freedom::Body { .. } => true,
+    });
+    let n = model.coordinate_bodies().len();
+    let (found, expected) = (state[..7 * n].chunks(7), module.start[..7 * n].chunks(7));
+    let reach = largest(&module.start[..7 * n]);
+    let placed = found.zip(expected).all(|(found, expected)| {
+        let same = |sign: f64| found[3..].iter().zip(&expected[3..]).all(|(a, b)| is_near(sign * a, *b, 1.0));
+        found[..3].iter().zip(&expected[..3]).all(|(a, b)| is_near(*a, *b, reach)) && (same(1.0) || same(-1.0))
+    });
+    let (found, expected) = (&state[7 * n..], &module.start[7 * n..]);
+    let fastest = largest(expected);
+    let moves = found.iter().zip(expected).all(|(a, b)| is_near(*a, *b, fastest));
+    (!(turned && placed && moves))
+        .then(|| "the start in joint coordinates is not what the model assembles".to_owned())
+}
+
 /// Angles are proved up to a factor: here it must be positive.
 fn wrong_signs(model: &Model, module: &Module) -> Option<String> {
     let (tape, textbook) = (Tape::new(), Textbook::new(model));
@@ -84,7 +124,7 @@ fn wrong_signs(model: &Model, module: &Module) -> Option<String> {
     for _ in 0..STATES {
         let state = random_state(model, &mut random);
         let point = point(model, (), &state, random.random_range(-1.0..1.0), |x| x);
-        let given = Given { point: &point, accelerations: &[], charts: &[] };
+        let given = Given { point: &point, accelerations: &[], charts: &[], joints: &[] };
         let program = &module.programs["read_joints"];
         let Ok(found) = interpreter::run(module, program, &constants, &Elementary, &given) else { continue };
         let values = formulas.evaluate(&reach, (), &Elementary, &|source| read(&point, source));

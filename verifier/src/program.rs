@@ -46,12 +46,17 @@ pub enum Source {
     Parameter(usize),
     /// An input.
     Input(usize),
-    /// An element of `Equations::Accelerations`.
+    /// What the function has another one compute first, or is given: an element of `Equations::Accelerations`,
+    /// `Equations::Velocities` or `JointSpace::Rates`.
     Acceleration(usize),
+    /// An element of the joint state.
+    Joint(usize),
     /// Component of a joint's chart.
     Chart(usize, usize),
     /// A number for each body by which a claim makes its Euler parameters longer; no module reads it.
     Factor(usize),
+    /// An element of a joint state that is no state of the mechanism, but what a buffer holds before; no module reads it.
+    Before(usize),
 }
 
 /// A function of one argument.

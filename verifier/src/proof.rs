@@ -3,6 +3,7 @@
 mod case;
 mod claim;
 mod decide;
+mod joints;
 mod partition;
 mod point;
 

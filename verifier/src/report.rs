@@ -9,7 +9,7 @@ use std::fmt;
 pub const ACCEPTED_LOG10: f64 = -30.0;
 
 /// There are no more claims than this, so that the sum of their errors is less than so many times the largest.
-const MOST_CLAIMS: f64 = 16.0;
+const MOST_CLAIMS: f64 = 32.0;
 
 /// All that was found out about a module.
 #[derive(Clone, Debug, Default)]

@@ -86,7 +86,7 @@ impl Tape {
         self.note(Node::Read(source), 0)
     }
 
-    /// The results of a program of a module, whose reads are given as terms. Accelerations, charts and the state are what the terms say.
+    /// The nodes of a program of a module, whose reads are given as terms. Accelerations, charts and states are what the terms say.
     pub fn copy<'t>(
         &'t self,
         program: &Program,
@@ -106,7 +106,7 @@ impl Tape {
             };
             ids.push(term.id);
         }
-        program.results.iter().map(|&id| Term { id: ids[id], tape: self }).collect()
+        ids.into_iter().map(|id| Term { id, tape: self }).collect()
     }
 
     fn note(&self, node: Node, line: usize) -> Term<'_> {

@@ -48,7 +48,7 @@ fn prove(model: &Model, module: &Module, report: Report) -> Report {
         problems: numeric::problems(model, module),
         ..report
     };
-    let mut claims = Claim::all(module.n_charts.is_some());
+    let mut claims = Claim::all(module);
     claims.retain(|claim| *claim != Claim::Outputs || !model.outputs.is_empty());
     let statements = Statements::new(model, module, &claims);
     let degree_log2 = statements.degrees_log2().into_iter().flatten().fold(0.0, f64::max);

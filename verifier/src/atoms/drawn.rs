@@ -9,7 +9,8 @@ use std::collections::HashMap;
 use std::hash::Hash;
 
 /// Atoms over integers modulo a prime. What the functions are known to satisfy, the values do: `sin² + cos² = 1`, the
-/// double angle, sine, tanh and atan2 (in its first argument) are odd and cosine even, `√x² = x` and `√x √y = √(x y)`.
+/// double angle, sine, tanh and atan2 (in its first argument) are odd and cosine even, `√x² = x` and `√x √y = √(x y)`. Also
+/// `atan2(0, x) = 0`, which holds if x is positive: that it is must be seen elsewhere.
 #[derive(Debug)]
 pub struct Drawn<'p, const L: usize> {
     prime: &'p Prime<L>,
@@ -127,6 +128,9 @@ impl<'p, const L: usize> Atoms<Modular<'p, L>> for Drawn<'p, L> {
     }
 
     fn atan2(&self, y: &Modular<'p, L>, x: &Modular<'p, L>) -> Modular<'p, L> {
+        if y.is_zero() {
+            return *y;
+        }
         let key = unsigned(y).zip(x.key());
         let value = self.value(&self.atan2, key.map(|((y, _), x)| (y, x)));
         signed(&value, key.is_some_and(|((_, negated), _)| negated))
@@ -171,6 +175,7 @@ mod tests {
             assert_eq!(atoms.tanh(&x.neg()), atoms.tanh(&x).neg());
             assert_eq!(atoms.atan2(&x.neg(), &one), atoms.atan2(&x, &one).neg());
             assert_ne!(atoms.atan2(&x, &one), atoms.atan2(&x, &one.neg()));
+            assert!(atoms.atan2(&x.sub(&x), &x).is_zero());
             assert_ne!(atoms.tanh(&x), sin);
             let square = x.mul(&x);
             assert_eq!(atoms.sqrt(&square).mul(&atoms.sqrt(&square)), square);

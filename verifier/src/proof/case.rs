@@ -1,8 +1,11 @@
 //! A module and the textbook on one tape.
 
+use crate::field::Field;
+use crate::joints::JointLayout;
 use crate::module::{Module, n_state};
 use crate::point::Point;
 use crate::program::Source;
+use crate::rates::rates;
 use crate::tape::{Tape, Term, Written};
 use crate::textbook::{Evaluation, Textbook};
 use gyro_model::Model;
@@ -19,6 +22,10 @@ pub(super) struct Case<'a> {
     pub factors: Vec<Term<'a>>,
     /// A vector for each chart.
     pub charts: Vec<[Term<'a>; 4]>,
+    /// A joint state, with Euler parameters of length one.
+    pub joints: Vec<Term<'a>>,
+    /// Another one.
+    pub before: Vec<Term<'a>>,
     textbook: &'a Textbook<'a>,
     tape: &'a Tape,
 }
@@ -28,12 +35,15 @@ impl<'a> Case<'a> {
     pub fn new(model: &'a Model, textbook: &'a Textbook<'a>, module: &'a Module, tape: &'a Tape) -> Self {
         let read = |source| tape.read(source);
         let charts = 0..module.n_charts.unwrap_or(0);
+        let joints = 0..module.joints.as_ref().map_or(0, JointLayout::n_state);
         Self {
             model,
             module,
             point: point(model, tape),
             factors: (0..model.coordinate_bodies().len()).map(|slot| read(Source::Factor(slot))).collect(),
             charts: charts.map(|chart| [0, 1, 2, 3].map(|k| read(Source::Chart(chart, k)))).collect(),
+            joints: joints.clone().map(|k| read(Source::Joint(k))).collect(),
+            before: joints.map(|k| read(Source::Before(k))).collect(),
             textbook,
             tape,
         }
@@ -61,14 +71,47 @@ impl<'a> Case<'a> {
         point: &Point<Term<'a>>,
         accelerations: &[Term<'a>],
     ) -> Vec<Term<'a>> {
+        let nodes = self.nodes(function, point, accelerations, &self.joints);
+        self.module.programs[function].results.iter().map(|&id| nodes[id]).collect()
+    }
+
+    /// All nodes of a function, which may read a joint state.
+    fn nodes(
+        &self,
+        function: &str,
+        point: &Point<Term<'a>>,
+        accelerations: &[Term<'a>],
+        joints: &[Term<'a>],
+    ) -> Vec<Term<'a>> {
         let read = |source| match source {
             Source::Acceleration(k) => accelerations[k],
+            Source::Joint(k) => joints[k],
             Source::Chart(chart, k) => self.charts[chart][k],
             Source::Factor(slot) => self.factors[slot],
+            Source::Before(k) => self.before[k],
             source => *point.given(source).expect("the rest is the point's"),
         };
         let Module { programs, constants, tables, .. } = self.module;
         self.tape.copy(&programs[function], &constants.values, tables, &read)
+    }
+
+    /// What a function gives whose buffer holds a joint state before, and how fast that changes.
+    pub fn run_along(
+        &self,
+        function: &str,
+        point: &Point<Term<'a>>,
+        joints: &[Term<'a>],
+        rate: &dyn Fn(Source) -> Option<Term<'a>>,
+    ) -> Option<[Vec<Term<'a>>; 2]> {
+        let nodes = self.nodes(function, point, &[], joints);
+        let program = &self.module.programs[function];
+        let rates = rates(program, &nodes, &self.module.tables, &Written, rate)?;
+        let zero = Term::zero(self.tape);
+        let results = || program.results.iter();
+        Some([
+            results().map(|&id| nodes[id]).collect(),
+            results().map(|&id| rates[id].unwrap_or(zero)).collect(),
+        ])
     }
 
     /// Accelerations (with the multipliers that they come with) and all multipliers.

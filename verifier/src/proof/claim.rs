@@ -1,9 +1,10 @@
 //! What is proved of each function: numbers that must be zero wherever they exist.
 
 use super::case::Case;
-use super::partition;
+use super::{joints, partition};
 use super::point::stretched;
 use crate::field::Field;
+use crate::module::Module;
 use crate::point::Point;
 use crate::tape::Term;
 use crate::textbook::Reading;
@@ -41,11 +42,25 @@ pub enum Claim {
     NewtonStep,
     /// `solve_velocities` satisfies eq. (19) and keeps what is independent.
     SolveVelocities,
+    /// `to_maximal` gives the state that the constraints allow and of which the joint coordinates are the given ones.
+    ToMaximal,
+    /// `to_joints` is its inverse.
+    ToJoints,
+    /// `joint_accelerations` are those of eq. (17).
+    JointAccelerations,
+    /// `joint_derivative` gives the rates that go with the state's own, these accelerations and the power.
+    JointDerivative,
+    /// `joint_accelerations_at` are the same at a maximal state that satisfies the constraints.
+    JointAccelerationsAt,
+    /// `corrected_accelerations` are those of the bodies there.
+    CorrectedAccelerations,
+    /// `corrected_derivative` gives eqs. (14), (16), these accelerations, there the power, and the rates of the turn references.
+    CorrectedDerivative,
 }
 
 impl Claim {
-    /// All claims of modules with or without charts.
-    pub fn all(has_charts: bool) -> Vec<Self> {
+    /// All claims about a module.
+    pub fn all(module: &Module) -> Vec<Self> {
         use Claim::*;
         let mut claims = vec![
             Phi,
@@ -61,8 +76,19 @@ impl Claim {
             Readings,
             Outputs,
         ];
-        if has_charts {
+        if module.n_charts.is_some() {
             claims.extend([ChartVectors, NewtonStep, SolveVelocities]);
+        }
+        if module.joints.is_some() {
+            claims.extend([
+                ToMaximal,
+                ToJoints,
+                JointAccelerations,
+                JointDerivative,
+                JointAccelerationsAt,
+                CorrectedAccelerations,
+                CorrectedDerivative,
+            ]);
         }
         claims
     }
@@ -85,6 +111,13 @@ impl Claim {
             Self::ChartVectors => &["chart_vectors"],
             Self::NewtonStep => &["newton_step"],
             Self::SolveVelocities => &["solve_velocities"],
+            Self::ToMaximal => &["to_maximal"],
+            Self::ToJoints => &["to_joints"],
+            Self::JointAccelerations => &["joint_accelerations"],
+            Self::JointDerivative => &["joint_derivative"],
+            Self::JointAccelerationsAt => &["joint_accelerations_at"],
+            Self::CorrectedAccelerations => &["corrected_accelerations"],
+            Self::CorrectedDerivative => &["corrected_derivative"],
         }
     }
 
@@ -106,6 +139,13 @@ impl Claim {
             Self::ChartVectors => "parallel to Gᵀh' or to p",
             Self::NewtonStep => "linearised rows vanish, the special parameter is kept",
             Self::SolveVelocities => "velocity rows vanish, independent rates are kept",
+            Self::ToMaximal => "all rows vanish, its joint coordinates are x and u",
+            Self::ToJoints => "the way back, and so its derivative",
+            Self::JointAccelerations => "with B = ∂v/∂u: Bᵀ(M v̇ − f) = 0, Φ_π' v̇ = γ",
+            Self::JointDerivative => "along it the state moves by eqs. (14), (16); power",
+            Self::JointAccelerationsAt => "the proved u̇ at the state of (x, u)",
+            Self::CorrectedAccelerations => "the proved v̇ at the state of (x, u)",
+            Self::CorrectedDerivative => "eqs. (14), (16), v̇, turns; power at the state of (x, u)",
         }
     }
 
@@ -121,6 +161,11 @@ impl Claim {
             Self::Energy | Self::Readings | Self::Outputs => "their definitions",
             Self::ChartVectors | Self::NewtonStep => "Newton's step for Φ = 0",
             Self::SolveVelocities => "eq. (19)",
+            Self::ToMaximal | Self::ToJoints => "Φ = 0, eq. (18) and the joint coordinates",
+            Self::JointAccelerations | Self::JointAccelerationsAt | Self::CorrectedAccelerations => {
+                "eq. (17) across the constraints"
+            }
+            Self::JointDerivative | Self::CorrectedDerivative => "eqs. (14) and (16) on the constraints",
         }
     }
 
@@ -165,6 +210,13 @@ impl Claim {
             Self::ChartVectors => partition::chart_vectors(case),
             Self::NewtonStep => partition::newton_step(case),
             Self::SolveVelocities => partition::solve_velocities(case),
+            Self::ToMaximal => joints::to_maximal(case),
+            Self::ToJoints => joints::to_joints(case),
+            Self::JointAccelerations => joints::accelerations(case),
+            Self::JointDerivative => joints::derivative(case),
+            Self::JointAccelerationsAt => joints::accelerations_at(case),
+            Self::CorrectedAccelerations => joints::corrected_accelerations(case),
+            Self::CorrectedDerivative => joints::corrected_derivative(case),
         }
     }
 }

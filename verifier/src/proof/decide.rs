@@ -127,7 +127,7 @@ impl<'a> Statements<'a> {
     /// divide by what is zero everywhere.
     pub fn degrees_log2(&self) -> Vec<Option<f64>> {
         let all = vec![true; self.formulas.program.nodes.len()];
-        let degrees = self.formulas.evaluate(&all, (), &Formal, &|source| point::degree(self.model, source));
+        let degrees = self.formulas.evaluate(&all, (), &Formal, &|source| point::degree(self.model, self.module, source));
         let of_claim = |residuals: &Option<Vec<Id>>| self.degree_log2(residuals.as_ref()?, &degrees);
         self.claims.iter().map(of_claim).collect()
     }
@@ -224,9 +224,10 @@ impl<'a, const L: usize> Decider<'a, L> {
         for (refutation, residuals) in refutations.iter_mut().zip(open) {
             let Some(residuals) = residuals else { continue };
             let outcome = values.as_ref().map(|values| statements.outcome(residuals, values, Field::is_zero));
-            if !matches!(outcome, Some(Outcome::Zero)) {
-                *refutation = self.look_closer(statements, residuals, seed);
-            }
+            *refutation = match (outcome, &values) {
+                (Some(Outcome::Zero), Some(values)) => self.look_behind(statements, residuals, values, seed),
+                _ => self.look_closer(statements, residuals, seed),
+            };
         }
     }
 
@@ -278,6 +279,36 @@ impl<'a, const L: usize> Decider<'a, L> {
         Some(self.refute_in_floats(statements, residuals, &reach, seed))
     }
 
+    /// The angle of a point on the line y = 0 was taken for zero: a claim that needs it is refuted if the point is not on the right half.
+    fn look_behind(
+        &self,
+        statements: &Statements<'_>,
+        residuals: &[Id],
+        values: &[Option<Modular<'_, L>>],
+        seed: u64,
+    ) -> Option<Verdict> {
+        let reach = statements.formulas.reach(residuals.iter().copied());
+        let nodes = statements.formulas.program.nodes.iter().zip(&reach);
+        let on_line: Vec<Id> = nodes
+            .filter_map(|(node, reached)| match *node {
+                Node::Atan2(y, x) if *reached && values[y].as_ref().is_some_and(Field::is_zero) => Some(x),
+                _ => None,
+            })
+            .collect();
+        if on_line.is_empty() {
+            return None;
+        }
+        let precision = Precision::new();
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let draw = point::real(self.model, statements.module, &precision, &mut random);
+        let Some(draw) = draw else { return Some(Verdict::Undecided) };
+        let needed = statements.formulas.reach(on_line.iter().copied());
+        let values =
+            statements.formulas.evaluate(&needed, &precision, &Elementary, &|source| draw.read(source));
+        let is_right = |x: &Id| values[*x].as_ref().is_some_and(|x| x.to_f64() > 0.0);
+        (!on_line.iter().all(is_right)).then_some(Verdict::Refuted { residual: 0 })
+    }
+
     /// Looks for a point in floating point at which a residual is far from zero.
     fn refute_in_floats(
         &self,
@@ -320,7 +351,7 @@ impl<'a, const L: usize> Decider<'a, L> {
     pub fn needless(&self, module: &Module, function: &str, seed: u64) -> Option<Vec<Needless>> {
         self.at_point(module, seed, |draw, atoms| {
             let accelerations = self.run(module, "accelerations", draw, &[], atoms)?;
-            let given = Given { point: &draw.point, accelerations: &accelerations, charts: &draw.charts };
+            let given = Given { point: &draw.point, accelerations: &accelerations, charts: &draw.charts, joints: &draw.joints[0] };
             let constants = interpreter::constants(&self.prime, module);
             let program = &module.programs[function];
             let values = interpreter::values(module, program, &constants, atoms, &given)?;
@@ -367,7 +398,7 @@ impl<'a, const L: usize> Decider<'a, L> {
         accelerations: &[Modular<'p, L>],
         atoms: &Drawn<'p, L>,
     ) -> Result<Vec<Modular<'p, L>>, DivisionByZero> {
-        let given = Given { point: &draw.point, accelerations, charts: &draw.charts };
+        let given = Given { point: &draw.point, accelerations, charts: &draw.charts, joints: &draw.joints[0] };
         let constants = interpreter::constants(&self.prime, module);
         interpreter::run(module, &module.programs[function], &constants, atoms, &given)
     }
@@ -409,7 +440,7 @@ const ROUNDING_LOG2: f64 = 1e-3;
 /// # Errors
 /// The number of bits that the roots take, if they are too many.
 pub fn prime<const L: usize>(model: &Model, module: &Module, seed: u64) -> Result<Prime<L>, u64> {
-    Statements::new(model, module, &Claim::all(module.n_charts.is_some())).prime(seed)
+    Statements::new(model, module, &Claim::all(module)).prime(seed)
 }
 
 /// The number with small primes taken once: it has the same prime factors.

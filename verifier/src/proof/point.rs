@@ -1,6 +1,7 @@
 //! Points at which identities are tested.
 
 use crate::field::{Degree, Field, Modular, Precision, Prime, Real};
+use crate::joints::JointLayout;
 use crate::module::{Module, n_state};
 use crate::point::Point;
 use crate::program::Source;
@@ -15,6 +16,8 @@ pub(super) struct Draw<F: Field> {
     pub charts: Vec<[F; 4]>,
     /// A factor for each body.
     pub factors: Vec<F>,
+    /// A joint state, and another one.
+    pub joints: [Vec<F>; 2],
 }
 
 impl<F: Field> Draw<F> {
@@ -23,6 +26,8 @@ impl<F: Field> Draw<F> {
         match source {
             Source::Chart(chart, k) => self.charts[chart][k].clone(),
             Source::Factor(slot) => self.factors[slot].clone(),
+            Source::Joint(k) => self.joints[0][k].clone(),
+            Source::Before(k) => self.joints[1][k].clone(),
             Source::Acceleration(_) => unreachable!("accelerations are formulas too"),
             source => self.point.given(source).cloned().expect("the model says what there is"),
         }
@@ -51,8 +56,24 @@ impl<F: Field> Draw<F> {
             inputs: model.inputs.iter().map(|_| draw()).collect(),
         };
         let charts = (0..module.n_charts.unwrap_or(0)).map(|_| [(); 4].map(|()| draw())).collect();
-        Some(Self { point, charts, factors: (0..n).map(|_| draw()).collect() })
+        let factors = (0..n).map(|_| draw()).collect();
+        let joints = [joint_state(module, context, &mut draw)?, joint_state(module, context, &mut draw)?];
+        Some(Self { point, charts, factors, joints })
     }
+}
+
+/// A random joint state with |p| = 1; nothing of mechanisms that have none.
+fn joint_state<F: Field>(
+    module: &Module,
+    context: F::Context,
+    mut draw: impl FnMut() -> F,
+) -> Option<Vec<F>> {
+    let Some(layout) = &module.joints else { return Some(Vec::new()) };
+    let mut state: Vec<F> = (0..layout.n_state()).map(|_| draw()).collect();
+    for start in layout.euler() {
+        state[start..start + 4].clone_from_slice(&on_sphere(context, [(); 3].map(|()| draw()))?);
+    }
+    Some(state)
 }
 
 /// A random point modulo a prime.
@@ -81,12 +102,17 @@ pub(super) fn real<'c>(
 }
 
 /// The degree of what formulas read in what is drawn.
-pub(super) fn degree(model: &Model, source: Source) -> Degree {
+pub(super) fn degree(model: &Model, module: &Module, source: Source) -> Degree {
     let euler = 3..7;
+    let turns = |k: usize| {
+        let starts = module.joints.iter().flat_map(JointLayout::euler);
+        starts.into_iter().any(|start| (start..start + 4).contains(&k))
+    };
     match source {
         Source::State(k) if k < 7 * model.coordinate_bodies().len() && euler.contains(&(k % 7)) => {
             Degree::quotient(2.0, 2.0)
         }
+        Source::Joint(k) | Source::Before(k) if turns(k) => Degree::quotient(2.0, 2.0),
         _ => Degree::polynomial(1.0),
     }
 }
