@@ -90,12 +90,7 @@ fn along(system: &mut System, readings: &impl Readings, force: &Force) -> Option
     }
 }
 
-fn damper(
-    system: &mut System,
-    readings: &impl Readings,
-    on: JointCoordinate,
-    damping: &Number,
-) -> Along {
+fn damper(system: &mut System, readings: &impl Readings, on: JointCoordinate, damping: &Number) -> Along {
     let (speed, damping) = (readings.rate(system, on), system.number(damping));
     let drag = system.graph.mul(damping, speed);
     Along { on, force: system.graph.neg(drag), potential: None }

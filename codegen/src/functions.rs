@@ -70,9 +70,10 @@ impl Functions {
 
     /// Whether part of ẏ depends on multipliers that only the exact accelerations come with.
     pub fn derivative_needs_multipliers(&self, graph: &Graph) -> bool {
-        graph.reachable(&self.derivative).into_iter().any(|id| {
-            matches!(graph.node(id), Node::Symbol(Symbol::Closing(_)))
-        })
+        graph
+            .reachable(&self.derivative)
+            .into_iter()
+            .any(|id| matches!(graph.node(id), Node::Symbol(Symbol::Closing(_))))
     }
 
     /// Name, meaning and roots of each that there is, in the order of the data sheet.

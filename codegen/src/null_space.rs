@@ -88,12 +88,7 @@ impl EliminatedTree {
     }
 
     /// The accelerations that the applied forces and the rows of the tree's own joints bring about.
-    fn accelerations(
-        &self,
-        system: &mut System,
-        kinematics: &Kinematics,
-        dynamics: &Dynamics,
-    ) -> Vec<Twist> {
+    fn accelerations(&self, system: &mut System, kinematics: &Kinematics, dynamics: &Dynamics) -> Vec<Twist> {
         let forced = self
             .joints
             .iter()

@@ -69,8 +69,8 @@ mod violation;
 
 pub use error::Error;
 pub use mechanism::{
-    Coordinate, Energy, Equations, JointForm, JointInfo, JointSpace, Mechanism, Ode, OutputInfo, Owner, Partition, Ports, RowInfo,
-    Storage,
+    Coordinate, Energy, Equations, JointForm, JointInfo, JointSpace, Mechanism, Ode, OutputInfo, Owner,
+    Partition, Ports, RowInfo, Storage,
 };
 pub use partition::{Direct, Partitioned};
 pub use rk4::Rk4;

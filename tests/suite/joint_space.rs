@@ -2,8 +2,8 @@
 
 use gyro_model::{JointKind, Model, Support};
 use gyro_sim::{JointForm, JointSpace, Ode, Partition, Rk4, generated as shipped};
-use gyro_sim_suite::generated as own;
 use gyro_sim_suite::Random;
+use gyro_sim_suite::generated as own;
 use gyro_sim_suite::model;
 
 /// What coordinates the joints of a page have.
@@ -109,11 +109,13 @@ fn check<M: JointSpace<Scalar = f64> + Partition>(page: &str, mechanism: &M) {
             y
         };
         let (after, before) = (at(1e-5), at(-1e-5));
-        let slope: Vec<_> =
-            after.as_ref().iter().zip(before.as_ref()).map(|(a, b)| (a - b) / 2e-5).collect();
+        let slope: Vec<_> = after.as_ref().iter().zip(before.as_ref()).map(|(a, b)| (a - b) / 2e-5).collect();
         worst[5] = worst[5].max(difference(&slope, derivative.as_ref()));
     }
-    println!("{page}: Φ {:.1e}, back {:.1e}, (s̈, ẇ') {:.1e}, u̇ {:.1e}, ẏ {:.1e}, slope {:.1e}", worst[0], worst[1], worst[2], worst[3], worst[4], worst[5]);
+    println!(
+        "{page}: Φ {:.1e}, back {:.1e}, (s̈, ẇ') {:.1e}, u̇ {:.1e}, ẏ {:.1e}, slope {:.1e}",
+        worst[0], worst[1], worst[2], worst[3], worst[4], worst[5]
+    );
     let allowed = [MAPS, MAPS, ACCELERATIONS, ACCELERATIONS, ACCELERATIONS, DIFFERENCES];
     assert!(worst.iter().zip(allowed).all(|(worst, allowed)| *worst <= allowed), "{page}: {worst:?}");
 }
@@ -123,9 +125,15 @@ fn joint_coordinates_describe_the_motion_of_every_tree() {
     check("compound-pendulum", &shipped::compound_pendulum::CompoundPendulum::default());
     check("free-body", &shipped::free_body::FreeBody::default());
     check("gyroscope", &shipped::gyroscope::Gyroscope::default());
-    check("gyroscope-combined-offsets", &shipped::gyroscope_combined_offsets::GyroscopeCombinedOffsets::default());
+    check(
+        "gyroscope-combined-offsets",
+        &shipped::gyroscope_combined_offsets::GyroscopeCombinedOffsets::default(),
+    );
     check("gyroscope-maximal", &shipped::gyroscope_maximal::GyroscopeMaximal::default());
-    check("gyroscope-radial-imbalance", &shipped::gyroscope_radial_imbalance::GyroscopeRadialImbalance::default());
+    check(
+        "gyroscope-radial-imbalance",
+        &shipped::gyroscope_radial_imbalance::GyroscopeRadialImbalance::default(),
+    );
     check("gyroscope-viscous", &shipped::gyroscope_viscous::GyroscopeViscous::default());
     check("heavy-top", &shipped::heavy_top::HeavyTop::default());
     check("pitching-gyroscope", &shipped::pitching_gyroscope::PitchingGyroscope::default());

@@ -66,8 +66,7 @@ impl Freedom {
 impl JointLayout {
     /// Of a mechanism whose joints hold every body by one path, with no row beside the joints' own; `None` of others.
     pub fn of(model: &Model) -> Option<Self> {
-        let closes =
-            |owner: &RowOwner| matches!(owner, RowOwner::Coupler(_) | RowOwner::Driver(_));
+        let closes = |owner: &RowOwner| matches!(owner, RowOwner::Coupler(_) | RowOwner::Driver(_));
         if !Tree::of(model).is_open() || model.rows().iter().any(|row| closes(&row.owner)) {
             return None;
         }

@@ -49,7 +49,7 @@ pub struct Module {
 }
 
 /// Functions that are straight-line programs, and how they give their results.
-const FUNCTIONS: [(&str, Form); 23] = [
+const FUNCTIONS: [(&str, Form); 24] = [
     ("derivative", Form::Filling),
     ("phi", Form::Filling),
     ("velocity_residual", Form::Filling),
@@ -73,27 +73,23 @@ const FUNCTIONS: [(&str, Form); 23] = [
     ("to_joints", Form::Joints),
     ("joint_accelerations_at", Form::Filling),
     ("corrected_accelerations", Form::Filling),
+    ("corrected_multipliers", Form::Filling),
 ];
 
 /// What functions write, where it is not `out`.
-const TARGETS: [(&str, &str); 5] = [
+const TARGETS: [(&str, &str); 6] = [
     ("derivative", "dy"),
     ("corrected_derivative", "dy"),
     ("multipliers", "lambda"),
+    ("corrected_multipliers", "lambda"),
     ("joint_derivative", "dx"),
     ("to_maximal", "y"),
 ];
 
 /// What functions have others compute first.
-const BEFORE: [(&str, Before); 3] = [
-    (
-        "derivative",
-        Before {
-            buffer: "accelerations",
-            made_by: "gyro_sim :: Equations :: accelerations_buffer (self)",
-            call: "gyro_sim :: Equations :: accelerations (self , t , y , & mut accelerations) ;",
-        },
-    ),
+const BEFORE: [(&str, Before); 4] = [
+    ("derivative", ACCELERATIONS),
+    ("outputs", ACCELERATIONS),
     (
         "corrected_derivative",
         Before {
@@ -111,6 +107,12 @@ const BEFORE: [(&str, Before); 3] = [
         },
     ),
 ];
+
+const ACCELERATIONS: Before = Before {
+    buffer: "accelerations",
+    made_by: "gyro_sim :: Equations :: accelerations_buffer (self)",
+    call: "gyro_sim :: Equations :: accelerations (self , t , y , & mut accelerations) ;",
+};
 
 fn of_function<T: Copy>(table: &[(&str, T)], function: &str) -> Option<T> {
     table.iter().find(|(name, _)| *name == function).map(|(_, value)| *value)
@@ -132,7 +134,14 @@ impl Module {
         let choice = if text.contains("gyro_sim::charts") { Choice::Charts } else { Choice::Pivoting };
         let joints = JointLayout::of(model);
         let name = skeleton::type_name(&model.name);
-        let expected = skeleton::text(model, &name, &tables, choice, joints.as_ref());
+        let has_multipliers = text.contains("fn corrected_multipliers");
+        let expected = skeleton::text(
+            model,
+            &name,
+            &tables,
+            choice,
+            joints.as_ref().map(|joints| (joints, has_multipliers)),
+        );
         let expected = expected.parse().expect("the expected text consists of tokens");
         let mut matched = Matched::default();
         matched.walk(expected, tokens, text.lines().count())?;
@@ -161,13 +170,15 @@ impl Module {
         let mut read = |name: &str, form| {
             let Some(hole) = matched.holes.get(name) else { return Ok(None) };
             let accelerations = match name {
-                "corrected_derivative" => 6 * model.coordinate_bodies().len(),
+                "corrected_derivative" | "corrected_multipliers" => 6 * model.coordinate_bodies().len(),
                 "joint_derivative" => joints.as_ref().map_or(0, |joints| joints.n_rates),
                 _ => n_accelerations,
             };
             let (sizes, before) = (Sizes { accelerations, ..sizes }, of_function(&BEFORE, name));
             let mut reader = Reader::new(model, &constants, &mut used, sizes, before);
-            before.iter().flat_map(Before::arguments).for_each(|argument| reader.argument(argument));
+            if hole.arguments.is_empty() {
+                before.iter().flat_map(Before::arguments).for_each(|argument| reader.argument(argument));
+            }
             hole.arguments.iter().for_each(|argument| reader.argument(argument));
             of_function(&TARGETS, name).into_iter().for_each(|target| reader.target(target));
             if form == Form::Joints {
@@ -212,7 +223,8 @@ impl Module {
     fn sizes_agree(&self, model: &Model, matched: &Matched) -> Result<(), Refusal> {
         let (n, rows) = (model.coordinate_bodies().len(), model.rows().len());
         let number = |name: &str| matched.numbers.get(name).copied().unwrap_or(0);
-        let (n_joints, n_rates) = self.joints.as_ref().map_or((0, 0), |joints| (joints.n_state(), joints.n_rates));
+        let (n_joints, n_rates) =
+            self.joints.as_ref().map_or((0, 0), |joints| (joints.n_state(), joints.n_rates));
         let n_corrected = if self.joints.is_some() { n_state(model) } else { 0 };
         let outputs = model.outputs.iter().map(|output| output.kind.columns().len()).sum();
         let expected = [
@@ -237,6 +249,10 @@ impl Module {
             ("to_joints", n_joints),
             ("joint_accelerations_at", n_rates),
             ("corrected_accelerations", if self.joints.is_some() { 6 * n } else { 0 }),
+            (
+                "corrected_multipliers",
+                if self.programs.contains_key("corrected_multipliers") { rows } else { 0 },
+            ),
         ];
         let found = |name: &str| self.programs.get(name).map_or(0, |program| program.results.len());
         let patterns = [

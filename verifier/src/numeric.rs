@@ -104,7 +104,8 @@ fn joint_start_differs(model: &Model, module: &Module) -> Option<String> {
     let reach = largest(&module.start[..7 * n]);
     let placed = found.zip(expected).all(|(found, expected)| {
         let same = |sign: f64| found[3..].iter().zip(&expected[3..]).all(|(a, b)| is_near(sign * a, *b, 1.0));
-        found[..3].iter().zip(&expected[..3]).all(|(a, b)| is_near(*a, *b, reach)) && (same(1.0) || same(-1.0))
+        found[..3].iter().zip(&expected[..3]).all(|(a, b)| is_near(*a, *b, reach))
+            && (same(1.0) || same(-1.0))
     });
     let (found, expected) = (&state[7 * n..], &module.start[7 * n..]);
     let fastest = largest(expected);

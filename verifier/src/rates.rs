@@ -95,7 +95,8 @@ mod tests {
         let tables = [Spline::natural(String::new(), &points).expect("a good table")];
         let at = |t: f64| {
             let read = |_: Source| t;
-            let environment = Environment { constants: &[], tables: &tables, atoms: &Elementary, read: &read };
+            let environment =
+                Environment { constants: &[], tables: &tables, atoms: &Elementary, read: &read };
             let mut values: Vec<f64> = Vec::new();
             for node in &program.nodes {
                 let number = value(node, &|id| &values[id], &environment).expect("a number");

@@ -158,7 +158,14 @@ impl Carriage {
     }
 
     /// Moves the joint point on the first body to where the second body's is.
-    fn slide(&mut self, system: &mut System, joint: &JointFrames, reversed: bool, kind: CoordinateKind, x: usize) {
+    fn slide(
+        &mut self,
+        system: &mut System,
+        joint: &JointFrames,
+        reversed: bool,
+        kind: CoordinateKind,
+        x: usize,
+    ) {
         let graph = &mut system.graph;
         let x = graph.symbol(Symbol::Coordinate(x));
         let direction = match (kind.is_angle(), joint.kind) {

@@ -60,7 +60,8 @@ impl Layout {
     }
 
     fn place(&mut self, system: &System, link: Link) -> LinkCoordinates {
-        let mut coordinates = LinkCoordinates { link, scalars: Vec::new(), position: None, orientation: None };
+        let mut coordinates =
+            LinkCoordinates { link, scalars: Vec::new(), position: None, orientation: None };
         match link.attachment {
             Attachment::Constrained => {}
             Attachment::Free => {

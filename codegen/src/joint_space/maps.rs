@@ -30,7 +30,8 @@ pub fn of_bodies(system: &mut System, layout: &Layout, carriages: &[Carriage]) -
         let own = spins[slot];
         let parent_spin = dynamics::spin_of(system, carriage.parent, &spins);
         let graph = &mut system.graph;
-        let (arm, own_arm) = (graph.mat_vec(&carrier.a, &carriage.on_parent), graph.mat_vec(&a, &carriage.on_body));
+        let (arm, own_arm) =
+            (graph.mat_vec(&carrier.a, &carriage.on_parent), graph.mat_vec(&a, &carriage.on_body));
         let point = graph.add_vec(&carrier.r, &arm);
         let r = graph.sub_vec(&point, &own_arm);
         let slid = carriage.sliding_velocity(graph);

@@ -25,8 +25,8 @@ use crate::symbol::Symbol;
 use crate::system::System;
 use carriage::Carriage;
 use dynamics::Reduced;
-use maps::Values;
 use gyro_model::{JointCoordinate, Start};
+use maps::Values;
 use std::array::from_fn;
 
 /// What `gyro_sim::JointSpace` asks of a generated tree, as final expressions.
@@ -222,7 +222,12 @@ fn cheapest(graph: &Graph, candidates: Vec<Vec<ExprId>>) -> Vec<ExprId> {
 }
 
 /// (s̈, ẇ') of each slot from the rates' rates: translations in each body's own frame, or in the global one.
-fn outward(system: &mut System, carriages: &[Carriage], of_joints: &Values, rates: &[ExprId]) -> [Vec<ExprId>; 2] {
+fn outward(
+    system: &mut System,
+    carriages: &[Carriage],
+    of_joints: &Values,
+    rates: &[ExprId],
+) -> [Vec<ExprId>; 2] {
     [false, true].map(|is_global| {
         let motions = motions(system, carriages, rates, is_global);
         expanded(system, of_joints, &motions)
@@ -354,15 +359,34 @@ mod tests {
     use super::*;
     #[test]
     fn counts() {
-        for name in ["gyroscope", "gyroscope-combined-offsets", "gyroscope-radial-imbalance", "compound-pendulum", "free-body", "spinning-top"] {
+        for name in [
+            "gyroscope",
+            "gyroscope-combined-offsets",
+            "gyroscope-radial-imbalance",
+            "compound-pendulum",
+            "free-body",
+            "spinning-top",
+        ] {
             let text = std::fs::read_to_string(format!("../models/{name}.toml")).expect("page");
             let model = gyro_model::read("x.toml", &text).expect("model");
             let start = std::time::Instant::now();
-            let e = crate::equations::Equations::derive(&model, crate::Elimination::NullSpace, &model.assemble().expect("start"));
+            let e = crate::equations::Equations::derive(
+                &model,
+                crate::Elimination::NullSpace,
+                &model.assemble().expect("start"),
+            );
             let j = e.joint_space.as_ref().expect("tree");
             let c = |roots: &[ExprId]| Operations::count(&e.graph, roots);
-            println!("{name} {:?}\n joint {}\n joint at {}\n corrected {}\n maximal {}\n reduced {}\n exact {}", start.elapsed(),
-              c(&j.accelerations), c(&j.accelerations_at), c(&j.corrected), c(&j.maximal), c(&j.reduced), c(&e.accelerations));
+            println!(
+                "{name} {:?}\n joint {}\n joint at {}\n corrected {}\n maximal {}\n reduced {}\n exact {}",
+                start.elapsed(),
+                c(&j.accelerations),
+                c(&j.accelerations_at),
+                c(&j.corrected),
+                c(&j.maximal),
+                c(&j.reduced),
+                c(&e.accelerations)
+            );
         }
     }
 }

@@ -34,10 +34,14 @@ impl ModuleWriter<'_> {
     /// The rates of everything but the velocities; the accelerations are those of `Equations`, unrolled there and nowhere else.
     fn derivative(&self) -> TokenStream {
         let what = "Writes ẏ; beyond what [`Equations::accelerations`] takes";
-        self.derivative_with(&quote! { derivative }, what, &quote! {
-            let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
-            gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
-        })
+        self.derivative_with(
+            &quote! { derivative },
+            what,
+            &quote! {
+                let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
+                gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
+            },
+        )
     }
 
     /// The same between two corrections, where there are cheaper accelerations for it.
@@ -47,10 +51,14 @@ impl ModuleWriter<'_> {
             return None;
         }
         let what = "Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes";
-        Some(self.derivative_with(&quote! { corrected_derivative }, what, &quote! {
-            let mut accelerations = gyro_sim::Equations::velocities(self);
-            gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
-        }))
+        Some(self.derivative_with(
+            &quote! { corrected_derivative },
+            what,
+            &quote! {
+                let mut accelerations = gyro_sim::Equations::velocities(self);
+                gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+            },
+        ))
     }
 
     fn derivative_with(&self, name: &TokenStream, what: &str, solve: &TokenStream) -> TokenStream {

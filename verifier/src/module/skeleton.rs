@@ -22,7 +22,7 @@ pub fn text(
     type_name: &str,
     tables: &[Spline],
     choice: Choice,
-    joints: Option<&JointLayout>,
+    joints: Option<(&JointLayout, bool)>,
 ) -> String {
     [
         constants(tables),
@@ -31,7 +31,7 @@ pub fn text(
         mechanism(model, type_name),
         partition(model, type_name, choice, joints.is_some()),
         equations(model, type_name),
-        joints.map(|joints| joint_space(type_name, joints)).unwrap_or_default(),
+        joints.map(|(joints, multipliers)| joint_space(type_name, joints, multipliers)).unwrap_or_default(),
         ports(model, type_name),
     ]
     .concat()
@@ -346,10 +346,7 @@ fn equations(model: &Model, name: &str) -> String {
             type PhiQ = [T; INT_phi_q];
             type PhiPi = [T; INT_phi_pi];
             type Accelerations = [T; INT_accelerations];
-            {} {patterns} {}
-            fn multipliers(
-                &self, ANY_t: T, ANY_y: &Self::State, ANY_accelerations: &Self::Accelerations, lambda: &mut Self::Rows,
-            ) {{ HOLE_multipliers }}
+            {} {patterns} {} {}
         }}",
         buffers(&[
             ("velocities", "Velocities", &velocities),
@@ -365,10 +362,21 @@ fn equations(model: &Model, name: &str) -> String {
             ("applied_force", "Velocities"),
             ("accelerations", "Accelerations"),
         ]),
+        multipliers("multipliers", "Accelerations"),
     )
 }
 
-fn joint_space(name: &str, joints: &JointLayout) -> String {
+fn multipliers(name: &str, accelerations: &str) -> String {
+    format!(
+        "fn {name}(
+            &self, ANY_t: T, ANY_y: &Self::State, ANY_accelerations: &Self::{accelerations}, lambda: &mut Self::Rows,
+        ) {{ HOLE_{name} }}"
+    )
+}
+
+fn joint_space(name: &str, joints: &JointLayout, has_multipliers: bool) -> String {
+    let multipliers =
+        if has_multipliers { multipliers("corrected_multipliers", "Velocities") } else { String::new() };
     let (n_state, n_rates) = (joints.n_state(), joints.n_rates);
     format!(
         "impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for {name}<T> {{
@@ -383,6 +391,7 @@ fn joint_space(name: &str, joints: &JointLayout) -> String {
             fn to_maximal(&self, ANY_t: T, ANY_x: &Self::Joints, y: &mut Self::State) {{ HOLE_to_maximal }}
             fn to_joints(&self, ANY_t: T, ANY_y: &Self::State, x: &mut Self::Joints) {{ HOLE_to_joints }}
             {}
+            {multipliers}
         }}",
         buffers(&[("rates", "Rates", &n_rates.to_string())]),
         fillings(&[("joint_accelerations_at", "Rates"), ("corrected_accelerations", "Velocities")]),

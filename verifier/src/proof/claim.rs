@@ -1,8 +1,8 @@
 //! What is proved of each function: numbers that must be zero wherever they exist.
 
 use super::case::Case;
-use super::{joints, partition};
 use super::point::stretched;
+use super::{joints, partition};
 use crate::field::Field;
 use crate::module::Module;
 use crate::point::Point;
@@ -56,6 +56,8 @@ pub enum Claim {
     CorrectedAccelerations,
     /// `corrected_derivative` gives eqs. (14), (16), these accelerations, there the power, and the rates of the turn references.
     CorrectedDerivative,
+    /// `corrected_multipliers` satisfy eq. (17) there.
+    CorrectedMultipliers,
 }
 
 impl Claim {
@@ -90,6 +92,9 @@ impl Claim {
                 CorrectedDerivative,
             ]);
         }
+        if module.programs.contains_key("corrected_multipliers") {
+            claims.push(CorrectedMultipliers);
+        }
         claims
     }
 
@@ -118,6 +123,7 @@ impl Claim {
             Self::JointAccelerationsAt => &["joint_accelerations_at"],
             Self::CorrectedAccelerations => &["corrected_accelerations"],
             Self::CorrectedDerivative => &["corrected_derivative"],
+            Self::CorrectedMultipliers => &["corrected_multipliers"],
         }
     }
 
@@ -146,6 +152,7 @@ impl Claim {
             Self::JointAccelerationsAt => "the proved u̇ at the state of (x, u)",
             Self::CorrectedAccelerations => "the proved v̇ at the state of (x, u)",
             Self::CorrectedDerivative => "eqs. (14), (16), v̇, turns; power at the state of (x, u)",
+            Self::CorrectedMultipliers => "M v̇ + Φ_π'ᵀ λ = f at the state of (x, u)",
         }
     }
 
@@ -162,9 +169,10 @@ impl Claim {
             Self::ChartVectors | Self::NewtonStep => "Newton's step for Φ = 0",
             Self::SolveVelocities => "eq. (19)",
             Self::ToMaximal | Self::ToJoints => "Φ = 0, eq. (18) and the joint coordinates",
-            Self::JointAccelerations | Self::JointAccelerationsAt | Self::CorrectedAccelerations => {
-                "eq. (17) across the constraints"
-            }
+            Self::JointAccelerations
+            | Self::JointAccelerationsAt
+            | Self::CorrectedAccelerations
+            | Self::CorrectedMultipliers => "eq. (17) on the constraints",
             Self::JointDerivative | Self::CorrectedDerivative => "eqs. (14) and (16) on the constraints",
         }
     }
@@ -217,6 +225,7 @@ impl Claim {
             Self::JointAccelerationsAt => joints::accelerations_at(case),
             Self::CorrectedAccelerations => joints::corrected_accelerations(case),
             Self::CorrectedDerivative => joints::corrected_derivative(case),
+            Self::CorrectedMultipliers => joints::corrected_multipliers(case),
         }
     }
 }

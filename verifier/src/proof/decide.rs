@@ -127,7 +127,9 @@ impl<'a> Statements<'a> {
     /// divide by what is zero everywhere.
     pub fn degrees_log2(&self) -> Vec<Option<f64>> {
         let all = vec![true; self.formulas.program.nodes.len()];
-        let degrees = self.formulas.evaluate(&all, (), &Formal, &|source| point::degree(self.model, self.module, source));
+        let degrees = self
+            .formulas
+            .evaluate(&all, (), &Formal, &|source| point::degree(self.model, self.module, source));
         let of_claim = |residuals: &Option<Vec<Id>>| self.degree_log2(residuals.as_ref()?, &degrees);
         self.claims.iter().map(of_claim).collect()
     }
@@ -351,7 +353,12 @@ impl<'a, const L: usize> Decider<'a, L> {
     pub fn needless(&self, module: &Module, function: &str, seed: u64) -> Option<Vec<Needless>> {
         self.at_point(module, seed, |draw, atoms| {
             let accelerations = self.run(module, "accelerations", draw, &[], atoms)?;
-            let given = Given { point: &draw.point, accelerations: &accelerations, charts: &draw.charts, joints: &draw.joints[0] };
+            let given = Given {
+                point: &draw.point,
+                accelerations: &accelerations,
+                charts: &draw.charts,
+                joints: &draw.joints[0],
+            };
             let constants = interpreter::constants(&self.prime, module);
             let program = &module.programs[function];
             let values = interpreter::values(module, program, &constants, atoms, &given)?;
@@ -398,7 +405,8 @@ impl<'a, const L: usize> Decider<'a, L> {
         accelerations: &[Modular<'p, L>],
         atoms: &Drawn<'p, L>,
     ) -> Result<Vec<Modular<'p, L>>, DivisionByZero> {
-        let given = Given { point: &draw.point, accelerations, charts: &draw.charts, joints: &draw.joints[0] };
+        let given =
+            Given { point: &draw.point, accelerations, charts: &draw.charts, joints: &draw.joints[0] };
         let constants = interpreter::constants(&self.prime, module);
         interpreter::run(module, &module.programs[function], &constants, atoms, &given)
     }

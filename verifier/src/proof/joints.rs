@@ -202,3 +202,10 @@ pub fn corrected_derivative<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     }
     Some(residuals)
 }
+
+/// λ there, and at v̇.
+pub fn corrected_multipliers<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
+    let motion = Motion::new(case)?;
+    let lambda = case.run_with("corrected_multipliers", &motion.maximal, motion.accelerations());
+    case.textbook(&motion.maximal)?.residual_of_motion(motion.accelerations(), &lambda)
+}

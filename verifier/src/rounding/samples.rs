@@ -63,12 +63,7 @@ pub fn draw(model: &Model, module: &Module, states: usize, seed: u64) -> Vec<Sam
     kinds.map(|kind| sample(model, module, kind, [&mut random, &mut of_joints])).collect()
 }
 
-fn sample(
-    model: &Model,
-    module: &Module,
-    kind: Kind,
-    [random, of_joints]: [&mut ChaCha8Rng; 2],
-) -> Sample {
+fn sample(model: &Model, module: &Module, kind: Kind, [random, of_joints]: [&mut ChaCha8Rng; 2]) -> Sample {
     let n = model.coordinate_bodies().len();
     let euler: Vec<usize> = (0..n).map(|slot| 7 * slot + 3).collect();
     let raw = raw(kind, &module.start, &euler, 7 * n..13 * n, random);
@@ -83,13 +78,7 @@ fn sample(
 }
 
 /// Numbers of a kind; `euler` says where Euler parameters start, `rates` where velocities are.
-fn raw(
-    kind: Kind,
-    start: &[f64],
-    euler: &[usize],
-    rates: Range<usize>,
-    random: &mut ChaCha8Rng,
-) -> Vec<f64> {
+fn raw(kind: Kind, start: &[f64], euler: &[usize], rates: Range<usize>, random: &mut ChaCha8Rng) -> Vec<f64> {
     let number = |(place, start): (usize, &f64)| {
         let is_euler = euler.iter().any(|&first| (first..first + 4).contains(&place));
         let unit = random.random_range(-1.0..1.0);
