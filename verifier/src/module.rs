@@ -114,6 +114,29 @@ const ACCELERATIONS: Before = Before {
     call: "gyro_sim :: Equations :: accelerations (self , t , y , & mut accelerations) ;",
 };
 
+/// Functions that are made for states that satisfy the constraints.
+const ON_CONSTRAINTS: [&str; 5] = [
+    "to_joints",
+    "joint_accelerations_at",
+    "corrected_accelerations",
+    "corrected_derivative",
+    "corrected_multipliers",
+];
+
+/// Whether a function is made for states that satisfy the constraints.
+pub fn is_on_constraints(function: &str) -> bool {
+    ON_CONSTRAINTS.contains(&function)
+}
+
+/// The function that gives the accelerations, or rates, that another one reads.
+pub fn source_of_accelerations(function: &str) -> &'static str {
+    match function {
+        "joint_derivative" => "joint_accelerations",
+        "corrected_derivative" | "corrected_multipliers" => "corrected_accelerations",
+        _ => "accelerations",
+    }
+}
+
 fn of_function<T: Copy>(table: &[(&str, T)], function: &str) -> Option<T> {
     table.iter().find(|(name, _)| *name == function).map(|(_, value)| *value)
 }

@@ -13,7 +13,7 @@ use crate::atoms::{Atoms, Elementary};
 use crate::field::{Field, Precision, Real};
 use crate::interpreter::{self, Given};
 use crate::joints::JointLayout;
-use crate::module::Module;
+use crate::module::{Module, is_on_constraints, source_of_accelerations};
 use crate::numeric;
 use crate::point::Point;
 use gyro_model::Model;
@@ -136,7 +136,7 @@ impl Spread {
 impl<'c> Reference<'c> {
     /// The maximal state in `f64` at which a function is measured.
     pub fn state(&self, function: &str) -> &[f64] {
-        if ON_CONSTRAINTS.contains(&function) { &self.corrected } else { &self.sample.state }
+        if is_on_constraints(function) { &self.corrected } else { &self.sample.state }
     }
 
     /// The results of a function.
@@ -211,10 +211,6 @@ fn corrected_point<'c>(
     Some(Point { state, ..point.clone() })
 }
 
-/// Functions that are made for states that satisfy the constraints.
-const ON_CONSTRAINTS: [&str; 4] =
-    ["to_joints", "joint_accelerations_at", "corrected_accelerations", "corrected_derivative"];
-
 /// What functions are given.
 struct Inputs<F: Field> {
     point: Point<F>,
@@ -260,19 +256,13 @@ fn results<F: Field>(
     let one_hot = |chart: &usize| [0, 1, 2, 3].map(|k| F::integer(context, i64::from(k == *chart)));
     let charts: Vec<_> = charts.iter().map(one_hot).collect();
     let run = |function: &str, accelerations: &[F]| {
-        let is_corrected = ON_CONSTRAINTS.contains(&function);
-        let point = if is_corrected { &inputs.corrected } else { &inputs.point };
+        let point = if is_on_constraints(function) { &inputs.corrected } else { &inputs.point };
         let given = Given { point, accelerations, charts: &charts, joints: &inputs.joints };
         interpreter::run(module, &module.programs[function], constants, atoms, &given).ok()
     };
-    let accelerations = run("accelerations", &[])?;
     let result = |function: &String| {
-        let first = match function.as_str() {
-            "joint_derivative" => &run("joint_accelerations", &[])?,
-            "corrected_derivative" => &run("corrected_accelerations", &[])?,
-            _ => &accelerations,
-        };
-        Some((function.clone(), run(function, first)?))
+        let accelerations = run(source_of_accelerations(function), &[])?;
+        Some((function.clone(), run(function, &accelerations)?))
     };
     module.programs.keys().map(result).collect()
 }

@@ -14,7 +14,7 @@ use super::point::{self, Draw};
 use crate::atoms::{Drawn, Elementary, Formal};
 use crate::field::{Degree, Field, Modular, Precision, Prime, Real, sum_log2};
 use crate::interpreter::{self, DivisionByZero, Given};
-use crate::module::Module;
+use crate::module::{Module, is_on_constraints, source_of_accelerations};
 use crate::program::{Function, Id, Node};
 use crate::tape::{Formulas, Tape, Term};
 use crate::textbook::Textbook;
@@ -341,8 +341,8 @@ impl<'a, const L: usize> Decider<'a, L> {
     pub fn agree(&self, modules: [&Module; 2], function: &str, seed: u64) -> Option<bool> {
         let same_places = modules[0].programs[function].places == modules[1].programs[function].places;
         let agree = self.at_point(modules[0], seed, |draw, atoms| {
-            let accelerations = self.run(modules[0], "accelerations", draw, &[], atoms)?;
-            let run = |module| self.run(module, function, draw, &accelerations, atoms);
+            let (draw, accelerations) = self.suited(modules[0], function, draw, atoms)?;
+            let run = |module| self.run(module, function, &draw, &accelerations, atoms);
             Ok(run(modules[0])? == run(modules[1])?)
         });
         agree.map(|agree| agree && same_places)
@@ -352,7 +352,7 @@ impl<'a, const L: usize> Decider<'a, L> {
     /// leave out. They are no fault. `None` if the function exists at no point.
     pub fn needless(&self, module: &Module, function: &str, seed: u64) -> Option<Vec<Needless>> {
         self.at_point(module, seed, |draw, atoms| {
-            let accelerations = self.run(module, "accelerations", draw, &[], atoms)?;
+            let (draw, accelerations) = self.suited(module, function, draw, atoms)?;
             let given = Given {
                 point: &draw.point,
                 accelerations: &accelerations,
@@ -395,6 +395,24 @@ impl<'a, const L: usize> Decider<'a, L> {
             problems.extend(unsorted.map(|pair| format!("`{matrix}` has {:?} after {:?}", pair[1], pair[0])));
         }
         Some(problems)
+    }
+
+    /// A point that a function is made for, with the accelerations that it reads.
+    fn suited<'p>(
+        &'p self,
+        module: &Module,
+        function: &str,
+        draw: &Draw<Modular<'p, L>>,
+        atoms: &Drawn<'p, L>,
+    ) -> Result<(Draw<Modular<'p, L>>, Vec<Modular<'p, L>>), DivisionByZero> {
+        let mut draw = draw.clone();
+        if is_on_constraints(function) {
+            draw.point.state = self.run(module, "to_maximal", &draw, &[], atoms)?;
+            // The buffer of `to_joints` holds any other state.
+            draw.joints.swap(0, 1);
+        }
+        let accelerations = self.run(module, source_of_accelerations(function), &draw, &[], atoms)?;
+        Ok((draw, accelerations))
     }
 
     fn run<'p>(

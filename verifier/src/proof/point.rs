@@ -9,6 +9,7 @@ use gyro_model::{Model, to_f64};
 use rand::{Rng, RngExt};
 
 /// A point with what claims need besides.
+#[derive(Clone)]
 pub(super) struct Draw<F: Field> {
     /// Where.
     pub point: Point<F>,
