@@ -24,10 +24,12 @@ pub struct Report {
     pub points: u32,
     /// The claims.
     pub findings: Vec<Finding>,
-    /// What is wrong with the text or its exact constants so that nothing could be proved, or what the structure is like.
+    /// What is wrong with the text or its exact constants so that nothing could be proved.
     pub refusals: Vec<Refusal>,
-    /// What is wrong with the patterns, the start or the signs of readings.
+    /// What is wrong with the start or the signs of readings.
     pub problems: Vec<String>,
+    /// What is not wrong but could be better: zeros that are stored, numbers that are computed twice or not used, or counted wrongly.
+    pub flaws: Vec<String>,
     /// What could not be decided, besides findings.
     pub undecided: Vec<String>,
 }
@@ -90,10 +92,11 @@ impl Report {
             && self.findings.iter().all(Finding::is_proved)
             && self.refusals.is_empty()
             && self.problems.is_empty()
+            && self.flaws.is_empty()
             && self.undecided.is_empty()
     }
 
-    /// Whether something was shown to be wrong. What is neither proved nor refuted is undecided.
+    /// Whether something was shown to be wrong. What is neither proved nor refuted is undecided, or right but flawed.
     pub fn is_refuted(&self) -> bool {
         !self.refusals.is_empty()
             || !self.problems.is_empty()
@@ -149,6 +152,7 @@ impl Report {
             "findings": self.findings.iter().map(Finding::to_json).collect::<Vec<_>>(),
             "refusals": refusals.collect::<Vec<_>>(),
             "problems": self.problems,
+            "flaws": self.flaws,
             "undecided": self.undecided,
         })
     }
@@ -167,13 +171,16 @@ impl fmt::Display for Report {
         let verdict = match (self.is_proved(), self.is_refuted()) {
             (true, _) => "proved",
             (_, true) => "REFUTED",
+            _ if self.undecided.is_empty() && self.findings.iter().all(Finding::is_proved) => {
+                "PROVED, BUT FLAWED"
+            }
             _ => "NOT PROVED",
         };
         writeln!(f, "{}: {verdict} (prime: {}; points: {})", self.mechanism, self.prime(), self.points)?;
         for refusal in &self.refusals {
             writeln!(f, "  {refusal}")?;
         }
-        for problem in self.problems.iter().chain(&self.undecided) {
+        for problem in self.problems.iter().chain(&self.flaws).chain(&self.undecided) {
             writeln!(f, "  {problem}")?;
         }
         for finding in &self.findings {

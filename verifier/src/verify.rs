@@ -44,7 +44,7 @@ pub fn verify(model: &Model, module: &str, constants: &str, depth: Depth) -> Rep
 /// Proves a module that was read.
 fn prove(model: &Model, module: &Module, report: Report) -> Report {
     let mut report = Report {
-        refusals: structure::problems(model, module),
+        flaws: structure::problems(model, module).iter().map(ToString::to_string).collect(),
         problems: numeric::problems(model, module),
         ..report
     };
@@ -65,8 +65,8 @@ fn prove(model: &Model, module: &Module, report: Report) -> Report {
     let findings = claims.into_iter().zip(tested.verdicts);
     report.findings = findings.map(|(claim, verdict)| Finding { claim, verdict }).collect();
     match tested.sparsity {
-        Some(problems) => report.problems.extend(problems),
-        None => report.undecided.push("the patterns could be tested at no point".to_owned()),
+        Ok(flaws) => report.flaws.extend(flaws),
+        Err(_) => report.undecided.push("the patterns could be tested at no point".to_owned()),
     }
     report.prime_bits = tested.prime.bits();
     report.is_mersenne = tested.prime.count_ones() == report.prime_bits;
@@ -77,7 +77,7 @@ fn prove(model: &Model, module: &Module, report: Report) -> Report {
 struct Tested {
     prime: BigUint,
     verdicts: Vec<Verdict>,
-    sparsity: Option<Vec<String>>,
+    sparsity: Result<Vec<String>, Verdict>,
 }
 
 /// Tests modulo the shortest of three primes that has the roots of the constants and is long enough.

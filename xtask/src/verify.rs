@@ -19,9 +19,9 @@ pub(crate) fn verify_models(args: &VerifyArgs) -> Result<(), Failure> {
     let places = Places::of_workspace(&files::root());
     let pages = if args.models.is_empty() { all_pages(&places)? } else { args.models.clone() };
     if args.rounding {
-        let tables: Result<Vec<String>, Failure> =
+        let tables: Result<Vec<rounding::Table>, Failure> =
             pages.par_iter().map(|page| rounding_of(&places, page)).collect();
-        return say(&tables?.join("\n"));
+        return say(&rounding::report(&tables?));
     }
     let depth = if args.quick { Depth::Quick } else { Depth::Full };
     let reports: Result<Vec<Report>, Failure> =
@@ -45,7 +45,7 @@ fn verify_page(places: &[Places], page: &Path, depth: Depth) -> Result<Report, F
     Ok(verify(&model, &code, &constants, depth))
 }
 
-fn rounding_of(places: &[Places], page: &Path) -> Result<String, Failure> {
+fn rounding_of(places: &[Places], page: &Path) -> Result<rounding::Table, Failure> {
     let (model, [code, constants]) = read_page(places, page)?;
     rounding::table(&model, &code, &constants)
 }
@@ -81,7 +81,10 @@ pub(crate) fn verify_quickly(model: &Model, module: &Module) -> Result<Report, F
         )));
     }
     if !report.is_proved() {
-        remarks::warn(&format!("not all of {} could be proved, nothing was refuted\n{report}", module.name));
+        remarks::warn(&format!(
+            "nothing wrong was found in {}, but not all is as it should be\n{report}",
+            module.name
+        ));
     }
     Ok(report)
 }

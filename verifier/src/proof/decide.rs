@@ -68,7 +68,7 @@ pub struct Decider<'a, const L: usize> {
 }
 
 /// Draws at most this often until all roots exist: each root of a number that varies exists at every other point.
-const DRAWS: u64 = 1024;
+const DRAWS: u64 = 256;
 
 /// Draws at most this often where something divides by zero: at a random point only what is zero everywhere is zero.
 const DRAWS_BY_ZERO: usize = 3;
@@ -378,23 +378,26 @@ impl<'a, const L: usize> Decider<'a, L> {
     }
 
     /// What is wrong with the patterns: zeros that are stored, places out of order. (That no place is missing is part of the claims.)
-    /// `None` if no point has all roots.
     ///
     /// A number that is zero at a random point is zero identically, with the probability of its claim.
-    pub fn sparsity(&self, module: &Module, seed: u64) -> Option<Vec<String>> {
+    ///
+    /// # Errors
+    /// [`Verdict::Undecided`] if no point has all roots.
+    pub fn sparsity(&self, module: &Module, seed: u64) -> Result<Vec<String>, Verdict> {
         let patterns = [("phi_q", &module.phi_q_pattern), ("phi_pi", &module.phi_pi_pattern)];
         let mut problems = Vec::new();
         for (matrix, pattern) in patterns {
             let is_zero = self.at_point(module, seed, |draw, atoms| {
                 let values = self.run(module, matrix, draw, &[], atoms)?;
                 Ok(values.iter().map(Field::is_zero).collect::<Vec<_>>())
-            })?;
+            });
+            let is_zero = is_zero.ok_or(Verdict::Undecided)?;
             let zeros = pattern.iter().zip(is_zero).filter(|(_, zero)| *zero);
             problems.extend(zeros.map(|(place, _)| format!("`{matrix}` stores the zero at {place:?}")));
             let unsorted = pattern.windows(2).find(|pair| pair[0] >= pair[1]);
             problems.extend(unsorted.map(|pair| format!("`{matrix}` has {:?} after {:?}", pair[1], pair[0])));
         }
-        Some(problems)
+        Ok(problems)
     }
 
     /// A point that a function is made for, with the accelerations that it reads.
