@@ -10,7 +10,7 @@ mod float;
 mod modular;
 mod real;
 
-pub use degree::Degree;
+pub use degree::{Degree, sum_log2};
 pub use exact::Exact;
 pub use modular::{Modular, Prime};
 pub use real::{Precision, Real};

@@ -4,17 +4,20 @@ use crate::atoms::Atoms;
 use crate::field::Field;
 use crate::module::Module;
 use crate::point::Point;
-use crate::program::{Function, Node, Program, Source};
+use crate::program::{Function, Id, Node, Program, Source};
+use gyro_model::Spline;
 
 /// What a program reads, besides a point.
 #[derive(Clone, Debug)]
 pub struct Given<'a, F: Field> {
     /// Time, state, parameters, inputs.
     pub point: &'a Point<F>,
-    /// Elements of `Equations::Accelerations`.
+    /// What [`Source::Acceleration`] is.
     pub accelerations: &'a [F],
     /// For each joint with a chart the vector that stands for it: of a chart that is chosen a unit vector.
     pub charts: &'a [[F; 4]],
+    /// Joint state.
+    pub joints: &'a [F],
 }
 
 /// Something divided by zero.
@@ -55,26 +58,50 @@ pub fn values<F: Field>(
     atoms: &dyn Atoms<F>,
     given: &Given<F>,
 ) -> Result<Vec<F>, DivisionByZero> {
+    let read = |source: Source| read(source, given);
+    let environment = Environment { constants, tables: &module.tables, atoms, read: &read };
     let mut values: Vec<F> = Vec::with_capacity(program.nodes.len());
     for (node, &line) in program.nodes.iter().zip(&program.lines) {
-        let value = match *node {
-            Node::Constant(place) => constants[place].clone(),
-            Node::Read(source) => read(source, given),
-            Node::Add(a, b) => values[a].add(&values[b]),
-            Node::Sub(a, b) => values[a].sub(&values[b]),
-            Node::Mul(a, b) => values[a].mul(&values[b]),
-            Node::Div(a, b) => values[a].div(&values[b]).ok_or(DivisionByZero { line })?,
-            Node::Neg(a) => values[a].neg(),
-            Node::Call(function, a) => call(function, &values[a], atoms),
-            Node::Atan2(y, x) => atoms.atan2(&values[y], &values[x]),
-            Node::Curve { table, order, time } => {
-                let [value, first, second] = atoms.spline(&module.tables[table], &values[time]);
-                [value, first, second][order].clone()
-            }
-        };
+        let value = value(node, &|id| &values[id], &environment).ok_or(DivisionByZero { line })?;
         values.push(value);
     }
     Ok(values)
+}
+
+/// What nodes refer to.
+pub(crate) struct Environment<'a, F: Field> {
+    /// The constants as numbers.
+    pub constants: &'a [F],
+    /// The tables of prescribed motions.
+    pub tables: &'a [Spline],
+    /// The functions that are not rational.
+    pub atoms: &'a dyn Atoms<F>,
+    /// What is given.
+    pub read: &'a dyn Fn(Source) -> F,
+}
+
+/// The value of a node from those of its operands; `None` by zero.
+pub(crate) fn value<'v, F: Field + 'v>(
+    node: &Node,
+    operand: &dyn Fn(Id) -> &'v F,
+    environment: &Environment<F>,
+) -> Option<F> {
+    let atoms = environment.atoms;
+    Some(match *node {
+        Node::Constant(place) => environment.constants[place].clone(),
+        Node::Read(source) => (environment.read)(source),
+        Node::Add(a, b) => operand(a).add(operand(b)),
+        Node::Sub(a, b) => operand(a).sub(operand(b)),
+        Node::Mul(a, b) => operand(a).mul(operand(b)),
+        Node::Div(a, b) => operand(a).div(operand(b))?,
+        Node::Neg(a) => operand(a).neg(),
+        Node::Call(function, a) => call(function, operand(a), atoms),
+        Node::Atan2(y, x) => atoms.atan2(operand(y), operand(x)),
+        Node::Curve { table, order, time } => {
+            let [value, first, second] = atoms.spline(&environment.tables[table], operand(time));
+            [value, first, second][order].clone()
+        }
+    })
 }
 
 fn read<F: Field>(source: Source, given: &Given<F>) -> F {
@@ -86,6 +113,8 @@ fn read<F: Field>(source: Source, given: &Given<F>) -> F {
         Source::Input(k) => point.inputs[k].clone(),
         Source::Acceleration(k) => given.accelerations[k].clone(),
         Source::Chart(chart, k) => given.charts[chart][k].clone(),
+        Source::Joint(k) => given.joints[k].clone(),
+        Source::Factor(_) | Source::Before(_) => unreachable!("no module reads what claims vary"),
     }
 }
 

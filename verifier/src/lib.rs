@@ -44,15 +44,18 @@ pub mod atoms;
 pub mod constants;
 pub mod field;
 pub mod interpreter;
+pub mod joints;
 pub mod module;
 mod numeric;
 pub mod point;
 pub mod program;
 pub mod proof;
+mod rates;
 pub mod refusal;
 mod report;
 pub mod rounding;
 pub mod structure;
+mod tape;
 pub mod textbook;
 mod verify;
 

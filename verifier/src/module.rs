@@ -7,13 +7,15 @@ mod skeleton;
 mod tables;
 
 use crate::constants::Constants;
+use crate::joints::JointLayout;
 use crate::program::Program;
 use crate::refusal::Refusal;
-use block::{Form, Reader, Sizes};
+use block::{Before, Form, Reader, Sizes};
 use gyro_model::{Model, Spline};
 use matching::{Hole, Matched};
 use proc_macro2::{TokenStream, TokenTree};
 use skeleton::Choice;
+pub(crate) use skeleton::n_state;
 use std::collections::BTreeMap;
 use syn::Block;
 
@@ -32,6 +34,10 @@ pub struct Module {
     pub phi_pi_pattern: Vec<(usize, usize)>,
     /// The start.
     pub start: Vec<f64>,
+    /// The start in joint coordinates; nothing of mechanisms that have none.
+    pub joint_start: Vec<f64>,
+    /// Where joint coordinates stand, if the mechanism is an open tree.
+    pub joints: Option<JointLayout>,
     /// Number of accelerations and multipliers that `accelerations` gives.
     pub n_accelerations: usize,
     /// Number of charts, if the coordinate partition goes by charts.
@@ -43,7 +49,7 @@ pub struct Module {
 }
 
 /// Functions that are straight-line programs, and how they give their results.
-const FUNCTIONS: [(&str, Form); 15] = [
+const FUNCTIONS: [(&str, Form); 24] = [
     ("derivative", Form::Filling),
     ("phi", Form::Filling),
     ("velocity_residual", Form::Filling),
@@ -59,7 +65,81 @@ const FUNCTIONS: [(&str, Form); 15] = [
     ("outputs", Form::Filling),
     ("newton_step", Form::Stores),
     ("solve_velocities", Form::Stores),
+    ("chart_vectors", Form::Vectors),
+    ("corrected_derivative", Form::Filling),
+    ("joint_accelerations", Form::Filling),
+    ("joint_derivative", Form::Filling),
+    ("to_maximal", Form::Filling),
+    ("to_joints", Form::Joints),
+    ("joint_accelerations_at", Form::Filling),
+    ("corrected_accelerations", Form::Filling),
+    ("corrected_multipliers", Form::Filling),
 ];
+
+/// What functions write, where it is not `out`.
+const TARGETS: [(&str, &str); 6] = [
+    ("derivative", "dy"),
+    ("corrected_derivative", "dy"),
+    ("multipliers", "lambda"),
+    ("corrected_multipliers", "lambda"),
+    ("joint_derivative", "dx"),
+    ("to_maximal", "y"),
+];
+
+/// What functions have others compute first.
+const BEFORE: [(&str, Before); 4] = [
+    ("derivative", ACCELERATIONS),
+    ("outputs", ACCELERATIONS),
+    (
+        "corrected_derivative",
+        Before {
+            buffer: "accelerations",
+            made_by: "gyro_sim :: Equations :: velocities (self)",
+            call: "gyro_sim :: JointSpace :: corrected_accelerations (self , t , y , & mut accelerations) ;",
+        },
+    ),
+    (
+        "joint_derivative",
+        Before {
+            buffer: "rates",
+            made_by: "gyro_sim :: JointSpace :: rates (self)",
+            call: "gyro_sim :: JointSpace :: joint_accelerations (self , t , x , & mut rates) ;",
+        },
+    ),
+];
+
+const ACCELERATIONS: Before = Before {
+    buffer: "accelerations",
+    made_by: "gyro_sim :: Equations :: accelerations_buffer (self)",
+    call: "gyro_sim :: Equations :: accelerations (self , t , y , & mut accelerations) ;",
+};
+
+/// Functions that are made for states that satisfy the constraints.
+const ON_CONSTRAINTS: [&str; 5] = [
+    "to_joints",
+    "joint_accelerations_at",
+    "corrected_accelerations",
+    "corrected_derivative",
+    "corrected_multipliers",
+];
+
+/// Whether a function is made for states that satisfy the constraints.
+pub fn is_on_constraints(function: &str) -> bool {
+    ON_CONSTRAINTS.contains(&function)
+}
+
+/// The function that gives the accelerations, or rates, that another one reads.
+pub fn source_of_accelerations(function: &str) -> &'static str {
+    match function {
+        "joint_derivative" => "joint_accelerations",
+        "corrected_derivative" | "corrected_multipliers" => "corrected_accelerations",
+        _ => "accelerations",
+    }
+}
+
+fn of_function<T: Copy>(table: &[(&str, T)], function: &str) -> Option<T> {
+    table.iter().find(|(name, _)| *name == function).map(|(_, value)| *value)
+}
 
 impl Module {
     /// Reads a module's text and the text of its exact constants.
@@ -75,11 +155,20 @@ impl Module {
             text.parse().map_err(|error: proc_macro2::LexError| Refusal::at(error.span(), "not Rust"))?;
         let tables = tables::read(model, tokens.clone())?;
         let choice = if text.contains("gyro_sim::charts") { Choice::Charts } else { Choice::Pivoting };
-        let expected = skeleton::text(model, &skeleton::type_name(&model.name), &tables, choice);
+        let joints = JointLayout::of(model);
+        let name = skeleton::type_name(&model.name);
+        let has_multipliers = text.contains("fn corrected_multipliers");
+        let expected = skeleton::text(
+            model,
+            &name,
+            &tables,
+            choice,
+            joints.as_ref().map(|joints| (joints, has_multipliers)),
+        );
         let expected = expected.parse().expect("the expected text consists of tokens");
         let mut matched = Matched::default();
         matched.walk(expected, tokens, text.lines().count())?;
-        Self::assemble(model, text, constants, tables, &matched)
+        Self::assemble(model, text, constants, tables, joints, &matched)
     }
 
     fn assemble(
@@ -87,30 +176,41 @@ impl Module {
         text: &str,
         constants: Constants,
         tables: Vec<Spline>,
+        joints: Option<JointLayout>,
         matched: &Matched,
     ) -> Result<Self, Refusal> {
         let number = |name: &str| matched.numbers.get(name).copied();
         let n_accelerations = number("accelerations").unwrap_or(0);
         let n_charts = number("charts");
         let sizes = Sizes {
-            state: skeleton::n_state(model),
+            state: n_state(model),
             accelerations: n_accelerations,
+            joints: joints.as_ref().map_or(0, JointLayout::n_state),
             charts: n_charts.unwrap_or(0),
             tables: tables.len(),
         };
         let mut used = vec![false; constants.values.len()];
         let mut read = |name: &str, form| {
             let Some(hole) = matched.holes.get(name) else { return Ok(None) };
-            let mut reader = Reader::new(model, &constants, &mut used, sizes);
-            hole.arguments
-                .iter()
-                .map(String::as_str)
-                .chain(["dy", "lambda"])
-                .for_each(|a| reader.argument(a));
+            let accelerations = match name {
+                "corrected_derivative" | "corrected_multipliers" => 6 * model.coordinate_bodies().len(),
+                "joint_derivative" => joints.as_ref().map_or(0, |joints| joints.n_rates),
+                _ => n_accelerations,
+            };
+            let (sizes, before) = (Sizes { accelerations, ..sizes }, of_function(&BEFORE, name));
+            let mut reader = Reader::new(model, &constants, &mut used, sizes, before);
+            if hole.arguments.is_empty() {
+                before.iter().flat_map(Before::arguments).for_each(|argument| reader.argument(argument));
+            }
+            hole.arguments.iter().for_each(|argument| reader.argument(argument));
+            of_function(&TARGETS, name).into_iter().for_each(|target| reader.target(target));
+            if form == Form::Joints {
+                reader.buffer();
+            }
             reader.body(&block(hole)?, form).map(|program| Some((name.to_owned(), program)))
         };
         let mut programs = BTreeMap::new();
-        for (name, form) in FUNCTIONS.into_iter().chain([("chart_vectors", Form::Vectors)]) {
+        for (name, form) in FUNCTIONS {
             programs.extend(read(name, form)?);
         }
         let pattern = |name: &str| block::pattern(&block(&matched.holes[name])?);
@@ -124,6 +224,11 @@ impl Module {
             phi_q_pattern: pattern("phi_q_pattern")?,
             phi_pi_pattern: pattern("phi_pi_pattern")?,
             start: block::start(&block(&matched.holes["start"])?)?,
+            joint_start: match matched.holes.get("joint_start") {
+                Some(hole) => block::start(&block(hole)?)?,
+                None => Vec::new(),
+            },
+            joints,
             programs,
             n_accelerations,
             n_charts,
@@ -141,9 +246,12 @@ impl Module {
     fn sizes_agree(&self, model: &Model, matched: &Matched) -> Result<(), Refusal> {
         let (n, rows) = (model.coordinate_bodies().len(), model.rows().len());
         let number = |name: &str| matched.numbers.get(name).copied().unwrap_or(0);
+        let (n_joints, n_rates) =
+            self.joints.as_ref().map_or((0, 0), |joints| (joints.n_state(), joints.n_rates));
+        let n_corrected = if self.joints.is_some() { n_state(model) } else { 0 };
         let outputs = model.outputs.iter().map(|output| output.kind.columns().len()).sum();
         let expected = [
-            ("derivative", skeleton::n_state(model)),
+            ("derivative", n_state(model)),
             ("phi", rows + n),
             ("velocity_residual", rows),
             ("energy", 2),
@@ -157,12 +265,24 @@ impl Module {
             ("multipliers", rows),
             ("outputs", outputs),
             ("chart_vectors", 4 * number("charts")),
+            ("corrected_derivative", n_corrected),
+            ("joint_accelerations", n_rates),
+            ("joint_derivative", n_joints),
+            ("to_maximal", n_corrected),
+            ("to_joints", n_joints),
+            ("joint_accelerations_at", n_rates),
+            ("corrected_accelerations", if self.joints.is_some() { 6 * n } else { 0 }),
+            (
+                "corrected_multipliers",
+                if self.programs.contains_key("corrected_multipliers") { rows } else { 0 },
+            ),
         ];
         let found = |name: &str| self.programs.get(name).map_or(0, |program| program.results.len());
         let patterns = [
             ("phi_q_pattern", self.phi_q_pattern.len(), number("phi_q")),
             ("phi_pi_pattern", self.phi_pi_pattern.len(), number("phi_pi")),
-            ("start", self.start.len(), skeleton::n_state(model)),
+            ("start", self.start.len(), n_state(model)),
+            ("joint_start", self.joint_start.len(), n_joints),
         ];
         let sizes = expected.map(|(name, size)| (name, found(name), size)).into_iter().chain(patterns);
         for (name, found, expected) in sizes {

@@ -1,10 +1,14 @@
 //! What only numbers can show: the start, and that angles are read with the right sign.
 
-use crate::atoms::{Atoms, Elementary};
+use crate::atoms::Elementary;
 use crate::field::{Field, Precision, Real};
 use crate::interpreter::{self, Given};
+use crate::joints::Freedom;
 use crate::module::Module;
 use crate::point::Point;
+use crate::program::{Id, Source};
+use crate::proof::point_of_terms;
+use crate::tape::{Tape, Term, Written};
 use crate::textbook::{Reading, Textbook};
 use gyro_model::{Model, RowUnit, to_f64};
 use rand::{RngExt, SeedableRng};
@@ -21,6 +25,7 @@ pub fn problems(model: &Model, module: &Module) -> Vec<String> {
     let mut problems: Vec<String> = start_differs(model, module).into_iter().collect();
     problems.extend(start_violates(model, module));
     problems.extend(wrong_signs(model, module));
+    problems.extend(joint_start_differs(model, module));
     problems
 }
 
@@ -40,58 +45,119 @@ fn start_differs(model: &Model, module: &Module) -> Option<String> {
 
 /// The start must satisfy the textbook's rows, at time zero.
 fn start_violates(model: &Model, module: &Module) -> Option<String> {
+    let (tape, textbook) = (Tape::new(), Textbook::new(model));
+    let [phi, rates] = {
+        let point = point_of_terms(model, &tape);
+        let evaluation = textbook.at(&point, &Written);
+        let rows = evaluation.and_then(|e| Some([e.phi()?, e.velocity_residual()?]));
+        let Some(rows) = rows else { return Some("the textbook divides by zero".to_owned()) };
+        rows.map(|rows| rows.into_iter().map(Term::id).collect::<Vec<Id>>())
+    };
+    let formulas = tape.finish();
     let precision = Precision::new();
     let point = point(model, &precision, &module.start, 0.0, |x| Real::new(&precision, x));
-    let textbook = Textbook::new(model);
-    let Some((phi, rates)) =
-        textbook.at(&point, &Elementary).and_then(|e| Some((e.phi()?, e.velocity_residual()?)))
-    else {
-        return Some("the textbook divides by zero at the start".to_owned());
-    };
+    let reach = formulas.reach(phi.iter().chain(&rates).copied());
+    let values = formulas.evaluate(&reach, &precision, &Elementary, &|source| read(&point, source));
     let fastest =
         module.start[7 * model.coordinate_bodies().len()..].iter().fold(1.0, |a: f64, b| a.max(b.abs()));
     let rows = model.rows();
     let size = |row: usize| {
         if rows.get(row).is_some_and(|r| r.unit == RowUnit::Length) { model.size() } else { 1.0 }
     };
-    let violated = |values: &[Real], scale: f64| {
-        let is_within =
-            |(row, value): (usize, &Real)| value.to_f64().abs() <= START_TOLERANCE * scale * size(row);
-        values.iter().enumerate().position(|row| !is_within(row))
+    let violated = |ids: &[Id], scale: f64| {
+        let is_within = |(row, id): (usize, &Id)| {
+            let value = values[*id].as_ref();
+            value.is_some_and(|value| value.to_f64().abs() <= START_TOLERANCE * scale * size(row))
+        };
+        ids.iter().enumerate().position(|row| !is_within(row))
     };
     let row = violated(&phi, 1.0).or_else(|| violated(&rates, fastest));
     row.map(|row| format!("the start violates row {row}"))
 }
 
+/// The start in joint coordinates must be the assembled one too: as turned, and leading to the same state but for the sign of
+/// Euler parameters.
+fn joint_start_differs(model: &Model, module: &Module) -> Option<String> {
+    let (layout, assembled) = (module.joints.as_ref()?, model.assemble().ok()?);
+    let precision = Precision::new();
+    let number = |x: f64| Real::new(&precision, x);
+    let joints: Vec<_> = module.joint_start.iter().map(|&x| number(x)).collect();
+    let point = point(model, &precision, &module.start, 0.0, number);
+    let constants = interpreter::constants(&precision, module);
+    let given = Given { point: &point, accelerations: &[], charts: &[], joints: &joints };
+    let program = &module.programs["to_maximal"];
+    let Ok(state) = interpreter::run(module, program, &constants, &Elementary, &given) else {
+        return Some("the start in joint coordinates leads nowhere".to_owned());
+    };
+    let state: Vec<f64> = state.iter().map(Real::to_f64).collect();
+    let largest = |numbers: &[f64]| numbers.iter().fold(1.0, |a: f64, b| a.max(b.abs()));
+    let is_near = |a: f64, b: f64, scale: f64| (a - b).abs() <= START_TOLERANCE * scale;
+    let turned = layout.places.iter().all(|place| match place.of {
+        Freedom::Scalar(on) => {
+            let expected = assembled.joints[on.joint].position[on.coordinate];
+            is_near(module.joint_start[place.x], expected, largest(&[expected]))
+        }
+        Freedom::Orientation { .. } | Freedom::Body { .. } => true,
+    });
+    let n = model.coordinate_bodies().len();
+    let (found, expected) = (state[..7 * n].chunks(7), module.start[..7 * n].chunks(7));
+    let reach = largest(&module.start[..7 * n]);
+    let placed = found.zip(expected).all(|(found, expected)| {
+        let same = |sign: f64| found[3..].iter().zip(&expected[3..]).all(|(a, b)| is_near(sign * a, *b, 1.0));
+        found[..3].iter().zip(&expected[..3]).all(|(a, b)| is_near(*a, *b, reach))
+            && (same(1.0) || same(-1.0))
+    });
+    let (found, expected) = (&state[7 * n..], &module.start[7 * n..]);
+    let fastest = largest(expected);
+    let moves = found.iter().zip(expected).all(|(a, b)| is_near(*a, *b, fastest));
+    (!(turned && placed && moves))
+        .then(|| "the start in joint coordinates is not what the model assembles".to_owned())
+}
+
 /// Angles are proved up to a factor: here it must be positive.
 fn wrong_signs(model: &Model, module: &Module) -> Option<String> {
-    let textbook = Textbook::new(model);
+    let (tape, textbook) = (Tape::new(), Textbook::new(model));
+    let angles = angles(model, &textbook, &tape)?;
+    let formulas = tape.finish();
+    let reach = formulas.reach(angles.iter().flat_map(|(_, ids)| *ids));
     let constants: Vec<f64> = interpreter::constants((), module);
     let mut random = ChaCha8Rng::seed_from_u64(1);
     for _ in 0..STATES {
         let state = random_state(model, &mut random);
         let point = point(model, (), &state, random.random_range(-1.0..1.0), |x| x);
-        let given = Given { point: &point, accelerations: &[], charts: &[] };
-        let expected = textbook.at(&point, &Elementary).and_then(|evaluation| evaluation.readings());
+        let given = Given { point: &point, accelerations: &[], charts: &[], joints: &[] };
         let program = &module.programs["read_joints"];
-        let found = interpreter::run(module, program, &constants, &Elementary as &dyn Atoms<f64>, &given);
-        let (Some(expected), Ok(found)) = (expected, found) else { continue };
-        let mut found = found.as_slice();
-        for reading in expected {
-            let count = match reading {
-                Reading::Angle { sine, cosine, .. } => {
-                    if sine * found[0] + cosine * found[1] <= 0.0 {
-                        return Some("an angle is read with the wrong sign".to_owned());
-                    }
-                    3
-                }
-                Reading::Length(_) => 2,
-                Reading::Orientation(_) => 7,
-            };
-            found = &found[count..];
+        let Ok(found) = interpreter::run(module, program, &constants, &Elementary, &given) else { continue };
+        let values = formulas.evaluate(&reach, (), &Elementary, &|source| read(&point, source));
+        for (place, ids) in &angles {
+            let [Some(sine), Some(cosine)] = ids.map(|id| values[id]) else { continue };
+            if sine * found[*place] + cosine * found[place + 1] <= 0.0 {
+                return Some("an angle is read with the wrong sign".to_owned());
+            }
         }
     }
     None
+}
+
+/// Of each angle where its reading starts, and its sine and cosine.
+fn angles(model: &Model, textbook: &Textbook, tape: &Tape) -> Option<Vec<(usize, [Id; 2])>> {
+    let point = point_of_terms(model, tape);
+    let (mut angles, mut place) = (Vec::new(), 0);
+    for reading in textbook.at(&point, &Written)?.readings()? {
+        place += match reading {
+            Reading::Angle { sine, cosine, .. } => {
+                angles.push((place, [sine.id(), cosine.id()]));
+                3
+            }
+            Reading::Length(numbers) => numbers.len(),
+            Reading::Orientation(numbers) => numbers.len(),
+        };
+    }
+    Some(angles)
+}
+
+fn read<F: Field>(point: &Point<F>, source: Source) -> F {
+    point.given(source).cloned().expect("the textbook reads what the model says there is")
 }
 
 /// A state of numbers between −1 and 1 with |p| = 1 to rounding.

@@ -1,6 +1,7 @@
 //! Where an identity is tested.
 
 use crate::field::Field;
+use crate::program::Source;
 use gyro_model::{Model, Number};
 
 /// Values of everything that a mechanism's functions depend on.
@@ -27,6 +28,21 @@ impl<F: Field> Point<F> {
             Number::Exact(value) => F::from_rational(self.context, value),
             Number::Parameter { index, negated } => signed(&self.parameters[*index], *negated),
             Number::Input { index, negated } => signed(&self.inputs[*index], *negated),
+        }
+    }
+
+    /// What a program reads of a point; `None` of what is not the point's.
+    pub fn given(&self, source: Source) -> Option<&F> {
+        match source {
+            Source::Time => Some(&self.t),
+            Source::State(k) => self.state.get(k),
+            Source::Parameter(k) => self.parameters.get(k),
+            Source::Input(k) => self.inputs.get(k),
+            Source::Acceleration(_)
+            | Source::Joint(_)
+            | Source::Chart(..)
+            | Source::Factor(_)
+            | Source::Before(_) => None,
         }
     }
 

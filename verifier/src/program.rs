@@ -46,10 +46,17 @@ pub enum Source {
     Parameter(usize),
     /// An input.
     Input(usize),
-    /// An element of `Equations::Accelerations`.
+    /// What the function has another one compute first, or is given: an element of `Equations::Accelerations`,
+    /// `Equations::Velocities` or `JointSpace::Rates`.
     Acceleration(usize),
+    /// An element of the joint state.
+    Joint(usize),
     /// Component of a joint's chart.
     Chart(usize, usize),
+    /// A number for each body by which a claim makes its Euler parameters longer; no module reads it.
+    Factor(usize),
+    /// An element of a joint state that is no state of the mechanism, but what a buffer holds before; no module reads it.
+    Before(usize),
 }
 
 /// A function of one argument.
@@ -91,6 +98,22 @@ impl Node {
             }
         };
         first.into_iter().chain(second)
+    }
+
+    /// The same operation on other operands.
+    #[must_use]
+    pub fn with_operands(self, other: impl Fn(Id) -> Id) -> Self {
+        match self {
+            Self::Constant(_) | Self::Read(_) => self,
+            Self::Add(a, b) => Self::Add(other(a), other(b)),
+            Self::Sub(a, b) => Self::Sub(other(a), other(b)),
+            Self::Mul(a, b) => Self::Mul(other(a), other(b)),
+            Self::Div(a, b) => Self::Div(other(a), other(b)),
+            Self::Atan2(a, b) => Self::Atan2(other(a), other(b)),
+            Self::Neg(a) => Self::Neg(other(a)),
+            Self::Call(function, a) => Self::Call(function, other(a)),
+            Self::Curve { table, order, time } => Self::Curve { table, order, time: other(time) },
+        }
     }
 }
 

@@ -3,8 +3,11 @@
 mod case;
 mod claim;
 mod decide;
+mod joints;
 mod partition;
 mod point;
 
+pub(crate) use case::point as point_of_terms;
+
 pub use claim::Claim;
-pub use decide::{Decider, Needless, Verdict, prime};
+pub use decide::{Decider, Needless, Statements, Verdict, prime};

@@ -8,6 +8,9 @@ use std::fmt;
 /// The largest probability of a false proof that is accepted, as a logarithm to base ten.
 pub const ACCEPTED_LOG10: f64 = -30.0;
 
+/// There are no more claims than this, so that the sum of their errors is less than so many times the largest.
+const MOST_CLAIMS: f64 = 32.0;
+
 /// All that was found out about a module.
 #[derive(Clone, Debug, Default)]
 pub struct Report {
@@ -15,16 +18,20 @@ pub struct Report {
     pub mechanism: String,
     /// Bits of the prime.
     pub prime_bits: u64,
-    /// Whether the prime is 2^521 − 1; otherwise it was drawn so that the constants have their roots.
+    /// Whether the prime is the Mersenne prime of these bits; otherwise it was drawn so that the constants have their roots.
     pub is_mersenne: bool,
     /// Points at which each claim was tested.
     pub points: u32,
     /// The claims.
     pub findings: Vec<Finding>,
-    /// What is wrong with the text or its exact constants so that nothing could be proved, or what the structure is like.
+    /// What is wrong with the text or its exact constants so that nothing could be proved.
     pub refusals: Vec<Refusal>,
-    /// What is wrong with the patterns, the start or the signs of readings.
+    /// What is wrong with the start or the signs of readings.
     pub problems: Vec<String>,
+    /// What is not wrong but could be better: zeros that are stored, numbers that are computed twice or not used, or counted wrongly.
+    pub flaws: Vec<String>,
+    /// What could not be decided, besides findings.
+    pub undecided: Vec<String>,
 }
 
 /// A claim with its verdict.
@@ -42,6 +49,19 @@ impl Finding {
         matches!(self.verdict, Verdict::Proved { error_log10, .. } if error_log10 <= ACCEPTED_LOG10)
     }
 
+    /// The bound on the probability that the claim is false, as a logarithm to base ten.
+    fn error_log10(&self) -> f64 {
+        match self.verdict {
+            Verdict::Proved { error_log10, .. } => error_log10,
+            _ => 0.0,
+        }
+    }
+
+    /// Whether the claim was shown to be false.
+    pub fn is_refuted(&self) -> bool {
+        matches!(self.verdict, Verdict::Refuted { .. } | Verdict::Divides { .. })
+    }
+
     fn functions(&self) -> String {
         self.claim.functions().join(", ")
     }
@@ -52,7 +72,8 @@ impl Finding {
                 ("proved", json!({ "error_log10": error_log10, "degree_log2": degree_log2 }))
             }
             Verdict::Refuted { residual } => ("refuted", json!({ "residual": residual })),
-            Verdict::Undecided { line } => ("undecided", json!({ "line": line })),
+            Verdict::Divides { line } => ("refuted", json!({ "line": line })),
+            Verdict::Undecided => ("undecided", json!({})),
         };
         json!({
             "functions": self.claim.functions(),
@@ -71,16 +92,50 @@ impl Report {
             && self.findings.iter().all(Finding::is_proved)
             && self.refusals.is_empty()
             && self.problems.is_empty()
+            && self.flaws.is_empty()
+            && self.undecided.is_empty()
+    }
+
+    /// Whether something was shown to be wrong. What is neither proved nor refuted is undecided, or right but flawed.
+    pub fn is_refuted(&self) -> bool {
+        !self.refusals.is_empty()
+            || !self.problems.is_empty()
+            || self.findings.iter().any(Finding::is_refuted)
     }
 
     /// The bound on the probability that any claim of the report is false, as a logarithm to base ten.
     pub fn error_log10(&self) -> f64 {
-        let errors = self.findings.iter().map(|finding| match finding.verdict {
-            Verdict::Proved { error_log10, .. } => error_log10,
-            _ => 0.0,
-        });
-        // No more claims than 16, so their sum is less than 16 times the largest.
-        errors.fold(f64::NEG_INFINITY, f64::max) + 16.0_f64.log10()
+        let errors = self.findings.iter().map(Finding::error_log10);
+        errors.fold(f64::NEG_INFINITY, f64::max) + MOST_CLAIMS.log10()
+    }
+
+    /// What the data sheet of the module says of the proof: a section of lines.
+    pub fn sheet(&self) -> Vec<String> {
+        let (proved, open): (Vec<&Finding>, Vec<&Finding>) =
+            self.findings.iter().partition(|f| f.is_proved());
+        let points = if self.points == 1 { "a random point" } else { "random points" };
+        let mut lines = vec![
+            "# Proof".to_owned(),
+            String::new(),
+            format!("Equal to the textbook's at {points} modulo a prime of {} bits:", self.prime_bits),
+        ];
+        for group in proved.chunk_by(|a, b| a.claim.against() == b.claim.against()) {
+            let functions: Vec<String> = group.iter().map(|finding| finding.functions()).collect();
+            lines.push(format!("* {}: {}", functions.join(", "), group[0].claim.against()));
+        }
+        let errors = proved.iter().map(|finding| finding.error_log10());
+        let worst = errors.fold(f64::NEG_INFINITY, f64::max) + MOST_CLAIMS.log10();
+        lines.extend([
+            String::new(),
+            format!("All of it holds but with a probability below 1e{:.0}.", worst.ceil()),
+        ]);
+        let open = open.into_iter().map(Finding::functions).chain(self.undecided.iter().cloned());
+        let has_charts = self.findings.iter().any(|finding| finding.claim == Claim::NewtonStep);
+        let pivoting = (!has_charts).then(|| "the choice of coordinates (pivoting at run time)".to_owned());
+        let not_proved: Vec<String> =
+            open.chain(pivoting).chain(["the size of rounding errors".to_owned()]).collect();
+        lines.push(format!("Not proved: {}.", not_proved.join(", ")));
+        lines
     }
 
     /// The report as JSON.
@@ -89,28 +144,43 @@ impl Report {
         json!({
             "mechanism": self.mechanism,
             "is_proved": self.is_proved(),
+            "is_refuted": self.is_refuted(),
+            "error_log10": self.error_log10(),
             "prime": self.prime(),
             "prime_bits": self.prime_bits,
             "points": self.points,
             "findings": self.findings.iter().map(Finding::to_json).collect::<Vec<_>>(),
             "refusals": refusals.collect::<Vec<_>>(),
             "problems": self.problems,
+            "flaws": self.flaws,
+            "undecided": self.undecided,
         })
     }
 
     fn prime(&self) -> String {
-        if self.is_mersenne { "2^521 - 1".to_owned() } else { format!("random, {} bits", self.prime_bits) }
+        if self.is_mersenne {
+            format!("2^{} - 1", self.prime_bits)
+        } else {
+            format!("random, {} bits", self.prime_bits)
+        }
     }
 }
 
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let verdict = if self.is_proved() { "proved" } else { "NOT PROVED" };
+        let verdict = match (self.is_proved(), self.is_refuted()) {
+            (true, _) => "proved",
+            (_, true) => "REFUTED",
+            _ if self.undecided.is_empty() && self.findings.iter().all(Finding::is_proved) => {
+                "PROVED, BUT FLAWED"
+            }
+            _ => "NOT PROVED",
+        };
         writeln!(f, "{}: {verdict} (prime: {}; points: {})", self.mechanism, self.prime(), self.points)?;
         for refusal in &self.refusals {
             writeln!(f, "  {refusal}")?;
         }
-        for problem in &self.problems {
+        for problem in self.problems.iter().chain(&self.flaws).chain(&self.undecided) {
             writeln!(f, "  {problem}")?;
         }
         for finding in &self.findings {
@@ -119,10 +189,8 @@ impl fmt::Display for Report {
                     format!("degree < 2^{:.0}, error < 1e{:.0}", degree_log2.ceil(), error_log10.ceil())
                 }
                 Verdict::Refuted { residual } => format!("REFUTED: number {residual} is not zero"),
-                Verdict::Undecided { line: Some(line) } => format!("UNDECIDED: line {line} divides by zero"),
-                Verdict::Undecided { line: None } => {
-                    "UNDECIDED: no point has all roots and quotients".to_owned()
-                }
+                Verdict::Divides { line } => format!("REFUTED: line {line} divides by zero"),
+                Verdict::Undecided => "UNDECIDED: no point has all roots and quotients".to_owned(),
             };
             writeln!(f, "  {:26} {:58} {verdict}", finding.functions(), finding.claim.words())?;
         }

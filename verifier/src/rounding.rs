@@ -12,7 +12,8 @@ pub use samples::{Kind, Sample};
 use crate::atoms::{Atoms, Elementary};
 use crate::field::{Field, Precision, Real};
 use crate::interpreter::{self, Given};
-use crate::module::Module;
+use crate::joints::JointLayout;
+use crate::module::{Module, is_on_constraints, source_of_accelerations};
 use crate::numeric;
 use crate::point::Point;
 use gyro_model::Model;
@@ -48,6 +49,8 @@ pub struct Reference<'c> {
     pub results: Vec<(String, Vec<Real<'c>>)>,
     /// The special Euler parameters with which the partition's functions were run.
     pub charts: Vec<usize>,
+    /// The maximal state of the sample's joint state in `f64`; empty where there are no joint coordinates.
+    pub corrected: Vec<f64>,
 }
 
 /// The references of a module at some states of each kind.
@@ -62,9 +65,13 @@ pub fn references<'c>(
     let samples = samples::draw(model, module, states, seed);
     let reference = |sample: Sample| {
         let point = exact_point(model, precision, &sample);
+        let joints = exact_joints(module, precision, &sample);
+        let corrected = corrected_point(module, &constants, &point, &joints)?;
         let charts = charts(module, &constants, &point);
-        let results = results(module, &constants, &Elementary, &point, &charts)?;
-        Some(Reference { sample, results, charts })
+        let given = Inputs { point, corrected, joints };
+        let results = results(module, &constants, &Elementary, &given, &charts)?;
+        let corrected = given.corrected.state.iter().map(Real::to_f64).collect();
+        Some(Reference { sample, results, charts, corrected })
     };
     samples.into_iter().filter_map(reference).collect()
 }
@@ -127,6 +134,11 @@ impl Spread {
 }
 
 impl<'c> Reference<'c> {
+    /// The maximal state in `f64` at which a function is measured.
+    pub fn state(&self, function: &str) -> &[f64] {
+        if is_on_constraints(function) { &self.corrected } else { &self.sample.state }
+    }
+
     /// The results of a function.
     pub fn of(&self, function: &str) -> Option<&[Real<'c>]> {
         let known = self.results.iter().find(|(name, _)| name == function);
@@ -145,17 +157,17 @@ impl Computed {
 }
 
 fn in_double(model: &Model, module: &Module, reference: &Reference) -> Computed {
-    let point = numeric::point(model, (), &reference.sample.state, reference.sample.t, |x| x);
+    let given = Inputs::rounded(model, (), reference, |x| x);
     let constants: Vec<f64> = interpreter::constants((), module);
-    let results = results(module, &constants, &Elementary, &point, &reference.charts);
+    let results = results(module, &constants, &Elementary, &given, &reference.charts);
     Computed(results.unwrap_or_default())
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "rounding to the nearest f32 is what is meant")]
 fn in_single(model: &Model, module: &Module, reference: &Reference) -> Computed {
-    let point = numeric::point(model, (), &reference.sample.state, reference.sample.t, |x| x as f32);
+    let given = Inputs::rounded(model, (), reference, |x| x as f32);
     let constants: Vec<f32> = interpreter::constants((), module);
-    let results = results(module, &constants, &Elementary, &point, &reference.charts).unwrap_or_default();
+    let results = results(module, &constants, &Elementary, &given, &reference.charts).unwrap_or_default();
     let widened = |results: Vec<f32>| results.into_iter().map(f64::from).collect();
     Computed(results.into_iter().map(|(name, results)| (name, widened(results))).collect())
 }
@@ -164,18 +176,65 @@ fn in_single(model: &Model, module: &Module, reference: &Reference) -> Computed 
 fn exact_point<'c>(model: &Model, precision: &'c Precision, sample: &Sample) -> Point<Real<'c>> {
     let mut point = numeric::point(model, precision, &sample.raw, sample.t, |x| Real::new(precision, x));
     for position in point.state[..7 * model.coordinate_bodies().len()].chunks_mut(7) {
-        let square = position[3..].iter().map(|e| e.mul(e)).reduce(|sum, e| sum.add(&e));
-        let length = square.map(|square| square.sqrt());
-        for e in &mut position[3..] {
-            *e = length.as_ref().and_then(|length| e.div(length)).unwrap_or_else(|| e.clone());
-        }
+        to_length_one(&mut position[3..]);
     }
     point
 }
 
+/// The sample's joint state with Euler parameters of length one.
+fn exact_joints<'c>(module: &Module, precision: &'c Precision, sample: &Sample) -> Vec<Real<'c>> {
+    let mut joints: Vec<_> = sample.raw_joints.iter().map(|&x| Real::new(precision, x)).collect();
+    for first in module.joints.iter().flat_map(JointLayout::euler) {
+        to_length_one(&mut joints[first..first + 4]);
+    }
+    joints
+}
+
+fn to_length_one(p: &mut [Real<'_>]) {
+    let square = p.iter().map(|e| e.mul(e)).reduce(|sum, e| sum.add(&e));
+    let length = square.map(|square| square.sqrt());
+    for e in p {
+        *e = length.as_ref().and_then(|length| e.div(length)).unwrap_or_else(|| e.clone());
+    }
+}
+
+/// The point with the maximal state of a joint state; without joint coordinates the point itself.
+fn corrected_point<'c>(
+    module: &Module,
+    constants: &[Real<'c>],
+    point: &Point<Real<'c>>,
+    joints: &[Real<'c>],
+) -> Option<Point<Real<'c>>> {
+    let Some(program) = module.programs.get("to_maximal") else { return Some(point.clone()) };
+    let given = Given { point, accelerations: &[], charts: &[], joints };
+    let state = interpreter::run(module, program, constants, &Elementary, &given).ok()?;
+    Some(Point { state, ..point.clone() })
+}
+
+/// What functions are given.
+struct Inputs<F: Field> {
+    point: Point<F>,
+    corrected: Point<F>,
+    joints: Vec<F>,
+}
+
+impl<F: Field> Inputs<F> {
+    fn rounded(
+        model: &Model,
+        context: F::Context,
+        reference: &Reference<'_>,
+        number: impl Fn(f64) -> F,
+    ) -> Self {
+        let sample = &reference.sample;
+        let point = |state: &[f64]| numeric::point(model, context, state, sample.t, &number);
+        let joints = sample.joints.iter().map(|&x| number(x)).collect();
+        Self { point: point(&sample.state), corrected: point(&reference.corrected), joints }
+    }
+}
+
 /// The charts that the partition takes at a state: of each vector the largest component.
 fn charts<'c>(module: &Module, constants: &[Real<'c>], point: &Point<Real<'c>>) -> Vec<usize> {
-    let given = Given { point, accelerations: &[], charts: &[] };
+    let given = Given { point, accelerations: &[], charts: &[], joints: &[] };
     let Some(program) = module.programs.get("chart_vectors") else { return Vec::new() };
     let vectors = interpreter::run(module, program, constants, &Elementary, &given).unwrap_or_default();
     let size = |x: &Real| x.to_f64().abs();
@@ -190,16 +249,20 @@ fn results<F: Field>(
     module: &Module,
     constants: &[F],
     atoms: &dyn Atoms<F>,
-    point: &Point<F>,
+    inputs: &Inputs<F>,
     charts: &[usize],
 ) -> Option<Vec<(String, Vec<F>)>> {
-    let one_hot = |chart: &usize| [0, 1, 2, 3].map(|k| F::integer(point.context, i64::from(k == *chart)));
+    let context = inputs.point.context;
+    let one_hot = |chart: &usize| [0, 1, 2, 3].map(|k| F::integer(context, i64::from(k == *chart)));
     let charts: Vec<_> = charts.iter().map(one_hot).collect();
     let run = |function: &str, accelerations: &[F]| {
-        let given = Given { point, accelerations, charts: &charts };
+        let point = if is_on_constraints(function) { &inputs.corrected } else { &inputs.point };
+        let given = Given { point, accelerations, charts: &charts, joints: &inputs.joints };
         interpreter::run(module, &module.programs[function], constants, atoms, &given).ok()
     };
-    let accelerations = run("accelerations", &[])?;
-    let functions = module.programs.keys();
-    functions.map(|function| Some((function.clone(), run(function, &accelerations)?))).collect()
+    let result = |function: &String| {
+        let accelerations = run(source_of_accelerations(function), &[])?;
+        Some((function.clone(), run(function, &accelerations)?))
+    };
+    module.programs.keys().map(result).collect()
 }

@@ -1,12 +1,12 @@
 //! Verifies one module from its text.
 
-use crate::field::Prime;
 use crate::module::Module;
-use crate::proof::{self, Claim, Decider, Verdict};
-use crate::refusal::Refusal;
+use crate::proof::{Claim, Decider, Statements, Verdict};
 use crate::report::{ACCEPTED_LOG10, Finding, Report};
 use crate::{numeric, structure};
 use gyro_model::Model;
+use num_bigint::BigUint;
+use std::f64::consts::LOG10_2;
 
 /// How thorough to be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,42 +41,77 @@ pub fn verify(model: &Model, module: &str, constants: &str, depth: Depth) -> Rep
     }
 }
 
-/// Proves a module that was read, modulo the shorter of two primes that has the roots and bounds the error.
+/// Proves a module that was read.
 fn prove(model: &Model, module: &Module, report: Report) -> Report {
-    let report = Report {
-        refusals: structure::problems(model, module),
+    let mut report = Report {
+        flaws: structure::problems(model, module).iter().map(ToString::to_string).collect(),
         problems: numeric::problems(model, module),
         ..report
     };
-    modulo::<9>(model, module, &report).or_else(|| modulo::<36>(model, module, &report)).unwrap_or_else(
-        || {
-            let refusal =
-                Refusal::new(1, "the square roots of the constants or the degrees need too long a prime");
-            Report { refusals: vec![refusal], ..report }
-        },
-    )
+    let mut claims = Claim::all(module);
+    claims.retain(|claim| *claim != Claim::Outputs || !model.outputs.is_empty());
+    let statements = Statements::new(model, module, &claims);
+    let degree_log2 = statements.degrees_log2().into_iter().flatten().fold(0.0, f64::max);
+    let points = f64::from(report.points);
+    let bounds_error = |bits: u64| points * (degree_log2 - bits as f64) * LOG10_2 <= ACCEPTED_LOG10;
+    let always = |_: u64| true;
+    // Where no prime is long enough to bound the error, the shortest may still show a mistake.
+    let tested = by_shortest(model, module, &statements, report.points, &bounds_error)
+        .or_else(|| by_shortest(model, module, &statements, report.points, &always));
+    let Some(tested) = tested else {
+        report.undecided.push("the square roots of the constants need too long a prime".to_owned());
+        return report;
+    };
+    let findings = claims.into_iter().zip(tested.verdicts);
+    report.findings = findings.map(|(claim, verdict)| Finding { claim, verdict }).collect();
+    match tested.sparsity {
+        Ok(flaws) => report.flaws.extend(flaws),
+        Err(_) => report.undecided.push("the patterns could be tested at no point".to_owned()),
+    }
+    report.prime_bits = tested.prime.bits();
+    report.is_mersenne = tested.prime.count_ones() == report.prime_bits;
+    report
 }
 
-/// Proves modulo a prime of this many limbs; `None` if it is too short.
-fn modulo<const L: usize>(model: &Model, module: &Module, report: &Report) -> Option<Report> {
-    let decider = Decider::<L>::new(model, proof::prime(model, module, SEED).ok()?);
-    let is_long_enough = |verdict: &Verdict| match verdict {
-        Verdict::Proved { error_log10, .. } => *error_log10 <= ACCEPTED_LOG10,
-        _ => true,
-    };
-    let mut report = report.clone();
-    for claim in Claim::all(module.n_charts.is_some()) {
-        let verdict = decider.decide(module, claim, report.points, SEED);
-        if !is_long_enough(&verdict) {
-            return None;
-        }
-        report.findings.push(Finding { claim, verdict });
+/// What came of tests modulo a prime.
+struct Tested {
+    prime: BigUint,
+    verdicts: Vec<Verdict>,
+    sparsity: Result<Vec<String>, Verdict>,
+}
+
+/// Tests modulo the shortest of three primes that has the roots of the constants and is long enough.
+fn by_shortest(
+    model: &Model,
+    module: &Module,
+    statements: &Statements<'_>,
+    points: u32,
+    is_long_enough: &dyn Fn(u64) -> bool,
+) -> Option<Tested> {
+    modulo::<9>(model, module, statements, points, is_long_enough)
+        .or_else(|| modulo::<36>(model, module, statements, points, is_long_enough))
+        .or_else(|| modulo::<70>(model, module, statements, points, is_long_enough))
+}
+
+/// Tests modulo a prime of this many limbs; `None` if it is too short.
+fn modulo<const L: usize>(
+    model: &Model,
+    module: &Module,
+    statements: &Statements<'_>,
+    points: u32,
+    is_long_enough: &dyn Fn(u64) -> bool,
+) -> Option<Tested> {
+    if !is_long_enough(64 * L as u64) {
+        return None;
     }
-    match decider.sparsity(module, SEED) {
-        Ok(problems) => report.problems.extend(problems),
-        Err(_) => report.problems.push("the patterns could not be tested at any point".to_owned()),
+    let prime = statements.prime::<L>(SEED).ok()?;
+    if !is_long_enough(prime.value().bits() - 1) {
+        return None;
     }
-    report.prime_bits = decider.prime().value().bits();
-    report.is_mersenne = decider.prime().value() == Prime::<9>::mersenne().value();
-    Some(report)
+    let decider = Decider::<L>::new(model, prime);
+    Some(Tested {
+        verdicts: decider.decide_all(statements, points, SEED),
+        sparsity: decider.sparsity(module, SEED),
+        prime: decider.prime().value().clone(),
+    })
 }

@@ -5,6 +5,8 @@ use crate::failure::Failure;
 use crate::verify::verify_quickly;
 use crate::words::count;
 use crate::{files, remarks, scene};
+use gyro_codegen::Module;
+use rayon::prelude::*;
 use similar::TextDiff;
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -59,16 +61,10 @@ fn outputs(args: &GenerateArgs, places: &[Places]) -> Result<Outputs, Failure> {
     let mut outputs = Outputs::default();
     let mut names = vec![Vec::new(); places.len()];
     let mut sources: Vec<(PathBuf, &PathBuf)> = Vec::new();
-    for page in &pages {
-        let model = scene::read(page)?;
-        remarks::report_redundant(&model, &page.display().to_string(), args.strict)?;
-        let module = gyro_codegen::generate_model(&files::shown(page), &model)
-            .map_err(|e| Failure::Usage(format!("{}: {e}", page.display())))?;
+    for (page, made) in pages.iter().zip(modules(&pages, args.strict)) {
+        let module = made?;
         let place = places.iter().position(|place| args.out.is_none() && is_in(page, &place.models));
         let path = args.out.clone().unwrap_or_else(|| module_path(places, page, &module.name));
-        if !args.check && !files::holds(&path, &module.code) {
-            verify_quickly(&model, &module)?;
-        }
         if let Some((_, other)) = sources.iter().find(|(known, _)| *known == path) {
             let (this, other) = (page.display(), other.display());
             return Err(Failure::Usage(format!("{this} and {other} have the same name `{}`", module.name)));
@@ -84,6 +80,33 @@ fn outputs(args: &GenerateArgs, places: &[Places]) -> Result<Outputs, Failure> {
         outputs.to_do.extend(by_hand(&place.generated, names, args.models.is_empty())?);
     }
     Ok(outputs)
+}
+
+/// The modules of pages, each proved and with the proof on its data sheet.
+fn modules(pages: &[PathBuf], strict: bool) -> Vec<Result<Module, Failure>> {
+    let module = |page: &PathBuf| {
+        let model = scene::read(page)?;
+        remarks::report_redundant(&model, &page.display().to_string(), strict)?;
+        let mut module = gyro_codegen::generate_model(&files::shown(page), &model)
+            .map_err(|e| Failure::Usage(format!("{}: {e}", page.display())))?;
+        let report = verify_quickly(&model, &module)?;
+        module.code = with_sheet(&module.code, &report.sheet());
+        Ok(module)
+    };
+    pages.par_iter().map(module).collect()
+}
+
+/// A module with more lines at the end of its data sheet.
+fn with_sheet(code: &str, lines: &[String]) -> String {
+    let is_sheet = |line: &str| line.starts_with("//!");
+    let head: usize = code
+        .split_inclusive('\n')
+        .take_while(|line| is_sheet(line) || !line.starts_with("///"))
+        .map(str::len)
+        .sum();
+    let (head, rest) = code.split_at(head);
+    let lines: String = lines.iter().map(|line| format!("//! {line}").trim_end().to_owned() + "\n").collect();
+    format!("{}\n//!\n{lines}\n{rest}", head.trim_end())
 }
 
 /// How a generated module begins.

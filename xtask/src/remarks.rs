@@ -1,4 +1,4 @@
-//! What is to be said of a model besides its motion: redundant rows.
+//! What is to be said of a model besides its motion: redundant rows, and other warnings.
 
 use crate::failure::Failure;
 use crate::words::count;
@@ -15,11 +15,14 @@ pub(crate) fn report_redundant(model: &Model, page: &str, strict: bool) -> Resul
         let rows = count(lines.len() as u64, "redundant constraint row");
         return Err(Failure::Usage(format!("{page} has {rows}, refused by --strict:\n{}", lines.join("\n"))));
     }
-    for line in lines {
-        // Nobody is left to be warned if standard error is closed.
-        let _ = writeln!(std::io::stderr(), "warning: {page}: {line}");
-    }
+    lines.iter().for_each(|line| warn(&format!("{page}: {line}")));
     Ok(())
+}
+
+/// Says something on standard error.
+pub(crate) fn warn(words: &str) {
+    // Nobody is left to be warned if standard error is closed.
+    let _ = writeln!(std::io::stderr(), "warning: {words}");
 }
 
 /// A dropped row in words: whose it is, what it says, and whose multipliers are not unique without it.

@@ -9,7 +9,8 @@ use std::collections::HashMap;
 use std::hash::Hash;
 
 /// Atoms over integers modulo a prime. What the functions are known to satisfy, the values do: `sin² + cos² = 1`, the
-/// double angle, sine, tanh and atan2 (in its first argument) are odd and cosine even, `√x² = x` and `√x √y = √(x y)`.
+/// double angle, sine, tanh and atan2 (in its first argument) are odd and cosine even, `√x² = x` and `√x √y = √(x y)`. Also
+/// `atan2(0, x) = 0`, which holds if x is positive: that it is must be seen elsewhere.
 #[derive(Debug)]
 pub struct Drawn<'p, const L: usize> {
     prime: &'p Prime<L>,
@@ -19,6 +20,8 @@ pub struct Drawn<'p, const L: usize> {
     tanh: Table<[u64; L], Modular<'p, L>>,
     atan2: Table<([u64; L], [u64; L]), Modular<'p, L>>,
     splines: Table<(Vec<u64>, [u64; L]), [Modular<'p, L>; 3]>,
+    /// What stands for roots that do not exist.
+    roots: Table<[u64; L], Modular<'p, L>>,
     missed: Cell<bool>,
 }
 
@@ -34,11 +37,12 @@ impl<'p, const L: usize> Drawn<'p, L> {
             tanh: RefCell::default(),
             atan2: RefCell::default(),
             splines: RefCell::default(),
+            roots: RefCell::default(),
             missed: Cell::new(false),
         }
     }
 
-    /// Whether a root was asked for that does not exist: another point is needed.
+    /// Whether a root was asked for that does not exist.
     pub fn missed_root(&self) -> bool {
         self.missed.get()
     }
@@ -124,15 +128,19 @@ impl<'p, const L: usize> Atoms<Modular<'p, L>> for Drawn<'p, L> {
     }
 
     fn atan2(&self, y: &Modular<'p, L>, x: &Modular<'p, L>) -> Modular<'p, L> {
+        if y.is_zero() {
+            return *y;
+        }
         let key = unsigned(y).zip(x.key());
         let value = self.value(&self.atan2, key.map(|((y, _), x)| (y, x)));
         signed(&value, key.is_some_and(|((_, negated), _)| negated))
     }
 
+    /// Where there is no root, any number in its place.
     fn sqrt(&self, x: &Modular<'p, L>) -> Modular<'p, L> {
         x.sqrt().unwrap_or_else(|| {
             self.missed.set(true);
-            Modular::undefined(self.prime)
+            self.value(&self.roots, x.key())
         })
     }
 
@@ -167,6 +175,7 @@ mod tests {
             assert_eq!(atoms.tanh(&x.neg()), atoms.tanh(&x).neg());
             assert_eq!(atoms.atan2(&x.neg(), &one), atoms.atan2(&x, &one).neg());
             assert_ne!(atoms.atan2(&x, &one), atoms.atan2(&x, &one.neg()));
+            assert!(atoms.atan2(&x.sub(&x), &x).is_zero());
             assert_ne!(atoms.tanh(&x), sin);
             let square = x.mul(&x);
             assert_eq!(atoms.sqrt(&square).mul(&atoms.sqrt(&square)), square);

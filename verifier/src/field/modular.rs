@@ -115,10 +115,11 @@ impl<'p, const L: usize> Field for Modular<'p, L> {
         zero.sub(self)
     }
 
-    /// By Fermat: `x^(p − 2)`.
+    /// By Euclid's algorithm.
     fn inv(&self) -> Option<Self> {
-        let undefined_or_not_zero = !self.is_zero();
-        undefined_or_not_zero.then(|| self.power(self.prime.inverse_exponent()))
+        let inverse = || self.residue().and_then(|residue| residue.modinv(self.prime.value()));
+        let limbs = || inverse().map(|inverse| self.prime.in_montgomery_form(&inverse));
+        (!self.is_zero()).then(|| Self { limbs: limbs(), prime: self.prime })
     }
 
     fn is_zero(&self) -> bool {

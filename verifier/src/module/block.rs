@@ -21,8 +21,10 @@ pub enum Known {
     Time,
     /// The argument y.
     State,
-    /// The argument or buffer of accelerations.
+    /// The argument or buffer of accelerations or rates.
     Accelerations,
+    /// The argument x.
+    Joints,
     /// The argument `choice`.
     Choice,
     /// The charts as unit vectors.
@@ -38,6 +40,7 @@ pub enum Known {
 pub struct Sizes {
     pub state: usize,
     pub accelerations: usize,
+    pub joints: usize,
     pub charts: usize,
     pub tables: usize,
 }
@@ -53,6 +56,16 @@ pub enum Form {
     Energy,
     /// `y[3] = ...; Ok(())`
     Stores,
+    /// `x[0] = ...; x[1] = ...;`, all of them.
+    Joints,
+}
+
+/// What a function has another one compute first: the buffer and the call.
+#[derive(Clone, Copy, Debug)]
+pub struct Before {
+    pub buffer: &'static str,
+    pub made_by: &'static str,
+    pub call: &'static str,
 }
 
 /// Reads one function body.
@@ -61,6 +74,7 @@ pub struct Reader<'a> {
     pub constants: &'a Constants,
     pub used_constants: &'a mut [bool],
     pub sizes: Sizes,
+    pub before: Option<Before>,
     pub program: Program,
     names: HashMap<String, Name>,
 }
@@ -78,8 +92,10 @@ impl<'a> Reader<'a> {
         constants: &'a Constants,
         used_constants: &'a mut [bool],
         sizes: Sizes,
+        before: Option<Before>,
     ) -> Self {
-        Self { model, constants, used_constants, sizes, program: Program::default(), names: HashMap::new() }
+        let (program, names) = (Program::default(), HashMap::new());
+        Self { model, constants, used_constants, sizes, before, program, names }
     }
 
     /// Makes an argument known; one with an underscore is not to be used.
@@ -87,11 +103,26 @@ impl<'a> Reader<'a> {
         let known = match name {
             "t" => Known::Time,
             "y" => Known::State,
+            "x" => Known::Joints,
             "accelerations" => Known::Accelerations,
             "choice" => Known::Choice,
-            "out" | "dy" | "lambda" => Known::Target,
+            "out" => Known::Target,
             _ => return,
         };
+        self.learn(name, known);
+    }
+
+    /// Makes the argument known that is written.
+    pub fn target(&mut self, name: &str) {
+        self.learn(name, Known::Target);
+    }
+
+    /// Makes the buffer x known, which is written, and read before.
+    pub fn buffer(&mut self) {
+        self.names.insert("x".to_owned(), Name { known: Known::Joints, line: 0, is_used: true });
+    }
+
+    fn learn(&mut self, name: &str, known: Known) {
         self.names.insert(name.to_owned(), Name { known, line: 0, is_used: false });
     }
 
@@ -119,9 +150,9 @@ impl<'a> Reader<'a> {
         let mut statements = block.stmts.as_slice();
         while let [Stmt::Local(local), rest @ ..] = statements {
             statements = rest;
-            if starts_accelerations(local) {
+            if let Some(before) = self.before.filter(|before| before.starts(local)) {
                 let [call, rest @ ..] = statements else { return Err(refused(local)) };
-                self.accelerations(call)?;
+                self.compute_first(before, call)?;
                 statements = rest;
             } else {
                 self.binding(local)?;
@@ -187,7 +218,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// `y[3]`, `charts[0][1]`: only bindings read the state and the charts.
+    /// `y[3]`, `x[3]`, `charts[0][1]`.
     fn argument_element(&mut self, array: &Expr, index: &Expr) -> Result<Option<Source>, Refusal> {
         if let Expr::Index(inner) = array {
             if self.known(&inner.expr)? != Known::Charts {
@@ -197,11 +228,13 @@ impl<'a> Reader<'a> {
             let exists = chart < self.sizes.charts && k < 4;
             return if exists { Ok(Some(Source::Chart(chart, k))) } else { Err(refused(index)) };
         }
-        if self.known(array)? != Known::State {
-            return Ok(None);
-        }
+        let (size, source): (usize, fn(usize) -> Source) = match self.known(array)? {
+            Known::State => (self.sizes.state, Source::State),
+            Known::Joints => (self.sizes.joints, Source::Joint),
+            _ => return Ok(None),
+        };
         let place = integer(index)?;
-        if place < self.sizes.state { Ok(Some(Source::State(place))) } else { Err(refused(index)) }
+        if place < size { Ok(Some(source(place))) } else { Err(refused(index)) }
     }
 
     /// `let (a, b,) = { ...; (a, b,) };`: the bindings inside, of which only some go on.
@@ -239,15 +272,17 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// `gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);` after its buffer.
-    fn accelerations(&mut self, statement: &Stmt) -> Result<(), Refusal> {
-        let is_call = text(statement)
-            == "gyro_sim :: Equations :: accelerations (self , t , y , & mut accelerations) ;";
-        for argument in ["t", "y"] {
-            let entry = self.names.get_mut(argument).filter(|_| is_call);
-            entry.ok_or_else(|| refused(statement))?.is_used = true;
+    /// `gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);` or the like, after its buffer.
+    fn compute_first(&mut self, before: Before, statement: &Stmt) -> Result<(), Refusal> {
+        if text(statement) != before.call {
+            return Err(refused(statement));
         }
-        self.bind("accelerations".to_owned(), Known::Accelerations, statement.span())
+        for argument in ["t", "x", "y"] {
+            if let Some(entry) = self.names.get_mut(argument) {
+                entry.is_used = true;
+            }
+        }
+        self.bind(before.buffer.to_owned(), Known::Accelerations, statement.span())
     }
 
     fn results(&mut self, statements: &[Stmt], block: &Block, form: Form) -> Result<(), Refusal> {
@@ -281,7 +316,15 @@ impl<'a> Reader<'a> {
                 energy.fields.iter().try_for_each(|field| self.result(&field.expr))
             }
             (Form::Stores, [stores @ .., Stmt::Expr(end, None)]) if text(end) == "Ok (())" => {
-                stores.iter().try_for_each(|store| self.store(store))
+                stores.iter().try_for_each(|store| self.store(store, "y", Known::State))
+            }
+            (Form::Joints, stores) => {
+                stores.iter().try_for_each(|store| self.store(store, "x", Known::Joints))?;
+                if self.program.places.len() == self.sizes.joints {
+                    Ok(())
+                } else {
+                    Err(Refusal::at(block.span(), "not all joint coordinates are stored"))
+                }
             }
             _ => Err(Refusal::at(
                 statements.first().map_or(block.span(), Spanned::span),
@@ -294,29 +337,40 @@ impl<'a> Reader<'a> {
         array.elems.iter().try_for_each(|element| self.result(element))
     }
 
+    /// An expression, or something given that goes through.
     fn result(&mut self, expression: &Expr) -> Result<(), Refusal> {
-        let id = self.expression(expression)?;
+        let given = match expression {
+            Expr::Index(index) => self.argument_element(&index.expr, &index.index)?,
+            _ => None,
+        };
+        let id = match given {
+            Some(source) => self.push(Node::Read(source), expression.span()),
+            None => self.expression(expression)?,
+        };
         self.program.results.push(id);
         Ok(())
     }
 
     /// `y[3] = ...;`
-    fn store(&mut self, statement: &Stmt) -> Result<(), Refusal> {
+    fn store(&mut self, statement: &Stmt, name: &str, known: Known) -> Result<(), Refusal> {
         let Stmt::Expr(Expr::Assign(assign), Some(_)) = statement else { return Err(refused(statement)) };
         let Expr::Index(target) = &*assign.left else { return Err(refused(statement)) };
         let place = integer(&target.index)?;
         let is_new = self.program.places.last().is_none_or(|&last| last < place);
-        if !is_name(&target.expr, "y")
-            || self.known(&target.expr)? != Known::State
-            || place >= self.sizes.state
-        {
+        let size = if known == Known::State { self.sizes.state } else { self.sizes.joints };
+        if !is_name(&target.expr, name) || self.known(&target.expr)? != known || place >= size {
             return Err(refused(statement));
         }
         if !is_new {
-            return Err(Refusal::at(statement.span(), format!("y[{place}] is stored after a later element")));
+            let message = format!("{name}[{place}] is stored after a later element");
+            return Err(Refusal::at(statement.span(), message));
         }
         self.program.places.push(place);
-        self.result(&assign.right)
+        // What was stored before must not be read.
+        match &*assign.right {
+            Expr::Index(index) if is_name(&index.expr, name) => Err(refused(statement)),
+            right => self.result(right),
+        }
     }
 }
 
@@ -352,8 +406,15 @@ pub fn pattern(block: &Block) -> Result<Vec<(usize, usize)>, Refusal> {
     array.elems.iter().map(place).collect()
 }
 
-fn starts_accelerations(local: &Local) -> bool {
-    text(local) == "let mut accelerations = gyro_sim :: Equations :: accelerations_buffer (self) ;"
+impl Before {
+    /// What the call hands on.
+    pub fn arguments(&self) -> impl Iterator<Item = &'static str> {
+        self.call.split([' ', '(']).filter(|word| ["t", "y", "x"].contains(word))
+    }
+
+    fn starts(&self, local: &Local) -> bool {
+        text(local) == format!("let mut {} = {} ;", self.buffer, self.made_by)
+    }
 }
 
 fn text(tokens: &impl quote::ToTokens) -> String {

@@ -10,7 +10,7 @@ use std::iter::Peekable;
 pub struct Hole {
     /// The braces with what is in them.
     pub body: Group,
-    /// Names of the arguments that the expected text leaves to choice, `ANY_t` for `t` or `_t`.
+    /// Names of the arguments that the expected text leaves to choice, `ANY_t` for `t` or any name of what is not read, `_t`.
     pub arguments: Vec<String>,
     /// The function's documentation.
     pub doc: String,
@@ -104,7 +104,7 @@ impl Matched {
 
     fn argument(&mut self, open: &str, found: &Ident) -> Result<(), Refusal> {
         let (name, found_name) = (open.trim_start_matches("ANY_"), found.to_string());
-        if found_name != name && found_name.strip_prefix('_') != Some(name) {
+        if found_name != name && !found_name.starts_with('_') {
             return Err(Refusal::at(
                 found.span(),
                 format!("expected the argument `{name}`, found `{found_name}`"),

@@ -3,6 +3,7 @@
 //! Function bodies are left open as `{ HOLE_name }`, counts that depend on formulas as `INT_name`, and arguments that a body may
 //! leave unread as `ANY_name`.
 
+use crate::joints::JointLayout;
 use gyro_model::{JointKind, Model, Parameter, RowOwner, RowUnit, Spline, to_f64};
 use std::fmt::Display;
 
@@ -16,14 +17,21 @@ pub enum Choice {
 }
 
 /// The expected text.
-pub fn text(model: &Model, type_name: &str, tables: &[Spline], choice: Choice) -> String {
+pub fn text(
+    model: &Model,
+    type_name: &str,
+    tables: &[Spline],
+    choice: Choice,
+    joints: Option<(&JointLayout, bool)>,
+) -> String {
     [
         constants(tables),
         definition(model, type_name),
         ode(model, type_name),
         mechanism(model, type_name),
-        partition(model, type_name, choice),
+        partition(model, type_name, choice, joints.is_some()),
         equations(model, type_name),
+        joints.map(|(joints, multipliers)| joint_space(type_name, joints, multipliers)).unwrap_or_default(),
         ports(model, type_name),
     ]
     .concat()
@@ -260,16 +268,20 @@ fn descriptions(model: &Model) -> String {
     )
 }
 
-fn partition(model: &Model, name: &str, choice: Choice) -> String {
+fn partition(model: &Model, name: &str, choice: Choice, is_tree: bool) -> String {
+    let corrected = "fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        HOLE_corrected_derivative
+    }";
+    let corrected = if is_tree { corrected } else { "" };
     match choice {
-        Choice::Charts => by_charts(model, name),
-        Choice::Pivoting => by_pivoting(model, name),
+        Choice::Charts => by_charts(model, name, corrected),
+        Choice::Pivoting => by_pivoting(model, name, corrected),
     }
 }
 
 const SOLVED: &str = "::core::result::Result<(), gyro_sim::Error>";
 
-fn by_charts(model: &Model, name: &str) -> String {
+fn by_charts(model: &Model, name: &str, corrected: &str) -> String {
     let solves = lines(["newton_step", "solve_velocities"].map(|solve| {
         format!(
             "fn {solve}(&self, ANY_t: T, ANY_choice: &Self::Independent, ANY_y: &mut Self::State) -> {SOLVED} {{
@@ -290,12 +302,13 @@ fn by_charts(model: &Model, name: &str) -> String {
                 gyro_sim::charts::follow(&self.chart_vectors(y), choice)
             }}
             {solves}
+            {corrected}
         }}",
         n_state(model)
     )
 }
 
-fn by_pivoting(model: &Model, name: &str) -> String {
+fn by_pivoting(model: &Model, name: &str, corrected: &str) -> String {
     let n = model.coordinate_bodies().len();
     let solves = lines(["newton_step", "solve_velocities"].map(|solve| {
         format!(
@@ -314,6 +327,7 @@ fn by_pivoting(model: &Model, name: &str) -> String {
                 gyro_sim::pivoting::follow(self, t, y, choice)
             }}
             {solves}
+            {corrected}
         }}",
         model.rows().len() + n,
         7 * n
@@ -332,10 +346,7 @@ fn equations(model: &Model, name: &str) -> String {
             type PhiQ = [T; INT_phi_q];
             type PhiPi = [T; INT_phi_pi];
             type Accelerations = [T; INT_accelerations];
-            {} {patterns} {}
-            fn multipliers(
-                &self, ANY_t: T, ANY_y: &Self::State, ANY_accelerations: &Self::Accelerations, lambda: &mut Self::Rows,
-            ) {{ HOLE_multipliers }}
+            {} {patterns} {} {}
         }}",
         buffers(&[
             ("velocities", "Velocities", &velocities),
@@ -351,6 +362,39 @@ fn equations(model: &Model, name: &str) -> String {
             ("applied_force", "Velocities"),
             ("accelerations", "Accelerations"),
         ]),
+        multipliers("multipliers", "Accelerations"),
+    )
+}
+
+fn multipliers(name: &str, accelerations: &str) -> String {
+    format!(
+        "fn {name}(
+            &self, ANY_t: T, ANY_y: &Self::State, ANY_accelerations: &Self::{accelerations}, lambda: &mut Self::Rows,
+        ) {{ HOLE_{name} }}"
+    )
+}
+
+fn joint_space(name: &str, joints: &JointLayout, has_multipliers: bool) -> String {
+    let multipliers =
+        if has_multipliers { multipliers("corrected_multipliers", "Velocities") } else { String::new() };
+    let (n_state, n_rates) = (joints.n_state(), joints.n_rates);
+    format!(
+        "impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for {name}<T> {{
+            type Joints = [T; {n_state}];
+            type Rates = [T; {n_rates}];
+            fn joint_start(&self) -> Self::Joints {{ HOLE_joint_start }}
+            {}
+            fn joint_accelerations(&self, ANY_t: T, ANY_x: &Self::Joints, ANY_out: &mut Self::Rates) {{
+                HOLE_joint_accelerations
+            }}
+            fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {{ HOLE_joint_derivative }}
+            fn to_maximal(&self, ANY_t: T, ANY_x: &Self::Joints, y: &mut Self::State) {{ HOLE_to_maximal }}
+            fn to_joints(&self, ANY_t: T, ANY_y: &Self::State, x: &mut Self::Joints) {{ HOLE_to_joints }}
+            {}
+            {multipliers}
+        }}",
+        buffers(&[("rates", "Rates", &n_rates.to_string())]),
+        fillings(&[("joint_accelerations_at", "Rates"), ("corrected_accelerations", "Velocities")]),
     )
 }
 

@@ -1,68 +1,51 @@
-//! A module and the textbook at one point.
+//! A module and the textbook on one tape.
 
-use crate::atoms::Atoms;
 use crate::field::Field;
-use crate::interpreter::{self, DivisionByZero, Given};
-use crate::module::Module;
+use crate::joints::JointLayout;
+use crate::module::{Module, n_state};
 use crate::point::Point;
+use crate::program::Source;
+use crate::rates::rates;
+use crate::tape::{Tape, Term, Written};
 use crate::textbook::{Evaluation, Textbook};
 use gyro_model::Model;
-use std::fmt;
 
-/// What both sides are evaluated with.
-pub struct Case<'a, F: Field> {
+/// What claims are made of: both sides at a point that is not chosen yet.
+pub(super) struct Case<'a> {
     /// The description.
     pub model: &'a Model,
-    /// The textbook.
-    pub textbook: &'a Textbook<'a>,
     /// The emitted module.
     pub module: &'a Module,
-    /// Its constants as numbers.
-    pub constants: Vec<F>,
-    /// The functions that are not rational.
-    pub atoms: &'a dyn Atoms<F>,
     /// Where, with |p| = 1.
-    pub point: Point<F>,
+    pub point: Point<Term<'a>>,
     /// A factor for each body, by which Euler parameters are made longer where that must not matter.
-    pub factors: Vec<F>,
+    pub factors: Vec<Term<'a>>,
     /// A vector for each chart.
-    pub charts: Vec<[F; 4]>,
+    pub charts: Vec<[Term<'a>; 4]>,
+    /// A joint state, with Euler parameters of length one.
+    pub joints: Vec<Term<'a>>,
+    /// Another one.
+    pub before: Vec<Term<'a>>,
+    textbook: &'a Textbook<'a>,
+    tape: &'a Tape,
 }
 
-/// Why a point decides nothing.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Undecided {
-    /// The module divides by zero there, in this line.
-    Module(usize),
-    /// The textbook does.
-    Textbook,
-}
-
-impl From<DivisionByZero> for Undecided {
-    fn from(DivisionByZero { line }: DivisionByZero) -> Self {
-        Self::Module(line)
-    }
-}
-
-impl<F: Field> fmt::Debug for Case<'_, F> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut text = f.debug_struct("Case");
-        text.field("model", &self.model.name).field("point", &self.point).finish_non_exhaustive()
-    }
-}
-
-impl<F: Field> Case<'_, F> {
-    /// The same point for another module.
-    pub fn of<'b>(&'b self, module: &'b Module) -> Case<'b, F> {
-        Case {
-            model: self.model,
-            textbook: self.textbook,
+impl<'a> Case<'a> {
+    /// Writes on a tape.
+    pub fn new(model: &'a Model, textbook: &'a Textbook<'a>, module: &'a Module, tape: &'a Tape) -> Self {
+        let read = |source| tape.read(source);
+        let charts = 0..module.n_charts.unwrap_or(0);
+        let joints = 0..module.joints.as_ref().map_or(0, JointLayout::n_state);
+        Self {
+            model,
             module,
-            constants: interpreter::constants(self.point.context, module),
-            atoms: self.atoms,
-            point: self.point.clone(),
-            factors: self.factors.clone(),
-            charts: self.charts.clone(),
+            point: point(model, tape),
+            factors: (0..model.coordinate_bodies().len()).map(|slot| read(Source::Factor(slot))).collect(),
+            charts: charts.map(|chart| [0, 1, 2, 3].map(|k| read(Source::Chart(chart, k)))).collect(),
+            joints: joints.clone().map(|k| read(Source::Joint(k))).collect(),
+            before: joints.map(|k| read(Source::Before(k))).collect(),
+            textbook,
+            tape,
         }
     }
 
@@ -72,12 +55,12 @@ impl<F: Field> Case<'_, F> {
     }
 
     /// The textbook's formulas at a point.
-    pub fn textbook<'s>(&'s self, point: &'s Point<F>) -> Result<Evaluation<'s, F>, Undecided> {
-        self.textbook.at(point, self.atoms).ok_or(Undecided::Textbook)
+    pub fn textbook<'s>(&'s self, point: &'s Point<Term<'a>>) -> Option<Evaluation<'s, Term<'a>>> {
+        self.textbook.at(point, &Written)
     }
 
     /// What a function of the module gives at a point.
-    pub fn run(&self, function: &str, point: &Point<F>) -> Result<Vec<F>, Undecided> {
+    pub fn run(&self, function: &str, point: &Point<Term<'a>>) -> Vec<Term<'a>> {
         self.run_with(function, point, &[])
     }
 
@@ -85,28 +68,78 @@ impl<F: Field> Case<'_, F> {
     pub fn run_with(
         &self,
         function: &str,
-        point: &Point<F>,
-        accelerations: &[F],
-    ) -> Result<Vec<F>, Undecided> {
+        point: &Point<Term<'a>>,
+        accelerations: &[Term<'a>],
+    ) -> Vec<Term<'a>> {
+        let nodes = self.nodes(function, point, accelerations, &self.joints);
+        self.module.programs[function].results.iter().map(|&id| nodes[id]).collect()
+    }
+
+    /// All nodes of a function, which may read a joint state.
+    fn nodes(
+        &self,
+        function: &str,
+        point: &Point<Term<'a>>,
+        accelerations: &[Term<'a>],
+        joints: &[Term<'a>],
+    ) -> Vec<Term<'a>> {
+        let read = |source| match source {
+            Source::Acceleration(k) => accelerations[k],
+            Source::Joint(k) => joints[k],
+            Source::Chart(chart, k) => self.charts[chart][k],
+            Source::Factor(slot) => self.factors[slot],
+            Source::Before(k) => self.before[k],
+            source => *point.given(source).expect("the rest is the point's"),
+        };
+        let Module { programs, constants, tables, .. } = self.module;
+        self.tape.copy(&programs[function], &constants.values, tables, &read)
+    }
+
+    /// What a function gives whose buffer holds a joint state before, and how fast that changes.
+    pub fn run_along(
+        &self,
+        function: &str,
+        point: &Point<Term<'a>>,
+        joints: &[Term<'a>],
+        rate: &dyn Fn(Source) -> Option<Term<'a>>,
+    ) -> Option<[Vec<Term<'a>>; 2]> {
+        let nodes = self.nodes(function, point, &[], joints);
         let program = &self.module.programs[function];
-        let given = Given { point, accelerations, charts: &self.charts };
-        Ok(interpreter::run(self.module, program, &self.constants, self.atoms, &given)?)
+        let rates = rates(program, &nodes, &self.module.tables, &Written, rate)?;
+        let zero = Term::zero(self.tape);
+        let results = || program.results.iter();
+        Some([
+            results().map(|&id| nodes[id]).collect(),
+            results().map(|&id| rates[id].unwrap_or(zero)).collect(),
+        ])
     }
 
     /// Accelerations (with the multipliers that they come with) and all multipliers.
-    pub fn motion(&self) -> Result<(Vec<F>, Vec<F>), Undecided> {
-        let accelerations = self.run("accelerations", &self.point)?;
-        let multipliers = self.run_with("multipliers", &self.point, &accelerations)?;
-        Ok((accelerations, multipliers))
+    pub fn motion(&self) -> (Vec<Term<'a>>, Vec<Term<'a>>) {
+        let accelerations = self.run("accelerations", &self.point);
+        let multipliers = self.run_with("multipliers", &self.point, &accelerations);
+        (accelerations, multipliers)
     }
 
     /// A point whose state is changed by a function of the partition.
-    pub fn moved(&self, function: &str, point: &Point<F>) -> Result<Point<F>, Undecided> {
-        let values = self.run(function, point)?;
+    pub fn moved(&self, function: &str, point: &Point<Term<'a>>) -> Point<Term<'a>> {
+        let values = self.run(function, point);
         let mut moved = point.clone();
         for (&place, value) in self.module.programs[function].places.iter().zip(values) {
             moved.state[place] = value;
         }
-        Ok(moved)
+        moved
+    }
+}
+
+/// The point of which everything is read.
+pub(crate) fn point<'t>(model: &Model, tape: &'t Tape) -> Point<Term<'t>> {
+    let read = |source| tape.read(source);
+    Point {
+        context: tape,
+        t: read(Source::Time),
+        state: (0..n_state(model)).map(|k| read(Source::State(k))).collect(),
+        parameters: (0..model.parameters.len()).map(|k| read(Source::Parameter(k))).collect(),
+        inputs: (0..model.inputs.len()).map(|k| read(Source::Input(k))).collect(),
     }
 }

@@ -1,10 +1,12 @@
 //! What is proved of each function: numbers that must be zero wherever they exist.
 
-use super::case::{Case, Undecided};
-use super::partition;
+use super::case::Case;
 use super::point::stretched;
+use super::{joints, partition};
 use crate::field::Field;
+use crate::module::Module;
 use crate::point::Point;
+use crate::tape::Term;
 use crate::textbook::Reading;
 
 /// A claim.
@@ -40,11 +42,27 @@ pub enum Claim {
     NewtonStep,
     /// `solve_velocities` satisfies eq. (19) and keeps what is independent.
     SolveVelocities,
+    /// `to_maximal` gives the state that the constraints allow and of which the joint coordinates are the given ones.
+    ToMaximal,
+    /// `to_joints` is its inverse.
+    ToJoints,
+    /// `joint_accelerations` are those of eq. (17).
+    JointAccelerations,
+    /// `joint_derivative` gives the rates that go with the state's own, these accelerations and the power.
+    JointDerivative,
+    /// `joint_accelerations_at` are the same at a maximal state that satisfies the constraints.
+    JointAccelerationsAt,
+    /// `corrected_accelerations` are those of the bodies there.
+    CorrectedAccelerations,
+    /// `corrected_derivative` gives eqs. (14), (16), these accelerations, there the power, and the rates of the turn references.
+    CorrectedDerivative,
+    /// `corrected_multipliers` satisfy eq. (17) there.
+    CorrectedMultipliers,
 }
 
 impl Claim {
-    /// All claims of modules with or without charts.
-    pub fn all(has_charts: bool) -> Vec<Self> {
+    /// All claims about a module.
+    pub fn all(module: &Module) -> Vec<Self> {
         use Claim::*;
         let mut claims = vec![
             Phi,
@@ -60,8 +78,22 @@ impl Claim {
             Readings,
             Outputs,
         ];
-        if has_charts {
+        if module.n_charts.is_some() {
             claims.extend([ChartVectors, NewtonStep, SolveVelocities]);
+        }
+        if module.joints.is_some() {
+            claims.extend([
+                ToMaximal,
+                ToJoints,
+                JointAccelerations,
+                JointDerivative,
+                JointAccelerationsAt,
+                CorrectedAccelerations,
+                CorrectedDerivative,
+            ]);
+        }
+        if module.programs.contains_key("corrected_multipliers") {
+            claims.push(CorrectedMultipliers);
         }
         claims
     }
@@ -84,6 +116,14 @@ impl Claim {
             Self::ChartVectors => &["chart_vectors"],
             Self::NewtonStep => &["newton_step"],
             Self::SolveVelocities => &["solve_velocities"],
+            Self::ToMaximal => &["to_maximal"],
+            Self::ToJoints => &["to_joints"],
+            Self::JointAccelerations => &["joint_accelerations"],
+            Self::JointDerivative => &["joint_derivative"],
+            Self::JointAccelerationsAt => &["joint_accelerations_at"],
+            Self::CorrectedAccelerations => &["corrected_accelerations"],
+            Self::CorrectedDerivative => &["corrected_derivative"],
+            Self::CorrectedMultipliers => &["corrected_multipliers"],
         }
     }
 
@@ -105,16 +145,44 @@ impl Claim {
             Self::ChartVectors => "parallel to Gᵀh' or to p",
             Self::NewtonStep => "linearised rows vanish, the special parameter is kept",
             Self::SolveVelocities => "velocity rows vanish, independent rates are kept",
+            Self::ToMaximal => "all rows vanish, its joint coordinates are x and u",
+            Self::ToJoints => "the way back, and so its derivative",
+            Self::JointAccelerations => "with B = ∂v/∂u: Bᵀ(M v̇ − f) = 0, Φ_π' v̇ = γ",
+            Self::JointDerivative => "along it the state moves by eqs. (14), (16); power",
+            Self::JointAccelerationsAt => "the proved u̇ at the state of (x, u)",
+            Self::CorrectedAccelerations => "the proved v̇ at the state of (x, u)",
+            Self::CorrectedDerivative => "eqs. (14), (16), v̇, turns; power at the state of (x, u)",
+            Self::CorrectedMultipliers => "M v̇ + Φ_π'ᵀ λ = f at the state of (x, u)",
         }
     }
 
-    /// The numbers that must be zero.
-    pub fn residuals<F: Field>(self, case: &Case<F>) -> Result<Vec<F>, Undecided> {
+    /// What its functions are proved against, for the data sheet of a module: claims next to each other share it.
+    pub fn against(self) -> &'static str {
+        match self {
+            Self::Phi => "Φ of eqs. (7) to (12)",
+            Self::PhiQ | Self::PhiPi | Self::Nu | Self::Gamma | Self::VelocityResidual => {
+                "the derivatives of Φ by dual numbers"
+            }
+            Self::AppliedForce | Self::Motion => "eq. (17)",
+            Self::Derivative => "eqs. (14) and (16)",
+            Self::Energy | Self::Readings | Self::Outputs => "their definitions",
+            Self::ChartVectors | Self::NewtonStep => "Newton's step for Φ = 0",
+            Self::SolveVelocities => "eq. (19)",
+            Self::ToMaximal | Self::ToJoints => "Φ = 0, eq. (18) and the joint coordinates",
+            Self::JointAccelerations
+            | Self::JointAccelerationsAt
+            | Self::CorrectedAccelerations
+            | Self::CorrectedMultipliers => "eq. (17) on the constraints",
+            Self::JointDerivative | Self::CorrectedDerivative => "eqs. (14) and (16) on the constraints",
+        }
+    }
+
+    /// The numbers that must be zero; `None` where the textbook divides by the number zero.
+    pub(super) fn residuals<'a>(self, case: &Case<'a>) -> Option<Vec<Term<'a>>> {
         let point = &case.point;
         let textbook = case.textbook(point)?;
-        let exists = |values: Option<Vec<F>>| values.ok_or(Undecided::Textbook);
-        let equal = |function: &str, values: Option<Vec<F>>| {
-            Ok(differences(&case.run(function, point)?, &exists(values)?))
+        let equal = |function: &str, values: Option<Vec<Term<'a>>>| {
+            Some(differences(&case.run(function, point), &values?))
         };
         match self {
             Self::Phi => equal("phi", textbook.phi()),
@@ -124,32 +192,40 @@ impl Claim {
             Self::AppliedForce => equal("applied_force", textbook.applied_force()),
             Self::Energy => equal("energy", textbook.energy().map(|energies| energies.to_vec())),
             Self::PhiQ => {
-                let matrix = textbook.phi_q().ok_or(Undecided::Textbook)?;
-                let (values, pattern) = (case.run("phi_q", point)?, &case.module.phi_q_pattern);
-                Ok(sparse_differences(&values, pattern, matrix).concat())
+                let matrix = textbook.phi_q()?;
+                let (values, pattern) = (case.run("phi_q", point), &case.module.phi_q_pattern);
+                Some(sparse_differences(&values, pattern, matrix).concat())
             }
             Self::PhiPi => {
-                let matrix = textbook.phi_pi().ok_or(Undecided::Textbook)?;
-                let (values, pattern) = (case.run("phi_pi", point)?, &case.module.phi_pi_pattern);
-                Ok(sparse_differences(&values, pattern, matrix).concat())
+                let matrix = textbook.phi_pi()?;
+                let (values, pattern) = (case.run("phi_pi", point), &case.module.phi_pi_pattern);
+                Some(sparse_differences(&values, pattern, matrix).concat())
             }
             Self::Motion => {
-                let (accelerations, multipliers) = case.motion()?;
-                exists(textbook.residual_of_motion(&accelerations[..6 * case.n_bodies()], &multipliers))
+                let (accelerations, multipliers) = case.motion();
+                textbook.residual_of_motion(&accelerations[..6 * case.n_bodies()], &multipliers)
             }
             Self::Derivative => derivative(case),
             Self::Outputs => {
-                let (accelerations, multipliers) = case.motion()?;
+                let (accelerations, multipliers) = case.motion();
                 let values = textbook.outputs(&accelerations[..6 * case.n_bodies()], &multipliers);
-                Ok(differences(&case.run_with("outputs", point, &accelerations)?, &exists(values)?))
+                Some(differences(&case.run_with("outputs", point, &accelerations), &values?))
             }
             Self::Readings => {
                 let stretched = stretched(point, &case.factors);
-                Ok([readings(case, point)?, angles(case, &stretched)?].concat())
+                Some([readings(case, point)?, angles(case, &stretched)?].concat())
             }
             Self::ChartVectors => partition::chart_vectors(case),
             Self::NewtonStep => partition::newton_step(case),
             Self::SolveVelocities => partition::solve_velocities(case),
+            Self::ToMaximal => joints::to_maximal(case),
+            Self::ToJoints => joints::to_joints(case),
+            Self::JointAccelerations => joints::accelerations(case),
+            Self::JointDerivative => joints::derivative(case),
+            Self::JointAccelerationsAt => joints::accelerations_at(case),
+            Self::CorrectedAccelerations => joints::corrected_accelerations(case),
+            Self::CorrectedDerivative => joints::corrected_derivative(case),
+            Self::CorrectedMultipliers => joints::corrected_multipliers(case),
         }
     }
 }
@@ -178,22 +254,22 @@ fn sparse_differences<F: Field>(
     differences
 }
 
-fn derivative<F: Field>(case: &Case<F>) -> Result<Vec<F>, Undecided> {
+fn derivative<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     let textbook = case.textbook(&case.point)?;
-    let (accelerations, multipliers) = case.motion()?;
+    let (accelerations, multipliers) = case.motion();
     let mut expected = textbook.position_rates();
     expected.extend(accelerations[..6 * case.n_bodies()].iter().cloned());
     if case.model.has_work() {
-        let [forces, drivers] = textbook.power(&multipliers).ok_or(Undecided::Textbook)?;
+        let [forces, drivers] = textbook.power(&multipliers)?;
         expected.push(forces.add(&drivers));
     }
     expected.extend(textbook.turn_rates());
-    Ok(differences(&case.run_with("derivative", &case.point, &accelerations)?, &expected))
+    Some(differences(&case.run_with("derivative", &case.point, &accelerations), &expected))
 }
 
-fn readings<F: Field>(case: &Case<F>, point: &Point<F>) -> Result<Vec<F>, Undecided> {
-    let expected = case.textbook(point)?.readings().ok_or(Undecided::Textbook)?;
-    let found = case.run("read_joints", point)?;
+fn readings<'a>(case: &Case<'a>, point: &Point<Term<'a>>) -> Option<Vec<Term<'a>>> {
+    let expected = case.textbook(point)?.readings()?;
+    let found = case.run("read_joints", point);
     let (mut found, mut residuals) = (found.as_slice(), Vec::new());
     for reading in expected {
         let count = match reading {
@@ -213,13 +289,13 @@ fn readings<F: Field>(case: &Case<F>, point: &Point<F>) -> Result<Vec<F>, Undeci
         };
         found = &found[count..];
     }
-    Ok(residuals)
+    Some(residuals)
 }
 
 /// That angles read off longer Euler parameters are those of the unit ones.
-fn angles<F: Field>(case: &Case<F>, stretched: &Point<F>) -> Result<Vec<F>, Undecided> {
-    let expected = case.textbook(&case.point)?.readings().ok_or(Undecided::Textbook)?;
-    let found = case.run("read_joints", stretched)?;
+fn angles<'a>(case: &Case<'a>, stretched: &Point<Term<'a>>) -> Option<Vec<Term<'a>>> {
+    let expected = case.textbook(&case.point)?.readings()?;
+    let found = case.run("read_joints", stretched);
     let (mut found, mut residuals) = (found.as_slice(), Vec::new());
     for reading in expected {
         let count = match reading {
@@ -232,7 +308,7 @@ fn angles<F: Field>(case: &Case<F>, stretched: &Point<F>) -> Result<Vec<F>, Unde
         };
         found = &found[count..];
     }
-    Ok(residuals)
+    Some(residuals)
 }
 
 /// `a₀ b₁ − a₁ b₀`: zero where the pairs are parallel.

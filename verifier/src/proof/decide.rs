@@ -2,24 +2,30 @@
 //!
 //! A claim's residuals are quotients of polynomials in what is drawn. If one is not zero identically, its numerator, of degree d,
 //! vanishes at a random point with probability at most d / p (Schwartz 1980, Zippel 1979).
+//!
+//! *Roots.* Of a number that varies a root exists modulo p at every other point only. Where it does not, a number drawn at random stands
+//! for it: an identity that holds for any number in its place holds for the root. So a residual that is zero decides for the claim. One
+//! that is not decides against it only where all roots exist; if there are too many to find such a point, floats of
+//! 384 bits decide.
 
-use super::case::{Case, Undecided};
+use super::case::Case;
 use super::claim::Claim;
-use super::point;
-use crate::atoms::{Drawn, Formal};
-use crate::field::{Degree, Field, Modular, Prime};
-use crate::interpreter::{self, Given};
-use crate::module::Module;
-use crate::program::Node;
+use super::point::{self, Draw};
+use crate::atoms::{Drawn, Elementary, Formal};
+use crate::field::{Degree, Field, Modular, Precision, Prime, Real, sum_log2};
+use crate::interpreter::{self, DivisionByZero, Given};
+use crate::module::{Module, is_on_constraints, source_of_accelerations};
+use crate::program::{Function, Id, Node};
+use crate::tape::{Formulas, Tape, Term};
 use crate::textbook::Textbook;
-use gyro_model::Model;
+use gyro_model::{Model, Rational};
 use num_bigint::BigUint;
 use num_integer::Integer;
 use num_traits::ToPrimitive;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use std::cell::RefCell;
 use std::collections::HashMap;
+use std::f64::consts::LOG10_2;
 
 /// How a claim was decided.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,20 +42,13 @@ pub enum Verdict {
         /// Which of the residuals.
         residual: usize,
     },
-    /// No point could be found at which both sides exist.
-    Undecided {
-        /// Line of the module where it divides by zero; `None` if the textbook does or a root is missing.
-        line: Option<usize>,
+    /// The module divides by what is zero everywhere.
+    Divides {
+        /// Line of the module.
+        line: usize,
     },
-}
-
-impl From<Undecided> for Verdict {
-    fn from(undecided: Undecided) -> Self {
-        match undecided {
-            Undecided::Module(line) => Self::Undecided { line: Some(line) },
-            Undecided::Textbook => Self::Undecided { line: None },
-        }
-    }
+    /// No point could be found at which both sides exist and differ, nor one at which they are equal.
+    Undecided,
 }
 
 /// An operation whose result is known without it.
@@ -61,26 +60,129 @@ pub struct Needless {
     pub same_as: Option<usize>,
 }
 
-/// Decides the claims about one module.
+/// Decides the claims about modules of one model.
 #[derive(Debug)]
 pub struct Decider<'a, const L: usize> {
     model: &'a Model,
-    textbook: Textbook<'a>,
     prime: Prime<L>,
-    /// For each seed the draw at which all roots were found to exist.
-    draws: RefCell<HashMap<u64, u64>>,
 }
 
 /// Draws at most this often until all roots exist: each root of a number that varies exists at every other point.
-const DRAWS: u64 = 4096;
+const DRAWS: u64 = 256;
 
 /// Draws at most this often where something divides by zero: at a random point only what is zero everywhere is zero.
 const DRAWS_BY_ZERO: usize = 3;
 
+/// Claims about a module written down, each as its residuals.
+#[derive(Debug)]
+pub struct Statements<'a> {
+    model: &'a Model,
+    module: &'a Module,
+    formulas: Formulas,
+    /// `None` of a claim whose textbook side divides by the number zero.
+    claims: Vec<Option<Vec<Id>>>,
+}
+
+/// What residuals are at one point.
+enum Outcome {
+    Zero,
+    NotZero { residual: usize },
+    DividesByZero { line: Option<usize> },
+}
+
+impl<'a> Statements<'a> {
+    /// Writes both sides of some claims down.
+    pub fn new(model: &'a Model, module: &'a Module, claims: &[Claim]) -> Self {
+        let (tape, textbook) = (Tape::new(), Textbook::new(model));
+        let claims = {
+            let case = Case::new(model, &textbook, module, &tape);
+            let ids = |terms: Vec<Term<'_>>| terms.into_iter().map(Term::id).collect();
+            claims.iter().map(|claim| claim.residuals(&case).map(ids)).collect()
+        };
+        Self { model, module, formulas: tape.finish(), claims }
+    }
+
+    /// A prime for which all constants have their roots: the largest known Mersenne prime that there is room for if it is one, else
+    /// a random one of all the bits that there is room for.
+    ///
+    /// # Errors
+    /// The number of bits that the roots take, if they are too many.
+    pub fn prime<const L: usize>(&self, seed: u64) -> Result<Prime<L>, u64> {
+        let constants = self.formulas.constants.iter();
+        let radicands: Vec<_> = constants.filter_map(|constant| constant.radicand.as_ref()).collect();
+        let mersenne = Prime::mersenne();
+        if radicands.iter().all(|radicand| mersenne.covers(radicand)) {
+            return Ok(mersenne);
+        }
+        let product = |r: &Rational| r.numer().magnitude() * r.denom().magnitude();
+        let squares =
+            radicands.iter().fold(BigUint::from(1_u32), |squares, r| squares.lcm(&radical(product(r))));
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        Prime::with_roots(&squares, &mut random).ok_or(squares.bits())
+    }
+
+    /// For each claim the logarithm to base two of the degree that decides it: of the numerator of any residual, of all denominators on
+    /// the way, and of whatever makes two atoms one by accident. Each root doubles it (the norm of `f + g √x` is `f² − g² x`), and
+    /// as it exists at half of the points or is drawn, there are twice as many ways for an accident. `None` if the formulas
+    /// divide by what is zero everywhere.
+    pub fn degrees_log2(&self) -> Vec<Option<f64>> {
+        let all = vec![true; self.formulas.program.nodes.len()];
+        let degrees = self
+            .formulas
+            .evaluate(&all, (), &Formal, &|source| point::degree(self.model, self.module, source));
+        let of_claim = |residuals: &Option<Vec<Id>>| self.degree_log2(residuals.as_ref()?, &degrees);
+        self.claims.iter().map(of_claim).collect()
+    }
+
+    fn degree_log2(&self, residuals: &[Id], degrees: &[Option<Degree>]) -> Option<f64> {
+        let reach = self.formulas.reach(residuals.iter().copied());
+        let whole = |id: &Id| degrees[*id].as_ref().map(Degree::whole_log2);
+        let largest = residuals.iter().map(whole).collect::<Option<Vec<f64>>>()?;
+        let largest = largest.into_iter().fold(0.0, f64::max);
+        let nodes = self.formulas.program.nodes.iter().zip(&reach);
+        let atoms = nodes.filter(|(node, reached)| {
+            **reached && matches!(node, Node::Call(..) | Node::Atan2(..) | Node::Curve { .. })
+        });
+        let arguments: Vec<Id> = atoms.flat_map(|(node, _)| node.operands()).collect();
+        let all = arguments.iter().filter_map(whole).fold(f64::NEG_INFINITY, sum_log2);
+        let collisions = all + (arguments.len() as f64).log2();
+        let n_roots = self.roots(&reach).len() as f64;
+        Some(sum_log2(largest, collisions) + 2.0 * (n_roots + 1.0) + ROUNDING_LOG2)
+    }
+
+    /// The square roots among some nodes.
+    fn roots(&self, reach: &[bool]) -> Vec<(Id, Id)> {
+        let nodes = self.formulas.program.nodes.iter().enumerate();
+        let roots = nodes.filter(|(id, _)| reach[*id]);
+        let root = |(id, node): (Id, &Node)| match *node {
+            Node::Call(Function::Sqrt, radicand) => Some((id, radicand)),
+            _ => None,
+        };
+        roots.filter_map(root).collect()
+    }
+
+    /// Whether all of some residuals are zero.
+    fn outcome<F: Field>(
+        &self,
+        residuals: &[Id],
+        values: &[Option<F>],
+        is_zero: impl Fn(&F) -> bool,
+    ) -> Outcome {
+        for (residual, &id) in residuals.iter().enumerate() {
+            match &values[id] {
+                Some(value) if is_zero(value) => {}
+                Some(_) => return Outcome::NotZero { residual },
+                None => return Outcome::DividesByZero { line: self.formulas.culprit(values, id) },
+            }
+        }
+        Outcome::Zero
+    }
+}
+
 impl<'a, const L: usize> Decider<'a, L> {
     /// For a model and a prime that was made for it.
     pub fn new(model: &'a Model, prime: Prime<L>) -> Self {
-        Self { model, textbook: Textbook::new(model), prime, draws: RefCell::default() }
+        Self { model, prime }
     }
 
     /// The prime.
@@ -90,48 +192,206 @@ impl<'a, const L: usize> Decider<'a, L> {
 
     /// Tests a claim at some points; `seed` makes them other points.
     pub fn decide(&self, module: &Module, claim: Claim, points: u32, seed: u64) -> Verdict {
+        let statements = Statements::new(self.model, module, &[claim]);
+        self.decide_all(&statements, points, seed).pop().expect("a verdict for each claim")
+    }
+
+    /// Tests some claims together, which share what they have in common.
+    pub fn decide_all(&self, statements: &Statements<'_>, points: u32, seed: u64) -> Vec<Verdict> {
+        let mut refutations: Vec<Option<Verdict>> = vec![None; statements.claims.len()];
         for point in 0..u64::from(points) {
-            match self.test(module, claim, seed.wrapping_add(point << 32)) {
-                Ok(residuals) => {
-                    if let Some(residual) = residuals {
-                        return Verdict::Refuted { residual };
-                    }
-                }
-                Err(undecided) => return undecided.into(),
+            self.test(statements, seed.wrapping_add(point << 32), &mut refutations);
+        }
+        let degrees = statements.degrees_log2();
+        let bits = self.prime.value().bits() as f64 - 1.0;
+        let proved = |degree_log2: f64| Verdict::Proved {
+            error_log10: f64::from(points) * (degree_log2 - bits).min(0.0) * LOG10_2,
+            degree_log2,
+        };
+        let verdicts = refutations.into_iter().zip(degrees);
+        verdicts
+            .map(|(refutation, degree)| refutation.or(degree.map(proved)).unwrap_or(Verdict::Undecided))
+            .collect()
+    }
+
+    /// Tests the claims that are open at one point.
+    fn test(&self, statements: &Statements<'_>, seed: u64, refutations: &mut [Option<Verdict>]) {
+        let is_open = |(residuals, refutation): (_, &Option<Verdict>)| {
+            if refutation.is_none() { residuals } else { None }
+        };
+        let open: Vec<Option<&Vec<Id>>> =
+            statements.claims.iter().map(Option::as_ref).zip(refutations.iter()).map(is_open).collect();
+        let reach = statements.formulas.reach(open.iter().flatten().copied().flatten().copied());
+        let values = (0..DRAWS).find_map(|number| self.values(statements, &reach, seed, number));
+        for (refutation, residuals) in refutations.iter_mut().zip(open) {
+            let Some(residuals) = residuals else { continue };
+            let outcome = values.as_ref().map(|values| statements.outcome(residuals, values, Field::is_zero));
+            *refutation = match (outcome, &values) {
+                (Some(Outcome::Zero), Some(values)) => self.look_behind(statements, residuals, values, seed),
+                _ => self.look_closer(statements, residuals, seed),
+            };
+        }
+    }
+
+    /// The values of some nodes at the point of this seed and number; `None` if there is no such point.
+    fn values(
+        &self,
+        statements: &Statements<'_>,
+        needed: &[bool],
+        seed: u64,
+        number: u64,
+    ) -> Option<Vec<Option<Modular<'_, L>>>> {
+        let (draw, atoms) = self.draw(statements.module, seed, number)?;
+        Some(statements.formulas.evaluate(needed, &self.prime, &atoms, &|source| draw.read(source)))
+    }
+
+    /// A point.
+    fn draw(&self, module: &Module, seed: u64, number: u64) -> Option<(Draw<Modular<'_, L>>, Drawn<'_, L>)> {
+        let mut random = ChaCha8Rng::seed_from_u64(seed.wrapping_add(number));
+        let atoms = Drawn::new(&self.prime, ChaCha8Rng::from_rng(&mut random));
+        Some((point::modular(self.model, module, &self.prime, &mut random)?, atoms))
+    }
+
+    /// Decides a claim whose residuals are not all zero, or do not exist, at a point at which roots may have been missed. `None` if they
+    /// are all zero where all roots exist.
+    fn look_closer(&self, statements: &Statements<'_>, residuals: &[Id], seed: u64) -> Option<Verdict> {
+        let reach = statements.formulas.reach(residuals.iter().copied());
+        let roots = statements.roots(&reach);
+        let roots_reach = statements.formulas.reach(roots.iter().map(|&(root, _)| root));
+        let mut zeros = Vec::new();
+        for number in 0..DRAWS {
+            let Some(values) = self.values(statements, &roots_reach, seed, number) else { continue };
+            let exists = |&(root, radicand): &(Id, Id)| {
+                values[root].zip(values[radicand]).is_some_and(|(root, radicand)| root.mul(&root) == radicand)
+            };
+            if !roots.iter().all(exists) {
+                continue;
+            }
+            let Some(values) = self.values(statements, &reach, seed, number) else { continue };
+            match statements.outcome(residuals, &values, Field::is_zero) {
+                Outcome::Zero => return None,
+                Outcome::NotZero { residual } => return Some(Verdict::Refuted { residual }),
+                Outcome::DividesByZero { line } => zeros.push(line),
+            }
+            if zeros.len() == DRAWS_BY_ZERO {
+                let line = zeros.into_iter().min().flatten();
+                return Some(line.map_or(Verdict::Undecided, |line| Verdict::Divides { line }));
             }
         }
-        self.bound(module, claim, points)
+        Some(self.refute_in_floats(statements, residuals, &reach, seed))
+    }
+
+    /// The angle of a point on the line y = 0 was taken for zero: a claim that needs it is refuted if the point is not on the right half.
+    fn look_behind(
+        &self,
+        statements: &Statements<'_>,
+        residuals: &[Id],
+        values: &[Option<Modular<'_, L>>],
+        seed: u64,
+    ) -> Option<Verdict> {
+        let reach = statements.formulas.reach(residuals.iter().copied());
+        let nodes = statements.formulas.program.nodes.iter().zip(&reach);
+        let on_line: Vec<Id> = nodes
+            .filter_map(|(node, reached)| match *node {
+                Node::Atan2(y, x) if *reached && values[y].as_ref().is_some_and(Field::is_zero) => Some(x),
+                _ => None,
+            })
+            .collect();
+        if on_line.is_empty() {
+            return None;
+        }
+        let precision = Precision::new();
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let draw = point::real(self.model, statements.module, &precision, &mut random);
+        let Some(draw) = draw else { return Some(Verdict::Undecided) };
+        let needed = statements.formulas.reach(on_line.iter().copied());
+        let values =
+            statements.formulas.evaluate(&needed, &precision, &Elementary, &|source| draw.read(source));
+        let is_right = |x: &Id| values[*x].as_ref().is_some_and(|x| x.to_f64() > 0.0);
+        (!on_line.iter().all(is_right)).then_some(Verdict::Refuted { residual: 0 })
+    }
+
+    /// Looks for a point in floating point at which a residual is far from zero.
+    fn refute_in_floats(
+        &self,
+        statements: &Statements<'_>,
+        residuals: &[Id],
+        reach: &[bool],
+        seed: u64,
+    ) -> Verdict {
+        let precision = Precision::new();
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let Some(draw) = point::real(self.model, statements.module, &precision, &mut random) else {
+            return Verdict::Undecided;
+        };
+        let read = |source| draw.read(source);
+        let values = statements.formulas.evaluate(reach, &precision, &Elementary, &read);
+        let size = |x: &Real<'_>| x.to_f64().abs();
+        let largest = values.iter().flatten().map(size).filter(|x| x.is_finite()).fold(1.0, f64::max);
+        // What is not a number refutes nothing.
+        let is_zero = |x: &Real<'_>| size(x).is_nan() || size(x) <= FAR_FROM_ZERO * largest;
+        match statements.outcome(residuals, &values, is_zero) {
+            Outcome::NotZero { residual } => Verdict::Refuted { residual },
+            _ => Verdict::Undecided,
+        }
     }
 
     /// Whether a function of one module gives the same numbers as that of another one at a random point; `None` if one of them exists at
     /// no point. Functions that read accelerations are given those of the first module.
     pub fn agree(&self, modules: [&Module; 2], function: &str, seed: u64) -> Option<bool> {
-        let agree = |case: &Case<Modular<'_, L>>| {
-            let accelerations = case.of(modules[0]).run("accelerations", &case.point)?;
-            let run = |module| case.of(module).run_with(function, &case.point, &accelerations);
-            Ok(run(modules[0])? == run(modules[1])?)
-        };
         let same_places = modules[0].programs[function].places == modules[1].programs[function].places;
-        self.at_point(modules[0], seed, agree).ok().map(|agree| agree && same_places)
+        let agree = self.at_point(modules[0], seed, |draw, atoms| {
+            let (draw, accelerations) = self.suited(modules[0], function, draw, atoms)?;
+            let run = |module| self.run(module, function, &draw, &accelerations, atoms);
+            Ok(run(modules[0])? == run(modules[1])?)
+        });
+        agree.map(|agree| agree && same_places)
     }
 
     /// Operations whose value, up to its sign, is zero or one that is known before, wherever |p| = 1: what a cleverer generator could
     /// leave out. They are no fault. `None` if the function exists at no point.
     pub fn needless(&self, module: &Module, function: &str, seed: u64) -> Option<Vec<Needless>> {
-        self.at_point(module, seed, |case| needless(case, function)).ok()
+        self.at_point(module, seed, |draw, atoms| {
+            let (draw, accelerations) = self.suited(module, function, draw, atoms)?;
+            let given = Given {
+                point: &draw.point,
+                accelerations: &accelerations,
+                charts: &draw.charts,
+                joints: &draw.joints[0],
+            };
+            let constants = interpreter::constants(&self.prime, module);
+            let program = &module.programs[function];
+            let values = interpreter::values(module, program, &constants, atoms, &given)?;
+            let (mut known, mut needless) = (HashMap::new(), Vec::new());
+            for ((node, value), &line) in program.nodes.iter().zip(&values).zip(&program.lines) {
+                let is_operation =
+                    matches!(node, Node::Add(..) | Node::Sub(..) | Node::Mul(..) | Node::Div(..));
+                let keys = [value.key(), value.neg().key()];
+                let same_as = keys.iter().find_map(|key| known.get(key).copied());
+                if is_operation && (value.is_zero() || same_as.is_some()) {
+                    needless.push(Needless { line, same_as: same_as.filter(|_| !value.is_zero()) });
+                }
+                known.entry(keys[0]).or_insert(line);
+            }
+            Ok(needless)
+        })
     }
 
     /// What is wrong with the patterns: zeros that are stored, places out of order. (That no place is missing is part of the claims.)
     ///
     /// A number that is zero at a random point is zero identically, with the probability of its claim.
+    ///
+    /// # Errors
+    /// [`Verdict::Undecided`] if no point has all roots.
     pub fn sparsity(&self, module: &Module, seed: u64) -> Result<Vec<String>, Verdict> {
         let patterns = [("phi_q", &module.phi_q_pattern), ("phi_pi", &module.phi_pi_pattern)];
         let mut problems = Vec::new();
         for (matrix, pattern) in patterns {
-            let values = |case: &Case<Modular<L>>| {
-                Ok(case.run(matrix, &case.point)?.iter().map(Field::is_zero).collect::<Vec<_>>())
-            };
-            let is_zero = self.at_point(module, seed, values).map_err(Verdict::from)?;
+            let is_zero = self.at_point(module, seed, |draw, atoms| {
+                let values = self.run(module, matrix, draw, &[], atoms)?;
+                Ok(values.iter().map(Field::is_zero).collect::<Vec<_>>())
+            });
+            let is_zero = is_zero.ok_or(Verdict::Undecided)?;
             let zeros = pattern.iter().zip(is_zero).filter(|(_, zero)| *zero);
             problems.extend(zeros.map(|(place, _)| format!("`{matrix}` stores the zero at {place:?}")));
             let unsorted = pattern.windows(2).find(|pair| pair[0] >= pair[1]);
@@ -140,132 +400,76 @@ impl<'a, const L: usize> Decider<'a, L> {
         Ok(problems)
     }
 
-    /// The first residual that is not zero at one point at which all exist.
-    fn test(&self, module: &Module, claim: Claim, seed: u64) -> Result<Option<usize>, Undecided> {
-        self.at_point(module, seed, |case| {
-            Ok(claim.residuals(case)?.iter().position(|residual| !residual.is_zero()))
-        })
+    /// A point that a function is made for, with the accelerations that it reads.
+    fn suited<'p>(
+        &'p self,
+        module: &Module,
+        function: &str,
+        draw: &Draw<Modular<'p, L>>,
+        atoms: &Drawn<'p, L>,
+    ) -> Result<(Draw<Modular<'p, L>>, Vec<Modular<'p, L>>), DivisionByZero> {
+        let mut draw = draw.clone();
+        if is_on_constraints(function) {
+            draw.point.state = self.run(module, "to_maximal", &draw, &[], atoms)?;
+            // The buffer of `to_joints` holds any other state.
+            draw.joints.swap(0, 1);
+        }
+        let accelerations = self.run(module, source_of_accelerations(function), &draw, &[], atoms)?;
+        Ok((draw, accelerations))
     }
 
-    /// Evaluates something at a random point at which it exists.
-    fn at_point<R>(
-        &self,
+    fn run<'p>(
+        &'p self,
+        module: &Module,
+        function: &str,
+        draw: &Draw<Modular<'p, L>>,
+        accelerations: &[Modular<'p, L>],
+        atoms: &Drawn<'p, L>,
+    ) -> Result<Vec<Modular<'p, L>>, DivisionByZero> {
+        let given =
+            Given { point: &draw.point, accelerations, charts: &draw.charts, joints: &draw.joints[0] };
+        let constants = interpreter::constants(&self.prime, module);
+        interpreter::run(module, &module.programs[function], &constants, atoms, &given)
+    }
+
+    /// Evaluates something at a random point at which it exists with all its roots.
+    fn at_point<'p, R>(
+        &'p self,
         module: &Module,
         seed: u64,
-        evaluate: impl Fn(&Case<Modular<'_, L>>) -> Result<R, Undecided>,
-    ) -> Result<R, Undecided> {
-        let mut zeros = Vec::new();
-        let first = self.draws.borrow().get(&seed).copied().unwrap_or(0);
-        for number in first..first + DRAWS {
-            let mut random = ChaCha8Rng::seed_from_u64(seed.wrapping_add(number));
-            let atoms = Drawn::new(&self.prime, ChaCha8Rng::from_rng(&mut random));
-            let Some(point) = point::drawn(self.model, &self.prime, &mut random) else { continue };
-            let mut draw = || self.prime.draw(&mut random);
-            let case = Case {
-                model: self.model,
-                textbook: &self.textbook,
-                module,
-                constants: interpreter::constants(&self.prime, module),
-                atoms: &atoms,
-                factors: (0..self.model.coordinate_bodies().len()).map(|_| draw()).collect(),
-                charts: (0..module.n_charts.unwrap_or(0)).map(|_| [(); 4].map(|()| draw())).collect(),
-                point,
-            };
-            let result = evaluate(&case);
+        evaluate: impl Fn(&Draw<Modular<'p, L>>, &Drawn<'p, L>) -> Result<R, DivisionByZero>,
+    ) -> Option<R> {
+        let mut zeros = 0;
+        for number in 0..DRAWS {
+            let Some((draw, atoms)) = self.draw(module, seed, number) else { continue };
+            let result = evaluate(&draw, &atoms);
             if atoms.missed_root() {
                 continue;
             }
-            self.draws.borrow_mut().insert(seed, number);
             match result {
-                Ok(result) => return Ok(result),
-                Err(undecided) => zeros.push(undecided),
+                Ok(result) => return Some(result),
+                Err(_) => zeros += 1,
             }
-            if zeros.len() == DRAWS_BY_ZERO {
+            if zeros == DRAWS_BY_ZERO {
                 break;
             }
         }
-        Err(zeros.pop().unwrap_or(Undecided::Textbook))
-    }
-
-    /// The bound on the probability of an accident.
-    fn bound(&self, module: &Module, claim: Claim, points: u32) -> Verdict {
-        let Some(degree) = degree(self.model, &self.textbook, module, claim) else {
-            return Verdict::Undecided { line: None };
-        };
-        let degree_log2 = degree.log2();
-        let bits = self.prime.value().bits() as f64 - 1.0;
-        let error_log10 = f64::from(points) * (degree_log2 - bits).min(0.0) * std::f64::consts::LOG10_2;
-        Verdict::Proved { error_log10, degree_log2 }
+        None
     }
 }
 
-fn needless<const L: usize>(case: &Case<Modular<'_, L>>, function: &str) -> Result<Vec<Needless>, Undecided> {
-    let accelerations = case.run("accelerations", &case.point)?;
-    let given = Given { point: &case.point, accelerations: &accelerations, charts: &case.charts };
-    let program = &case.module.programs[function];
-    let values = interpreter::values(case.module, program, &case.constants, case.atoms, &given)?;
-    let (mut known, mut needless) = (HashMap::new(), Vec::new());
-    for ((node, value), &line) in program.nodes.iter().zip(&values).zip(&program.lines) {
-        let is_operation = matches!(node, Node::Add(..) | Node::Sub(..) | Node::Mul(..) | Node::Div(..));
-        let keys = [value.key(), value.neg().key()];
-        let same_as = keys.iter().find_map(|key| known.get(key).copied());
-        if is_operation && (value.is_zero() || same_as.is_some()) {
-            needless.push(Needless { line, same_as: same_as.filter(|_| !value.is_zero()) });
-        }
-        known.entry(keys[0]).or_insert(line);
-    }
-    Ok(needless)
-}
+/// A residual in 384 bits that is larger than this part of the largest number on the way to it is not zero: rounding makes 1e-115 of it.
+const FAR_FROM_ZERO: f64 = 1e-60;
 
-/// A bound on the degree that decides a claim: of the numerator of any residual, of all denominators on the way, and of
-/// whatever makes two atoms one by accident; each root of a number that varies doubles it (the norm of `f + g √x` is `f² − g² x`) and
-/// leaves half of the points. `None` if the formulas divide by what is zero identically.
-fn degree(model: &Model, textbook: &Textbook, module: &Module, claim: Claim) -> Option<f64> {
-    let atoms = Formal::default();
-    let case = Case {
-        model,
-        textbook,
-        module,
-        constants: interpreter::constants((), module),
-        atoms: &atoms,
-        point: point::degrees(model),
-        factors: vec![Degree::polynomial(1.0); model.coordinate_bodies().len()],
-        charts: vec![[Degree::polynomial(1.0); 4]; module.n_charts.unwrap_or(0)],
-    };
-    let residuals = claim.residuals(&case).ok()?;
-    let largest = residuals.iter().map(|x| x.numerator + x.denominator).fold(1.0, f64::max);
-    Some((largest + atoms.collisions()) * 4.0_f64.powf(atoms.roots() + 1.0))
-}
+/// More than all roundings of the logarithms of degrees can make.
+const ROUNDING_LOG2: f64 = 1e-3;
 
-/// A prime for which all constants of a module and a model have their roots: 2^521 − 1 if it is one and nine limbs are asked
-/// for, else a random one of all the bits that there is room for.
+/// [`Statements::prime`] of all claims about a module.
 ///
 /// # Errors
 /// The number of bits that the roots take, if they are too many.
 pub fn prime<const L: usize>(model: &Model, module: &Module, seed: u64) -> Result<Prime<L>, u64> {
-    let mut random = ChaCha8Rng::seed_from_u64(seed);
-    let textbook = Textbook::new(model);
-    let mut squares = BigUint::from(1_u32);
-    let longest =
-        |squares: &BigUint, random: &mut ChaCha8Rng| Prime::with_roots(squares, random).ok_or(squares.bits());
-    let mut prime = if L == 9 { Prime::mersenne() } else { longest(&squares, &mut random)? };
-    loop {
-        interpreter::constants::<Modular<L>>(&prime, module);
-        let atoms = Drawn::new(&prime, random.clone());
-        if let Some(point) = point::drawn(model, &prime, &mut random) {
-            let evaluation = textbook.at(&point, &atoms);
-            evaluation.and_then(|evaluation| evaluation.phi());
-        }
-        let missed = prime.missed();
-        if missed.is_empty() {
-            return Ok(prime);
-        }
-        for radicand in missed {
-            let number = radical(radicand.numer().magnitude() * radicand.denom().magnitude());
-            squares = squares.lcm(&number);
-        }
-        prime = longest(&squares, &mut random)?;
-    }
+    Statements::new(model, module, &Claim::all(module)).prime(seed)
 }
 
 /// The number with small primes taken once: it has the same prime factors.

@@ -5,11 +5,12 @@
 //! leaf: a body's dot-1 rows are linearised where the bodies before it are corrected already and its own p was
 //! first brought to unit length, `u = p (3 − pᵀp) / 2`; its point rows then give its position exactly.
 
-use super::case::{Case, Undecided};
+use super::case::Case;
 use super::claim::differences;
 use super::point::stretched;
 use crate::field::Field;
 use crate::point::Point;
+use crate::tape::Term;
 use gyro_model::{Attachment, JointKind, Link, RowOwner, Support, Tree};
 use num_traits::Signed;
 use std::ops::Range;
@@ -39,7 +40,7 @@ impl Held {
     }
 
     /// Its joint's rows: three for the point, then the dot-1 rows.
-    fn rows<F: Field>(&self, case: &Case<F>) -> Range<usize> {
+    fn rows<'a>(&self, case: &Case<'a>) -> Range<usize> {
         match self.hold {
             Hold::Spherical { joint } | Hold::Fixed { joint } | Hold::Revolute { joint, .. } => {
                 case.model.rows_of(RowOwner::Joint(joint))
@@ -49,7 +50,7 @@ impl Held {
     }
 
     /// Its axis in its own frame.
-    fn axis<F: Field>(&self, case: &Case<F>) -> Option<[F; 3]> {
+    fn axis<'a>(&self, case: &Case<'a>) -> Option<[Term<'a>; 3]> {
         let Hold::Revolute { joint, reversed } = self.hold else { return None };
         let joint = &case.model.joints[joint];
         let end = if reversed { &joint.first } else { &joint.second };
@@ -58,7 +59,7 @@ impl Held {
 }
 
 /// The bodies from root to leaf; `None` where charts cannot serve.
-fn bodies<F: Field>(case: &Case<F>) -> Option<Vec<Held>> {
+fn bodies<'a>(case: &Case<'a>) -> Option<Vec<Held>> {
     let (slots, mut chart) = (case.model.coordinate_bodies(), 0);
     let hold = |link: &Link| match link.attachment {
         Attachment::Free => Some(Hold::Free),
@@ -80,25 +81,25 @@ fn bodies<F: Field>(case: &Case<F>) -> Option<Vec<Held>> {
 }
 
 /// A number that is not zero, where there must be a number that is.
-fn wrong<F: Field>(case: &Case<F>) -> Vec<F> {
-    vec![F::one(case.point.context)]
+fn wrong<'a>(case: &Case<'a>) -> Vec<Term<'a>> {
+    vec![Term::one(case.point.context)]
 }
 
 /// Of a revolute joint `G(p)ᵀ h'`, of others p: the vectors must be parallel and not zero.
-pub fn chart_vectors<F: Field>(case: &Case<F>) -> Result<Vec<F>, Undecided> {
-    let Some(bodies) = bodies(case) else { return Ok(wrong(case)) };
-    let vectors = case.run("chart_vectors", &case.point)?;
+pub fn chart_vectors<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
+    let Some(bodies) = bodies(case) else { return Some(wrong(case)) };
+    let vectors = case.run("chart_vectors", &case.point);
     let mut residuals = Vec::new();
     for body in bodies.iter().filter(|body| body.has_chart()) {
         let vector = &vectors[4 * body.chart..4 * body.chart + 4];
         let p = euler(&case.point, body.slot);
         let expected = body.axis(case).map_or_else(|| p.to_vec(), |axis| turning(p, &axis).to_vec());
         residuals.extend(across(vector, &expected));
-        if vector.iter().all(F::is_zero) {
-            residuals.extend(wrong(case));
-        }
+        // One, unless the vector is zero everywhere: then it is no number.
+        let square = dot(vector, vector);
+        residuals.push(square.div(&square)?.sub(&Term::one(case.point.context)));
     }
-    Ok(residuals)
+    Some(residuals)
 }
 
 /// `G(p)ᵀ a` with G of eq. (15).
@@ -118,14 +119,14 @@ fn turning<F: Field>(p: &[F], [x, y, z]: &[F; 3]) -> [F; 4] {
 }
 
 /// One Newton step of the dependent positions.
-pub fn newton_step<F: Field>(case: &Case<F>) -> Result<Vec<F>, Undecided> {
-    let Some(bodies) = bodies(case) else { return Ok(wrong(case)) };
+pub fn newton_step<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
+    let Some(bodies) = bodies(case) else { return Some(wrong(case)) };
     let longer = stretched(&case.point, &case.factors);
     let mut residuals = Vec::new();
     for start in [&case.point, &longer] {
-        let moved = case.moved("newton_step", start)?;
+        let moved = case.moved("newton_step", start);
         residuals.extend(others_kept(case, start, &moved));
-        let phi = case.textbook(&moved)?.phi().ok_or(Undecided::Textbook)?;
+        let phi = case.textbook(&moved)?.phi()?;
         for body in &bodies {
             residuals.extend(lengths(case, body, start, &moved));
             residuals.extend(phi[body.rows(case)].iter().take(3).cloned());
@@ -133,29 +134,34 @@ pub fn newton_step<F: Field>(case: &Case<F>) -> Result<Vec<F>, Undecided> {
         }
     }
     // Away from |p| = 1 the derived Jacobian is not that of eq. (3); the step is one of Newton's to first order only.
-    let moved = case.moved("newton_step", &case.point)?;
+    let moved = case.moved("newton_step", &case.point);
     for body in &bodies {
         residuals.extend(linearised_rows(case, body, &moved)?);
     }
-    Ok(residuals)
+    Some(residuals)
 }
 
 /// Velocities and what follows them keep their values.
-fn others_kept<F: Field>(case: &Case<F>, start: &Point<F>, moved: &Point<F>) -> Vec<F> {
+fn others_kept<'a>(case: &Case<'a>, start: &Point<Term<'a>>, moved: &Point<Term<'a>>) -> Vec<Term<'a>> {
     let positions = 7 * case.n_bodies();
     differences(&start.state[positions..], &moved.state[positions..])
 }
 
 /// What the step does along p and in the special Euler parameter, for p of any length.
-fn lengths<F: Field>(case: &Case<F>, body: &Held, start: &Point<F>, moved: &Point<F>) -> Vec<F> {
+fn lengths<'a>(
+    case: &Case<'a>,
+    body: &Held,
+    start: &Point<Term<'a>>,
+    moved: &Point<Term<'a>>,
+) -> Vec<Term<'a>> {
     let (p, corrected) = (euler(start, body.slot), euler(moved, body.slot));
-    let number = |n| F::integer(start.context, n);
+    let number = |n| Term::integer(start.context, n);
     let square = dot(p, p);
-    let chart = |vector: &[F]| dot(&case.charts[body.chart], vector);
+    let chart = |vector: &[Term<'a>]| dot(&case.charts[body.chart], vector);
     // Twice the unit u, so that no half is needed.
     let scale = number(3).sub(&square);
-    let twice_unit: Vec<F> = p.iter().map(|e| e.mul(&scale)).collect();
-    let twice: Vec<F> = corrected.iter().map(|e| e.add(e)).collect();
+    let twice_unit: Vec<Term<'a>> = p.iter().map(|e| e.mul(&scale)).collect();
+    let twice: Vec<Term<'a>> = corrected.iter().map(|e| e.add(e)).collect();
     let across_unit = dot(&twice_unit, &differences(&twice, &twice_unit));
     let change = differences(corrected, p);
     match body.hold {
@@ -172,7 +178,12 @@ fn lengths<F: Field>(case: &Case<F>, body: &Held, start: &Point<F>, moved: &Poin
 }
 
 /// Of a free body the position that it had; of a constrained one what the page gives.
-fn held_position<F: Field>(case: &Case<F>, body: &Held, start: &Point<F>, moved: &Point<F>) -> Vec<F> {
+fn held_position<'a>(
+    case: &Case<'a>,
+    body: &Held,
+    start: &Point<Term<'a>>,
+    moved: &Point<Term<'a>>,
+) -> Vec<Term<'a>> {
     let (before, after) = (start.position(body.slot), moved.position(body.slot));
     match body.hold {
         Hold::Free => differences(&before[..3], &after[..3]),
@@ -185,13 +196,13 @@ fn held_position<F: Field>(case: &Case<F>, body: &Held, start: &Point<F>, moved:
 }
 
 /// The page's pose of a constrained body, Euler parameters of unit length with `e0` not negative.
-fn given_pose<F: Field>(case: &Case<F>, slot: usize) -> Vec<F> {
+fn given_pose<'a>(case: &Case<'a>, slot: usize) -> Vec<Term<'a>> {
     let body = &case.model.bodies[case.model.coordinate_bodies()[slot]];
     debug_assert_eq!(body.support, Support::Constrained, "only these are given");
     let exact = body.orientation.each_ref().map(|e| case.model.exact(e));
     let square = exact.iter().map(|e| e * e).sum();
     let negative = exact[0].is_negative();
-    let length = F::sqrt_rational(case.point.context, &square);
+    let length = Term::sqrt_rational(case.point.context, &square);
     let length = if negative { length.neg() } else { length };
     let numbers = body.position.iter().map(|x| case.point.number(x));
     let euler = body.orientation.iter().map(|e| case.point.number(e));
@@ -199,29 +210,28 @@ fn given_pose<F: Field>(case: &Case<F>, slot: usize) -> Vec<F> {
 }
 
 /// The dot-1 rows after the step, to first order in the body's own p.
-fn linearised_rows<F: Field>(case: &Case<F>, body: &Held, moved: &Point<F>) -> Result<Vec<F>, Undecided> {
+fn linearised_rows<'a>(case: &Case<'a>, body: &Held, moved: &Point<Term<'a>>) -> Option<Vec<Term<'a>>> {
     if !matches!(body.hold, Hold::Revolute { .. } | Hold::Fixed { .. }) {
-        return Ok(Vec::new());
+        return Some(Vec::new());
     }
     let own = 7 * body.slot + 3..7 * body.slot + 7;
     let mut before = moved.clone();
     before.state[own.clone()].clone_from_slice(&case.point.state[own.clone()]);
     let textbook = case.textbook(&before)?;
-    let (phi, phi_q) =
-        (textbook.phi().ok_or(Undecided::Textbook)?, textbook.phi_q().ok_or(Undecided::Textbook)?);
+    let (phi, phi_q) = (textbook.phi()?, textbook.phi_q()?);
     let change = differences(&moved.state[own.clone()], &before.state[own.clone()]);
     let rows = body.rows(case).skip(3);
-    Ok(rows.map(|row| phi[row].add(&dot(&phi_q[row][own.clone()], &change))).collect())
+    Some(rows.map(|row| phi[row].add(&dot(&phi_q[row][own.clone()], &change))).collect())
 }
 
 /// The dependent velocities.
-pub fn solve_velocities<F: Field>(case: &Case<F>) -> Result<Vec<F>, Undecided> {
-    let Some(bodies) = bodies(case) else { return Ok(wrong(case)) };
-    let moved = case.moved("solve_velocities", &case.point)?;
+pub fn solve_velocities<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
+    let Some(bodies) = bodies(case) else { return Some(wrong(case)) };
+    let moved = case.moved("solve_velocities", &case.point);
     let positions = 7 * case.n_bodies();
     let velocities = positions..positions + 6 * case.n_bodies();
     let kept = |range: Range<usize>| differences(&moved.state[range.clone()], &case.point.state[range]);
-    let mut residuals = case.textbook(&moved)?.velocity_residual().ok_or(Undecided::Textbook)?;
+    let mut residuals = case.textbook(&moved)?.velocity_residual()?;
     residuals.extend(kept(0..positions));
     residuals.extend(kept(velocities.end..moved.state.len()));
     for body in bodies {
@@ -230,16 +240,16 @@ pub fn solve_velocities<F: Field>(case: &Case<F>) -> Result<Vec<F>, Undecided> {
             Hold::Free => residuals.extend(kept(start..start + 6)),
             Hold::Spherical { .. } => residuals.extend(kept(start + 3..start + 6)),
             Hold::Revolute { .. } => {
-                let axis = body.axis(case).unwrap_or_else(|| [(); 3].map(|()| F::one(case.point.context)));
+                let axis = body.axis(case).unwrap_or_else(|| [(); 3].map(|()| Term::one(case.point.context)));
                 residuals.push(dot(&axis, &kept(start + 3..start + 6)));
             }
             Hold::Fixed { .. } | Hold::Constrained => {}
         }
     }
-    Ok(residuals)
+    Some(residuals)
 }
 
-fn euler<F: Field>(point: &Point<F>, slot: usize) -> &[F] {
+fn euler<'p, 'a>(point: &'p Point<Term<'a>>, slot: usize) -> &'p [Term<'a>] {
     &point.position(slot)[3..]
 }
 

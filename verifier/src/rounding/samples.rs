@@ -5,6 +5,7 @@ use gyro_model::Model;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::fmt;
+use std::ops::Range;
 
 /// A kind of states.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -43,6 +44,10 @@ pub struct Sample {
     pub raw: Vec<f64>,
     /// The state in `f64`: Euler parameters of length one to rounding.
     pub state: Vec<f64>,
+    /// A joint state, raw like the state; empty where there are no joint coordinates.
+    pub raw_joints: Vec<f64>,
+    /// The joint state in `f64`.
+    pub joints: Vec<f64>,
 }
 
 /// How far near states are from the start.
@@ -53,32 +58,48 @@ const EXTREME: f64 = 6.0;
 
 /// Some states of each kind.
 pub fn draw(model: &Model, module: &Module, states: usize, seed: u64) -> Vec<Sample> {
-    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let [mut random, mut of_joints] = [0, 1].map(|stream| ChaCha8Rng::seed_from_u64(seed + (stream << 32)));
     let kinds = Kind::ALL.into_iter().flat_map(|kind| (0..states).map(move |_| kind));
-    kinds.map(|kind| sample(model, module, kind, &mut random)).collect()
+    kinds.map(|kind| sample(model, module, kind, [&mut random, &mut of_joints])).collect()
 }
 
-fn sample(model: &Model, module: &Module, kind: Kind, random: &mut ChaCha8Rng) -> Sample {
+fn sample(model: &Model, module: &Module, kind: Kind, [random, of_joints]: [&mut ChaCha8Rng; 2]) -> Sample {
     let n = model.coordinate_bodies().len();
-    let raw: Vec<f64> = (module.start.iter().enumerate())
-        .map(|(place, start)| {
-            let is_euler = place < 7 * n && place % 7 >= 3;
-            let is_velocity = (7 * n..13 * n).contains(&place);
-            let unit = random.random_range(-1.0..1.0);
-            to_single(match kind {
-                Kind::NearStart if is_velocity => unit,
-                Kind::NearStart => start + NEAR * unit,
-                Kind::Extreme if !is_euler => unit.signum() * 10.0_f64.powf(EXTREME * unit),
-                Kind::Random | Kind::Extreme => unit,
-            })
+    let euler: Vec<usize> = (0..n).map(|slot| 7 * slot + 3).collect();
+    let raw = raw(kind, &module.start, &euler, 7 * n..13 * n, random);
+    let (rates, euler_of_joints) = module.joints.as_ref().map_or_else(
+        || (0..0, Vec::new()),
+        |layout| (layout.n_coordinates..layout.n_motion(), layout.euler().collect()),
+    );
+    let raw_joints = self::raw(kind, &module.joint_start, &euler_of_joints, rates, of_joints);
+    let t = to_single(random.random_range(0.0..1.0));
+    let (state, joints) = (of_length_one(&raw, &euler), of_length_one(&raw_joints, &euler_of_joints));
+    Sample { kind, t, raw, state, raw_joints, joints }
+}
+
+/// Numbers of a kind; `euler` says where Euler parameters start, `rates` where velocities are.
+fn raw(kind: Kind, start: &[f64], euler: &[usize], rates: Range<usize>, random: &mut ChaCha8Rng) -> Vec<f64> {
+    let number = |(place, start): (usize, &f64)| {
+        let is_euler = euler.iter().any(|&first| (first..first + 4).contains(&place));
+        let unit = random.random_range(-1.0..1.0);
+        to_single(match kind {
+            Kind::NearStart if rates.contains(&place) => unit,
+            Kind::NearStart => start + NEAR * unit,
+            Kind::Extreme if !is_euler => unit.signum() * 10.0_f64.powf(EXTREME * unit),
+            Kind::Random | Kind::Extreme => unit,
         })
-        .collect();
-    let mut state = raw.clone();
-    for position in state[..7 * n].chunks_mut(7) {
-        let length = position[3..].iter().map(|e| e * e).sum::<f64>().sqrt();
-        position[3..].iter_mut().for_each(|e| *e /= length);
+    };
+    start.iter().enumerate().map(number).collect()
+}
+
+fn of_length_one(raw: &[f64], euler: &[usize]) -> Vec<f64> {
+    let mut state = raw.to_vec();
+    for &first in euler {
+        let p = &mut state[first..first + 4];
+        let length = p.iter().map(|e| e * e).sum::<f64>().sqrt();
+        p.iter_mut().for_each(|e| *e /= length);
     }
-    Sample { kind, t: to_single(random.random_range(0.0..1.0)), raw, state }
+    state
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "rounding to the nearest f32 is what is meant")]

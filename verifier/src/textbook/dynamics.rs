@@ -53,11 +53,23 @@ impl<F: Field> Evaluation<'_, F> {
     ///
     /// Drivers do `−λᵀν`; what moves a driven body does besides what it takes against the forces on that body.
     pub fn power(&self, lambda: &[F]) -> Option<[F; 2]> {
-        let (forces, nu) = (self.forces()?, self.nu()?);
-        let mut drivers = self.scope.zero.value.clone();
-        for (lambda, nu) in lambda.iter().zip(&nu) {
-            drivers = drivers.sub(&lambda.mul(nu));
-        }
+        let nu = self.nu()?;
+        let of_rows = lambda.iter().zip(&nu).map(|(lambda, nu)| lambda.mul(nu).neg());
+        self.powers(of_rows.fold(self.scope.zero.value.clone(), |sum, x| sum.add(&x)))
+    }
+
+    /// The same from accelerations `(s̈, ẇ')` that satisfy eq. (17), where the velocities satisfy eq. (18): then
+    /// `−λᵀν = −λᵀ(Φ_r s + Φ_π' w') = v·(M v̇ − f)`.
+    pub fn power_of_motion(&self, accelerations: &[F]) -> Option<[F; 2]> {
+        let imbalance = self.imbalance(accelerations)?;
+        let slots = 0..self.textbook.slots.len();
+        let velocities = slots.flat_map(|slot| self.scope.point.velocity(self.textbook.model, slot));
+        self.powers(self.dot(velocities, &imbalance))
+    }
+
+    /// Both powers from `−λᵀν`.
+    fn powers(&self, of_rows: F) -> Option<[F; 2]> {
+        let (forces, mut drivers) = (self.forces()?, of_rows);
         for (body, load) in forces.loads.iter().enumerate() {
             if self.textbook.model.bodies[body].support == Support::Driven {
                 drivers = drivers.sub(&load.power(&self.moving[body]).value);
@@ -68,16 +80,30 @@ impl<F: Field> Evaluation<'_, F> {
 
     /// What is left of eq. (17) at accelerations `(s̈, ẇ')` and multipliers: 6 numbers for each body, then one for each row.
     pub fn residual_of_motion(&self, accelerations: &[F], lambda: &[F]) -> Option<Vec<F>> {
-        let (mass, phi_pi) = (self.mass_matrix(), self.phi_pi()?);
-        let (applied, gamma) = (self.applied_force()?, self.gamma()?);
-        let zero = &self.scope.zero.value;
-        let dot = |row: &[F], x: &[F]| row.iter().zip(x).fold(zero.clone(), |sum, (a, b)| sum.add(&a.mul(b)));
-        let columns = (0..applied.len()).map(|k| phi_pi.iter().map(|row| row[k].clone()).collect::<Vec<F>>());
-        let balances = mass.iter().zip(columns).zip(&applied);
-        let forces =
-            balances.map(|((row, column), f)| dot(row, accelerations).add(&dot(&column, lambda)).sub(f));
-        let rows = phi_pi.iter().zip(&gamma).map(|(row, gamma)| dot(row, accelerations).sub(gamma));
-        Some(forces.chain(rows).collect())
+        let (imbalance, phi_pi) = (self.imbalance(accelerations)?, self.phi_pi()?);
+        let reaction = |k: usize| self.dot(phi_pi.iter().map(|row| &row[k]), lambda);
+        let forces = imbalance.iter().enumerate().map(|(k, left)| left.add(&reaction(k)));
+        Some(forces.chain(self.residual_of_rows(accelerations)?).collect())
+    }
+
+    /// `M v̇ − f`: what the constraints have to take.
+    pub fn imbalance(&self, accelerations: &[F]) -> Option<Vec<F>> {
+        let applied = self.applied_force()?;
+        let balances = self.mass_matrix().into_iter().zip(&applied);
+        Some(balances.map(|(row, f)| self.dot(&row, accelerations).sub(f)).collect())
+    }
+
+    /// `Φ_r s̈ + Φ_π' ẇ' − γ`.
+    pub fn residual_of_rows(&self, accelerations: &[F]) -> Option<Vec<F>> {
+        let (phi_pi, gamma) = (self.phi_pi()?, self.gamma()?);
+        Some(phi_pi.iter().zip(&gamma).map(|(row, gamma)| self.dot(row, accelerations).sub(gamma)).collect())
+    }
+
+    fn dot<'f>(&self, a: impl IntoIterator<Item = &'f F>, b: &[F]) -> F
+    where
+        F: 'f,
+    {
+        a.into_iter().zip(b).fold(self.scope.zero.value.clone(), |sum, (a, b)| sum.add(&a.mul(b)))
     }
 
     pub(super) fn gravity(&self) -> Vector<F> {

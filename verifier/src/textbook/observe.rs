@@ -42,7 +42,8 @@ impl<F: Field> Evaluation<'_, F> {
         Some(readings)
     }
 
-    fn reading(&self, on: JointCoordinate) -> Option<Reading<F>> {
+    /// The reading of one coordinate.
+    pub fn reading(&self, on: JointCoordinate) -> Option<Reading<F>> {
         let (kind, rate) = (self.textbook.model.coordinate_kind(on), self.coordinate_rate(on).value);
         if kind.is_angle() {
             let (sine, cosine) = self.joints[on.joint].placed(&self.still).sine_and_cosine(kind);
@@ -51,7 +52,8 @@ impl<F: Field> Evaluation<'_, F> {
         Some(Reading::Length([self.coordinate(on, &self.still)?.value, rate]))
     }
 
-    fn orientation(&self, joint: usize) -> Reading<F> {
+    /// How a joint's second body is turned relative to its first.
+    pub fn orientation(&self, joint: usize) -> Reading<F> {
         let frames = &self.joints[joint];
         let (i, j) = (&self.moving[frames.first.body], &self.moving[frames.second.body]);
         let [e0, e1, e2, e3] = compose(&conjugate(&i.pose.p), &j.pose.p);

@@ -76,7 +76,7 @@ where
     let mut accelerations = mechanism.accelerations_buffer();
     mechanism.accelerations(t, y, &mut accelerations);
     let same = |function: &str, compiled: &[f64]| {
-        let given = Given { point: &point, accelerations: accelerations.as_ref(), charts: &[] };
+        let given = Given { point: &point, accelerations: accelerations.as_ref(), charts: &[], joints: &[] };
         let program = &module.programs[function];
         let interpreted = run(module, program, &numbers, &Elementary, &given).expect("numbers");
         let bits = |numbers: &[f64]| numbers.iter().map(|x| x.to_bits()).collect::<Vec<_>>();

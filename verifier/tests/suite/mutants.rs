@@ -64,10 +64,10 @@ fn no_inequivalent_mutant_of_a_formula_survives() {
 
 /// Whether a claim about the function is not proved, or a pattern found wrong.
 fn is_killed(decider: &Decider<9>, mutant: &Module, function: &str) -> bool {
-    let claims = Claim::all(mutant.n_charts.is_some());
+    let claims = Claim::all(mutant);
     let mut claims = claims.into_iter().filter(|claim| claim.functions().contains(&function));
     claims.any(|claim| !matches!(decider.decide(mutant, claim, 1, SEED), Verdict::Proved { .. }))
-        || decider.sparsity(mutant, SEED).is_ok_and(|problems| !problems.is_empty())
+        || decider.sparsity(mutant, SEED).is_some_and(|problems| !problems.is_empty())
 }
 
 /// Faults of the derivation of γ, and others spread evenly over all possible ones.

@@ -21,7 +21,6 @@ pub struct Prime<const L: usize> {
     /// Every divisor of this number is a square.
     squares: BigUint,
     root_exponent: BigUint,
-    inverse_exponent: BigUint,
     missed: RefCell<Vec<Rational>>,
     /// Rationals and roots of rationals met so far: to divide takes long.
     rationals: Known<L>,
@@ -31,9 +30,11 @@ pub struct Prime<const L: usize> {
 type Known<const L: usize> = RefCell<HashMap<Rational, Option<[u64; L]>>>;
 
 impl<const L: usize> Prime<L> {
-    /// The Mersenne prime 2^521 − 1, for which two is a square.
+    /// The largest Mersenne prime of some that there is room for; two is a square modulo each.
     pub fn mersenne() -> Self {
-        Self::new((BigUint::one() << 521_u32) - 1_u32, BigUint::from(2_u32))
+        let fits = |exponent: &&u32| **exponent < 64 * L as u32;
+        let exponent = MERSENNE_EXPONENTS.iter().rfind(fits).expect("nine limbs at least");
+        Self::new((BigUint::one() << *exponent) - 1_u32, BigUint::from(2_u32))
     }
 
     /// A random prime for which every rational made of these integers has a square root; `None` if they take too many bits.
@@ -65,7 +66,6 @@ impl<const L: usize> Prime<L> {
             square: self::limbs(&(&one * &one % &value)),
             one: self::limbs(&one),
             root_exponent: (&value + 1_u32) >> 2_u32,
-            inverse_exponent: &value - 2_u32,
             squares,
             missed: RefCell::default(),
             rationals: RefCell::default(),
@@ -81,7 +81,7 @@ impl<const L: usize> Prime<L> {
 
     /// Whether all prime factors of a rational's numerator and denominator are squares by the prime's making. Only then is it sure that
     /// the root of `a²` which is a square is a and not −a.
-    pub(super) fn covers(&self, value: &Rational) -> bool {
+    pub fn covers(&self, value: &Rational) -> bool {
         let mut rest = value.numer().magnitude() * value.denom().magnitude();
         loop {
             let common = rest.gcd(&self.squares);
@@ -140,10 +140,6 @@ impl<const L: usize> Prime<L> {
         &self.root_exponent
     }
 
-    pub(super) fn inverse_exponent(&self) -> &BigUint {
-        &self.inverse_exponent
-    }
-
     pub(super) fn in_montgomery_form(&self, value: &BigUint) -> [u64; L] {
         arithmetic::mul(&limbs(value), &self.square, &self.limbs, self.negated_inverse)
     }
@@ -155,6 +151,9 @@ impl<const L: usize> Prime<L> {
         BigUint::new(number.iter().flat_map(|&limb| halves(limb)).collect())
     }
 }
+
+/// Exponents of Mersenne primes, each a little less than a multiple of 64.
+const MERSENNE_EXPONENTS: [u32; 4] = [521, 1279, 2281, 4423];
 
 /// Random bits that a prime must have besides those that its roots take: there are then enough to choose from.
 const MIN_RANDOM_BITS: u64 = 96;

@@ -1,0 +1,112 @@
+/// One thing wrong with the derivation.
+struct Fault {
+    /// File of the generator.
+    file: &'static str,
+    /// A piece of its text that is there once, with the expression that goes wrong in `«»`.
+    place: &'static str,
+    /// What is there instead.
+    wrong: &'static str,
+    /// A model in whose derivation the expression matters.
+    #[allow(dead_code, reason = "the build script has no use for it")]
+    page: &'static str,
+}
+
+const fn fault(file: &'static str, page: &'static str, place: &'static str, wrong: &'static str) -> Fault {
+    Fault { file, place, wrong, page }
+}
+
+/// Faults that do no harm, by the beginning of their place, and why.
+#[allow(dead_code, reason = "the build script has no use for it")]
+const HARMLESS: &[(&str, &str)] = &[("let second = self.expression(b,", "a + (b + c) is a + b + c")];
+
+/// All faults. An expression that is mutated must not contain another one.
+const FAULTS: &[Fault] = &[
+    // Rules of differentiation.
+    fault("differentiate.rs", "pendulum", "«graph.mul(a, self.memo[&b])»);", "Graph::ZERO"),
+    fault("differentiate.rs", "pendulum", "let (left, right) = («graph.mul(self.memo[&a], b)»,", "graph.mul(self.memo[&a], self.memo[&b])"),
+    fault("differentiate.rs", "pendulum", "Node::Add(a, b) => «graph.add(self.memo[&a], self.memo[&b])»", "self.memo[&a]"),
+    fault("differentiate.rs", "pendulum", "Node::Neg(a) => «graph.neg(self.memo[&a])»", "self.memo[&a]"),
+    fault("differentiate.rs", "driven-gyroscope", "let cos = «graph.cos(a)»;", "graph.sin(a)"),
+    fault("differentiate.rs", "driven-gyroscope", "let product = graph.mul(sin, self.memo[&a]);\n                «graph.neg(product)»", "product"),
+    fault("differentiate.rs", "screw", "let turned = «graph.sub(plus, minus)»;", "graph.add(plus, minus)"),
+    fault("differentiate.rs", "screw", "let square = «graph.dot(&[x, y], &[x, y])»;", "graph.mul(x, x)"),
+    fault("differentiate.rs", "cam", "Symbol::Table { table, order: «order + 1» }", "order"),
+    // Φ and its derivatives.
+    fault("kinematics.rs", "pendulum", "let gamma = second.iter().map(|&row| «system.graph.neg(row)»)", "row"),
+    fault("kinematics.rs", "driven-four-bar", "let nu = phi_t.iter().map(|&row| «system.graph.neg(row)»)", "row"),
+    fault("kinematics.rs", "pendulum", "let second = motion_derivative(system, «&velocity_residual»);", "&phi"),
+    fault("constraints.rs", "pendulum", "let aligned = [(i.f, j.h), «(i.g, j.h)», (i.f, j.g)];", "(i.f, j.h)"),
+    fault("constraints.rs", "pendulum", "let turned = «graph.mat_vec(relative, b_j)»;", "graph.transposed_vec(relative, b_j)"),
+    fault("constraints.rs", "free-body", "«system.graph.sub(square, one)»", "square"),
+    fault("constraints.rs", "gear", "«system.graph.sub(lag, offset)»", "system.graph.add(lag, offset)"),
+    fault("constraints.rs", "rod", "let difference = «graph.sub(quotient, joint.length)»;", "quotient"),
+    fault("constraints.rs", "screw", "rows[2] = «system.graph.sub(rows[2], advance)»;", "system.graph.add(rows[2], advance)"),
+    fault("coordinate.rs", "pendulum", "«graph.mat_vec(&j.a, &joint.second.point)»);\n    let (point_i", "graph.transposed_vec(&j.a, &joint.second.point)"),
+    fault("coordinate.rs", "carried", "let u = «system.graph.mat_vec(&a, u)»;", "*u"),
+    // Rotations and their rates.
+    fault("linear.rs", "pendulum", "let sum = self.dot(&[g[0][k], g[1][k], g[2][k]], w);\n            «self.mul(half, sum)»", "sum"),
+    fault("linear.rs", "pendulum", "[«[n1, e0, e3, n2]», [n2", "[n1, e0, n3, e2]"),
+    fault("linear.rs", "pendulum", "«self.sub(symmetric, skew)»", "self.add(symmetric, skew)"),
+    fault("system.rs", "pendulum", "let a_rate = «self.graph.mat_mul(&pose.a, &tilde)»;", "self.graph.mat_mul(&tilde, &pose.a)"),
+    fault("system.rs", "pendulum", "let square = «self.graph.mat_mul(&tilde, &tilde)»;", "[ZERO3; 3]"),
+    fault("system.rs", "chain", "let rate = «self.graph.sub_mat(&turned, &carried)»;", "turned"),
+    fault("system.rs", "chain", "let (both, two) = (graph.mat_mul(&tilde_i, &turned), «graph.integer(2)»);", "graph.integer(1)"),
+    fault("system.rs", "chain", "«graph.sub_mat(&of_j, &both)»", "of_j"),
+    fault("system.rs", "pendulum", "let g = «graph.cross(&h, &f)»;", "graph.cross(&f, &h)"),
+    fault("motion.rs", "chain", "let s = translation.map(|x| «self.time_derivative(x)»);", "x"),
+    fault("motion.rs", "carried", "w = «self.graph.add_vec(&carried, &own)»;", "own"),
+    fault("definitions.rs", "pendulum", "Node::Neg(a) => «graph.neg(self.memo[&a])»", "self.memo[&a]"),
+    fault("definitions.rs", "chain", "(None, Some(definition)) => «self.of(graph, definition)»", "definition"),
+    // Masses and forces.
+    fault("dynamics.rs", "pendulum", "graph.add_vec(&weight, &load.force), «graph.sub_vec(&load.torque, &gyroscopic)»", "graph.add_vec(&load.torque, &gyroscopic)"),
+    fault("dynamics.rs", "free-body", "let difference = «graph.sub(inertia[l][l], inertia[j][j])»;", "inertia[l][l]"),
+    fault("dynamics.rs", "pendulum", "let kinetic = «graph.mul(half, twice)»;", "twice"),
+    fault("dynamics.rs", "pendulum", "self.potential = «graph.sub(self.potential, height)»;", "graph.add(self.potential, height)"),
+    fault("forces.rs", "torsion", "Along { force: «graph.neg(pull)», potential", "pull"),
+    fault("forces.rs", "torsion", "potential: Some(«graph.mul(half, double)»)", "double"),
+    fault("forces.rs", "stops", "let square = graph.dot(&[depth, softness], &«[depth, softness]»);", "[depth, depth]"),
+    fault("forces.rs", "stops", "«graph.add(Graph::ONE, quotient)»", "quotient"),
+    fault("forces.rs", "chain", "let on_first = «graph.neg_vec(&on_second)»;", "on_second"),
+    fault("forces.rs", "tether", "let force = «graph.sub(elastic.force, drag)»;", "elastic.force"),
+    fault("forces.rs", "loads", "(given_force, «graph.transposed_vec(&pose.a, &given_torque)»)", "graph.mat_vec(&pose.a, &given_torque)"),
+    fault("forces.rs", "loads", "torque: «system.graph.cross(&self.point, &in_body)»", "system.graph.cross(&in_body, &self.point)"),
+    fault("forces.rs", "loads", "let power = «graph.add(pushing, turning)»;", "pushing"),
+    fault("forces.rs", "friction", "let sliding = «system.graph.tanh(ratio)»;", "ratio"),
+    fault("forces.rs", "friction", "(graph.mat_vec(&joint.relative, &drag), «graph.neg_vec(&drag)»)", "drag"),
+    // The solve of eq. (17).
+    fault("freedom.rs", "pendulum", "let (of_a, of_b) = (graph.cross(b, h), «graph.cross(h, a)»);", "graph.cross(a, h)"),
+    fault("freedom.rs", "chain", "let relative = if reversed { [0, 1, 2].map(turned) } else { «joint.relative» };", "[0, 1, 2].map(turned)"),
+    fault("freedom.rs", "universal", "JointKind::Universal => vec![«graph.transposed_vec(&joint.relative, &joint.first.h)», second]", "joint.first.h"),
+    fault("freedom.rs", "screw", "Twist { t: «graph.scale_vec(advance, &along)», rho }", "ZERO3"),
+    fault("null_space.rs", "chain", "let square = «graph.mat_mul(&transposed(&tilde), &tilde)»;", "graph.mat_mul(&tilde, &tilde)"),
+    fault("null_space.rs", "chain", "let moment = «graph.transposed_vec(&self.k, &wanted.t)»;", "graph.mat_vec(&self.k, &wanted.t)"),
+    fault("null_space.rs", "chain", "let both_moments = «sum(graph, &moment, &transposed(&moment))»;", "moment"),
+    fault("null_space.rs", "chain", "coupling: «graph.mat_mul(&self.rest.coupling, &back)»", "self.rest.coupling"),
+    fault("null_space.rs", "pendulum", "let rate = «graph.neg(rate)»;", "rate"),
+    fault("null_space.rs", "pendulum", "let resisting = «graph.add(inertial, load)»;", "load"),
+    fault("null_space.rs", "chain", "bias = «bias.plus(graph, &inertial)»;", "bias"),
+    fault("null_space.rs", "chain", "«graph.sub(m[row][column], product)»", "m[row][column]"),
+    fault("null_space.rs", "chain", "let known_to_wanted = if outwards == Outwards::Yes { «graph.neg_vec(point)» } else", "*point"),
+    fault("closing.rs", "four-bar", "let rate = dot(graph, gradient, &motions);\n        «graph.sub(rate, kinematics.gamma[row])»", "rate"),
+    fault("closing.rs", "four-bar", "let correction = «response.scaled(graph, multiplier).negated(graph)»;", "response.scaled(graph, multiplier)"),
+    fault("multipliers.rs", "pendulum", "lambda[row] = «graph.neg(supplied)»;", "supplied"),
+    fault("multipliers.rs", "chain", "lacking[parent.slot] = «lacking[parent.slot].plus(&mut system.graph, &carried)»;", "carried"),
+    fault("ldl.rs", "four-bar", "let factor = «graph.mul(value, inverse)»;", "value"),
+    fault("ldl.rs", "four-bar", "let moved = graph.mul(factor, self.rhs[pivot]);\n            self.rhs[i] = «graph.sub(self.rhs[i], moved)»;", "graph.add(self.rhs[i], moved)"),
+    fault("ldl.rs", "four-bar", "x = «graph.sub(x, product)»;", "graph.add(x, product)"),
+    // The coordinate partition.
+    fault("partition.rs", "pendulum", "let factor = «graph.mul(half, difference)»;", "difference"),
+    fault("partition.rs", "spherical", "let (residual, two) = (graph.sub(Graph::ONE, square), «graph.integer(2)»);", "graph.integer(1)"),
+    fault("partition.rs", "pendulum", "let mut rhs: Vec<_> = residuals.iter().map(|&phi| «graph.neg(phi)»)", "phi"),
+    fault("partition.rs", "pendulum", "let gained = «graph.sub_vec(&p, &unit)»;", "unit"),
+    fault("partition.rs", "pendulum", "let s = «system.graph.sub_vec(&s, &residual)»;", "system.graph.add_vec(&s, &residual)"),
+    // Writing.
+    fault("emit.rs", "pendulum", "let (first, second) = (self.expression(«*y», Binding::Sum), self.expression(*x, Binding::Product));", "*x"),
+    fault("emit.rs", "pendulum", "let second = self.expression(*subtracted, «Binding::Product»);", "Binding::Sum"),
+    fault("emit.rs", "pendulum", "let second = self.expression(b, «Binding::Product»);", "Binding::Sum"),
+    fault("emit.rs", "pendulum", "let (a, b) = (self.expression(a, «Binding::Product»), self.expression(b, Binding::Unary));", "Binding::Sum"),
+    fault("schedule.rs", "chain", "denominator(b).map(|x| «(a, x)»)", "(x, a)"),
+    fault("outputs.rs", "pendulum", "let centripetal = «graph.cross(&pose.w, &speed)»;", "graph.cross(&speed, &pose.w)"),
+    fault("outputs.rs", "pendulum", "let felt = «system.graph.sub_vec(&linear, &gravity)»;", "linear"),
+    fault("outputs.rs", "pendulum", "«graph.mat_vec(&system.poses[body].a, &taken.torque)»", "taken.torque"),
+];

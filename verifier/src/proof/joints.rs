@@ -1,0 +1,211 @@
+//! What a tree's functions in joint coordinates must satisfy.
+//!
+//! `y = to_maximal(x)` satisfies all rows, and the joint coordinates that the textbook reads off it are those that it was made of. So its
+//! velocities v depend on u through a matrix `B = ∂v/∂u` of full column rank, whose columns are all that the velocity rows leave free. Then
+//! the accelerations of eq. (17) are the v̇ that satisfy the rows' second derivative, `Φ_r s̈ + Φ_π' ẇ' = γ`, and leave to the
+//! constraints only what does no work on any free motion, `Bᵀ (M v̇ − f) = 0`: multipliers are not needed. B and v̇ are
+//! derivatives of `to_maximal` by dual numbers.
+
+use super::case::Case;
+use super::claim::differences;
+use crate::atoms::Atoms;
+use crate::field::Field;
+use crate::joints::{Freedom, JointLayout};
+use crate::point::Point;
+use crate::program::Source;
+use crate::tape::{Term, Written};
+use crate::textbook::Reading;
+
+/// A joint state on its way.
+struct Motion<'c, 'a> {
+    case: &'c Case<'a>,
+    layout: &'a JointLayout,
+    /// Its maximal state.
+    maximal: Point<Term<'a>>,
+    /// u̇.
+    rates_of_rates: Vec<Term<'a>>,
+    /// `(ẋ, u̇ [, power])`.
+    derivative: Vec<Term<'a>>,
+    /// How the maximal state changes along it.
+    maximal_rates: Vec<Term<'a>>,
+}
+
+impl<'c, 'a> Motion<'c, 'a> {
+    fn new(case: &'c Case<'a>) -> Option<Self> {
+        let layout = case.module.joints.as_ref()?;
+        let rates_of_rates = case.run("joint_accelerations", &case.point);
+        let derivative = case.run_with("joint_derivative", &case.point, &rates_of_rates);
+        let one = Term::one(case.point.context);
+        let [state, maximal_rates] =
+            case.run_along("to_maximal", &case.point, &case.joints, &|source| match source {
+                Source::Joint(k) => derivative.get(k).copied(),
+                Source::Time => Some(one),
+                _ => None,
+            })?;
+        let maximal = Point { state, ..case.point.clone() };
+        Some(Self { case, layout, maximal, rates_of_rates, derivative, maximal_rates })
+    }
+
+    /// (s̈, ẇ') body after body.
+    fn accelerations(&self) -> &[Term<'a>] {
+        velocities(self.case, &self.maximal_rates)
+    }
+
+    /// B by columns.
+    fn free_motions(&self) -> Option<Vec<Vec<Term<'a>>>> {
+        let (case, start) = (self.case, self.layout.n_coordinates);
+        let one = Term::one(case.point.context);
+        let column = |rate: usize| {
+            let only = |source| (source == Source::Joint(start + rate)).then_some(one);
+            let [_, rates] = case.run_along("to_maximal", &case.point, &case.joints, &only)?;
+            Some(velocities(case, &rates).to_vec())
+        };
+        (0..self.layout.n_rates).map(column).collect()
+    }
+
+    /// Power of non-conservative forces and drivers; nothing where the state carries no work.
+    fn power(&self) -> Option<Vec<Term<'a>>> {
+        if !self.layout.has_work {
+            return Some(Vec::new());
+        }
+        let [forces, drivers] = self.case.textbook(&self.maximal)?.power_of_motion(self.accelerations())?;
+        Some(vec![forces.add(&drivers)])
+    }
+}
+
+/// The velocities of a state.
+fn velocities<'s, F>(case: &Case<'_>, state: &'s [F]) -> &'s [F] {
+    let n = case.n_bodies();
+    &state[7 * n..13 * n]
+}
+
+/// The state satisfies the constraints; the coordinates, rates, turn references and work that it has are those given.
+pub fn to_maximal<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
+    let layout = case.module.joints.as_ref()?;
+    let maximal = Point { state: case.run("to_maximal", &case.point), ..case.point.clone() };
+    let textbook = case.textbook(&maximal)?;
+    let mut residuals = textbook.phi()?;
+    residuals.extend(textbook.velocity_residual()?);
+    for place in &layout.places {
+        let (coordinates, rates) = place.of.sizes();
+        let x = &case.joints[place.x..place.x + coordinates];
+        let u = &case.joints[layout.n_coordinates + place.u..][..rates];
+        let (found, expected) = match place.of {
+            Freedom::Scalar(on) => match textbook.reading(on)? {
+                Reading::Angle { sine, cosine, rate } => {
+                    (vec![sine, cosine, rate], vec![Written.sin(&x[0]), Written.cos(&x[0]), u[0]])
+                }
+                Reading::Length(numbers) => (numbers.to_vec(), [x, u].concat()),
+                Reading::Orientation(numbers) => (numbers.to_vec(), [x, u].concat()),
+            },
+            Freedom::Orientation { joint } => match textbook.orientation(joint) {
+                Reading::Orientation(numbers) => (numbers.to_vec(), [x, u].concat()),
+                _ => return None,
+            },
+            Freedom::Body { slot } => {
+                let found = [maximal.position(slot), maximal.velocity(case.model, slot)];
+                (found.concat(), [x, u].concat())
+            }
+        };
+        residuals.extend(differences(&found, &expected));
+    }
+    let rest = &maximal.state[13 * case.n_bodies()..];
+    let turns = case.model.turn_references();
+    let turns = turns.iter().map(|turn| layout.scalar(*turn).map(|place| case.joints[place]));
+    let turns = turns.collect::<Option<Vec<_>>>()?;
+    residuals.extend(differences(rest, &[&case.joints[layout.n_motion()..], &turns].concat()));
+    Some(residuals)
+}
+
+/// Of the state of (x, u) it makes (x, u) again, if its buffer holds x; and whatever that holds, and however it changes, what it makes
+/// changes as (x, u) does. So the buffer does nothing but choose among the turns.
+pub fn to_joints<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
+    let motion = Motion::new(case)?;
+    let none = |_| None;
+    let [found, _] = case.run_along("to_joints", &motion.maximal, &case.joints, &none)?;
+    let mut residuals = differences(&found, &case.joints);
+    // The rates of the buffer's coordinates are its own next elements: as good as any others.
+    let next = |k: usize| case.before[(k + 1) % case.before.len()];
+    let [_, rates] = case.run_along("to_joints", &motion.maximal, &case.before, &|source| match source {
+        Source::State(k) => Some(motion.maximal_rates[k]),
+        Source::Joint(k) => Some(next(k)),
+        Source::Time => Some(Term::one(case.point.context)),
+        _ => None,
+    })?;
+    let mut expected = motion.derivative.clone();
+    // The work goes through.
+    if let (true, Some(last)) = (motion.layout.has_work, expected.last_mut()) {
+        *last = motion.maximal_rates[13 * case.n_bodies()];
+    }
+    residuals.extend(differences(&rates, &expected));
+    Some(residuals)
+}
+
+/// `Φ_r s̈ + Φ_π' ẇ' = γ` and `Bᵀ (M v̇ − f) = 0`.
+pub fn accelerations<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
+    let motion = Motion::new(case)?;
+    let textbook = case.textbook(&motion.maximal)?;
+    let mut residuals = textbook.residual_of_rows(motion.accelerations())?;
+    let imbalance = textbook.imbalance(motion.accelerations())?;
+    let zero = Term::zero(case.point.context);
+    let along = |column: Vec<Term<'a>>| {
+        column.iter().zip(&imbalance).fold(zero, |sum, (b, force)| sum.add(&b.mul(force)))
+    };
+    residuals.extend(motion.free_motions()?.into_iter().map(along));
+    // Rows and free motions must make up the whole.
+    let is_whole = case.model.rows().len() + motion.layout.n_rates == 6 * case.n_bodies();
+    residuals.extend((!is_whole).then(|| Term::one(case.point.context)));
+    Some(residuals)
+}
+
+/// The state moves as the textbook says; u̇ are the accelerations just proved.
+pub fn derivative<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
+    let motion = Motion::new(case)?;
+    let (textbook, n) = (case.textbook(&motion.maximal)?, case.n_bodies());
+    let (rates, layout) = (&motion.maximal_rates, motion.layout);
+    let mut residuals = differences(&rates[..7 * n], &textbook.position_rates());
+    let turns = 13 * n + usize::from(layout.has_work);
+    residuals.extend(differences(&rates[turns..], &textbook.turn_rates()));
+    let (found, rest) = motion.derivative[layout.n_coordinates..].split_at(layout.n_rates);
+    residuals.extend(differences(found, &motion.rates_of_rates));
+    residuals.extend(differences(rest, &motion.power()?));
+    Some(residuals)
+}
+
+/// u̇ at the state of (x, u).
+pub fn accelerations_at<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
+    let motion = Motion::new(case)?;
+    let found = case.run("joint_accelerations_at", &motion.maximal);
+    Some(differences(&found, &motion.rates_of_rates))
+}
+
+/// v̇ there.
+pub fn corrected_accelerations<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
+    let motion = Motion::new(case)?;
+    let found = case.run("corrected_accelerations", &motion.maximal);
+    Some(differences(&found, motion.accelerations()))
+}
+
+/// At any state what does not depend on multipliers, there the power too.
+pub fn corrected_derivative<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
+    let motion = Motion::new(case)?;
+    let mut residuals = Vec::new();
+    for (point, power) in [(&case.point, None), (&motion.maximal, Some(motion.power()?))] {
+        let accelerations = case.run("corrected_accelerations", point);
+        let found = case.run_with("corrected_derivative", point, &accelerations);
+        let textbook = case.textbook(point)?;
+        let (moved, rest) = found.split_at(13 * case.n_bodies());
+        residuals.extend(differences(moved, &[textbook.position_rates(), accelerations].concat()));
+        let (work, turns) = rest.split_at(usize::from(motion.layout.has_work));
+        residuals.extend(power.iter().flat_map(|power| differences(work, power)));
+        residuals.extend(differences(turns, &textbook.turn_rates()));
+    }
+    Some(residuals)
+}
+
+/// λ there, and at v̇.
+pub fn corrected_multipliers<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
+    let motion = Motion::new(case)?;
+    let lambda = case.run_with("corrected_multipliers", &motion.maximal, motion.accelerations());
+    case.textbook(&motion.maximal)?.residual_of_motion(motion.accelerations(), &lambda)
+}

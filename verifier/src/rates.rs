@@ -1,0 +1,120 @@
+//! Derivatives of programs by dual numbers.
+
+use crate::atoms::Atoms;
+use crate::field::Field;
+use crate::program::{Function, Node, Program, Source};
+use gyro_model::Spline;
+
+/// The derivative of each node of a program, its nodes' values and the derivatives of what it reads being given; `None` where that is zero
+/// by structure.
+///
+/// Nothing if a second derivative of a table's curve would have to be differentiated.
+pub fn rates<F: Field>(
+    program: &Program,
+    values: &[F],
+    tables: &[Spline],
+    atoms: &dyn Atoms<F>,
+    of_source: &dyn Fn(Source) -> Option<F>,
+) -> Option<Vec<Option<F>>> {
+    let mut rates: Vec<Option<F>> = Vec::with_capacity(values.len());
+    for (node, value) in program.nodes.iter().zip(values) {
+        let rate = |id: usize| rates[id].as_ref();
+        let times = |id: usize, factor: &F| rate(id).map(|rate| rate.mul(factor));
+        let derivative = match *node {
+            Node::Constant(_) => None,
+            Node::Read(source) => of_source(source),
+            Node::Add(a, b) => sum(rate(a).cloned(), rate(b).cloned()),
+            Node::Sub(a, b) => sum(rate(a).cloned(), rate(b).map(F::neg)),
+            Node::Mul(a, b) => sum(times(a, &values[b]), times(b, &values[a])),
+            Node::Neg(a) => rate(a).map(F::neg),
+            Node::Div(a, b) => {
+                let change = sum(rate(a).cloned(), times(b, value).map(|x| x.neg()));
+                quotient(change, &values[b])?
+            }
+            Node::Call(function, a) => match function {
+                Function::Sin => times(a, &atoms.cos(&values[a])),
+                Function::Cos => times(a, &atoms.sin(&values[a]).neg()),
+                Function::Tanh => sum(rate(a).cloned(), times(a, &value.mul(value)).map(|x| x.neg())),
+                Function::Sqrt => quotient(rate(a).cloned(), &value.add(value))?,
+            },
+            Node::Atan2(y, x) => {
+                let [y_value, x_value] = [&values[y], &values[x]];
+                let turned = sum(times(y, x_value), times(x, y_value).map(|x| x.neg()));
+                quotient(turned, &x_value.mul(x_value).add(&y_value.mul(y_value)))?
+            }
+            Node::Curve { table, order, time } => match rate(time) {
+                Some(rate) => Some(atoms.spline(&tables[table], &values[time]).get(order + 1)?.mul(rate)),
+                None => None,
+            },
+        };
+        rates.push(derivative);
+    }
+    Some(rates)
+}
+
+fn sum<F: Field>(a: Option<F>, b: Option<F>) -> Option<F> {
+    match (a, b) {
+        (Some(a), Some(b)) => Some(a.add(&b)),
+        (a, b) => a.or(b),
+    }
+}
+
+/// Zero by structure over anything is zero by structure; nothing by zero.
+fn quotient<F: Field>(a: Option<F>, b: &F) -> Option<Option<F>> {
+    match a {
+        Some(a) => a.div(b).map(Some),
+        None => Some(None),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::atoms::Elementary;
+    use crate::interpreter::{Environment, value};
+
+    /// Every operation there is, of one variable, against a central difference.
+    #[test]
+    fn rates_are_limits_of_differences() {
+        let mut program = Program::default();
+        let x = program.push(Node::Read(Source::Time), 1);
+        let squared = program.push(Node::Mul(x, x), 1);
+        let sum = program.push(Node::Add(squared, x), 1);
+        let sin = program.push(Node::Call(Function::Sin, sum), 1);
+        let cos = program.push(Node::Call(Function::Cos, squared), 1);
+        let tanh = program.push(Node::Call(Function::Tanh, sin), 1);
+        let minus = program.push(Node::Neg(tanh), 1);
+        let difference = program.push(Node::Sub(minus, sum), 1);
+        let root = program.push(Node::Call(Function::Sqrt, sum), 1);
+        let quotient = program.push(Node::Div(difference, root), 1);
+        let angle = program.push(Node::Atan2(quotient, cos), 1);
+        for order in [0, 1] {
+            program.push(Node::Curve { table: 0, order, time: angle }, 1);
+        }
+        let points = [(-3.0, 1.0), (0.0, -2.0), (1.0, 4.0), (3.0, 0.0)];
+        let tables = [Spline::natural(String::new(), &points).expect("a good table")];
+        let at = |t: f64| {
+            let read = |_: Source| t;
+            let environment =
+                Environment { constants: &[], tables: &tables, atoms: &Elementary, read: &read };
+            let mut values: Vec<f64> = Vec::new();
+            for node in &program.nodes {
+                let number = value(node, &|id| &values[id], &environment).expect("a number");
+                values.push(number);
+            }
+            values
+        };
+        let (t, step) = (0.7, 1e-6);
+        let found = rates(&program, &at(t), &tables, &Elementary, &|_| Some(1.0)).expect("derivatives");
+        for (id, (after, before)) in at(t + step).iter().zip(at(t - step)).enumerate() {
+            let expected = (after - before) / (2.0 * step);
+            let rate = found[id].expect("everything moves");
+            assert!((rate - expected).abs() < 1e-8 * (1.0 + rate.abs()), "{id}: {rate} {expected}");
+        }
+        program.push(Node::Curve { table: 0, order: 2, time: angle }, 1);
+        let mut values = at(t);
+        assert_eq!(values.len(), program.nodes.len());
+        assert_eq!(rates(&program, &values, &tables, &Elementary, &|_| Some(1.0)), None);
+        values.pop();
+    }
+}

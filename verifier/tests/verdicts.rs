@@ -1,0 +1,85 @@
+//! What is wrong, what is only flawed, and what many square roots must not hide.
+
+mod support;
+
+use gyro_model::Model;
+use gyro_verifier::field::Prime;
+use gyro_verifier::module::Module;
+use gyro_verifier::proof::{Claim, Decider, Verdict, prime};
+use gyro_verifier::{Depth, verify};
+use std::fmt::Write;
+
+/// A chain of revolute joints, each between two end stops.
+fn stopped_chain(bodies: usize) -> Model {
+    let mut page =
+        "format = 1\nname = \"chain\"\ngravity = [0, -9.81, 0]\n[[body]]\nname = \"wall\"\nfixed = true\n"
+            .to_owned();
+    let axes = [("[0, 1, 0]", "[0, 0, 1]"), ("[1, 0, 0]", "[0, 1, 0]"), ("[0, 0, 1]", "[1, 0, 0]")];
+    let mut before = "wall".to_owned();
+    for body in 0..bodies {
+        let (axis, zero) = axes[body % 3];
+        let _ = write!(
+            page,
+            "[[body]]\nname = \"b{body}\"\nmass = 1\ninertia = [0.1, 0.2, 0.15]\n\
+             [[joint]]\nname = \"j{body}\"\nkind = \"revolute\"\naxis = {axis}\nzero = {zero}\n\
+             first = {{ body = \"{before}\", point = [0.1, 0.2, 0] }}\nsecond = {{ body = \"b{body}\", point = [-0.3, 0, 0] }}\n"
+        );
+        for (side, limit) in [("lower", -1), ("upper", 1)] {
+            let _ = write!(
+                page,
+                "[[force]]\nname = \"{side}{body}\"\nkind = \"stop\"\njoint = \"j{body}\"\nside = \"{side}\"\nlimit = {limit}\n\
+                 stiffness = 100\ndamping = 1\nsoftness = 0.01\n"
+            );
+        }
+        before = format!("b{body}");
+    }
+    gyro_model::read("chain.toml", &page).expect("a good page")
+}
+
+/// No point has all of sixteen square roots; the module is proved all the same, and a fault in it found.
+#[test]
+fn many_roots_hide_neither_proof_nor_fault() {
+    let model = stopped_chain(8);
+    let module = gyro_codegen::generate_model("chain.toml", &model).expect("a module");
+    let report = verify(&model, &module.code, &module.constants, Depth::Quick);
+    assert!(report.is_proved(), "{report}");
+    let mut module = Module::read(&model, &module.code, &module.constants).expect("the emitted subset");
+    let prime: Prime<9> = prime(&model, &module, 1).expect("room for all roots");
+    let decider = Decider::new(&model, prime);
+    let decide = |module: &Module| decider.decide(module, Claim::AppliedForce, 1, 1);
+    assert!(matches!(decide(&module), Verdict::Proved { .. }));
+    module.programs.get_mut("applied_force").expect("a function").results.swap(3, 4);
+    assert!(matches!(decide(&module), Verdict::Refuted { .. }));
+}
+
+/// A binding that nobody uses is no reason to refuse a module.
+#[test]
+fn a_flaw_is_neither_proved_nor_refuted() {
+    let page = support::page("pendulum");
+    let (head, functions) = page.code.split_once("fn derivative").expect("functions after the start");
+    let unused = functions.replacen("let k = T::constant;", "let k = T::constant; let unused = k(0.5);", 1);
+    let flawed = format!("{head}fn derivative{unused}");
+    let report = verify(&page.model, &flawed, &page.constants, Depth::Quick);
+    assert!(!report.is_proved() && !report.is_refuted() && !report.flaws.is_empty(), "{report}");
+    let wrong = page.code.replacen(" - ", " + ", 1);
+    assert!(verify(&page.model, &wrong, &page.constants, Depth::Quick).is_refuted());
+}
+
+/// The section for the data sheet names every function that was proved, and what was not.
+#[test]
+fn the_data_sheet_says_what_was_proved() {
+    let page = support::page("pendulum");
+    let report = verify(&page.model, &page.code, &page.constants, Depth::Quick);
+    let sheet = report.sheet().join("\n");
+    for claim in Claim::all(true) {
+        assert!(claim.functions().iter().all(|function| sheet.contains(function)), "{claim:?}: {sheet}");
+    }
+    assert!(sheet.contains("below 1e-1") && !sheet.contains("pivoting"), "{sheet}");
+    let wrong = page.code.replacen("kinetic:", "potential:", 1);
+    assert!(
+        !verify(&page.model, &wrong, &page.constants, Depth::Quick).sheet().join("\n").contains("energy")
+    );
+    let page = support::page("four-bar");
+    let report = verify(&page.model, &page.code, &page.constants, Depth::Quick);
+    assert!(report.sheet().join("\n").contains("Not proved: the choice of coordinates"));
+}
