@@ -82,8 +82,9 @@ impl<'m> Equations<'m> {
         let readings = readings::readings(&mut system);
         let partition = Partition::covers(&system).then(|| Partition::derive(&mut system, &kinematics));
         let position_rates = position_rates(&mut system);
-        let joint_space = JointSpace::covers(&system)
-            .then(|| JointSpace::derive(&mut system, &dynamics, model.has_work().then_some(power), start));
+        let joint_space = JointSpace::covers(&system).then(|| {
+            JointSpace::derive(&mut system, &kinematics, &dynamics, model.has_work().then_some(power), start)
+        });
 
         let definitions = std::mem::take(&mut system.definitions);
         let mut expansion = Expansion::new(&definitions);

@@ -30,6 +30,7 @@ pub struct Functions {
     pub to_joints: Vec<ExprId>,
     pub joint_accelerations_at: Vec<ExprId>,
     pub corrected_accelerations: Vec<ExprId>,
+    pub corrected_multipliers: Vec<ExprId>,
 }
 
 impl Functions {
@@ -65,6 +66,7 @@ impl Functions {
             to_joints: of_joints(|space| &space.reduced),
             joint_accelerations_at: of_joints(|space| &space.accelerations_at),
             corrected_accelerations: of_joints(|space| &space.corrected),
+            corrected_multipliers: of_joints(|space| &space.multipliers),
         }
     }
 
@@ -78,7 +80,7 @@ impl Functions {
 
     /// Name, meaning and roots of each that there is, in the order of the data sheet.
     pub fn list(&self) -> Vec<(&'static str, &'static str, &[ExprId])> {
-        let all: [(_, _, &[ExprId]); 22] = [
+        let all: [(_, _, &[ExprId]); 23] = [
             ("phi", "Φ", &self.phi),
             ("phi_q", "Φ_q, non-zeros in (r, p)", &self.phi_q),
             ("phi_pi", "(Φ_r, Φ_π'), non-zeros", &self.phi_pi),
@@ -101,6 +103,11 @@ impl Functions {
             ("to_joints", "(x, u) of a maximal state", &self.to_joints),
             ("joint_accelerations_at", "u̇ at a corrected maximal state", &self.joint_accelerations_at),
             ("corrected_accelerations", "(s̈, ẇ') at a corrected state", &self.corrected_accelerations),
+            (
+                "corrected_multipliers",
+                "λ at such a state and these accelerations",
+                &self.corrected_multipliers,
+            ),
         ];
         all.into_iter().filter(|(.., roots)| !roots.is_empty()).collect()
     }

@@ -45,7 +45,7 @@ pub fn of(
 }
 
 /// `M v̇ − f` of one body, v̇ known.
-fn imbalance(system: &mut System, dynamics: &Dynamics, slot: usize) -> Twist {
+pub fn imbalance(system: &mut System, dynamics: &Dynamics, slot: usize) -> Twist {
     let mut component = |k| system.graph.symbol(Symbol::Acceleration { slot, k });
     let motion = Twist { t: from_fn(&mut component), rho: from_fn(|k| component(3 + k)) };
     let (inertia, bias) = (Inertia::rigid(system, slot), minus_applied_force(system, dynamics, slot));

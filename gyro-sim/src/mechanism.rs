@@ -137,6 +137,14 @@ pub trait JointSpace: Equations {
     /// Writes (s̈, ẇ') at a maximal state that satisfies the constraints; elsewhere
     /// [`Equations::accelerations`] solves eq. (17).
     fn corrected_accelerations(&self, t: Self::Scalar, y: &Self::State, out: &mut Self::Velocities);
+    /// Writes λ of all joint rows at such a state and these accelerations.
+    fn corrected_multipliers(
+        &self,
+        t: Self::Scalar,
+        y: &Self::State,
+        accelerations: &Self::Velocities,
+        lambda: &mut Self::Rows,
+    );
 }
 
 /// A tree's joint coordinates as a first-order system, for any explicit integrator.

@@ -3,6 +3,7 @@
 use super::ModuleWriter;
 use crate::emit::{ident, index};
 use crate::equations::Sparse;
+use crate::graph::ExprId;
 use crate::symbol::Symbol;
 use proc_macro2::TokenStream;
 use quote::quote;
@@ -30,19 +31,7 @@ impl ModuleWriter<'_> {
         ];
         let accelerations =
             self.filling("accelerations", "Solves eq. (17)", "Accelerations", &f.accelerations);
-        let multipliers = self.function("Writes λ", &f.multipliers, |body, t, y| {
-            let (statements, values) = (&body.statements, &body.values);
-            let known = |s: &Symbol| matches!(s, Symbol::Acceleration { .. } | Symbol::Closing(_));
-            let name = ident(if body.symbols.iter().any(known) { "accelerations" } else { "_accelerations" });
-            quote! {
-                fn multipliers(
-                    &self, #t: T, #y: &Self::State, #name: &Self::Accelerations, lambda: &mut Self::Rows,
-                ) {
-                    #statements
-                    *lambda = [#(#values),*];
-                }
-            }
-        });
+        let multipliers = self.multipliers("multipliers", "Accelerations", &f.multipliers);
         quote! {
             impl<T: gyro_sim::Scalar> gyro_sim::Equations for #name<T> {
                 type Velocities = [T; #n_velocities];
@@ -75,6 +64,25 @@ impl ModuleWriter<'_> {
                 #multipliers
             }
         }
+    }
+
+    /// λ, the accelerations being known.
+    pub fn multipliers(&self, name: &str, accelerations: &str, roots: &[ExprId]) -> TokenStream {
+        let (name, accelerations) = (ident(name), ident(accelerations));
+        self.function("Writes λ", roots, |body, t, y| {
+            let (statements, values) = (&body.statements, &body.values);
+            let known = |s: &Symbol| matches!(s, Symbol::Acceleration { .. } | Symbol::Closing(_));
+            let argument =
+                ident(if body.symbols.iter().any(known) { "accelerations" } else { "_accelerations" });
+            quote! {
+                fn #name(
+                    &self, #t: T, #y: &Self::State, #argument: &Self::#accelerations, lambda: &mut Self::Rows,
+                ) {
+                    #statements
+                    *lambda = [#(#values),*];
+                }
+            }
+        })
     }
 }
 

@@ -38,6 +38,7 @@ impl ModuleWriter<'_> {
             "Velocities",
             &f.corrected_accelerations,
         );
+        let multipliers = self.multipliers("corrected_multipliers", "Velocities", &f.corrected_multipliers);
         Some(quote! {
             impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for #name<T> {
                 type Joints = [T; #n_joints];
@@ -57,6 +58,7 @@ impl ModuleWriter<'_> {
                 #to_joints
                 #at
                 #corrected
+                #multipliers
             }
         })
     }

@@ -16,6 +16,7 @@ use expand::Expansion;
 use factor::factor;
 use polynomial::Polynomial;
 use rescale::{rescale, rescale_pairs};
+use std::collections::HashSet;
 use std::rc::Rc;
 use sums::Sums;
 
@@ -43,20 +44,23 @@ pub fn normal_form(graph: &mut Graph, unit: &[Vec<ExprId>], roots: &[ExprId]) ->
     }
 }
 
-/// The given points that the roots depend on, and the sines and cosines among what they depend on.
+/// The given points that the roots depend on, and the sines and cosines among what they depend on. No two have an atom in
+/// common, or they could replace each other's squares without end.
 fn relations(graph: &mut Graph, unit: &[Vec<ExprId>], roots: &[ExprId]) -> Vec<Vec<ExprId>> {
-    let reachable = graph.reachable(roots);
-    let mut relations: Vec<Vec<ExprId>> =
-        unit.iter().filter(|point| point.iter().any(|x| reachable.contains(x))).cloned().collect();
-    for &id in &reachable {
+    let reachable: HashSet<ExprId> = graph.reachable(roots).into_iter().collect();
+    let mut relations = unit.to_vec();
+    for id in graph.reachable(roots) {
         if let Node::Cos(operand) = *graph.node(id) {
-            let sin = graph.sin(operand);
-            let known = relations.iter().flatten().any(|&x| x == id || x == sin);
-            if reachable.contains(&sin) && !known {
-                relations.push(vec![id, sin]);
-            }
+            relations.push(vec![id, graph.sin(operand)]);
         }
     }
+    relations.retain(|point| point.iter().all(|x| reachable.contains(x)));
+    let mut known: HashSet<ExprId> = HashSet::new();
+    relations.retain(|point| {
+        let apart = point.iter().all(|x| !known.contains(x));
+        known.extend(point.iter().filter(|_| apart));
+        apart
+    });
     relations
 }
 

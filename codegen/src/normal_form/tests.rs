@@ -87,7 +87,7 @@ fn identities_vanish() {
     assert_eq!(normal_form(&mut g, &[], &[scaled, inverse, difference]), [x, Graph::ONE, Graph::ZERO]);
 }
 
-/// Euler parameters: the rotation matrix that they make has rows of unit length.
+/// Euler parameters: the rotation matrix that they make has rows of unit length. To say it twice does no harm.
 #[test]
 fn a_point_of_a_sphere_is_reduced() {
     let mut g = Graph::new();
@@ -103,7 +103,8 @@ fn a_point_of_a_sphere_is_reduced() {
     let squares = row.map(|entry| g.mul(entry, entry));
     let length = sum(&mut g, &squares);
     let scaled = g.mul(length, x);
-    assert_eq!(normal_form(&mut g, &[vec![e0, e1, e2, e3]], &[scaled]), [x]);
+    let unit = [vec![e0, e1, e2, e3], vec![e3, e2, e1, e0]];
+    assert_eq!(normal_form(&mut g, &unit, &[scaled]), [x]);
 }
 
 /// The paper's gyroscope: angle β, rates α̇ and β̇, and γ̇ of the wheel.

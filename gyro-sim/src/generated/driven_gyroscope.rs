@@ -32,6 +32,7 @@
 //! | to_joints | (x, u) of a maximal state | 65 | 77 | 0 | 142 | 0 of 6 |
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 34 | 71 | 1 | 106 | 0 of 3 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 73 | 130 | 1 | 204 | 7 of 18 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 56 | 86 | 0 | 142 | 0 of 15 |
 
 /// The mechanism `driven_gyroscope`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -174,12 +175,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for DrivenGyroscope<T> {
         let t22 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
         let t23 = t22 * (t15 * t21 - (t9 * t18 + t3 * t17))
             + t16 * (t15 * t12 + (t9 * t6 + t3 * t1));
-        let t24 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
-        let t25 = k(2.0) * (t11 + t10);
-        let t26 = k(2.0) * (t20 - t19);
-        let t27 = k(2.0) * (k(0.5) - (t0 + rotor_e3 * rotor_e3));
-        let t28 = (t15 * t27 - (t9 * t26 - t3 * t25)) * t24 + t23;
-        let t29 = t28 - k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx);
+        let t24 = k(2.0) * (t11 + t10);
+        let t25 = k(2.0) * (t20 - t19);
+        let t26 = k(2.0) * (k(0.5) - (t0 + rotor_e3 * rotor_e3));
+        let t27 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
+        let t28 = t27 * (t15 * t26 - (t9 * t25 - t3 * t24)) + t23;
+        let t29 = k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx) - t28;
         let t30 = outer_ring_e0 * outer_ring_e0;
         let t31 = k(2.0) * (k(0.5) - (t30 + outer_ring_e1 * outer_ring_e1));
         let t32 = k(2.0)
@@ -197,7 +198,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for DrivenGyroscope<T> {
         let t43 = k(2.0) * t42;
         let t44 = t22 * (t43 * t21 + (t37 * t17 + t39 * t18))
             + t16 * (t43 * t12 - (t39 * t6 + t37 * t1));
-        let t45 = (t43 * t27 - (t37 * t25 - t39 * t26)) * t24 + t44;
+        let t45 = (t43 * t26 - (t37 * t24 - t39 * t25)) * t27 + t44;
         let t46 = t14 + t13;
         let t47 = k(0.08) * rotor_dsx;
         let t48 = t41 - t40;
@@ -208,13 +209,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for DrivenGyroscope<T> {
             - (t49 * (k(0.00025) * t48) + t47 * (k(0.00025) * t46));
         let t53 = k(2e-6) * inner_ring_dwy + (t52 + t45);
         let t54 = (t35 * t43 - (t32 * t39 + t31 * t37)) * t53
-            + (t35 * t15 + (t32 * t9 + t31 * t3)) * t29;
+            - (t35 * t15 + (t32 * t9 + t31 * t3)) * t29;
         let t55 = k(2.0) * t46;
         let t56 = k(2.0) * t48;
         let t57 = k(2.0) * t50;
         let t58 = t22 * (t57 * t21 - (t55 * t17 - t56 * t18))
             + t16 * (t57 * t12 - (t56 * t6 - t55 * t1));
-        let t59 = (t55 * t25 + t56 * t26 + t57 * t27) * t24 + t58;
+        let t59 = (t55 * t24 + t56 * t25 + t57 * t26) * t27 + t58;
         let t60 = t51 * (k(0.00025) * t42)
             - (t49 * (k(0.00025) * t38) - t47 * (k(0.00025) * t36));
         let t61 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz)
@@ -232,11 +233,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for DrivenGyroscope<T> {
         let t72 = t71 * (t70 * t32 - t66 * t35) + t31 * (t70 * t69 + t66 * t63);
         let t73 = k(1.0) / t72;
         let t74 = (t63 * t43 - (t71 * t37 - t69 * t39)) * t53
-            + (t63 * t15 - (t69 * t9 - t71 * t3)) * t29;
+            - (t63 * t15 - (t69 * t9 - t71 * t3)) * t29;
         let t75 = (t71 * t55 + t69 * t56 + t63 * t57) * t61 - t74;
         let t76 = t71 * t73
-            * (t75 - k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz))
-            - t31 * t73 * (k(2e-6) * outer_ring_dwx - t62);
+            * (k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz) - t75)
+            + t31 * t73 * (k(2e-6) * outer_ring_dwx - t62);
         let t77 = k(1.2566370614359172) * t64.cos();
         let t78 = k(2.0) * (k(0.5) - (t30 + outer_ring_e2 * outer_ring_e2)) * (t77 * t66)
             - k(2.0) * (t68 + t67) * (t77 * t70);
@@ -298,7 +299,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for DrivenGyroscope<T> {
             accelerations[15],
             accelerations[16],
             accelerations[17],
-            -(t78 * t76),
+            t78 * t76,
         ];
     }
 }
@@ -1207,12 +1208,12 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for DrivenGyroscope<T> {
         let t22 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
         let t23 = t22 * (t15 * t21 - (t9 * t18 + t3 * t17))
             + t16 * (t15 * t12 + (t9 * t6 + t3 * t1));
-        let t24 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
-        let t25 = k(2.0) * (t11 + t10);
-        let t26 = k(2.0) * (t20 - t19);
-        let t27 = k(2.0) * (k(0.5) - (t0 + rotor_e3 * rotor_e3));
-        let t28 = (t15 * t27 - (t9 * t26 - t3 * t25)) * t24 + t23;
-        let t29 = t28 - k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx);
+        let t24 = k(2.0) * (t11 + t10);
+        let t25 = k(2.0) * (t20 - t19);
+        let t26 = k(2.0) * (k(0.5) - (t0 + rotor_e3 * rotor_e3));
+        let t27 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
+        let t28 = t27 * (t15 * t26 - (t9 * t25 - t3 * t24)) + t23;
+        let t29 = k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx) - t28;
         let t30 = outer_ring_e0 * outer_ring_e0;
         let t31 = k(2.0) * (k(0.5) - (t30 + outer_ring_e1 * outer_ring_e1));
         let t32 = k(2.0)
@@ -1230,7 +1231,7 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for DrivenGyroscope<T> {
         let t43 = k(2.0) * t42;
         let t44 = t22 * (t43 * t21 + (t37 * t17 + t39 * t18))
             + t16 * (t43 * t12 - (t39 * t6 + t37 * t1));
-        let t45 = (t43 * t27 - (t37 * t25 - t39 * t26)) * t24 + t44;
+        let t45 = (t43 * t26 - (t37 * t24 - t39 * t25)) * t27 + t44;
         let t46 = t14 + t13;
         let t47 = k(0.08) * rotor_dsx;
         let t48 = t41 - t40;
@@ -1241,13 +1242,13 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for DrivenGyroscope<T> {
             - (t49 * (k(0.00025) * t48) + t47 * (k(0.00025) * t46));
         let t53 = k(2e-6) * inner_ring_dwy + (t52 + t45);
         let t54 = (t35 * t43 - (t32 * t39 + t31 * t37)) * t53
-            + (t35 * t15 + (t32 * t9 + t31 * t3)) * t29;
+            - (t35 * t15 + (t32 * t9 + t31 * t3)) * t29;
         let t55 = k(2.0) * t46;
         let t56 = k(2.0) * t48;
         let t57 = k(2.0) * t50;
         let t58 = t22 * (t57 * t21 - (t55 * t17 - t56 * t18))
             + t16 * (t57 * t12 - (t56 * t6 - t55 * t1));
-        let t59 = (t55 * t25 + t56 * t26 + t57 * t27) * t24 + t58;
+        let t59 = (t55 * t24 + t56 * t25 + t57 * t26) * t27 + t58;
         let t60 = t51 * (k(0.00025) * t42)
             - (t49 * (k(0.00025) * t38) - t47 * (k(0.00025) * t36));
         let t61 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz)
@@ -1265,11 +1266,11 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for DrivenGyroscope<T> {
         let t72 = t71 * (t70 * t32 - t66 * t35) + t31 * (t70 * t69 + t66 * t63);
         let t73 = k(1.0) / t72;
         let t74 = (t63 * t43 - (t71 * t37 - t69 * t39)) * t53
-            + (t63 * t15 - (t69 * t9 - t71 * t3)) * t29;
+            - (t63 * t15 - (t69 * t9 - t71 * t3)) * t29;
         let t75 = (t71 * t55 + t69 * t56 + t63 * t57) * t61 - t74;
         let t76 = t71 * t73
-            * (t75 - k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz))
-            - t31 * t73 * (k(2e-6) * outer_ring_dwx - t62);
+            * (k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz) - t75)
+            + t31 * t73 * (k(2e-6) * outer_ring_dwx - t62);
         let t77 = k(1.2566370614359172) * t64.cos();
         let t78 = k(2.0) * (k(0.5) - (t30 + outer_ring_e2 * outer_ring_e2)) * (t77 * t66)
             - k(2.0) * (t68 + t67) * (t77 * t70);
@@ -1331,7 +1332,7 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for DrivenGyroscope<T> {
             accelerations[15],
             accelerations[16],
             accelerations[17],
-            -(t78 * t76),
+            t78 * t76,
         ];
     }
 }
@@ -2283,12 +2284,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenGyroscope<T> {
         let t28 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
         let t29 = t28 * (t21 * t27 - (t15 * t24 + t9 * t23))
             + t22 * (t21 * t18 + (t15 * t12 + t9 * t7));
-        let t30 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
-        let t31 = k(2.0) * (t17 + t16);
-        let t32 = k(2.0) * (t26 - t25);
-        let t33 = k(2.0) * (k(0.5) - (t6 + rotor_e3 * rotor_e3));
-        let t34 = (t21 * t33 - (t15 * t32 - t9 * t31)) * t30 + t29;
-        let t35 = t34 - k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx);
+        let t30 = k(2.0) * (t17 + t16);
+        let t31 = k(2.0) * (t26 - t25);
+        let t32 = k(2.0) * (k(0.5) - (t6 + rotor_e3 * rotor_e3));
+        let t33 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
+        let t34 = t33 * (t21 * t32 - (t15 * t31 - t9 * t30)) + t29;
+        let t35 = k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx) - t34;
         let t36 = outer_ring_e0 * outer_ring_e0;
         let t37 = k(2.0) * (k(0.5) - (t36 + outer_ring_e1 * outer_ring_e1));
         let t38 = outer_ring_e0 * outer_ring_e3;
@@ -2308,25 +2309,25 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenGyroscope<T> {
         let t52 = k(2.0) * t51;
         let t53 = t52 * t27 + (t46 * t23 + t48 * t24);
         let t54 = t28 * t53 + t22 * (t52 * t18 - (t48 * t12 + t46 * t7));
-        let t55 = t52 * t33 - (t46 * t31 - t48 * t32);
+        let t55 = t52 * t32 - (t46 * t30 - t48 * t31);
         let t56 = t20 + t19;
         let t57 = t50 - t49;
         let t58 = k(0.5) - (t8 + inner_ring_e3 * inner_ring_e3);
         let t59 = t4 * (k(0.00025) * t58)
             - (t2 * (k(0.00025) * t57) + t0 * (k(0.00025) * t56));
-        let t60 = k(2e-6) * inner_ring_dwy + (t59 + (t55 * t30 + t54));
+        let t60 = k(2e-6) * inner_ring_dwy + (t59 + (t55 * t33 + t54));
         let t61 = t43 * t52 - (t40 * t48 + t37 * t46);
         let t62 = k(2.0) * t56;
         let t63 = k(2.0) * t57;
         let t64 = k(2.0) * t58;
         let t65 = t64 * t27 - (t62 * t23 - t63 * t24);
         let t66 = t28 * t65 + t22 * (t64 * t18 - (t63 * t12 - t62 * t7));
-        let t67 = t62 * t31 + t63 * t32 + t64 * t33;
+        let t67 = t62 * t30 + t63 * t31 + t64 * t32;
         let t68 = t4 * (k(0.00025) * t51)
             - (t2 * (k(0.00025) * t47) - t0 * (k(0.00025) * t45));
         let t69 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz)
-            + (t68 - (t67 * t30 + t66));
-        let t70 = (t43 * t64 - (t40 * t63 - t37 * t62)) * t69 - (t61 * t60 + t44 * t35);
+            + (t68 - (t67 * t33 + t66));
+        let t70 = (t43 * t64 - (t40 * t63 - t37 * t62)) * t69 - (t61 * t60 - t44 * t35);
         let t71 = k(2e-6) * outer_ring_dwx - t70;
         let t72 = k(2.0) * (k(0.5) - (t36 + outer_ring_e3 * outer_ring_e3));
         let t73 = k(0.1) * (k(12.566370614359172) * t).sin();
@@ -2340,9 +2341,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenGyroscope<T> {
         let t81 = k(2.0) * (t42 + t41);
         let t82 = k(1.0) / (t81 * t80 + t37 * t79);
         let t83 = (t72 * t52 - (t81 * t46 - t77 * t48)) * t60
-            + (t72 * t21 - (t77 * t15 - t81 * t9)) * t35;
+            - (t72 * t21 - (t77 * t15 - t81 * t9)) * t35;
         let t84 = (t81 * t62 + t77 * t63 + t72 * t64) * t69 - t83;
-        let t85 = t84 - k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz);
+        let t85 = k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz) - t84;
         let t86 = k(2.0) * (t39 - t38);
         let t87 = k(2.0) * (k(0.5) - (t36 + outer_ring_e2 * outer_ring_e2));
         let t88 = k(2.0) * (t76 + t75);
@@ -2354,18 +2355,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenGyroscope<T> {
             -(k(0.01) * outer_ring_dsx + t1),
             -(k(0.1) + k(0.01) * outer_ring_dsy + t3),
             -(k(0.01) * outer_ring_dsz + t5),
-            t37 * t82 * t71 - t81 * t82 * t85,
-            -(t79 * t82 * t85 + t80 * t82 * t71),
+            t81 * t82 * t85 + t37 * t82 * t71,
+            t79 * t82 * t85 - t80 * t82 * t71,
             -t1,
             -t3,
             -t5,
-            -(t90 * t91 * t60 + t89 * t91 * t35),
-            t61 * t91 * t60 + t44 * t91 * t35,
+            t89 * t91 * t35 - t90 * t91 * t60,
+            t61 * t91 * t60 - t44 * t91 * t35,
             -t0,
             -t2,
             -t4,
-            t67 * t92 * t30 + t28 * (t65 * t92),
-            t55 * t92 * t30 + t28 * (t53 * t92),
+            t67 * t92 * t33 + t28 * (t65 * t92),
+            t55 * t92 * t33 + t28 * (t53 * t92),
         ];
     }
 }
@@ -2969,6 +2970,123 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for DrivenGyroscope<T> {
             k(0.0),
             -(rotor_wz * t15 + (t41 * t34 - t38 * t29)),
             rotor_wy * t15 + (t38 * t34 + t41 * t29),
+        ];
+    }
+    /// Writes λ: 142 operations (56 ±, 86 ×, 0 ÷) and 3 functions.
+    fn corrected_multipliers(
+        &self,
+        t: T,
+        y: &Self::State,
+        accelerations: &Self::Velocities,
+        lambda: &mut Self::Rows,
+    ) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        let outer_ring_dsx = accelerations[0];
+        let outer_ring_dsy = accelerations[1];
+        let outer_ring_dsz = accelerations[2];
+        let outer_ring_dwx = accelerations[3];
+        let outer_ring_dwz = accelerations[5];
+        let inner_ring_dsx = accelerations[6];
+        let inner_ring_dsy = accelerations[7];
+        let inner_ring_dsz = accelerations[8];
+        let inner_ring_dwx = accelerations[9];
+        let inner_ring_dwy = accelerations[10];
+        let inner_ring_dwz = accelerations[11];
+        let rotor_dsx = accelerations[12];
+        let rotor_dsy = accelerations[13];
+        let rotor_dsz = accelerations[14];
+        let rotor_dwx = accelerations[15];
+        let rotor_dwy = accelerations[16];
+        let rotor_dwz = accelerations[17];
+        let t0 = k(0.08) * rotor_dsx;
+        let t1 = k(0.01) * inner_ring_dsx + t0;
+        let t2 = k(0.8) + k(0.08) * rotor_dsy;
+        let t3 = k(0.1) + k(0.01) * inner_ring_dsy + t2;
+        let t4 = k(0.08) * rotor_dsz;
+        let t5 = k(0.01) * inner_ring_dsz + t4;
+        let t6 = k(1e-5) * rotor_dwx
+            - k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx);
+        let t7 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t8 = k(2.0) * t7;
+        let t9 = k(1.0) - t7 * t8;
+        let t10 = inner_ring_e0 * inner_ring_e1;
+        let t11 = inner_ring_e2 * inner_ring_e3;
+        let t12 = t2 * (k(0.00025) * (t11 - t10))
+            + t0
+                * (k(0.00025)
+                    * (inner_ring_e1 * inner_ring_e3 + inner_ring_e0 * inner_ring_e2));
+        let t13 = inner_ring_e0 * inner_ring_e0;
+        let t14 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t15 = k(2.0) * t14;
+        let t16 = k(1.0) - t14 * t15;
+        let t17 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
+        let t18 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
+        let t19 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t20 = t19 * t15;
+        let t21 = t20 * t18 - t17 * t16;
+        let t22 = t21
+            - (t4 * (k(0.00025) * (k(0.5) - (t13 + inner_ring_e3 * inner_ring_e3)))
+                - t12);
+        let t23 = k(2e-6) * inner_ring_dwy - t22;
+        let t24 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t25 = t24 * t8;
+        let t26 = t25 * t23 + t9 * t6;
+        let t27 = k(2e-6) * outer_ring_dwx + t26;
+        let t28 = k(0.05) * (k(12.566370614359172) * t).sin();
+        let t29 = t28.sin();
+        let t30 = t28.cos();
+        let t31 = t30 * outer_ring_e2 + t29 * outer_ring_e3;
+        let t32 = k(2.0) * t31;
+        let t33 = k(1.0) - t31 * t32;
+        let t34 = t2 * (k(0.00025) * (k(0.5) - (t13 + inner_ring_e2 * inner_ring_e2)))
+            - t0
+                * (k(0.00025)
+                    * (inner_ring_e1 * inner_ring_e2 - inner_ring_e0 * inner_ring_e3));
+        let t35 = t16 * t18 + t17 * t20;
+        let t36 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz)
+            - (t35 - (t4 * (k(0.00025) * (t11 + t10)) - t34));
+        let t37 = t36 - k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz);
+        let t38 = (t30 * outer_ring_e0 + t29 * outer_ring_e1) * t32;
+        *lambda = [
+            -(k(0.01) * outer_ring_dsx + t1),
+            -(k(0.1) + k(0.01) * outer_ring_dsy + t3),
+            -(k(0.01) * outer_ring_dsz + t5),
+            -(t38 * t37 + t33 * t27),
+            t33 * t37 - t38 * t27,
+            -t1,
+            -t3,
+            -t5,
+            t25 * t6 - t9 * t23,
+            t26,
+            -t0,
+            -t2,
+            -t4,
+            t35,
+            -t21,
         ];
     }
 }

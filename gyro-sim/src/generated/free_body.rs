@@ -503,6 +503,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for FreeBody<T> {
         let t0 = k(0.3333333333333333) * body_wz;
         *out = [k(0.0), k(0.0), k(0.0), -(body_wy * t0), body_wx * t0, k(0.0)];
     }
+    /// Writes λ: 0 operations (0 ±, 0 ×, 0 ÷).
+    fn corrected_multipliers(
+        &self,
+        _t: T,
+        _y: &Self::State,
+        _accelerations: &Self::Velocities,
+        lambda: &mut Self::Rows,
+    ) {
+        *lambda = [];
+    }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Ports for FreeBody<T> {
     type Outputs = [T; 0];

@@ -33,6 +33,7 @@
 //! | to_joints | (x, u) of a maximal state | 63 | 72 | 0 | 135 | 0 of 6 |
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 73 | 101 | 2 | 176 | 0 of 3 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 132 | 187 | 2 | 321 | 6 of 18 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 100 | 133 | 0 | 233 | 0 of 15 |
 
 /// The mechanism `gyroscope_combined_offsets`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -2528,23 +2529,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
         let t35 = inner_ring_e1 * inner_ring_e3;
         let t36 = t35 - t34;
         let t37 = k(2.0) * t36;
-        let t38 = t2 * (k(0.0002) * t16 + k(0.0003) * t26)
+        let t38 = k(2.0) * t8;
+        let t39 = k(2.0) * t13;
+        let t40 = k(2.0) * t18;
+        let t41 = t2 * (k(0.0002) * t16 + k(0.0003) * t26)
             + t0 * (k(0.0002) * t11 - k(0.0003) * t21);
-        let t39 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy)
-            - (t4 * (k(0.0002) * t19 - k(0.0003) * t32) - t38);
-        let t40 = k(2.0) * t8;
-        let t41 = k(2.0) * t13;
-        let t42 = k(2.0) * t18;
-        let t43 = (t37 * t42 - (t31 * t41 + t25 * t40)) * t39
+        let t42 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy)
+            - (t4 * (k(0.0002) * t19 - k(0.0003) * t32) - t41);
+        let t43 = t42 * (t37 * t40 - (t31 * t39 + t25 * t38))
             + (t37 * t33 + (t31 * t27 + t25 * t22)) * t20;
-        let t44 = t2 * (k(0.0002) * t13 + k(0.0004) * t26)
+        let t44 = k(2.0) * t11;
+        let t45 = k(2.0) * t16;
+        let t46 = k(2.0) * t19;
+        let t47 = t2 * (k(0.0002) * t13 + k(0.0004) * t26)
             - t0 * (k(0.0002) * t8 + k(0.0004) * t21);
-        let t45 = t4 * (k(0.0002) * t18 - k(0.0004) * t32) - t44
+        let t48 = t4 * (k(0.0002) * t18 - k(0.0004) * t32) - t47
             + k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
-        let t46 = k(2.0) * t11;
-        let t47 = k(2.0) * t16;
-        let t48 = k(2.0) * t19;
-        let t49 = (t37 * t48 - (t31 * t47 - t25 * t46)) * t45 + t43;
+        let t49 = t48 * (t37 * t46 - (t31 * t45 - t25 * t44)) + t43;
         let t50 = t29 - t28;
         let t51 = t35 + t34;
         let t52 = k(0.5) - (t23 + inner_ring_e2 * inner_ring_e2);
@@ -2555,8 +2556,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
             + t0 * (k(0.0001) * t51 + k(6e-5) * t50);
         let t57 = t54 + t53;
         let t58 = k(0.5) - (t23 + inner_ring_e3 * inner_ring_e3);
-        let t59 = t4 * (k(0.0001) * t58 - k(6e-5) * t57) - t56 - t49
-            + k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx);
+        let t59 = k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx)
+            + (t4 * (k(0.0001) * t58 - k(6e-5) * t57) - t56 - t49);
         let t60 = outer_ring_e0 * outer_ring_e0;
         let t61 = k(2.0) * (k(0.5) - (t60 + outer_ring_e1 * outer_ring_e1));
         let t62 = outer_ring_e0 * outer_ring_e3;
@@ -2569,23 +2570,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
         let t69 = k(2.0) * t50;
         let t70 = k(2.0) * t52;
         let t71 = k(2.0) * t57;
-        let t72 = t71 * t42 + (t69 * t40 + t70 * t41);
-        let t73 = t72 * t39 + (t71 * t33 - (t70 * t27 + t69 * t22)) * t20;
-        let t74 = t71 * t48 - (t69 * t46 - t70 * t47);
+        let t72 = t71 * t40 + (t69 * t38 + t70 * t39);
+        let t73 = t72 * t42 + (t71 * t33 - (t70 * t27 + t69 * t22)) * t20;
+        let t74 = t71 * t46 - (t69 * t44 - t70 * t45);
         let t75 = t2 * (k(0.00025) * t55 + k(6e-5) * t30)
             + t0 * (k(0.00025) * t51 - k(6e-5) * t24);
-        let t76 = t4 * (k(0.00025) * t58 - k(6e-5) * t36) - t75 + (t74 * t45 + t73);
+        let t76 = t4 * (k(0.00025) * t58 - k(6e-5) * t36) - t75 + (t74 * t48 + t73);
         let t77 = k(2e-6) * inner_ring_dwy + t76;
         let t78 = t67 * t71 - (t64 * t70 + t61 * t69);
         let t79 = k(2.0) * t51;
         let t80 = k(2.0) * t55;
         let t81 = k(2.0) * t58;
-        let t82 = t81 * t42 - (t79 * t40 - t80 * t41);
-        let t83 = t82 * t39 + (t81 * t33 - (t80 * t27 - t79 * t22)) * t20;
-        let t84 = t79 * t46 + t80 * t47 + t81 * t48;
+        let t82 = t81 * t40 - (t79 * t38 - t80 * t39);
+        let t83 = t82 * t42 + (t81 * t33 - (t80 * t27 - t79 * t22)) * t20;
+        let t84 = t79 * t44 + t80 * t45 + t81 * t46;
         let t85 = t2 * (k(0.00025) * t52 + k(0.0001) * t30)
             - t0 * (k(0.00025) * t50 + k(0.0001) * t24);
-        let t86 = t4 * (k(0.00025) * t57 - k(0.0001) * t36) - t85 - (t84 * t45 + t83);
+        let t86 = t4 * (k(0.00025) * t57 - k(0.0001) * t36) - t85 - (t84 * t48 + t83);
         let t87 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz) + t86;
         let t88 = (t67 * t81 - (t64 * t80 - t61 * t79)) * t87 - (t78 * t77 - t68 * t59);
         let t89 = k(2e-6) * outer_ring_dwx - t88;
@@ -2598,7 +2599,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
         let t96 = (t90 * t71 - (t91 * t69 - t95 * t70)) * t77
             - (t90 * t37 - (t95 * t31 - t91 * t25)) * t59;
         let t97 = (t91 * t79 + t95 * t80 + t90 * t81) * t87 - t96;
-        let t98 = t97 - k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz);
+        let t98 = k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz) - t97;
         let t99 = k(2.0) * (t63 - t62);
         let t100 = k(2.0) * (k(0.5) - (t60 + outer_ring_e2 * outer_ring_e2));
         let t101 = k(2.0) * (t94 + t93);
@@ -2610,8 +2611,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
             -(k(0.01) * outer_ring_dsx + t1),
             -(k(0.1) + k(0.01) * outer_ring_dsy + t3),
             -(k(0.01) * outer_ring_dsz + t5),
-            t91 * t92 * t98 - t61 * t92 * t89,
-            t90 * t92 * t98 - t67 * t92 * t89,
+            -(t91 * t92 * t98 + t61 * t92 * t89),
+            -(t90 * t92 * t98 + t67 * t92 * t89),
             -t1,
             -t3,
             -t5,
@@ -2620,8 +2621,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
             -t0,
             -t2,
             -t4,
-            t84 * t105 * t45 + t82 * t105 * t39,
-            t74 * t105 * t45 + t72 * t105 * t39,
+            t84 * t105 * t48 + t82 * t105 * t42,
+            t74 * t105 * t48 + t72 * t105 * t42,
         ];
     }
 }
@@ -3123,6 +3124,153 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
             t67,
             -t56,
             t57,
+        ];
+    }
+    /// Writes λ: 233 operations (100 ±, 133 ×, 0 ÷).
+    fn corrected_multipliers(
+        &self,
+        _t: T,
+        y: &Self::State,
+        accelerations: &Self::Velocities,
+        lambda: &mut Self::Rows,
+    ) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        let outer_ring_dsx = accelerations[0];
+        let outer_ring_dsy = accelerations[1];
+        let outer_ring_dsz = accelerations[2];
+        let outer_ring_dwx = accelerations[3];
+        let outer_ring_dwz = accelerations[5];
+        let inner_ring_dsx = accelerations[6];
+        let inner_ring_dsy = accelerations[7];
+        let inner_ring_dsz = accelerations[8];
+        let inner_ring_dwx = accelerations[9];
+        let inner_ring_dwy = accelerations[10];
+        let inner_ring_dwz = accelerations[11];
+        let rotor_dsx = accelerations[12];
+        let rotor_dsy = accelerations[13];
+        let rotor_dsz = accelerations[14];
+        let rotor_dwx = accelerations[15];
+        let rotor_dwy = accelerations[16];
+        let rotor_dwz = accelerations[17];
+        let t0 = k(0.08) * rotor_dsx;
+        let t1 = k(0.01) * inner_ring_dsx + t0;
+        let t2 = k(0.8) + k(0.08) * rotor_dsy;
+        let t3 = k(0.1) + k(0.01) * inner_ring_dsy + t2;
+        let t4 = k(0.08) * rotor_dsz;
+        let t5 = k(0.01) * inner_ring_dsz + t4;
+        let t6 = rotor_e0 * rotor_e3;
+        let t7 = rotor_e1 * rotor_e2;
+        let t8 = t7 - t6;
+        let t9 = rotor_e0 * rotor_e2;
+        let t10 = rotor_e1 * rotor_e3;
+        let t11 = t10 + t9;
+        let t12 = rotor_e0 * rotor_e0;
+        let t13 = k(0.5) - (t12 + rotor_e2 * rotor_e2);
+        let t14 = rotor_e0 * rotor_e1;
+        let t15 = rotor_e2 * rotor_e3;
+        let t16 = t15 - t14;
+        let t17 = t2 * (k(0.0004) * t16 - k(0.0003) * t13)
+            + t0 * (k(0.0004) * t11 + k(0.0003) * t8);
+        let t18 = t15 + t14;
+        let t19 = k(0.5) - (t12 + rotor_e3 * rotor_e3);
+        let t20 = k(1e-5) * rotor_dwx + (t4 * (k(0.0004) * t19 - k(0.0003) * t18) - t17);
+        let t21 = inner_ring_e0 * inner_ring_e3;
+        let t22 = inner_ring_e1 * inner_ring_e2;
+        let t23 = t22 - t21;
+        let t24 = inner_ring_e0 * inner_ring_e2;
+        let t25 = inner_ring_e1 * inner_ring_e3;
+        let t26 = t25 + t24;
+        let t27 = inner_ring_e0 * inner_ring_e0;
+        let t28 = k(0.5) - (t27 + inner_ring_e2 * inner_ring_e2);
+        let t29 = inner_ring_e0 * inner_ring_e1;
+        let t30 = inner_ring_e2 * inner_ring_e3;
+        let t31 = t30 - t29;
+        let t32 = t2 * (k(0.0001) * t31 - k(6e-5) * t28)
+            + t0 * (k(0.0001) * t26 + k(6e-5) * t23);
+        let t33 = t30 + t29;
+        let t34 = k(0.5) - (t27 + inner_ring_e3 * inner_ring_e3);
+        let t35 = t4 * (k(0.0001) * t34 - k(6e-5) * t33) - t32 - t20
+            + k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx);
+        let t36 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t37 = k(2.0) * t36;
+        let t38 = k(1.0) - t36 * t37;
+        let t39 = k(0.5) - (t27 + inner_ring_e1 * inner_ring_e1);
+        let t40 = t22 + t21;
+        let t41 = t2 * (k(0.00025) * t31 + k(6e-5) * t40)
+            + t0 * (k(0.00025) * t26 - k(6e-5) * t39);
+        let t42 = t25 - t24;
+        let t43 = k(0.5) - (t12 + rotor_e1 * rotor_e1);
+        let t44 = t7 + t6;
+        let t45 = t2 * (k(0.0002) * t16 + k(0.0003) * t44)
+            + t0 * (k(0.0002) * t11 - k(0.0003) * t43);
+        let t46 = t10 - t9;
+        let t47 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy)
+            - (t4 * (k(0.0002) * t19 - k(0.0003) * t46) - t45);
+        let t48 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t49 = k(2.0) * t48;
+        let t50 = k(1.0) - t48 * t49;
+        let t51 = t2 * (k(0.0002) * t13 + k(0.0004) * t44)
+            - t0 * (k(0.0002) * t8 + k(0.0004) * t43);
+        let t52 = t4 * (k(0.0002) * t18 - k(0.0004) * t46) - t51
+            + k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
+        let t53 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t54 = t53 * t49;
+        let t55 = t54 * t52 - t50 * t47;
+        let t56 = k(2e-6) * inner_ring_dwy
+            - (t55 - (t4 * (k(0.00025) * t34 - k(6e-5) * t42) - t41));
+        let t57 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t58 = t57 * t37;
+        let t59 = t58 * t56 - t38 * t35;
+        let t60 = k(2e-6) * outer_ring_dwx + t59;
+        let t61 = k(2.0) * outer_ring_e2;
+        let t62 = k(1.0) - outer_ring_e2 * t61;
+        let t63 = t2 * (k(0.00025) * t28 + k(0.0001) * t40)
+            - t0 * (k(0.00025) * t23 + k(0.0001) * t39);
+        let t64 = t50 * t52 + t54 * t47;
+        let t65 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz)
+            - (t64 - (t4 * (k(0.00025) * t33 - k(0.0001) * t42) - t63));
+        let t66 = t65 - k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz);
+        let t67 = outer_ring_e0 * t61;
+        *lambda = [
+            -(k(0.01) * outer_ring_dsx + t1),
+            -(k(0.1) + k(0.01) * outer_ring_dsy + t3),
+            -(k(0.01) * outer_ring_dsz + t5),
+            -(t67 * t66 + t62 * t60),
+            t62 * t66 - t67 * t60,
+            -t1,
+            -t3,
+            -t5,
+            -(t38 * t56 + t58 * t35),
+            t59,
+            -t0,
+            -t2,
+            -t4,
+            t64,
+            -t55,
         ];
     }
 }

@@ -34,6 +34,7 @@
 //! | to_joints | (x, u) of a maximal state | 63 | 72 | 0 | 135 | 0 of 6 |
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 13 | 23 | 1 | 37 | 0 of 3 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 30 | 48 | 1 | 79 | 9 of 18 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 37 | 59 | 0 | 96 | 0 of 15 |
 
 /// The mechanism `gyroscope_free_nutation`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -1912,12 +1913,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
         let t28 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
         let t29 = t28 * (t21 * t27 - (t15 * t24 + t9 * t23))
             + t22 * (t21 * t18 + (t15 * t12 + t9 * t7));
-        let t30 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
-        let t31 = k(2.0) * (t17 + t16);
-        let t32 = k(2.0) * (t26 - t25);
-        let t33 = k(2.0) * (k(0.5) - (t6 + rotor_e3 * rotor_e3));
-        let t34 = (t21 * t33 - (t15 * t32 - t9 * t31)) * t30 + t29;
-        let t35 = t34 - k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx);
+        let t30 = k(2.0) * (t17 + t16);
+        let t31 = k(2.0) * (t26 - t25);
+        let t32 = k(2.0) * (k(0.5) - (t6 + rotor_e3 * rotor_e3));
+        let t33 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
+        let t34 = t33 * (t21 * t32 - (t15 * t31 - t9 * t30)) + t29;
+        let t35 = k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx) - t34;
         let t36 = outer_ring_e0 * outer_ring_e0;
         let t37 = k(2.0) * (k(0.5) - (t36 + outer_ring_e1 * outer_ring_e1));
         let t38 = outer_ring_e0 * outer_ring_e3;
@@ -1934,18 +1935,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
         let t49 = k(2.0) * (t48 + t47);
         let t50 = t49 * t27 + (t45 * t23 + t46 * t24);
         let t51 = t28 * t50 + t22 * (t49 * t18 - (t46 * t12 + t45 * t7));
-        let t52 = t49 * t33 - (t45 * t31 - t46 * t32);
-        let t53 = k(2e-6) * inner_ring_dwy + (t52 * t30 + t51);
+        let t52 = t49 * t32 - (t45 * t30 - t46 * t31);
+        let t53 = k(2e-6) * inner_ring_dwy + (t52 * t33 + t51);
         let t54 = t43 * t49 - (t40 * t46 + t37 * t45);
         let t55 = k(2.0) * (t20 + t19);
         let t56 = k(2.0) * (t48 - t47);
         let t57 = k(2.0) * (k(0.5) - (t8 + inner_ring_e3 * inner_ring_e3));
         let t58 = t57 * t27 - (t55 * t23 - t56 * t24);
         let t59 = t28 * t58 + t22 * (t57 * t18 - (t56 * t12 - t55 * t7));
-        let t60 = t55 * t31 + t56 * t32 + t57 * t33;
+        let t60 = t55 * t30 + t56 * t31 + t57 * t32;
         let t61 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz)
-            - (t60 * t30 + t59);
-        let t62 = (t43 * t57 - (t40 * t56 - t37 * t55)) * t61 - (t54 * t53 + t44 * t35);
+            - (t60 * t33 + t59);
+        let t62 = (t43 * t57 - (t40 * t56 - t37 * t55)) * t61 - (t54 * t53 - t44 * t35);
         let t63 = k(2e-6) * outer_ring_dwx - t62;
         let t64 = k(2.0) * (k(0.5) - (t36 + outer_ring_e3 * outer_ring_e3));
         let t65 = k(2.0) * (t42 + t41);
@@ -1954,9 +1955,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
         let t68 = outer_ring_e2 * outer_ring_e3;
         let t69 = k(2.0) * (t68 - t67);
         let t70 = (t64 * t49 - (t65 * t45 - t69 * t46)) * t53
-            + (t64 * t21 - (t69 * t15 - t65 * t9)) * t35;
+            - (t64 * t21 - (t69 * t15 - t65 * t9)) * t35;
         let t71 = (t65 * t55 + t69 * t56 + t64 * t57) * t61 - t70;
-        let t72 = t71 - k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz);
+        let t72 = k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz) - t71;
         let t73 = k(2.0) * (t39 - t38);
         let t74 = k(2.0) * (k(0.5) - (t36 + outer_ring_e2 * outer_ring_e2));
         let t75 = k(2.0) * (t68 + t67);
@@ -1968,18 +1969,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
             -(k(0.01) * outer_ring_dsx + t1),
             -(k(0.01) * outer_ring_dsy + t3),
             -(k(0.01) * outer_ring_dsz + t5),
-            t65 * t66 * t72 - t37 * t66 * t63,
-            t64 * t66 * t72 - t43 * t66 * t63,
+            -(t65 * t66 * t72 + t37 * t66 * t63),
+            -(t64 * t66 * t72 + t43 * t66 * t63),
             -t1,
             -t3,
             -t5,
-            -(t77 * t78 * t53 + t76 * t78 * t35),
-            t54 * t78 * t53 + t44 * t78 * t35,
+            t76 * t78 * t35 - t77 * t78 * t53,
+            t54 * t78 * t53 - t44 * t78 * t35,
             -t0,
             -t2,
             -t4,
-            t60 * t79 * t30 + t28 * (t58 * t79),
-            t52 * t79 * t30 + t28 * (t50 * t79),
+            t60 * t79 * t33 + t28 * (t58 * t79),
+            t52 * t79 * t33 + t28 * (t50 * t79),
         ];
     }
 }
@@ -2282,6 +2283,104 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
             t5 * (outer_ring_wy - t7 * t10) - t13,
             -(rotor_wz * t9 + (t20 * t15 - t18 * t14)),
             rotor_wy * t9 + (t18 * t15 + t20 * t14),
+        ];
+    }
+    /// Writes λ: 96 operations (37 ±, 59 ×, 0 ÷).
+    fn corrected_multipliers(
+        &self,
+        _t: T,
+        y: &Self::State,
+        accelerations: &Self::Velocities,
+        lambda: &mut Self::Rows,
+    ) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        let outer_ring_dsx = accelerations[0];
+        let outer_ring_dsy = accelerations[1];
+        let outer_ring_dsz = accelerations[2];
+        let outer_ring_dwx = accelerations[3];
+        let outer_ring_dwz = accelerations[5];
+        let inner_ring_dsx = accelerations[6];
+        let inner_ring_dsy = accelerations[7];
+        let inner_ring_dsz = accelerations[8];
+        let inner_ring_dwx = accelerations[9];
+        let inner_ring_dwy = accelerations[10];
+        let inner_ring_dwz = accelerations[11];
+        let rotor_dsx = accelerations[12];
+        let rotor_dsy = accelerations[13];
+        let rotor_dsz = accelerations[14];
+        let rotor_dwx = accelerations[15];
+        let rotor_dwy = accelerations[16];
+        let rotor_dwz = accelerations[17];
+        let t0 = k(0.08) * rotor_dsx;
+        let t1 = k(0.01) * inner_ring_dsx + t0;
+        let t2 = k(0.08) * rotor_dsy;
+        let t3 = k(0.01) * inner_ring_dsy + t2;
+        let t4 = k(0.08) * rotor_dsz;
+        let t5 = k(0.01) * inner_ring_dsz + t4;
+        let t6 = k(1e-5) * rotor_dwx
+            - k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx);
+        let t7 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t8 = k(2.0) * t7;
+        let t9 = k(1.0) - t7 * t8;
+        let t10 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t11 = k(2.0) * t10;
+        let t12 = k(1.0) - t10 * t11;
+        let t13 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
+        let t14 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
+        let t15 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t16 = t15 * t11;
+        let t17 = t16 * t14 - t13 * t12;
+        let t18 = k(2e-6) * inner_ring_dwy - t17;
+        let t19 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t20 = t19 * t8;
+        let t21 = t20 * t18 + t9 * t6;
+        let t22 = k(2e-6) * outer_ring_dwx + t21;
+        let t23 = k(2.0) * outer_ring_e2;
+        let t24 = k(1.0) - outer_ring_e2 * t23;
+        let t25 = t12 * t14 + t13 * t16;
+        let t26 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz) - t25
+            - k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz);
+        let t27 = outer_ring_e0 * t23;
+        *lambda = [
+            -(k(0.01) * outer_ring_dsx + t1),
+            -(k(0.01) * outer_ring_dsy + t3),
+            -(k(0.01) * outer_ring_dsz + t5),
+            -(t27 * t26 + t24 * t22),
+            t24 * t26 - t27 * t22,
+            -t1,
+            -t3,
+            -t5,
+            t20 * t6 - t9 * t18,
+            t21,
+            -t0,
+            -t2,
+            -t4,
+            t25,
+            -t17,
         ];
     }
 }

@@ -32,6 +32,7 @@
 //! | to_joints | (x, u) of a maximal state | 82 | 95 | 0 | 177 | 0 of 6 |
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 15 | 23 | 1 | 39 | 0 of 3 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 57 | 92 | 1 | 150 | 12 of 24 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 86 | 125 | 1 | 212 | 0 of 21 |
 
 /// The mechanism `gyroscope_maximal`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -2651,12 +2652,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
         let t31 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
         let t32 = t31 * (t24 * t30 - (t18 * t27 + t12 * t26))
             + t25 * (t24 * t21 + (t18 * t15 + t12 * t10));
-        let t33 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
-        let t34 = k(2.0) * (t20 + t19);
-        let t35 = k(2.0) * (t29 - t28);
-        let t36 = k(2.0) * (k(0.5) - (t9 + rotor_e3 * rotor_e3));
-        let t37 = (t24 * t36 - (t18 * t35 - t12 * t34)) * t33 + t32;
-        let t38 = t37 - k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx);
+        let t33 = k(2.0) * (t20 + t19);
+        let t34 = k(2.0) * (t29 - t28);
+        let t35 = k(2.0) * (k(0.5) - (t9 + rotor_e3 * rotor_e3));
+        let t36 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
+        let t37 = t36 * (t24 * t35 - (t18 * t34 - t12 * t33)) + t32;
+        let t38 = k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx) - t37;
         let t39 = outer_ring_e0 * outer_ring_e0;
         let t40 = k(2.0) * (k(0.5) - (t39 + outer_ring_e1 * outer_ring_e1));
         let t41 = outer_ring_e0 * outer_ring_e3;
@@ -2676,25 +2677,25 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
         let t55 = k(2.0) * t54;
         let t56 = t55 * t30 + (t49 * t26 + t51 * t27);
         let t57 = t31 * t56 + t25 * (t55 * t21 - (t51 * t15 + t49 * t10));
-        let t58 = t55 * t36 - (t49 * t34 - t51 * t35);
+        let t58 = t55 * t35 - (t49 * t33 - t51 * t34);
         let t59 = t23 + t22;
         let t60 = t53 - t52;
         let t61 = k(0.5) - (t11 + inner_ring_e3 * inner_ring_e3);
         let t62 = t6 * (k(0.00025) * t61)
             - (t3 * (k(0.00025) * t60) + t0 * (k(0.00025) * t59));
-        let t63 = k(2e-6) * inner_ring_dwy + (t62 + (t58 * t33 + t57));
+        let t63 = k(2e-6) * inner_ring_dwy + (t62 + (t58 * t36 + t57));
         let t64 = t46 * t55 - (t43 * t51 + t40 * t49);
         let t65 = k(2.0) * t59;
         let t66 = k(2.0) * t60;
         let t67 = k(2.0) * t61;
         let t68 = t67 * t30 - (t65 * t26 - t66 * t27);
         let t69 = t31 * t68 + t25 * (t67 * t21 - (t66 * t15 - t65 * t10));
-        let t70 = t65 * t34 + t66 * t35 + t67 * t36;
+        let t70 = t65 * t33 + t66 * t34 + t67 * t35;
         let t71 = t6 * (k(0.00025) * t54)
             - (t3 * (k(0.00025) * t50) - t0 * (k(0.00025) * t48));
         let t72 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz)
-            + (t71 - (t70 * t33 + t69));
-        let t73 = (t46 * t67 - (t43 * t66 - t40 * t65)) * t72 - (t64 * t63 + t47 * t38);
+            + (t71 - (t70 * t36 + t69));
+        let t73 = (t46 * t67 - (t43 * t66 - t40 * t65)) * t72 - (t64 * t63 - t47 * t38);
         let t74 = k(2e-6) * outer_ring_dwx - t73;
         let t75 = base_e0 * base_e0;
         let t76 = k(2.0) * (k(0.5) - (t75 + base_e1 * base_e1));
@@ -2712,18 +2713,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
         let t88 = k(2.0) * (t87 + t86);
         let t89 = t88 * t24 - (t85 * t18 + t84 * t12);
         let t90 = t88 * t55 + (t84 * t49 + t85 * t51);
-        let t91 = (t88 * t67 - (t84 * t65 - t85 * t66)) * t72 - (t90 * t63 + t89 * t38);
+        let t91 = (t88 * t67 - (t84 * t65 - t85 * t66)) * t72 - (t90 * t63 - t89 * t38);
         let t92 = k(1e-6) * (outer_ring_wx * outer_ring_wz + outer_ring_dwy) - t91;
         let t93 = (t82 * t88 - (t79 * t85 + t76 * t84)) * t92 + t83 * t74;
         let t94 = k(2.0) * (t45 + t44);
         let t95 = k(2.0) * (t87 - t86);
         let t96 = k(2.0) * (k(0.5) - (t39 + outer_ring_e3 * outer_ring_e3));
         let t97 = (t96 * t55 - (t94 * t49 - t95 * t51)) * t63
-            + (t96 * t24 - (t95 * t18 - t94 * t12)) * t38;
+            - (t96 * t24 - (t95 * t18 - t94 * t12)) * t38;
         let t98 = (t94 * t65 + t95 * t66 + t96 * t67) * t72 - t97;
-        let t99 = t98 - k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz);
+        let t99 = k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz) - t98;
         let t100 = t82 * t96 - (t79 * t95 - t76 * t94);
-        let t101 = k(1e-7) * base_dwx - (t100 * t99 - t93);
+        let t101 = k(1e-7) * base_dwx + (t100 * t99 + t93);
         let t102 = k(0.5) * base_e3;
         let t103 = k(0.5) * base_e0;
         let t104 = t103 * t103;
@@ -2744,8 +2745,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
         let t119 = k(2.0) * (t118 + t117);
         let t120 = (t119 * t88 + (t115 * t84 + t116 * t85)) * t92
             + (t119 * t46 - (t116 * t43 + t115 * t40)) * t74;
-        let t121 = (t119 * t96 - (t115 * t94 - t116 * t95)) * t99 - t120;
-        let t122 = k(1e-7) * base_dwy - t121;
+        let t121 = (t119 * t96 - (t115 * t94 - t116 * t95)) * t99 + t120;
+        let t122 = k(1e-7) * base_dwy + t121;
         let t123 = t103 * t102;
         let t124 = t106 * t108;
         let t125 = (t124 - t123) * t114 * t122 + (t104 + t106 * t106) * t114 * t101;
@@ -2755,7 +2756,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
         let t129 = t128 * t46 - (t127 * t43 - t126 * t40);
         let t130 = (t128 * t88 - (t126 * t84 - t127 * t85)) * t92 + t129 * t74;
         let t131 = t126 * t94 + t127 * t95 + t128 * t96;
-        let t132 = k(1e-7) * base_dwz + (t131 * t99 - t130);
+        let t132 = k(1e-7) * base_dwz - (t131 * t99 + t130);
         let t133 = (t104 + t108 * t108) * t114 * t122 + (t124 + t123) * t114 * t101;
         let t134 = t105 * t114 * t132 + (t110 * t114 * t122 + t113 * t114 * t101);
         let t135 = k(1.0) / (t129 * t100 - t131 * t83);
@@ -2771,18 +2772,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
             -t2,
             -t5,
             -t8,
-            t83 * t135 * t74 - t100 * t135 * t99,
-            t129 * t135 * t74 - t131 * t135 * t99,
+            t100 * t135 * t99 + t83 * t135 * t74,
+            t131 * t135 * t99 + t129 * t135 * t74,
             -t1,
             -t4,
             -t7,
-            -(t90 * t136 * t63 + t89 * t136 * t38),
-            t64 * t136 * t63 + t47 * t136 * t38,
+            t89 * t136 * t38 - t90 * t136 * t63,
+            t64 * t136 * t63 - t47 * t136 * t38,
             -t0,
             -t3,
             -t6,
-            t70 * t137 * t33 + t31 * (t68 * t137),
-            t58 * t137 * t33 + t31 * (t56 * t137),
+            t70 * t137 * t36 + t31 * (t68 * t137),
+            t58 * t137 * t36 + t31 * (t56 * t137),
         ];
     }
 }
@@ -3159,6 +3160,165 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
             -(t6 * (t0 + t8 * t11) + t14),
             t23 * t16 + t20 * t15 - rotor_wz * t10,
             rotor_wy * t10 - (t20 * t16 - t23 * t15),
+        ];
+    }
+    /// Writes λ: 212 operations (86 ±, 125 ×, 1 ÷).
+    fn corrected_multipliers(
+        &self,
+        _t: T,
+        y: &Self::State,
+        accelerations: &Self::Velocities,
+        lambda: &mut Self::Rows,
+    ) {
+        let k = T::constant;
+        let base_e0 = y[3];
+        let base_e1 = y[4];
+        let base_e2 = y[5];
+        let base_e3 = y[6];
+        let outer_ring_e0 = y[10];
+        let outer_ring_e1 = y[11];
+        let outer_ring_e2 = y[12];
+        let outer_ring_e3 = y[13];
+        let inner_ring_e0 = y[17];
+        let inner_ring_e1 = y[18];
+        let inner_ring_e2 = y[19];
+        let inner_ring_e3 = y[20];
+        let rotor_e0 = y[24];
+        let rotor_e1 = y[25];
+        let rotor_e2 = y[26];
+        let rotor_e3 = y[27];
+        let outer_ring_wx = y[37];
+        let outer_ring_wy = y[38];
+        let outer_ring_wz = y[39];
+        let inner_ring_wx = y[43];
+        let inner_ring_wy = y[44];
+        let inner_ring_wz = y[45];
+        let rotor_wx = y[49];
+        let rotor_wy = y[50];
+        let rotor_wz = y[51];
+        let base_dsx = accelerations[0];
+        let base_dsy = accelerations[1];
+        let base_dsz = accelerations[2];
+        let base_dwx = accelerations[3];
+        let base_dwy = accelerations[4];
+        let base_dwz = accelerations[5];
+        let outer_ring_dsx = accelerations[6];
+        let outer_ring_dsy = accelerations[7];
+        let outer_ring_dsz = accelerations[8];
+        let outer_ring_dwx = accelerations[9];
+        let outer_ring_dwy = accelerations[10];
+        let outer_ring_dwz = accelerations[11];
+        let inner_ring_dsx = accelerations[12];
+        let inner_ring_dsy = accelerations[13];
+        let inner_ring_dsz = accelerations[14];
+        let inner_ring_dwx = accelerations[15];
+        let inner_ring_dwy = accelerations[16];
+        let inner_ring_dwz = accelerations[17];
+        let rotor_dsx = accelerations[18];
+        let rotor_dsy = accelerations[19];
+        let rotor_dsz = accelerations[20];
+        let rotor_dwx = accelerations[21];
+        let rotor_dwy = accelerations[22];
+        let rotor_dwz = accelerations[23];
+        let t0 = k(0.08) * rotor_dsx;
+        let t1 = k(0.01) * inner_ring_dsx + t0;
+        let t2 = k(0.01) * outer_ring_dsx + t1;
+        let t3 = k(0.8) + k(0.08) * rotor_dsy;
+        let t4 = k(0.1) + k(0.01) * inner_ring_dsy + t3;
+        let t5 = k(0.1) + k(0.01) * outer_ring_dsy + t4;
+        let t6 = k(0.08) * rotor_dsz;
+        let t7 = k(0.01) * inner_ring_dsz + t6;
+        let t8 = k(0.01) * outer_ring_dsz + t7;
+        let t9 = k(1e-5) * rotor_dwx
+            - k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx);
+        let t10 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t11 = k(2.0) * t10;
+        let t12 = k(1.0) - t10 * t11;
+        let t13 = inner_ring_e0 * inner_ring_e1;
+        let t14 = inner_ring_e2 * inner_ring_e3;
+        let t15 = t3 * (k(0.00025) * (t14 - t13))
+            + t0
+                * (k(0.00025)
+                    * (inner_ring_e1 * inner_ring_e3 + inner_ring_e0 * inner_ring_e2));
+        let t16 = inner_ring_e0 * inner_ring_e0;
+        let t17 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t18 = k(2.0) * t17;
+        let t19 = k(1.0) - t17 * t18;
+        let t20 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
+        let t21 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
+        let t22 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t23 = t22 * t18;
+        let t24 = t23 * t21 - t20 * t19;
+        let t25 = t24
+            - (t6 * (k(0.00025) * (k(0.5) - (t16 + inner_ring_e3 * inner_ring_e3)))
+                - t15);
+        let t26 = k(2e-6) * inner_ring_dwy - t25;
+        let t27 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t28 = t27 * t11;
+        let t29 = t28 * t26 + t12 * t9;
+        let t30 = k(2e-6) * outer_ring_dwx + t29;
+        let t31 = base_e2 * outer_ring_e0 + base_e3 * outer_ring_e1
+            - base_e0 * outer_ring_e2 - base_e1 * outer_ring_e3;
+        let t32 = k(2.0) * t31;
+        let t33 = k(1.0) - t31 * t32;
+        let t34 = t3 * (k(0.00025) * (k(0.5) - (t16 + inner_ring_e2 * inner_ring_e2)))
+            - t0
+                * (k(0.00025)
+                    * (inner_ring_e1 * inner_ring_e2 - inner_ring_e0 * inner_ring_e3));
+        let t35 = t19 * t21 + t20 * t23;
+        let t36 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz)
+            - (t35 - (t6 * (k(0.00025) * (t14 + t13)) - t34));
+        let t37 = t36 - k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz);
+        let t38 = base_e0 * outer_ring_e0 + base_e1 * outer_ring_e1
+            + base_e2 * outer_ring_e2 + base_e3 * outer_ring_e3;
+        let t39 = t38 * t32;
+        let t40 = t39 * t37 - t33 * t30;
+        let t41 = k(1e-7) * base_dwx - t40;
+        let t42 = base_e3 * base_e3;
+        let t43 = base_e2 * base_e2;
+        let t44 = base_e0 * base_e0;
+        let t45 = t44 + base_e1 * base_e1;
+        let t46 = k(2.0) / (base_e0 * (t45 + (t43 + t42)));
+        let t47 = t12 * t26 - t28 * t9;
+        let t48 = k(1e-7) * base_dwy
+            + (k(1e-6) * (outer_ring_wx * outer_ring_wz + outer_ring_dwy) + t47);
+        let t49 = base_e0 * base_e3;
+        let t50 = base_e1 * base_e2;
+        let t51 = t33 * t37 + t39 * t30;
+        let t52 = k(1e-7) * base_dwz + t51;
+        let t53 = base_e0 * base_e2;
+        let t54 = base_e1 * base_e3;
+        let t55 = (t54 + t53) * t46 * t52 + ((t50 - t49) * t46 * t48 + t45 * t46 * t41);
+        let t56 = (t44 + t43) * t46 * t48 + (t50 + t49) * t46 * t41;
+        let t57 = base_e0 * base_e1;
+        let t58 = base_e2 * base_e3;
+        let t59 = (t58 + t57) * t46 * t48 + (t54 - t53) * t46 * t41;
+        *lambda = [
+            -(k(0.001) * base_dsx + t2),
+            -(k(0.01) + k(0.001) * base_dsy + t5),
+            -(k(0.001) * base_dsz + t8),
+            -t55,
+            -((t58 - t57) * t46 * t52 + t56),
+            -((t44 + t42) * t46 * t52 + t59),
+            -t2,
+            -t5,
+            -t8,
+            t40,
+            t51,
+            -t1,
+            -t4,
+            -t7,
+            -t47,
+            t29,
+            -t0,
+            -t3,
+            -t6,
+            t35,
+            -t24,
         ];
     }
 }

@@ -33,6 +33,7 @@
 //! | to_joints | (x, u) of a maximal state | 63 | 72 | 0 | 135 | 0 of 6 |
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 21 | 29 | 2 | 52 | 0 of 3 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 63 | 97 | 2 | 162 | 6 of 18 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 55 | 90 | 0 | 145 | 0 of 15 |
 
 /// The mechanism `gyroscope_parameters`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -2015,11 +2016,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeParameters<T> {
         let t28 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
         let t29 = t28 * (t21 * t27 - (t15 * t24 + t9 * t23))
             + t22 * (t21 * t18 + (t15 * t12 + t9 * t7));
-        let t30 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
-        let t31 = k(2.0) * (t17 + t16);
-        let t32 = k(2.0) * (t26 - t25);
-        let t33 = k(2.0) * (k(0.5) - (t6 + rotor_e3 * rotor_e3));
-        let t34 = (t21 * t33 - (t15 * t32 - t9 * t31)) * t30 + t29;
+        let t30 = k(2.0) * (t17 + t16);
+        let t31 = k(2.0) * (t26 - t25);
+        let t32 = k(2.0) * (k(0.5) - (t6 + rotor_e3 * rotor_e3));
+        let t33 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
+        let t34 = t33 * (t21 * t32 - (t15 * t31 - t9 * t30)) + t29;
         let t35 = self.ring_axial_inertia - self.ring_diametral_inertia;
         let t36 = inner_ring_wy * inner_ring_wz * t35
             - self.ring_diametral_inertia * inner_ring_dwx - t34;
@@ -2039,21 +2040,21 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeParameters<T> {
         let t50 = k(2.0) * (t49 + t48);
         let t51 = t50 * t27 + (t46 * t23 + t47 * t24);
         let t52 = t28 * t51 + t22 * (t50 * t18 - (t47 * t12 + t46 * t7));
-        let t53 = t50 * t33 - (t46 * t31 - t47 * t32);
+        let t53 = t50 * t32 - (t46 * t30 - t47 * t31);
         let t54 = k(2.0) * (t20 + t19);
         let t55 = k(2.0) * (t49 - t48);
         let t56 = k(2.0) * (k(0.5) - (t8 + inner_ring_e3 * inner_ring_e3));
         let t57 = t4 * (t56 * self.rotor_offset)
             - (t2 * (t55 * self.rotor_offset) + t0 * (t54 * self.rotor_offset));
-        let t58 = self.ring_axial_inertia * inner_ring_dwy + (t57 + (t53 * t30 + t52));
+        let t58 = self.ring_axial_inertia * inner_ring_dwy + (t57 + (t53 * t33 + t52));
         let t59 = t44 * t50 - (t41 * t47 + t38 * t46);
         let t60 = t56 * t27 - (t54 * t23 - t55 * t24);
         let t61 = t28 * t60 + t22 * (t56 * t18 - (t55 * t12 - t54 * t7));
-        let t62 = t54 * t31 + t55 * t32 + t56 * t33;
+        let t62 = t54 * t30 + t55 * t31 + t56 * t32;
         let t63 = t4 * (t50 * self.rotor_offset)
             - (t2 * (t47 * self.rotor_offset) - t0 * (t46 * self.rotor_offset));
         let t64 = inner_ring_wx * inner_ring_wy * t35
-            + self.ring_diametral_inertia * inner_ring_dwz + (t63 - (t62 * t30 + t61));
+            + self.ring_diametral_inertia * inner_ring_dwz + (t63 - (t62 * t33 + t61));
         let t65 = (t44 * t56 - (t41 * t55 - t38 * t54)) * t64 - (t59 * t58 - t45 * t36);
         let t66 = self.ring_axial_inertia * outer_ring_dwx - t65;
         let t67 = k(2.0) * (k(0.5) - (t37 + outer_ring_e3 * outer_ring_e3));
@@ -2088,8 +2089,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeParameters<T> {
             -t0,
             -t2,
             -t4,
-            t62 * t82 * t30 + t28 * (t60 * t82),
-            t53 * t82 * t30 + t28 * (t51 * t82),
+            t62 * t82 * t33 + t28 * (t60 * t82),
+            t53 * t82 * t33 + t28 * (t51 * t82),
         ];
     }
 }
@@ -2440,6 +2441,126 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
             -(t17 - k(100000.0) * (outer_ring_wy * t5) + t18),
             -(rotor_wz * t13 + (t28 * t21 - t25 * t19)),
             rotor_wy * t13 + (t25 * t21 + t28 * t19),
+        ];
+    }
+    /// Writes λ: 145 operations (55 ±, 90 ×, 0 ÷).
+    fn corrected_multipliers(
+        &self,
+        _t: T,
+        y: &Self::State,
+        accelerations: &Self::Velocities,
+        lambda: &mut Self::Rows,
+    ) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        let outer_ring_dsx = accelerations[0];
+        let outer_ring_dsy = accelerations[1];
+        let outer_ring_dsz = accelerations[2];
+        let outer_ring_dwx = accelerations[3];
+        let outer_ring_dwz = accelerations[5];
+        let inner_ring_dsx = accelerations[6];
+        let inner_ring_dsy = accelerations[7];
+        let inner_ring_dsz = accelerations[8];
+        let inner_ring_dwx = accelerations[9];
+        let inner_ring_dwy = accelerations[10];
+        let inner_ring_dwz = accelerations[11];
+        let rotor_dsx = accelerations[12];
+        let rotor_dsy = accelerations[13];
+        let rotor_dsz = accelerations[14];
+        let rotor_dwx = accelerations[15];
+        let rotor_dwy = accelerations[16];
+        let rotor_dwz = accelerations[17];
+        let t0 = self.rotor_mass * rotor_dsx;
+        let t1 = k(0.01) * inner_ring_dsx + t0;
+        let t2 = self.gravity * self.rotor_mass + self.rotor_mass * rotor_dsy;
+        let t3 = k(0.01) * (self.gravity + inner_ring_dsy) + t2;
+        let t4 = self.rotor_mass * rotor_dsz;
+        let t5 = k(0.01) * inner_ring_dsz + t4;
+        let t6 = self.ring_axial_inertia - self.ring_diametral_inertia;
+        let t7 = inner_ring_wy * inner_ring_wz * t6
+            - self.ring_diametral_inertia * inner_ring_dwx - k(1e-5) * rotor_dwx;
+        let t8 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t9 = k(2.0) * t8;
+        let t10 = k(1.0) - t8 * t9;
+        let t11 = inner_ring_e0 * inner_ring_e1;
+        let t12 = inner_ring_e2 * inner_ring_e3;
+        let t13 = t2 * (k(2.0) * (t12 - t11) * self.rotor_offset)
+            + t0
+                * (k(2.0)
+                    * (inner_ring_e1 * inner_ring_e3 + inner_ring_e0 * inner_ring_e2)
+                    * self.rotor_offset);
+        let t14 = inner_ring_e0 * inner_ring_e0;
+        let t15 = t4
+            * (k(2.0) * (k(0.5) - (t14 + inner_ring_e3 * inner_ring_e3))
+                * self.rotor_offset) - t13;
+        let t16 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t17 = k(2.0) * t16;
+        let t18 = k(1.0) - t16 * t17;
+        let t19 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
+        let t20 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
+        let t21 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t22 = t21 * t17;
+        let t23 = t22 * t20 - t19 * t18;
+        let t24 = self.ring_axial_inertia * inner_ring_dwy - (t23 - t15);
+        let t25 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t26 = t25 * t9;
+        let t27 = t26 * t24 - t10 * t7;
+        let t28 = self.ring_axial_inertia * outer_ring_dwx + t27;
+        let t29 = k(2.0) * outer_ring_e2;
+        let t30 = k(1.0) - outer_ring_e2 * t29;
+        let t31 = t2
+            * (k(2.0) * (k(0.5) - (t14 + inner_ring_e2 * inner_ring_e2))
+                * self.rotor_offset)
+            - t0
+                * (k(2.0)
+                    * (inner_ring_e1 * inner_ring_e2 - inner_ring_e0 * inner_ring_e3)
+                    * self.rotor_offset);
+        let t32 = t18 * t20 + t19 * t22;
+        let t33 = inner_ring_wx * inner_ring_wy * t6
+            + self.ring_diametral_inertia * inner_ring_dwz
+            - (t32 - (t4 * (k(2.0) * (t12 + t11) * self.rotor_offset) - t31));
+        let t34 = outer_ring_wx * outer_ring_wy * t6
+            - self.ring_diametral_inertia * outer_ring_dwz - t33;
+        let t35 = outer_ring_e0 * t29;
+        *lambda = [
+            -(k(0.01) * outer_ring_dsx + t1),
+            -(k(0.01) * (self.gravity + outer_ring_dsy) + t3),
+            -(k(0.01) * outer_ring_dsz + t5),
+            t35 * t34 - t30 * t28,
+            -(t30 * t34 + t35 * t28),
+            -t1,
+            -t3,
+            -t5,
+            -(t10 * t24 + t26 * t7),
+            t27,
+            -t0,
+            -t2,
+            -t4,
+            t32,
+            -t23,
         ];
     }
 }

@@ -32,6 +32,7 @@
 //! | to_joints | (x, u) of a maximal state | 63 | 72 | 0 | 135 | 0 of 6 |
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 18 | 29 | 1 | 48 | 0 of 3 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 60 | 97 | 1 | 158 | 6 of 18 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 60 | 81 | 0 | 141 | 0 of 15 |
 
 /// The mechanism `gyroscope_viscous`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -1984,38 +1985,38 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeViscous<T> {
         let t3 = k(0.1) + k(0.01) * inner_ring_dsy + t2;
         let t4 = k(0.08) * rotor_dsz;
         let t5 = k(0.01) * inner_ring_dsz + t4;
-        let t6 = inner_ring_wx - rotor_wx;
-        let t7 = rotor_e0 * rotor_e0;
-        let t8 = k(2.0) * (k(0.5) - (t7 + rotor_e1 * rotor_e1));
-        let t9 = inner_ring_e0 * inner_ring_e0;
-        let t10 = k(2.0) * (k(0.5) - (t9 + inner_ring_e1 * inner_ring_e1));
-        let t11 = rotor_e0 * rotor_e3;
-        let t12 = rotor_e1 * rotor_e2;
-        let t13 = k(2.0) * (t12 + t11);
-        let t14 = inner_ring_e0 * inner_ring_e3;
-        let t15 = inner_ring_e1 * inner_ring_e2;
-        let t16 = k(2.0) * (t15 + t14);
-        let t17 = rotor_e0 * rotor_e2;
-        let t18 = rotor_e1 * rotor_e3;
-        let t19 = k(2.0) * (t18 - t17);
-        let t20 = inner_ring_e0 * inner_ring_e2;
-        let t21 = inner_ring_e1 * inner_ring_e3;
-        let t22 = k(2.0) * (t21 - t20);
-        let t23 = k(1e-6) * t6 - k(1e-5) * rotor_dwx;
-        let t24 = k(2.0) * (t12 - t11);
-        let t25 = k(2.0) * (k(0.5) - (t7 + rotor_e2 * rotor_e2));
+        let t6 = rotor_e0 * rotor_e0;
+        let t7 = k(2.0) * (k(0.5) - (t6 + rotor_e1 * rotor_e1));
+        let t8 = inner_ring_e0 * inner_ring_e0;
+        let t9 = k(2.0) * (k(0.5) - (t8 + inner_ring_e1 * inner_ring_e1));
+        let t10 = rotor_e0 * rotor_e3;
+        let t11 = rotor_e1 * rotor_e2;
+        let t12 = k(2.0) * (t11 + t10);
+        let t13 = inner_ring_e0 * inner_ring_e3;
+        let t14 = inner_ring_e1 * inner_ring_e2;
+        let t15 = k(2.0) * (t14 + t13);
+        let t16 = rotor_e0 * rotor_e2;
+        let t17 = rotor_e1 * rotor_e3;
+        let t18 = k(2.0) * (t17 - t16);
+        let t19 = inner_ring_e0 * inner_ring_e2;
+        let t20 = inner_ring_e1 * inner_ring_e3;
+        let t21 = k(2.0) * (t20 - t19);
+        let t22 = inner_ring_wx - rotor_wx;
+        let t23 = k(1e-6) * t22 - k(1e-5) * rotor_dwx;
+        let t24 = k(2.0) * (t11 - t10);
+        let t25 = k(2.0) * (k(0.5) - (t6 + rotor_e2 * rotor_e2));
         let t26 = rotor_e0 * rotor_e1;
         let t27 = rotor_e2 * rotor_e3;
         let t28 = k(2.0) * (t27 + t26);
         let t29 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
-        let t30 = t29 * (t22 * t28 - (t16 * t25 + t10 * t24))
-            - t23 * (t22 * t19 + (t16 * t13 + t10 * t8));
-        let t31 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
-        let t32 = k(2.0) * (t18 + t17);
-        let t33 = k(2.0) * (t27 - t26);
-        let t34 = k(2.0) * (k(0.5) - (t7 + rotor_e3 * rotor_e3));
-        let t35 = (t22 * t34 - (t16 * t33 - t10 * t32)) * t31 + t30;
-        let t36 = t35 - k(1e-6) * (inner_ring_wy * inner_ring_wz - t6 - inner_ring_dwx);
+        let t30 = t29 * (t21 * t28 - (t15 * t25 + t9 * t24))
+            - t23 * (t21 * t18 + (t15 * t12 + t9 * t7));
+        let t31 = k(2.0) * (t17 + t16);
+        let t32 = k(2.0) * (t27 - t26);
+        let t33 = k(2.0) * (k(0.5) - (t6 + rotor_e3 * rotor_e3));
+        let t34 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
+        let t35 = t34 * (t21 * t33 - (t15 * t32 - t9 * t31)) + t30;
+        let t36 = k(1e-6) * (inner_ring_wy * inner_ring_wz - t22 - inner_ring_dwx) - t35;
         let t37 = outer_ring_e0 * outer_ring_e0;
         let t38 = k(2.0) * (k(0.5) - (t37 + outer_ring_e1 * outer_ring_e1));
         let t39 = outer_ring_e0 * outer_ring_e3;
@@ -2024,37 +2025,37 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeViscous<T> {
         let t42 = outer_ring_e0 * outer_ring_e2;
         let t43 = outer_ring_e1 * outer_ring_e3;
         let t44 = k(2.0) * (t43 - t42);
-        let t45 = t44 * t22 + (t41 * t16 + t38 * t10);
-        let t46 = t15 - t14;
+        let t45 = t44 * t21 + (t41 * t15 + t38 * t9);
+        let t46 = t14 - t13;
         let t47 = k(2.0) * t46;
-        let t48 = k(0.5) - (t9 + inner_ring_e2 * inner_ring_e2);
+        let t48 = k(0.5) - (t8 + inner_ring_e2 * inner_ring_e2);
         let t49 = k(2.0) * t48;
         let t50 = inner_ring_e0 * inner_ring_e1;
         let t51 = inner_ring_e2 * inner_ring_e3;
         let t52 = t51 + t50;
         let t53 = k(2.0) * t52;
         let t54 = t53 * t28 + (t47 * t24 + t49 * t25);
-        let t55 = t29 * t54 - t23 * (t53 * t19 - (t49 * t13 + t47 * t8));
-        let t56 = t53 * t34 - (t47 * t32 - t49 * t33);
-        let t57 = t21 + t20;
+        let t55 = t29 * t54 - t23 * (t53 * t18 - (t49 * t12 + t47 * t7));
+        let t56 = t53 * t33 - (t47 * t31 - t49 * t32);
+        let t57 = t20 + t19;
         let t58 = t51 - t50;
-        let t59 = k(0.5) - (t9 + inner_ring_e3 * inner_ring_e3);
+        let t59 = k(0.5) - (t8 + inner_ring_e3 * inner_ring_e3);
         let t60 = t4 * (k(0.00025) * t59)
             - (t2 * (k(0.00025) * t58) + t0 * (k(0.00025) * t57));
-        let t61 = k(2e-6) * inner_ring_dwy + (t60 + (t56 * t31 + t55));
+        let t61 = k(2e-6) * inner_ring_dwy + (t60 + (t56 * t34 + t55));
         let t62 = t44 * t53 - (t41 * t49 + t38 * t47);
         let t63 = k(2.0) * t57;
         let t64 = k(2.0) * t58;
         let t65 = k(2.0) * t59;
         let t66 = t65 * t28 - (t63 * t24 - t64 * t25);
-        let t67 = t29 * t66 - t23 * (t65 * t19 - (t64 * t13 - t63 * t8));
-        let t68 = t63 * t32 + t64 * t33 + t65 * t34;
+        let t67 = t29 * t66 - t23 * (t65 * t18 - (t64 * t12 - t63 * t7));
+        let t68 = t63 * t31 + t64 * t32 + t65 * t33;
         let t69 = t4 * (k(0.00025) * t52)
             - (t2 * (k(0.00025) * t48) - t0 * (k(0.00025) * t46));
         let t70 = outer_ring_wz - inner_ring_wz;
         let t71 = k(1e-6) * (inner_ring_wx * inner_ring_wy - t70 + inner_ring_dwz)
-            + (t69 - (t68 * t31 + t67));
-        let t72 = (t44 * t65 - (t41 * t64 - t38 * t63)) * t71 - (t62 * t61 + t45 * t36);
+            + (t69 - (t68 * t34 + t67));
+        let t72 = (t44 * t65 - (t41 * t64 - t38 * t63)) * t71 - (t62 * t61 - t45 * t36);
         let t73 = k(2e-6) * outer_ring_dwx - t72;
         let t74 = k(2.0) * (k(0.5) - (t37 + outer_ring_e3 * outer_ring_e3));
         let t75 = k(2.0) * (t43 + t42);
@@ -2063,13 +2064,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeViscous<T> {
         let t78 = outer_ring_e2 * outer_ring_e3;
         let t79 = k(2.0) * (t78 - t77);
         let t80 = (t74 * t53 - (t75 * t47 - t79 * t49)) * t61
-            + (t74 * t22 - (t79 * t16 - t75 * t10)) * t36;
+            - (t74 * t21 - (t79 * t15 - t75 * t9)) * t36;
         let t81 = (t75 * t63 + t79 * t64 + t74 * t65) * t71 - t80;
-        let t82 = t81 - k(1e-6) * (outer_ring_wx * outer_ring_wy - t70 - outer_ring_dwz);
+        let t82 = k(1e-6) * (outer_ring_wx * outer_ring_wy - t70 - outer_ring_dwz) - t81;
         let t83 = k(2.0) * (t40 - t39);
         let t84 = k(2.0) * (k(0.5) - (t37 + outer_ring_e2 * outer_ring_e2));
         let t85 = k(2.0) * (t78 + t77);
-        let t86 = t85 * t22 - (t84 * t16 + t83 * t10);
+        let t86 = t85 * t21 - (t84 * t15 + t83 * t9);
         let t87 = t85 * t53 + (t83 * t47 + t84 * t49);
         let t88 = k(1.0) / (t45 * t87 - t62 * t86);
         let t89 = k(1.0) / (t54 * t68 - t56 * t66);
@@ -2077,18 +2078,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeViscous<T> {
             -(k(0.01) * outer_ring_dsx + t1),
             -(k(0.1) + k(0.01) * outer_ring_dsy + t3),
             -(k(0.01) * outer_ring_dsz + t5),
-            t75 * t76 * t82 - t38 * t76 * t73,
-            t74 * t76 * t82 - t44 * t76 * t73,
+            -(t75 * t76 * t82 + t38 * t76 * t73),
+            -(t74 * t76 * t82 + t44 * t76 * t73),
             -t1,
             -t3,
             -t5,
-            -(t87 * t88 * t61 + t86 * t88 * t36),
-            t62 * t88 * t61 + t45 * t88 * t36,
+            t86 * t88 * t36 - t87 * t88 * t61,
+            t62 * t88 * t61 - t45 * t88 * t36,
             -t0,
             -t2,
             -t4,
-            t68 * t89 * t31 + t29 * (t66 * t89),
-            t56 * t89 * t31 + t29 * (t54 * t89),
+            t68 * t89 * t34 + t29 * (t66 * t89),
+            t56 * t89 * t34 + t29 * (t54 * t89),
         ];
     }
 }
@@ -2438,6 +2439,122 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeViscous<T> {
             -(t14 - k(100000.0) * (k(1e-6) * t5 + outer_ring_wy * t9) + t15),
             -(rotor_wz * t5 + (t25 * t18 - t22 * t16)),
             rotor_wy * t5 + (t22 * t18 + t25 * t16),
+        ];
+    }
+    /// Writes λ: 141 operations (60 ±, 81 ×, 0 ÷).
+    fn corrected_multipliers(
+        &self,
+        _t: T,
+        y: &Self::State,
+        accelerations: &Self::Velocities,
+        lambda: &mut Self::Rows,
+    ) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        let outer_ring_dsx = accelerations[0];
+        let outer_ring_dsy = accelerations[1];
+        let outer_ring_dsz = accelerations[2];
+        let outer_ring_dwx = accelerations[3];
+        let outer_ring_dwz = accelerations[5];
+        let inner_ring_dsx = accelerations[6];
+        let inner_ring_dsy = accelerations[7];
+        let inner_ring_dsz = accelerations[8];
+        let inner_ring_dwx = accelerations[9];
+        let inner_ring_dwy = accelerations[10];
+        let inner_ring_dwz = accelerations[11];
+        let rotor_dsx = accelerations[12];
+        let rotor_dsy = accelerations[13];
+        let rotor_dsz = accelerations[14];
+        let rotor_dwx = accelerations[15];
+        let rotor_dwy = accelerations[16];
+        let rotor_dwz = accelerations[17];
+        let t0 = k(0.08) * rotor_dsx;
+        let t1 = k(0.01) * inner_ring_dsx + t0;
+        let t2 = k(0.8) + k(0.08) * rotor_dsy;
+        let t3 = k(0.1) + k(0.01) * inner_ring_dsy + t2;
+        let t4 = k(0.08) * rotor_dsz;
+        let t5 = k(0.01) * inner_ring_dsz + t4;
+        let t6 = inner_ring_wx - rotor_wx;
+        let t7 = k(1e-6) * t6 - k(1e-5) * rotor_dwx
+            + k(1e-6) * (inner_ring_wy * inner_ring_wz - t6 - inner_ring_dwx);
+        let t8 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t9 = k(2.0) * t8;
+        let t10 = k(1.0) - t8 * t9;
+        let t11 = inner_ring_e0 * inner_ring_e1;
+        let t12 = inner_ring_e2 * inner_ring_e3;
+        let t13 = t2 * (k(0.00025) * (t12 - t11))
+            + t0
+                * (k(0.00025)
+                    * (inner_ring_e1 * inner_ring_e3 + inner_ring_e0 * inner_ring_e2));
+        let t14 = inner_ring_e0 * inner_ring_e0;
+        let t15 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t16 = k(2.0) * t15;
+        let t17 = k(1.0) - t15 * t16;
+        let t18 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
+        let t19 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
+        let t20 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t21 = t20 * t16;
+        let t22 = t21 * t19 - t18 * t17;
+        let t23 = t22
+            - (t4 * (k(0.00025) * (k(0.5) - (t14 + inner_ring_e3 * inner_ring_e3)))
+                - t13);
+        let t24 = k(2e-6) * inner_ring_dwy - t23;
+        let t25 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t26 = t25 * t9;
+        let t27 = t26 * t24 - t10 * t7;
+        let t28 = k(2e-6) * outer_ring_dwx + t27;
+        let t29 = k(2.0) * outer_ring_e2;
+        let t30 = k(1.0) - outer_ring_e2 * t29;
+        let t31 = outer_ring_wz - inner_ring_wz;
+        let t32 = t2 * (k(0.00025) * (k(0.5) - (t14 + inner_ring_e2 * inner_ring_e2)))
+            - t0
+                * (k(0.00025)
+                    * (inner_ring_e1 * inner_ring_e2 - inner_ring_e0 * inner_ring_e3));
+        let t33 = t17 * t19 + t18 * t21;
+        let t34 = k(1e-6) * (inner_ring_wx * inner_ring_wy - t31 + inner_ring_dwz)
+            - (t33 - (t4 * (k(0.00025) * (t12 + t11)) - t32));
+        let t35 = t34 - k(1e-6) * (outer_ring_wx * outer_ring_wy - t31 - outer_ring_dwz);
+        let t36 = outer_ring_e0 * t29;
+        *lambda = [
+            -(k(0.01) * outer_ring_dsx + t1),
+            -(k(0.1) + k(0.01) * outer_ring_dsy + t3),
+            -(k(0.01) * outer_ring_dsz + t5),
+            -(t36 * t35 + t30 * t28),
+            t30 * t35 - t36 * t28,
+            -t1,
+            -t3,
+            -t5,
+            -(t10 * t24 + t26 * t7),
+            t27,
+            -t0,
+            -t2,
+            -t4,
+            t33,
+            -t22,
         ];
     }
 }

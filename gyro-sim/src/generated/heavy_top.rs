@@ -33,6 +33,7 @@
 //! | to_joints | (x, u) of a maximal state | 0 | 0 | 0 | 0 | 0 of 7 |
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 4 | 9 | 0 | 13 | 1 of 3 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 23 | 41 | 0 | 64 | 1 of 6 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 1 | 3 | 0 | 4 | 0 of 3 |
 
 /// The mechanism `heavy_top`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -753,6 +754,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for HeavyTop<T> {
             t11,
             -t4,
             k(0.0),
+        ];
+    }
+    /// Writes λ: 4 operations (1 ±, 3 ×, 0 ÷).
+    fn corrected_multipliers(
+        &self,
+        _t: T,
+        _y: &Self::State,
+        accelerations: &Self::Velocities,
+        lambda: &mut Self::Rows,
+    ) {
+        let k = T::constant;
+        let top_dsx = accelerations[0];
+        let top_dsy = accelerations[1];
+        let top_dsz = accelerations[2];
+        *lambda = [
+            -(k(0.5) * top_dsx),
+            -(k(0.5) * top_dsy),
+            -(k(4.905) + k(0.5) * top_dsz),
         ];
     }
 }

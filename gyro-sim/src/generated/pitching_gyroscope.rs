@@ -32,6 +32,7 @@
 //! | to_joints | (x, u) of a maximal state | 68 | 86 | 0 | 154 | 0 of 6 |
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 47 | 100 | 1 | 148 | 0 of 3 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 86 | 159 | 1 | 246 | 7 of 18 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 60 | 96 | 0 | 156 | 0 of 15 |
 
 /// The mechanism `pitching_gyroscope`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -174,12 +175,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for PitchingGyroscope<T> {
         let t22 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
         let t23 = t22 * (t15 * t21 - (t9 * t18 + t3 * t17))
             + t16 * (t15 * t12 + (t9 * t6 + t3 * t1));
-        let t24 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
-        let t25 = k(2.0) * (t11 + t10);
-        let t26 = k(2.0) * (t20 - t19);
-        let t27 = k(2.0) * (k(0.5) - (t0 + rotor_e3 * rotor_e3));
-        let t28 = (t15 * t27 - (t9 * t26 - t3 * t25)) * t24 + t23;
-        let t29 = t28 - k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx);
+        let t24 = k(2.0) * (t11 + t10);
+        let t25 = k(2.0) * (t20 - t19);
+        let t26 = k(2.0) * (k(0.5) - (t0 + rotor_e3 * rotor_e3));
+        let t27 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
+        let t28 = t27 * (t15 * t26 - (t9 * t25 - t3 * t24)) + t23;
+        let t29 = k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx) - t28;
         let t30 = outer_ring_e0 * outer_ring_e0;
         let t31 = k(2.0) * (k(0.5) - (t30 + outer_ring_e1 * outer_ring_e1));
         let t32 = outer_ring_e0 * outer_ring_e3;
@@ -198,7 +199,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for PitchingGyroscope<T> {
         let t45 = k(2.0) * t44;
         let t46 = t22 * (t45 * t21 + (t39 * t17 + t41 * t18))
             + t16 * (t45 * t12 - (t41 * t6 + t39 * t1));
-        let t47 = (t45 * t27 - (t39 * t25 - t41 * t26)) * t24 + t46;
+        let t47 = (t45 * t26 - (t39 * t24 - t41 * t25)) * t27 + t46;
         let t48 = t14 + t13;
         let t49 = k(0.08) * rotor_dsx;
         let t50 = t43 - t42;
@@ -209,13 +210,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for PitchingGyroscope<T> {
             - (t51 * (k(0.00025) * t50) + t49 * (k(0.00025) * t48));
         let t55 = k(2e-6) * inner_ring_dwy + (t54 + t47);
         let t56 = (t37 * t45 - (t34 * t41 + t31 * t39)) * t55
-            + (t37 * t15 + (t34 * t9 + t31 * t3)) * t29;
+            - (t37 * t15 + (t34 * t9 + t31 * t3)) * t29;
         let t57 = k(2.0) * t48;
         let t58 = k(2.0) * t50;
         let t59 = k(2.0) * t52;
         let t60 = t22 * (t59 * t21 - (t57 * t17 - t58 * t18))
             + t16 * (t59 * t12 - (t58 * t6 - t57 * t1));
-        let t61 = (t57 * t25 + t58 * t26 + t59 * t27) * t24 + t60;
+        let t61 = (t57 * t24 + t58 * t25 + t59 * t26) * t27 + t60;
         let t62 = t53 * (k(0.00025) * t44)
             - (t51 * (k(0.00025) * t40) - t49 * (k(0.00025) * t38));
         let t63 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz)
@@ -243,20 +244,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for PitchingGyroscope<T> {
         let t84 = t74 * t34 - t72 * t37;
         let t85 = k(1.0) / (t84 * t83 - t81 * t76);
         let t86 = (t77 * t45 - (t82 * t39 - t80 * t41)) * t55
-            + (t77 * t15 - (t80 * t9 - t82 * t3)) * t29;
+            - (t77 * t15 - (t80 * t9 - t82 * t3)) * t29;
         let t87 = (t82 * t57 + t80 * t58 + t77 * t59) * t63 - t86;
-        let t88 = t87 - k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz);
+        let t88 = k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz) - t87;
         let t89 = k(1.2566370614359172) * t70.cos();
         let t90 = t89 * t74;
         let t91 = k(2.0) * (t79 + t78);
         let t92 = t89 * t72;
         let t93 = k(2.0) * (k(0.5) - (t30 + outer_ring_e2 * outer_ring_e2));
-        let t94 = (t93 * t92 - t91 * t90) * (t83 * t85 * t88 + t76 * t85 * t65);
+        let t94 = (t93 * t92 - t91 * t90) * (t83 * t85 * t88 - t76 * t85 * t65);
         let t95 = k(0.9424777960769379) * t66.cos();
         let t96 = t95 * t68;
         let t97 = k(2.0) * (t33 - t32) * (t95 * t69) - t93 * (t69 * t90 - t72 * t96);
         let t98 = (t91 * (t69 * t92 + t74 * t96) - t97)
-            * (t81 * t85 * t88 + t84 * t85 * t65);
+            * (t81 * t85 * t88 - t84 * t85 * t65);
         *dy = [
             outer_ring_sx,
             outer_ring_sy,
@@ -315,7 +316,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for PitchingGyroscope<T> {
             accelerations[15],
             accelerations[16],
             accelerations[17],
-            -(t98 + t94),
+            t98 + t94,
         ];
     }
 }
@@ -1271,12 +1272,12 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for PitchingGyroscope<T> {
         let t22 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
         let t23 = t22 * (t15 * t21 - (t9 * t18 + t3 * t17))
             + t16 * (t15 * t12 + (t9 * t6 + t3 * t1));
-        let t24 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
-        let t25 = k(2.0) * (t11 + t10);
-        let t26 = k(2.0) * (t20 - t19);
-        let t27 = k(2.0) * (k(0.5) - (t0 + rotor_e3 * rotor_e3));
-        let t28 = (t15 * t27 - (t9 * t26 - t3 * t25)) * t24 + t23;
-        let t29 = t28 - k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx);
+        let t24 = k(2.0) * (t11 + t10);
+        let t25 = k(2.0) * (t20 - t19);
+        let t26 = k(2.0) * (k(0.5) - (t0 + rotor_e3 * rotor_e3));
+        let t27 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
+        let t28 = t27 * (t15 * t26 - (t9 * t25 - t3 * t24)) + t23;
+        let t29 = k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx) - t28;
         let t30 = outer_ring_e0 * outer_ring_e0;
         let t31 = k(2.0) * (k(0.5) - (t30 + outer_ring_e1 * outer_ring_e1));
         let t32 = outer_ring_e0 * outer_ring_e3;
@@ -1295,7 +1296,7 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for PitchingGyroscope<T> {
         let t45 = k(2.0) * t44;
         let t46 = t22 * (t45 * t21 + (t39 * t17 + t41 * t18))
             + t16 * (t45 * t12 - (t41 * t6 + t39 * t1));
-        let t47 = (t45 * t27 - (t39 * t25 - t41 * t26)) * t24 + t46;
+        let t47 = (t45 * t26 - (t39 * t24 - t41 * t25)) * t27 + t46;
         let t48 = t14 + t13;
         let t49 = k(0.08) * rotor_dsx;
         let t50 = t43 - t42;
@@ -1306,13 +1307,13 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for PitchingGyroscope<T> {
             - (t51 * (k(0.00025) * t50) + t49 * (k(0.00025) * t48));
         let t55 = k(2e-6) * inner_ring_dwy + (t54 + t47);
         let t56 = (t37 * t45 - (t34 * t41 + t31 * t39)) * t55
-            + (t37 * t15 + (t34 * t9 + t31 * t3)) * t29;
+            - (t37 * t15 + (t34 * t9 + t31 * t3)) * t29;
         let t57 = k(2.0) * t48;
         let t58 = k(2.0) * t50;
         let t59 = k(2.0) * t52;
         let t60 = t22 * (t59 * t21 - (t57 * t17 - t58 * t18))
             + t16 * (t59 * t12 - (t58 * t6 - t57 * t1));
-        let t61 = (t57 * t25 + t58 * t26 + t59 * t27) * t24 + t60;
+        let t61 = (t57 * t24 + t58 * t25 + t59 * t26) * t27 + t60;
         let t62 = t53 * (k(0.00025) * t44)
             - (t51 * (k(0.00025) * t40) - t49 * (k(0.00025) * t38));
         let t63 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz)
@@ -1340,20 +1341,20 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for PitchingGyroscope<T> {
         let t84 = t74 * t34 - t72 * t37;
         let t85 = k(1.0) / (t84 * t83 - t81 * t76);
         let t86 = (t77 * t45 - (t82 * t39 - t80 * t41)) * t55
-            + (t77 * t15 - (t80 * t9 - t82 * t3)) * t29;
+            - (t77 * t15 - (t80 * t9 - t82 * t3)) * t29;
         let t87 = (t82 * t57 + t80 * t58 + t77 * t59) * t63 - t86;
-        let t88 = t87 - k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz);
+        let t88 = k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz) - t87;
         let t89 = k(1.2566370614359172) * t70.cos();
         let t90 = t89 * t74;
         let t91 = k(2.0) * (t79 + t78);
         let t92 = t89 * t72;
         let t93 = k(2.0) * (k(0.5) - (t30 + outer_ring_e2 * outer_ring_e2));
-        let t94 = (t93 * t92 - t91 * t90) * (t83 * t85 * t88 + t76 * t85 * t65);
+        let t94 = (t93 * t92 - t91 * t90) * (t83 * t85 * t88 - t76 * t85 * t65);
         let t95 = k(0.9424777960769379) * t66.cos();
         let t96 = t95 * t68;
         let t97 = k(2.0) * (t33 - t32) * (t95 * t69) - t93 * (t69 * t90 - t72 * t96);
         let t98 = (t91 * (t69 * t92 + t74 * t96) - t97)
-            * (t81 * t85 * t88 + t84 * t85 * t65);
+            * (t81 * t85 * t88 - t84 * t85 * t65);
         *dy = [
             outer_ring_sx,
             outer_ring_sy,
@@ -1412,7 +1413,7 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for PitchingGyroscope<T> {
             accelerations[15],
             accelerations[16],
             accelerations[17],
-            -(t98 + t94),
+            t98 + t94,
         ];
     }
 }
@@ -2442,12 +2443,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for PitchingGyroscope<T> {
         let t28 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
         let t29 = t28 * (t21 * t27 - (t15 * t24 + t9 * t23))
             + t22 * (t21 * t18 + (t15 * t12 + t9 * t7));
-        let t30 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
-        let t31 = k(2.0) * (t17 + t16);
-        let t32 = k(2.0) * (t26 - t25);
-        let t33 = k(2.0) * (k(0.5) - (t6 + rotor_e3 * rotor_e3));
-        let t34 = (t21 * t33 - (t15 * t32 - t9 * t31)) * t30 + t29;
-        let t35 = t34 - k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx);
+        let t30 = k(2.0) * (t17 + t16);
+        let t31 = k(2.0) * (t26 - t25);
+        let t32 = k(2.0) * (k(0.5) - (t6 + rotor_e3 * rotor_e3));
+        let t33 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
+        let t34 = t33 * (t21 * t32 - (t15 * t31 - t9 * t30)) + t29;
+        let t35 = k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx) - t34;
         let t36 = outer_ring_e0 * outer_ring_e0;
         let t37 = k(2.0) * (k(0.5) - (t36 + outer_ring_e1 * outer_ring_e1));
         let t38 = outer_ring_e0 * outer_ring_e3;
@@ -2467,25 +2468,25 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for PitchingGyroscope<T> {
         let t52 = k(2.0) * t51;
         let t53 = t52 * t27 + (t46 * t23 + t48 * t24);
         let t54 = t28 * t53 + t22 * (t52 * t18 - (t48 * t12 + t46 * t7));
-        let t55 = t52 * t33 - (t46 * t31 - t48 * t32);
+        let t55 = t52 * t32 - (t46 * t30 - t48 * t31);
         let t56 = t20 + t19;
         let t57 = t50 - t49;
         let t58 = k(0.5) - (t8 + inner_ring_e3 * inner_ring_e3);
         let t59 = t4 * (k(0.00025) * t58)
             - (t2 * (k(0.00025) * t57) + t0 * (k(0.00025) * t56));
-        let t60 = k(2e-6) * inner_ring_dwy + (t59 + (t55 * t30 + t54));
+        let t60 = k(2e-6) * inner_ring_dwy + (t59 + (t55 * t33 + t54));
         let t61 = t43 * t52 - (t40 * t48 + t37 * t46);
         let t62 = k(2.0) * t56;
         let t63 = k(2.0) * t57;
         let t64 = k(2.0) * t58;
         let t65 = t64 * t27 - (t62 * t23 - t63 * t24);
         let t66 = t28 * t65 + t22 * (t64 * t18 - (t63 * t12 - t62 * t7));
-        let t67 = t62 * t31 + t63 * t32 + t64 * t33;
+        let t67 = t62 * t30 + t63 * t31 + t64 * t32;
         let t68 = t4 * (k(0.00025) * t51)
             - (t2 * (k(0.00025) * t47) - t0 * (k(0.00025) * t45));
         let t69 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz)
-            + (t68 - (t67 * t30 + t66));
-        let t70 = (t43 * t64 - (t40 * t63 - t37 * t62)) * t69 - (t61 * t60 + t44 * t35);
+            + (t68 - (t67 * t33 + t66));
+        let t70 = (t43 * t64 - (t40 * t63 - t37 * t62)) * t69 - (t61 * t60 - t44 * t35);
         let t71 = k(2e-6) * outer_ring_dwx - t70;
         let t72 = k(0.05) * (k(18.84955592153876) * t).sin();
         let t73 = t72.cos();
@@ -2506,9 +2507,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for PitchingGyroscope<T> {
         let t88 = t78 * t40 - t76 * t43;
         let t89 = k(1.0) / (t88 * t87 - t85 * t80);
         let t90 = (t81 * t52 - (t86 * t46 - t84 * t48)) * t60
-            + (t81 * t21 - (t84 * t15 - t86 * t9)) * t35;
+            - (t81 * t21 - (t84 * t15 - t86 * t9)) * t35;
         let t91 = (t86 * t62 + t84 * t63 + t81 * t64) * t69 - t90;
-        let t92 = t91 - k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz);
+        let t92 = k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz) - t91;
         let t93 = k(2.0) * (t39 - t38);
         let t94 = k(2.0) * (k(0.5) - (t36 + outer_ring_e2 * outer_ring_e2));
         let t95 = k(2.0) * (t83 + t82);
@@ -2520,18 +2521,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for PitchingGyroscope<T> {
             -(k(0.01) * outer_ring_dsx + t1),
             -(k(0.1) + k(0.01) * outer_ring_dsy + t3),
             -(k(0.01) * outer_ring_dsz + t5),
-            -(t87 * t89 * t92 + t80 * t89 * t71),
-            -(t85 * t89 * t92 + t88 * t89 * t71),
+            t87 * t89 * t92 - t80 * t89 * t71,
+            t85 * t89 * t92 - t88 * t89 * t71,
             -t1,
             -t3,
             -t5,
-            -(t97 * t98 * t60 + t96 * t98 * t35),
-            t61 * t98 * t60 + t44 * t98 * t35,
+            t96 * t98 * t35 - t97 * t98 * t60,
+            t61 * t98 * t60 - t44 * t98 * t35,
             -t0,
             -t2,
             -t4,
-            t67 * t99 * t30 + t28 * (t65 * t99),
-            t55 * t99 * t30 + t28 * (t53 * t99),
+            t67 * t99 * t33 + t28 * (t65 * t99),
+            t55 * t99 * t33 + t28 * (t53 * t99),
         ];
     }
 }
@@ -3313,6 +3314,133 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingGyroscope<T> {
             k(0.0),
             t65 * t58 + t62 * t53 - rotor_wz * t35,
             rotor_wy * t35 - (t62 * t58 - t65 * t53),
+        ];
+    }
+    /// Writes λ: 156 operations (60 ±, 96 ×, 0 ÷) and 6 functions.
+    fn corrected_multipliers(
+        &self,
+        t: T,
+        y: &Self::State,
+        accelerations: &Self::Velocities,
+        lambda: &mut Self::Rows,
+    ) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        let outer_ring_dsx = accelerations[0];
+        let outer_ring_dsy = accelerations[1];
+        let outer_ring_dsz = accelerations[2];
+        let outer_ring_dwx = accelerations[3];
+        let outer_ring_dwz = accelerations[5];
+        let inner_ring_dsx = accelerations[6];
+        let inner_ring_dsy = accelerations[7];
+        let inner_ring_dsz = accelerations[8];
+        let inner_ring_dwx = accelerations[9];
+        let inner_ring_dwy = accelerations[10];
+        let inner_ring_dwz = accelerations[11];
+        let rotor_dsx = accelerations[12];
+        let rotor_dsy = accelerations[13];
+        let rotor_dsz = accelerations[14];
+        let rotor_dwx = accelerations[15];
+        let rotor_dwy = accelerations[16];
+        let rotor_dwz = accelerations[17];
+        let t0 = k(0.08) * rotor_dsx;
+        let t1 = k(0.01) * inner_ring_dsx + t0;
+        let t2 = k(0.8) + k(0.08) * rotor_dsy;
+        let t3 = k(0.1) + k(0.01) * inner_ring_dsy + t2;
+        let t4 = k(0.08) * rotor_dsz;
+        let t5 = k(0.01) * inner_ring_dsz + t4;
+        let t6 = k(1e-5) * rotor_dwx
+            - k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx);
+        let t7 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t8 = k(2.0) * t7;
+        let t9 = k(1.0) - t7 * t8;
+        let t10 = inner_ring_e0 * inner_ring_e1;
+        let t11 = inner_ring_e2 * inner_ring_e3;
+        let t12 = t2 * (k(0.00025) * (t11 - t10))
+            + t0
+                * (k(0.00025)
+                    * (inner_ring_e1 * inner_ring_e3 + inner_ring_e0 * inner_ring_e2));
+        let t13 = inner_ring_e0 * inner_ring_e0;
+        let t14 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t15 = k(2.0) * t14;
+        let t16 = k(1.0) - t14 * t15;
+        let t17 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
+        let t18 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
+        let t19 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t20 = t19 * t15;
+        let t21 = t20 * t18 - t17 * t16;
+        let t22 = t21
+            - (t4 * (k(0.00025) * (k(0.5) - (t13 + inner_ring_e3 * inner_ring_e3)))
+                - t12);
+        let t23 = k(2e-6) * inner_ring_dwy - t22;
+        let t24 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t25 = t24 * t8;
+        let t26 = t25 * t23 + t9 * t6;
+        let t27 = k(2e-6) * outer_ring_dwx + t26;
+        let t28 = k(0.025) * (k(18.84955592153876) * t).sin();
+        let t29 = t28.cos();
+        let t30 = k(0.05) * (k(12.566370614359172) * t).sin();
+        let t31 = t30.sin();
+        let t32 = t31 * t29;
+        let t33 = t30.cos();
+        let t34 = t33 * t29;
+        let t35 = t28.sin();
+        let t36 = t33 * t35;
+        let t37 = t31 * t35;
+        let t38 = t37 * outer_ring_e0 - t36 * outer_ring_e1 + t34 * outer_ring_e2
+            + t32 * outer_ring_e3;
+        let t39 = k(2.0) * t38;
+        let t40 = k(1.0) - t38 * t39;
+        let t41 = t2 * (k(0.00025) * (k(0.5) - (t13 + inner_ring_e2 * inner_ring_e2)))
+            - t0
+                * (k(0.00025)
+                    * (inner_ring_e1 * inner_ring_e2 - inner_ring_e0 * inner_ring_e3));
+        let t42 = t16 * t18 + t17 * t20;
+        let t43 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz)
+            - (t42 - (t4 * (k(0.00025) * (t11 + t10)) - t41));
+        let t44 = t43 - k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz);
+        let t45 = t34 * outer_ring_e0 + t32 * outer_ring_e1 - t37 * outer_ring_e2
+            + t36 * outer_ring_e3;
+        let t46 = t45 * t39;
+        *lambda = [
+            -(k(0.01) * outer_ring_dsx + t1),
+            -(k(0.1) + k(0.01) * outer_ring_dsy + t3),
+            -(k(0.01) * outer_ring_dsz + t5),
+            -(t46 * t44 + t40 * t27),
+            t40 * t44 - t46 * t27,
+            -t1,
+            -t3,
+            -t5,
+            t25 * t6 - t9 * t23,
+            t26,
+            -t0,
+            -t2,
+            -t4,
+            t42,
+            -t21,
         ];
     }
 }

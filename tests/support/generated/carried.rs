@@ -30,6 +30,7 @@
 //! | to_joints | (x, u) of a maximal state | 148 | 201 | 0 | 349 | 0 of 4 |
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 358 | 519 | 1 | 878 | 0 of 2 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 482 | 577 | 1 | 1060 | 0 of 12 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 342 | 460 | 0 | 802 | 0 of 10 |
 
 /// The mechanism `carried`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -182,6 +183,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Carried<T> {
             t120,
             t121,
             t122,
+            t130,
+            t131,
             t132,
             t133,
             t135,
@@ -204,19 +207,21 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Carried<T> {
             t160,
             t161,
             t162,
-            t163,
-            t164,
-            t165,
-            t166,
-            t167,
-            t168,
-            t170,
             t171,
-            t172,
-            t173,
-            t175,
-            t184,
+            t179,
+            t185,
+            t186,
+            t187,
+            t188,
+            t189,
+            t190,
+            t191,
             t192,
+            t193,
+            t194,
+            t195,
+            t196,
+            t197,
             t198,
             t199,
         ) = {
@@ -404,54 +409,54 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Carried<T> {
             let t160 = t86 * t148 - t97 * t149 + (t90 * t150 + t96 * t147);
             let t161 = t105 * t150 + t96 * t152;
             let t162 = t116 * t148 + t97 * t154 - t161;
-            let t163 = arm_rx - t77;
-            let t164 = arm_ry - t55;
-            let t165 = arm_rz - t29;
-            let t166 = t23 * t165 - (t49 * t164 + t71 * t163);
-            let t167 = t19 * t165 - (t46 * t164 - t68 * t163);
-            let t168 = k(0.6666666666666666) * t167;
-            let t169 = t168 - k(0.3333333333333333) * t166;
-            let t170 = arm_wy * arm_wy;
-            let t171 = arm_wz * arm_wz;
-            let t172 = k(0.02) * arm_wz;
-            let t173 = k(0.03) * arm_wy;
-            let t174 = arm_wx * (t173 + t172)
-                + (k(0.05) * (arm_wy * arm_wz) + k(0.01) * (t171 - t170));
-            let t175 = k(0.3) * arm_dwx + k(0.02) * arm_dwy - k(0.03) * arm_dwz
-                - (t174 + (t135 * t169 + (t131 + (t130 + t81 * t169))));
-            let t176 = k(0.1) * (t7 * t27 + (t37 * t53 - t61 * t75))
+            let t163 = k(0.1) * (t7 * t27 + (t37 * t53 - t61 * t75))
                 - k(0.05) * (t10 * t27 + (t39 * t53 + t63 * t75));
-            let t177 = slider_wy * slider_wy;
-            let t178 = slider_wz * slider_wz;
-            let t179 = k(0.001) * slider_wz;
-            let t180 = k(0.002) * slider_wy;
-            let t181 = slider_wx * (t180 - t179)
-                - (k(0.005) * (slider_wy * slider_wz) - k(0.003) * (t178 - t177));
-            let t182 = k(0.02) * slider_dwx + k(0.001) * slider_dwy
-                + k(0.002) * slider_dwz + (t181 + (t135 * t176 + t81 * t176));
-            let t183 = (k(0.1) * t38 - k(0.2) * t36) * t145
+            let t164 = slider_wy * slider_wy;
+            let t165 = slider_wz * slider_wz;
+            let t166 = k(0.001) * slider_wz;
+            let t167 = k(0.002) * slider_wy;
+            let t168 = slider_wx * (t167 - t166)
+                - (k(0.005) * (slider_wy * slider_wz) - k(0.003) * (t165 - t164));
+            let t169 = k(0.02) * slider_dwx + k(0.001) * slider_dwy
+                + k(0.002) * slider_dwz + (t168 + (t135 * t163 + t81 * t163));
+            let t170 = (k(0.1) * t38 - k(0.2) * t36) * t145
                 + (k(0.1) * t62 + k(0.2) * t60) * t137;
-            let t184 = (k(0.1) * t9 - k(0.2) * t6) * t158 - t183 + t182;
-            let t185 = t3 * t27 - (t35 * t53 - t59 * t75);
-            let t186 = k(0.1) * t185;
-            let t187 = slider_wx * slider_wx;
-            let t188 = k(0.003) * slider_wx;
-            let t189 = slider_wy * (t179 + t188)
-                - (k(0.005) * (slider_wx * slider_wz) - k(0.002) * (t178 - t187));
-            let t190 = k(0.001) * slider_dwx + k(0.03) * slider_dwy
-                - k(0.003) * slider_dwz + (t189 - (t135 * t186 + t81 * t186));
-            let t191 = k(0.2) * t2 * t158 + (k(0.2) * t34 * t145 - k(0.2) * t58 * t137);
-            let t192 = t191 + t190;
-            let t193 = (t15 * t7 - (t44 * t37 + t66 * t61)) * t192
-                + (t15 * t3 + (t44 * t35 + t66 * t59)) * t184;
-            let t194 = k(0.05) * t185;
-            let t195 = slider_wz * (t180 + t188)
-                - (k(0.01) * (slider_wx * slider_wy) - k(0.001) * (t177 - t187));
-            let t196 = k(0.002) * slider_dwx - k(0.003) * slider_dwy
-                + k(0.025) * slider_dwz - (t195 + (t135 * t194 + t81 * t194));
-            let t197 = k(0.1) * t2 * t158 + (k(0.1) * t34 * t145 - k(0.1) * t58 * t137);
-            let t198 = t197 + t196;
-            let t199 = (t15 * t10 - (t44 * t39 - t66 * t63)) * t198 - t193;
+            let t171 = (k(0.1) * t9 - k(0.2) * t6) * t158 - t170 + t169;
+            let t172 = t3 * t27 - (t35 * t53 - t59 * t75);
+            let t173 = k(0.1) * t172;
+            let t174 = slider_wx * slider_wx;
+            let t175 = k(0.003) * slider_wx;
+            let t176 = slider_wy * (t166 + t175)
+                - (k(0.005) * (slider_wx * slider_wz) - k(0.002) * (t165 - t174));
+            let t177 = k(0.001) * slider_dwx + k(0.03) * slider_dwy
+                - k(0.003) * slider_dwz + (t176 - (t135 * t173 + t81 * t173));
+            let t178 = k(0.2) * t2 * t158 + (k(0.2) * t34 * t145 - k(0.2) * t58 * t137);
+            let t179 = t178 + t177;
+            let t180 = t179 * (t15 * t7 - (t44 * t37 + t66 * t61))
+                + t171 * (t15 * t3 + (t44 * t35 + t66 * t59));
+            let t181 = k(0.05) * t172;
+            let t182 = slider_wz * (t167 + t175)
+                - (k(0.01) * (slider_wx * slider_wy) - k(0.001) * (t164 - t174));
+            let t183 = k(0.002) * slider_dwx - k(0.003) * slider_dwy
+                + k(0.025) * slider_dwz - (t182 + (t135 * t181 + t81 * t181));
+            let t184 = k(0.1) * t2 * t158 + (k(0.1) * t34 * t145 - k(0.1) * t58 * t137);
+            let t185 = t184 + t183;
+            let t186 = t185 * (t15 * t10 - (t44 * t39 - t66 * t63)) - t180;
+            let t187 = arm_rx - t77;
+            let t188 = arm_ry - t55;
+            let t189 = arm_rz - t29;
+            let t190 = t23 * t189 - (t49 * t188 + t71 * t187);
+            let t191 = t19 * t189 - (t46 * t188 - t68 * t187);
+            let t192 = t145 * (t49 * t191 - t46 * t190)
+                + t137 * (t71 * t191 + t68 * t190);
+            let t193 = k(0.6666666666666666) * t191;
+            let t194 = t193 - k(0.3333333333333333) * t190;
+            let t195 = arm_wy * arm_wy;
+            let t196 = arm_wz * arm_wz;
+            let t197 = k(0.02) * arm_wz;
+            let t198 = k(0.03) * arm_wy;
+            let t199 = arm_wx * (t198 + t197)
+                + (k(0.05) * (arm_wy * arm_wz) + k(0.01) * (t196 - t195));
             (
                 t3,
                 t7,
@@ -501,6 +506,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Carried<T> {
                 t120,
                 t121,
                 t122,
+                t130,
+                t131,
                 t132,
                 t133,
                 t135,
@@ -523,27 +530,29 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Carried<T> {
                 t160,
                 t161,
                 t162,
-                t163,
-                t164,
-                t165,
-                t166,
-                t167,
-                t168,
-                t170,
                 t171,
-                t172,
-                t173,
-                t175,
-                t184,
+                t179,
+                t185,
+                t186,
+                t187,
+                t188,
+                t189,
+                t190,
+                t191,
                 t192,
+                t193,
+                t194,
+                t195,
+                t196,
+                t197,
                 t198,
                 t199,
             )
         };
         let (t253, t256) = {
-            let t200 = (t49 * t167 - t46 * t166) * t145
-                + (t71 * t167 + t68 * t166) * t137;
-            let t201 = (t23 * t167 - t19 * t166) * t158 - t200 - t199 + t175;
+            let t200 = k(0.3) * arm_dwx + k(0.02) * arm_dwy - k(0.03) * arm_dwz
+                - (t199 + (t135 * t194 + (t131 + (t130 + t81 * t194))));
+            let t201 = t200 + (t158 * (t23 * t191 - t19 * t190) - t192 - t186);
             let t202 = t28 * t159 - (t54 * t146 + t76 * t138) + t201;
             let t203 = t121 - t119;
             let t204 = t113 - t111;
@@ -570,33 +579,33 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Carried<T> {
             let t220 = k(0.6666666666666666) * t205 + k(0.3333333333333333) * t204
                 - k(0.6666666666666666) * t203;
             let t221 = k(1.0) / (t220 * t219 + (t218 * t217 - t215 * t211));
-            let t222 = t15 * t165 + (t44 * t164 - t66 * t163);
-            let t223 = k(0.6666666666666666) * (t166 + t222);
-            let t224 = arm_wx * arm_wx;
-            let t225 = k(0.01) * arm_wx;
-            let t226 = arm_wy * (t172 - t225)
-                + (k(0.1) * (arm_wx * arm_wz) - k(0.03) * (t171 - t224));
-            let t227 = k(0.02) * arm_dwx + k(0.25) * arm_dwy + k(0.01) * arm_dwz
-                + (t226 + (t135 * t223 - (t133 + (t132 - t81 * t223))));
-            let t228 = (t19 * t7 + (t46 * t37 + t68 * t61)) * t192
-                + (t19 * t3 - (t46 * t35 + t68 * t59)) * t184;
-            let t229 = (t19 * t10 + (t46 * t39 - t68 * t63)) * t198 - t228;
-            let t230 = (t49 * t222 + t44 * t166) * t145
-                + (t71 * t222 - t66 * t166) * t137;
-            let t231 = (t23 * t222 - t15 * t166) * t158 - t230 + t229 - t227;
+            let t222 = t179 * (t19 * t7 + (t46 * t37 + t68 * t61))
+                + t171 * (t19 * t3 - (t46 * t35 + t68 * t59));
+            let t223 = t185 * (t19 * t10 + (t46 * t39 - t68 * t63)) - t222;
+            let t224 = t15 * t189 + (t44 * t188 - t66 * t187);
+            let t225 = t145 * (t49 * t224 + t44 * t190)
+                + t137 * (t71 * t224 - t66 * t190);
+            let t226 = k(0.6666666666666666) * (t224 + t190);
+            let t227 = arm_wx * arm_wx;
+            let t228 = k(0.01) * arm_wx;
+            let t229 = arm_wy * (t197 - t228)
+                + (k(0.1) * (arm_wx * arm_wz) - k(0.03) * (t196 - t227));
+            let t230 = k(0.02) * arm_dwx + k(0.25) * arm_dwy + k(0.01) * arm_dwz
+                + (t229 + (t135 * t226 - (t133 + (t132 - t81 * t226))));
+            let t231 = t230 - (t158 * (t23 * t224 - t15 * t190) - t225 + t223);
             let t232 = k(0.4) * t22 * t159 - (k(0.4) * t48 * t146 + k(0.4) * t70 * t138);
-            let t233 = t232 - t231;
-            let t234 = t168 + k(0.3333333333333333) * t222;
-            let t235 = arm_wz * (t173 + t225)
-                - (k(0.05) * (arm_wx * arm_wy) + k(0.02) * (t170 - t224));
-            let t236 = k(0.03) * arm_dwx - k(0.01) * arm_dwy - k(0.2) * arm_dwz
-                - (t235 + (t135 * t234 - (t133 + (t132 - t81 * t234))));
-            let t237 = (t23 * t7 + (t49 * t37 - t71 * t61)) * t192
-                + (t23 * t3 - (t49 * t35 - t71 * t59)) * t184;
-            let t238 = (t23 * t10 + (t49 * t39 + t71 * t63)) * t198 - t237;
-            let t239 = (t46 * t222 + t44 * t167) * t145
-                - (t68 * t222 + t66 * t167) * t137;
-            let t240 = (t19 * t222 - t15 * t167) * t158 - t239 - t238 + t236;
+            let t233 = t232 + t231;
+            let t234 = t179 * (t23 * t7 + (t49 * t37 - t71 * t61))
+                + t171 * (t23 * t3 - (t49 * t35 - t71 * t59));
+            let t235 = t185 * (t23 * t10 + (t49 * t39 + t71 * t63)) - t234;
+            let t236 = t145 * (t46 * t224 + t44 * t191)
+                - t137 * (t68 * t224 + t66 * t191);
+            let t237 = k(0.3333333333333333) * t224 + t193;
+            let t238 = arm_wz * (t198 + t228)
+                - (k(0.05) * (arm_wx * arm_wy) + k(0.02) * (t195 - t227));
+            let t239 = k(0.03) * arm_dwx - k(0.01) * arm_dwy - k(0.2) * arm_dwz
+                - (t238 + (t135 * t237 - (t133 + (t132 - t81 * t237))));
+            let t240 = t239 + (t158 * (t19 * t224 - t15 * t191) - t236 - t235);
             let t241 = (k(0.4) * t45 - k(0.2) * t43) * t146
                 - (k(0.4) * t67 - k(0.2) * t65) * t138;
             let t242 = (k(0.4) * t18 + k(0.2) * t14) * t159 - t241 - t240;
@@ -1589,6 +1598,8 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Carried<T> {
             t120,
             t121,
             t122,
+            t130,
+            t131,
             t132,
             t133,
             t135,
@@ -1611,19 +1622,21 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Carried<T> {
             t160,
             t161,
             t162,
-            t163,
-            t164,
-            t165,
-            t166,
-            t167,
-            t168,
-            t170,
             t171,
-            t172,
-            t173,
-            t175,
-            t184,
+            t179,
+            t185,
+            t186,
+            t187,
+            t188,
+            t189,
+            t190,
+            t191,
             t192,
+            t193,
+            t194,
+            t195,
+            t196,
+            t197,
             t198,
             t199,
         ) = {
@@ -1811,54 +1824,54 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Carried<T> {
             let t160 = t86 * t148 - t97 * t149 + (t90 * t150 + t96 * t147);
             let t161 = t105 * t150 + t96 * t152;
             let t162 = t116 * t148 + t97 * t154 - t161;
-            let t163 = arm_rx - t77;
-            let t164 = arm_ry - t55;
-            let t165 = arm_rz - t29;
-            let t166 = t23 * t165 - (t49 * t164 + t71 * t163);
-            let t167 = t19 * t165 - (t46 * t164 - t68 * t163);
-            let t168 = k(0.6666666666666666) * t167;
-            let t169 = t168 - k(0.3333333333333333) * t166;
-            let t170 = arm_wy * arm_wy;
-            let t171 = arm_wz * arm_wz;
-            let t172 = k(0.02) * arm_wz;
-            let t173 = k(0.03) * arm_wy;
-            let t174 = arm_wx * (t173 + t172)
-                + (k(0.05) * (arm_wy * arm_wz) + k(0.01) * (t171 - t170));
-            let t175 = k(0.3) * arm_dwx + k(0.02) * arm_dwy - k(0.03) * arm_dwz
-                - (t174 + (t135 * t169 + (t131 + (t130 + t81 * t169))));
-            let t176 = k(0.1) * (t7 * t27 + (t37 * t53 - t61 * t75))
+            let t163 = k(0.1) * (t7 * t27 + (t37 * t53 - t61 * t75))
                 - k(0.05) * (t10 * t27 + (t39 * t53 + t63 * t75));
-            let t177 = slider_wy * slider_wy;
-            let t178 = slider_wz * slider_wz;
-            let t179 = k(0.001) * slider_wz;
-            let t180 = k(0.002) * slider_wy;
-            let t181 = slider_wx * (t180 - t179)
-                - (k(0.005) * (slider_wy * slider_wz) - k(0.003) * (t178 - t177));
-            let t182 = k(0.02) * slider_dwx + k(0.001) * slider_dwy
-                + k(0.002) * slider_dwz + (t181 + (t135 * t176 + t81 * t176));
-            let t183 = (k(0.1) * t38 - k(0.2) * t36) * t145
+            let t164 = slider_wy * slider_wy;
+            let t165 = slider_wz * slider_wz;
+            let t166 = k(0.001) * slider_wz;
+            let t167 = k(0.002) * slider_wy;
+            let t168 = slider_wx * (t167 - t166)
+                - (k(0.005) * (slider_wy * slider_wz) - k(0.003) * (t165 - t164));
+            let t169 = k(0.02) * slider_dwx + k(0.001) * slider_dwy
+                + k(0.002) * slider_dwz + (t168 + (t135 * t163 + t81 * t163));
+            let t170 = (k(0.1) * t38 - k(0.2) * t36) * t145
                 + (k(0.1) * t62 + k(0.2) * t60) * t137;
-            let t184 = (k(0.1) * t9 - k(0.2) * t6) * t158 - t183 + t182;
-            let t185 = t3 * t27 - (t35 * t53 - t59 * t75);
-            let t186 = k(0.1) * t185;
-            let t187 = slider_wx * slider_wx;
-            let t188 = k(0.003) * slider_wx;
-            let t189 = slider_wy * (t179 + t188)
-                - (k(0.005) * (slider_wx * slider_wz) - k(0.002) * (t178 - t187));
-            let t190 = k(0.001) * slider_dwx + k(0.03) * slider_dwy
-                - k(0.003) * slider_dwz + (t189 - (t135 * t186 + t81 * t186));
-            let t191 = k(0.2) * t2 * t158 + (k(0.2) * t34 * t145 - k(0.2) * t58 * t137);
-            let t192 = t191 + t190;
-            let t193 = (t15 * t7 - (t44 * t37 + t66 * t61)) * t192
-                + (t15 * t3 + (t44 * t35 + t66 * t59)) * t184;
-            let t194 = k(0.05) * t185;
-            let t195 = slider_wz * (t180 + t188)
-                - (k(0.01) * (slider_wx * slider_wy) - k(0.001) * (t177 - t187));
-            let t196 = k(0.002) * slider_dwx - k(0.003) * slider_dwy
-                + k(0.025) * slider_dwz - (t195 + (t135 * t194 + t81 * t194));
-            let t197 = k(0.1) * t2 * t158 + (k(0.1) * t34 * t145 - k(0.1) * t58 * t137);
-            let t198 = t197 + t196;
-            let t199 = (t15 * t10 - (t44 * t39 - t66 * t63)) * t198 - t193;
+            let t171 = (k(0.1) * t9 - k(0.2) * t6) * t158 - t170 + t169;
+            let t172 = t3 * t27 - (t35 * t53 - t59 * t75);
+            let t173 = k(0.1) * t172;
+            let t174 = slider_wx * slider_wx;
+            let t175 = k(0.003) * slider_wx;
+            let t176 = slider_wy * (t166 + t175)
+                - (k(0.005) * (slider_wx * slider_wz) - k(0.002) * (t165 - t174));
+            let t177 = k(0.001) * slider_dwx + k(0.03) * slider_dwy
+                - k(0.003) * slider_dwz + (t176 - (t135 * t173 + t81 * t173));
+            let t178 = k(0.2) * t2 * t158 + (k(0.2) * t34 * t145 - k(0.2) * t58 * t137);
+            let t179 = t178 + t177;
+            let t180 = t179 * (t15 * t7 - (t44 * t37 + t66 * t61))
+                + t171 * (t15 * t3 + (t44 * t35 + t66 * t59));
+            let t181 = k(0.05) * t172;
+            let t182 = slider_wz * (t167 + t175)
+                - (k(0.01) * (slider_wx * slider_wy) - k(0.001) * (t164 - t174));
+            let t183 = k(0.002) * slider_dwx - k(0.003) * slider_dwy
+                + k(0.025) * slider_dwz - (t182 + (t135 * t181 + t81 * t181));
+            let t184 = k(0.1) * t2 * t158 + (k(0.1) * t34 * t145 - k(0.1) * t58 * t137);
+            let t185 = t184 + t183;
+            let t186 = t185 * (t15 * t10 - (t44 * t39 - t66 * t63)) - t180;
+            let t187 = arm_rx - t77;
+            let t188 = arm_ry - t55;
+            let t189 = arm_rz - t29;
+            let t190 = t23 * t189 - (t49 * t188 + t71 * t187);
+            let t191 = t19 * t189 - (t46 * t188 - t68 * t187);
+            let t192 = t145 * (t49 * t191 - t46 * t190)
+                + t137 * (t71 * t191 + t68 * t190);
+            let t193 = k(0.6666666666666666) * t191;
+            let t194 = t193 - k(0.3333333333333333) * t190;
+            let t195 = arm_wy * arm_wy;
+            let t196 = arm_wz * arm_wz;
+            let t197 = k(0.02) * arm_wz;
+            let t198 = k(0.03) * arm_wy;
+            let t199 = arm_wx * (t198 + t197)
+                + (k(0.05) * (arm_wy * arm_wz) + k(0.01) * (t196 - t195));
             (
                 t3,
                 t7,
@@ -1908,6 +1921,8 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Carried<T> {
                 t120,
                 t121,
                 t122,
+                t130,
+                t131,
                 t132,
                 t133,
                 t135,
@@ -1930,27 +1945,29 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Carried<T> {
                 t160,
                 t161,
                 t162,
-                t163,
-                t164,
-                t165,
-                t166,
-                t167,
-                t168,
-                t170,
                 t171,
-                t172,
-                t173,
-                t175,
-                t184,
+                t179,
+                t185,
+                t186,
+                t187,
+                t188,
+                t189,
+                t190,
+                t191,
                 t192,
+                t193,
+                t194,
+                t195,
+                t196,
+                t197,
                 t198,
                 t199,
             )
         };
         let (t253, t256) = {
-            let t200 = (t49 * t167 - t46 * t166) * t145
-                + (t71 * t167 + t68 * t166) * t137;
-            let t201 = (t23 * t167 - t19 * t166) * t158 - t200 - t199 + t175;
+            let t200 = k(0.3) * arm_dwx + k(0.02) * arm_dwy - k(0.03) * arm_dwz
+                - (t199 + (t135 * t194 + (t131 + (t130 + t81 * t194))));
+            let t201 = t200 + (t158 * (t23 * t191 - t19 * t190) - t192 - t186);
             let t202 = t28 * t159 - (t54 * t146 + t76 * t138) + t201;
             let t203 = t121 - t119;
             let t204 = t113 - t111;
@@ -1977,33 +1994,33 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Carried<T> {
             let t220 = k(0.6666666666666666) * t205 + k(0.3333333333333333) * t204
                 - k(0.6666666666666666) * t203;
             let t221 = k(1.0) / (t220 * t219 + (t218 * t217 - t215 * t211));
-            let t222 = t15 * t165 + (t44 * t164 - t66 * t163);
-            let t223 = k(0.6666666666666666) * (t166 + t222);
-            let t224 = arm_wx * arm_wx;
-            let t225 = k(0.01) * arm_wx;
-            let t226 = arm_wy * (t172 - t225)
-                + (k(0.1) * (arm_wx * arm_wz) - k(0.03) * (t171 - t224));
-            let t227 = k(0.02) * arm_dwx + k(0.25) * arm_dwy + k(0.01) * arm_dwz
-                + (t226 + (t135 * t223 - (t133 + (t132 - t81 * t223))));
-            let t228 = (t19 * t7 + (t46 * t37 + t68 * t61)) * t192
-                + (t19 * t3 - (t46 * t35 + t68 * t59)) * t184;
-            let t229 = (t19 * t10 + (t46 * t39 - t68 * t63)) * t198 - t228;
-            let t230 = (t49 * t222 + t44 * t166) * t145
-                + (t71 * t222 - t66 * t166) * t137;
-            let t231 = (t23 * t222 - t15 * t166) * t158 - t230 + t229 - t227;
+            let t222 = t179 * (t19 * t7 + (t46 * t37 + t68 * t61))
+                + t171 * (t19 * t3 - (t46 * t35 + t68 * t59));
+            let t223 = t185 * (t19 * t10 + (t46 * t39 - t68 * t63)) - t222;
+            let t224 = t15 * t189 + (t44 * t188 - t66 * t187);
+            let t225 = t145 * (t49 * t224 + t44 * t190)
+                + t137 * (t71 * t224 - t66 * t190);
+            let t226 = k(0.6666666666666666) * (t224 + t190);
+            let t227 = arm_wx * arm_wx;
+            let t228 = k(0.01) * arm_wx;
+            let t229 = arm_wy * (t197 - t228)
+                + (k(0.1) * (arm_wx * arm_wz) - k(0.03) * (t196 - t227));
+            let t230 = k(0.02) * arm_dwx + k(0.25) * arm_dwy + k(0.01) * arm_dwz
+                + (t229 + (t135 * t226 - (t133 + (t132 - t81 * t226))));
+            let t231 = t230 - (t158 * (t23 * t224 - t15 * t190) - t225 + t223);
             let t232 = k(0.4) * t22 * t159 - (k(0.4) * t48 * t146 + k(0.4) * t70 * t138);
-            let t233 = t232 - t231;
-            let t234 = t168 + k(0.3333333333333333) * t222;
-            let t235 = arm_wz * (t173 + t225)
-                - (k(0.05) * (arm_wx * arm_wy) + k(0.02) * (t170 - t224));
-            let t236 = k(0.03) * arm_dwx - k(0.01) * arm_dwy - k(0.2) * arm_dwz
-                - (t235 + (t135 * t234 - (t133 + (t132 - t81 * t234))));
-            let t237 = (t23 * t7 + (t49 * t37 - t71 * t61)) * t192
-                + (t23 * t3 - (t49 * t35 - t71 * t59)) * t184;
-            let t238 = (t23 * t10 + (t49 * t39 + t71 * t63)) * t198 - t237;
-            let t239 = (t46 * t222 + t44 * t167) * t145
-                - (t68 * t222 + t66 * t167) * t137;
-            let t240 = (t19 * t222 - t15 * t167) * t158 - t239 - t238 + t236;
+            let t233 = t232 + t231;
+            let t234 = t179 * (t23 * t7 + (t49 * t37 - t71 * t61))
+                + t171 * (t23 * t3 - (t49 * t35 - t71 * t59));
+            let t235 = t185 * (t23 * t10 + (t49 * t39 + t71 * t63)) - t234;
+            let t236 = t145 * (t46 * t224 + t44 * t191)
+                - t137 * (t68 * t224 + t66 * t191);
+            let t237 = k(0.3333333333333333) * t224 + t193;
+            let t238 = arm_wz * (t198 + t228)
+                - (k(0.05) * (arm_wx * arm_wy) + k(0.02) * (t195 - t227));
+            let t239 = k(0.03) * arm_dwx - k(0.01) * arm_dwy - k(0.2) * arm_dwz
+                - (t238 + (t135 * t237 - (t133 + (t132 - t81 * t237))));
+            let t240 = t239 + (t158 * (t19 * t224 - t15 * t191) - t236 - t235);
             let t241 = (k(0.4) * t45 - k(0.2) * t43) * t146
                 - (k(0.4) * t67 - k(0.2) * t65) * t138;
             let t242 = (k(0.4) * t18 + k(0.2) * t14) * t159 - t241 - t240;
@@ -4264,14 +4281,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Carried<T> {
         let t127 = arm_wx * (t126 + t125)
             + (k(0.05) * (arm_wy * arm_wz) + k(0.01) * (t124 - t123));
         let t128 = t14 * t81 + (t41 * t80 - t61 * t79);
-        let t129 = k(0.6666666666666666) * (t82 + t128);
+        let t129 = k(0.6666666666666666) * (t128 + t82);
         let t130 = k(1.3333333333333333) * t117;
         let t131 = k(0.06666666666666667) * t121;
         let t132 = arm_wx * arm_wx;
         let t133 = k(0.01) * arm_wx;
         let t134 = arm_wy * (t125 - t133)
             + (k(0.1) * (arm_wx * arm_wz) - k(0.03) * (t124 - t132));
-        let t135 = t83 + k(0.3333333333333333) * t128;
+        let t135 = k(0.3333333333333333) * t128 + t83;
         let t136 = arm_wz * (t126 + t133)
             - (k(0.05) * (arm_wx * arm_wy) + k(0.02) * (t123 - t132));
         let t137 = k(0.1) * (t6 * t26 + (t34 * t50 - t56 * t70))
@@ -4610,7 +4627,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Carried<T> {
             let t136 = t93 * t62 + (t92 * t61 + t91 * t60);
             let t137 = t93 * t71 + (t92 * t70 - t91 * t69);
             let t138 = t53 * t87 + (t50 * t84 - t47 * t81);
-            let t139 = k(0.6) * (t94 * t138) - (t137 * t79 + (t136 * t77 - t135 * t73));
+            let t139 = k(0.6) * (t138 * t94) - (t137 * t79 + (t136 * t77 - t135 * t73));
             let t140 = t82 * t138 - t47 * t89;
             let t141 = t85 * t138 + t50 * t89;
             let t142 = t88 * t138 - t53 * t89;
@@ -4641,7 +4658,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Carried<T> {
             let t163 = t88 * t52 - (t85 * t49 - t82 * t46);
             let t164 = t88 * t62 + (t85 * t61 - t82 * t60);
             let t165 = t88 * t71 + (t85 * t70 + t82 * t69);
-            let t166 = k(0.6) * (t89 * t138) - (t165 * t79 + (t164 * t77 - t163 * t73));
+            let t166 = k(0.6) * (t138 * t89) - (t165 * t79 + (t164 * t77 - t163 * t73));
             let t167 = t91 * t138 + t47 * t94;
             let t168 = t92 * t138 + t50 * t94;
             let t169 = t93 * t138 - t53 * t94;
@@ -5313,7 +5330,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Carried<T> {
             let t454 = t127 * t453 + (t126 * t452 - t125 * t451) + (t450 + t447 + t396);
             let t455 = t142 * t395 - (t141 * t393 - t140 * t391)
                 + (t137 * t389 + (t136 * t381 - t135 * t371));
-            let t456 = k(0.6666666666666666) * (t89 + t138);
+            let t456 = k(0.6666666666666666) * (t138 + t89);
             let t457 = k(1.3333333333333333) * t442;
             let t458 = k(0.06666666666666667) * t446;
             let t459 = k(0.01) * arm_wx;
@@ -5324,7 +5341,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Carried<T> {
                 * (t153 * t453 + (t152 * t452 - t151 * t451) - t461);
             let t463 = t169 * t395 - (t168 * t393 + t167 * t391)
                 - (t165 * t389 + (t164 * t381 - t163 * t371));
-            let t464 = t397 + k(0.3333333333333333) * t138;
+            let t464 = k(0.3333333333333333) * t138 + t397;
             let t465 = arm_wz * (t449 + t459)
                 - (k(0.05) * t253 + k(0.02) * (t250 - t256));
             let t466 = t465 + (t233 * t464 - (t458 + (t457 - t232 * t464))) + t463;
@@ -5628,19 +5645,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Carried<T> {
             t87,
             t89,
             t90,
-            t94,
-            t95,
-            t96,
-            t139,
-            t143,
-            t145,
-            t146,
-            t147,
-            t148,
-            t159,
-            t160,
-            t168,
-            t169,
+            t91,
+            t100,
+            t101,
+            t109,
+            t110,
+            t115,
+            t116,
+            t117,
+            t118,
+            t119,
+            t120,
+            t123,
+            t166,
+            t170,
+            t172,
+            t173,
             t174,
             t175,
             t178,
@@ -5760,127 +5780,127 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Carried<T> {
             let t88 = t27 * t81 + t27 * t80;
             let t89 = k(0.6) * slider_dsz - (k(1.8) - t88);
             let t90 = t89 + (k(1.5) * arm_dsz - (k(4.5) + t88));
-            let t91 = arm_rx - t77;
-            let t92 = arm_ry - t55;
-            let t93 = arm_rz - t29;
-            let t94 = t23 * t93 - (t49 * t92 + t71 * t91);
-            let t95 = t19 * t93 - (t46 * t92 - t68 * t91);
-            let t96 = k(0.6666666666666666) * t95;
-            let t97 = t96 - k(0.3333333333333333) * t94;
-            let t98 = k(6.0) * t;
-            let t99 = k(0.5) * t98.sin();
-            let t100 = t99.cos();
-            let t101 = t99.sin();
-            let t102 = k(0.4472135954999579) * t101;
-            let t103 = k(0.2) + k(4.0) * t;
-            let t104 = k(0.7) * t103.sin();
-            let t105 = t104.sin();
-            let t106 = k(0.8944271909999159) * t101;
-            let t107 = t104.cos();
-            let t108 = t107 * t106 + t105 * t102;
-            let t109 = t105 * t106 - t107 * t102;
-            let t110 = k(0.6666666666666666) * (t109 * t15 + (t108 * t44 - t100 * t66));
-            let t111 = t109 * t19 + (t100 * t68 - t108 * t46);
-            let t112 = k(0.3333333333333333) * t111;
-            let t113 = t100 * t71 + t108 * t49 - t109 * t23;
-            let t114 = k(0.6666666666666666) * t113 - (t112 + t110);
-            let t115 = k(0.4) - k(0.4) * t100;
-            let t116 = t105 * t115;
-            let t117 = k(0.2) + k(0.8) * t100;
-            let t118 = t107 * t117 - t116;
-            let t119 = t107 * t115;
-            let t120 = t119 + t105 * t117;
-            let t121 = k(0.6666666666666666) * (t120 * t15 + (t118 * t44 + t106 * t66));
-            let t122 = t120 * t19 - (t106 * t68 + t118 * t46);
-            let t123 = k(0.3333333333333333) * t122;
-            let t124 = t106 * t71 - t118 * t49 + t120 * t23;
-            let t125 = k(0.6666666666666666) * t124 + (t123 + t121);
-            let t126 = k(0.8) + k(0.2) * t100;
-            let t127 = t119 - t105 * t126;
-            let t128 = t116 + t107 * t126;
-            let t129 = k(0.6666666666666666) * (t128 * t15 + (t127 * t44 - t102 * t66));
-            let t130 = t128 * t19 + (t102 * t68 - t127 * t46);
-            let t131 = k(0.3333333333333333) * t130;
-            let t132 = t102 * t71 + t127 * t49 - t128 * t23;
-            let t133 = k(0.6666666666666666) * t132 - (t131 + t129);
-            let t134 = k(0.6666666666666666) * t133
-                + (k(0.3333333333333333) * t125 - k(0.6666666666666666) * t114);
-            let t135 = turn0.cos();
-            let t136 = k(0.3333333333333333) * t133
-                + k(0.6666666666666666) * (t125 + t114);
-            let t137 = turn0.sin();
-            let t138 = (t135 * t136 - t137 * t134).atan2(t137 * t136 + t135 * t134);
-            let t139 = k(0.3) - (turn0 + t138);
-            let t140 = t98.cos();
-            let t141 = k(2.8) * t103.cos();
-            let t142 = k(0.3333333333333333) * (t141 * t100)
-                - k(0.6666666666666666) * (t141 * t106 - k(1.3416407864998738) * t140);
-            let t143 = t142
-                + k(0.6666666666666666) * (t141 * t102 + k(2.6832815729997477) * t140)
+            let t91 = t15 * t3 + (t44 * t35 + t66 * t59);
+            let t92 = k(0.1) * (t7 * t27 + (t37 * t53 - t61 * t75))
+                - k(0.05) * (t10 * t27 + (t39 * t53 + t63 * t75));
+            let t93 = slider_wy * slider_wy;
+            let t94 = slider_wz * slider_wz;
+            let t95 = k(0.001) * slider_wz;
+            let t96 = k(0.002) * slider_wy;
+            let t97 = slider_wx * (t96 - t95)
+                - (k(0.005) * (slider_wy * slider_wz) - k(0.003) * (t94 - t93));
+            let t98 = k(0.02) * slider_dwx + k(0.001) * slider_dwy
+                + k(0.002) * slider_dwz + (t97 + (t81 * t92 + t80 * t92));
+            let t99 = (k(0.1) * t38 - k(0.2) * t36) * t86
+                + (k(0.1) * t62 + k(0.2) * t60) * t83;
+            let t100 = (k(0.1) * t9 - k(0.2) * t6) * t89 - t99 + t98;
+            let t101 = t15 * t7 - (t44 * t37 + t66 * t61);
+            let t102 = t3 * t27 - (t35 * t53 - t59 * t75);
+            let t103 = k(0.1) * t102;
+            let t104 = slider_wx * slider_wx;
+            let t105 = k(0.003) * slider_wx;
+            let t106 = slider_wy * (t95 + t105)
+                - (k(0.005) * (slider_wx * slider_wz) - k(0.002) * (t94 - t104));
+            let t107 = k(0.001) * slider_dwx + k(0.03) * slider_dwy
+                - k(0.003) * slider_dwz + (t106 - (t81 * t103 + t80 * t103));
+            let t108 = k(0.2) * t2 * t89 + (k(0.2) * t34 * t86 - k(0.2) * t58 * t83);
+            let t109 = t108 + t107;
+            let t110 = t15 * t10 - (t44 * t39 - t66 * t63);
+            let t111 = k(0.05) * t102;
+            let t112 = slider_wz * (t96 + t105)
+                - (k(0.01) * (slider_wx * slider_wy) - k(0.001) * (t93 - t104));
+            let t113 = k(0.002) * slider_dwx - k(0.003) * slider_dwy
+                + k(0.025) * slider_dwz - (t112 + (t81 * t111 + t80 * t111));
+            let t114 = k(0.1) * t2 * t89 + (k(0.1) * t34 * t86 - k(0.1) * t58 * t83);
+            let t115 = t114 + t113;
+            let t116 = arm_rx - t77;
+            let t117 = arm_ry - t55;
+            let t118 = arm_rz - t29;
+            let t119 = t23 * t118 - (t49 * t117 + t71 * t116);
+            let t120 = t19 * t118 - (t46 * t117 - t68 * t116);
+            let t121 = t86 * (t49 * t120 - t46 * t119) + t83 * (t71 * t120 + t68 * t119);
+            let t122 = t89 * (t23 * t120 - t19 * t119) - t121
+                - (t115 * t110 - (t109 * t101 + t100 * t91));
+            let t123 = k(0.6666666666666666) * t120;
+            let t124 = t123 - k(0.3333333333333333) * t119;
+            let t125 = k(6.0) * t;
+            let t126 = k(0.5) * t125.sin();
+            let t127 = t126.cos();
+            let t128 = t126.sin();
+            let t129 = k(0.4472135954999579) * t128;
+            let t130 = k(0.2) + k(4.0) * t;
+            let t131 = k(0.7) * t130.sin();
+            let t132 = t131.sin();
+            let t133 = k(0.8944271909999159) * t128;
+            let t134 = t131.cos();
+            let t135 = t134 * t133 + t132 * t129;
+            let t136 = t132 * t133 - t134 * t129;
+            let t137 = k(0.6666666666666666) * (t136 * t15 + (t135 * t44 - t127 * t66));
+            let t138 = t136 * t19 + (t127 * t68 - t135 * t46);
+            let t139 = k(0.3333333333333333) * t138;
+            let t140 = t127 * t71 + t135 * t49 - t136 * t23;
+            let t141 = k(0.6666666666666666) * t140 - (t139 + t137);
+            let t142 = k(0.4) - k(0.4) * t127;
+            let t143 = t132 * t142;
+            let t144 = k(0.2) + k(0.8) * t127;
+            let t145 = t134 * t144 - t143;
+            let t146 = t134 * t142;
+            let t147 = t146 + t132 * t144;
+            let t148 = k(0.6666666666666666) * (t147 * t15 + (t145 * t44 + t133 * t66));
+            let t149 = t147 * t19 - (t133 * t68 + t145 * t46);
+            let t150 = k(0.3333333333333333) * t149;
+            let t151 = t133 * t71 - t145 * t49 + t147 * t23;
+            let t152 = k(0.6666666666666666) * t151 + (t150 + t148);
+            let t153 = k(0.8) + k(0.2) * t127;
+            let t154 = t146 - t132 * t153;
+            let t155 = t143 + t134 * t153;
+            let t156 = k(0.6666666666666666) * (t155 * t15 + (t154 * t44 - t129 * t66));
+            let t157 = t155 * t19 + (t129 * t68 - t154 * t46);
+            let t158 = k(0.3333333333333333) * t157;
+            let t159 = t129 * t71 + t154 * t49 - t155 * t23;
+            let t160 = k(0.6666666666666666) * t159 - (t158 + t156);
+            let t161 = k(0.6666666666666666) * t160
+                + (k(0.3333333333333333) * t152 - k(0.6666666666666666) * t141);
+            let t162 = turn0.cos();
+            let t163 = k(0.3333333333333333) * t160
+                + k(0.6666666666666666) * (t152 + t141);
+            let t164 = turn0.sin();
+            let t165 = (t162 * t163 - t164 * t161).atan2(t164 * t163 + t162 * t161);
+            let t166 = k(0.3) - (turn0 + t165);
+            let t167 = t125.cos();
+            let t168 = k(2.8) * t130.cos();
+            let t169 = k(0.3333333333333333) * (t168 * t127)
+                - k(0.6666666666666666) * (t168 * t133 - k(1.3416407864998738) * t167);
+            let t170 = t169
+                + k(0.6666666666666666) * (t168 * t129 + k(2.6832815729997477) * t167)
                 - (k(0.3333333333333333) * arm_wx + k(0.6666666666666666) * arm_wy
                     + k(0.6666666666666666) * arm_wz);
-            let t144 = t81 * t97
-                + (k(0.03333333333333333) * t143
-                    + (k(0.6666666666666666) * t139 + t80 * t97));
-            let t145 = arm_wy * arm_wy;
-            let t146 = arm_wz * arm_wz;
-            let t147 = k(0.02) * arm_wz;
-            let t148 = k(0.03) * arm_wy;
-            let t149 = arm_wx * (t148 + t147)
-                + (k(0.05) * (arm_wy * arm_wz) + k(0.01) * (t146 - t145));
-            let t150 = k(0.3) * arm_dwx + k(0.02) * arm_dwy - k(0.03) * arm_dwz
-                - (t149 + t144);
-            let t151 = k(0.1) * (t7 * t27 + (t37 * t53 - t61 * t75))
-                - k(0.05) * (t10 * t27 + (t39 * t53 + t63 * t75));
-            let t152 = slider_wy * slider_wy;
-            let t153 = slider_wz * slider_wz;
-            let t154 = k(0.001) * slider_wz;
-            let t155 = k(0.002) * slider_wy;
-            let t156 = slider_wx * (t155 - t154)
-                - (k(0.005) * (slider_wy * slider_wz) - k(0.003) * (t153 - t152));
-            let t157 = k(0.02) * slider_dwx + k(0.001) * slider_dwy
-                + k(0.002) * slider_dwz + (t156 + (t81 * t151 + t80 * t151));
-            let t158 = (k(0.1) * t38 - k(0.2) * t36) * t86
-                + (k(0.1) * t62 + k(0.2) * t60) * t83;
-            let t159 = (k(0.1) * t9 - k(0.2) * t6) * t89 - t158 + t157;
-            let t160 = t15 * t3 + (t44 * t35 + t66 * t59);
-            let t161 = t3 * t27 - (t35 * t53 - t59 * t75);
-            let t162 = k(0.1) * t161;
-            let t163 = slider_wx * slider_wx;
-            let t164 = k(0.003) * slider_wx;
-            let t165 = slider_wy * (t154 + t164)
-                - (k(0.005) * (slider_wx * slider_wz) - k(0.002) * (t153 - t163));
-            let t166 = k(0.001) * slider_dwx + k(0.03) * slider_dwy
-                - k(0.003) * slider_dwz + (t165 - (t81 * t162 + t80 * t162));
-            let t167 = k(0.2) * t2 * t89 + (k(0.2) * t34 * t86 - k(0.2) * t58 * t83);
-            let t168 = t167 + t166;
-            let t169 = t15 * t7 - (t44 * t37 + t66 * t61);
-            let t170 = k(0.05) * t161;
-            let t171 = slider_wz * (t155 + t164)
-                - (k(0.01) * (slider_wx * slider_wy) - k(0.001) * (t152 - t163));
-            let t172 = k(0.002) * slider_dwx - k(0.003) * slider_dwy
-                + k(0.025) * slider_dwz - (t171 + (t81 * t170 + t80 * t170));
-            let t173 = k(0.1) * t2 * t89 + (k(0.1) * t34 * t86 - k(0.1) * t58 * t83);
-            let t174 = t173 + t172;
-            let t175 = t15 * t10 - (t44 * t39 - t66 * t63);
-            let t176 = (t49 * t95 - t46 * t94) * t86 + (t71 * t95 + t68 * t94) * t83;
-            let t177 = (t23 * t95 - t19 * t94) * t89 - t176
-                - (t175 * t174 - (t169 * t168 + t160 * t159));
-            let t178 = t28 * t90 - (t54 * t87 + t76 * t84) + (t177 + t150);
-            let t179 = t131 - t129;
-            let t180 = t123 - t121;
-            let t181 = t112 - t110;
+            let t171 = t81 * t124
+                + (k(0.03333333333333333) * t170
+                    + (k(0.6666666666666666) * t166 + t80 * t124));
+            let t172 = arm_wy * arm_wy;
+            let t173 = arm_wz * arm_wz;
+            let t174 = k(0.02) * arm_wz;
+            let t175 = k(0.03) * arm_wy;
+            let t176 = arm_wx * (t175 + t174)
+                + (k(0.05) * (arm_wy * arm_wz) + k(0.01) * (t173 - t172));
+            let t177 = k(0.3) * arm_dwx + k(0.02) * arm_dwy - k(0.03) * arm_dwz
+                - (t176 + t171);
+            let t178 = t28 * t90 - (t54 * t87 + t76 * t84) + (t177 + t122);
+            let t179 = t158 - t156;
+            let t180 = t150 - t148;
+            let t181 = t139 - t137;
             let t182 = k(0.6666666666666666) * (t181 - t180)
                 + k(0.3333333333333333) * t179;
-            let t183 = t129 - k(0.3333333333333333) * t132;
-            let t184 = t121 + k(0.3333333333333333) * t124;
-            let t185 = t110 - k(0.3333333333333333) * t113;
+            let t183 = t156 - k(0.3333333333333333) * t159;
+            let t184 = t148 + k(0.3333333333333333) * t151;
+            let t185 = t137 - k(0.3333333333333333) * t140;
             let t186 = k(0.6666666666666666) * (t185 - t184)
                 + k(0.3333333333333333) * t183;
             let t187 = k(0.6666666666666666) * (t186 - t182);
-            let t188 = t132 - t130;
-            let t189 = t124 + t122;
-            let t190 = t113 - t111;
+            let t188 = t159 - t157;
+            let t189 = t151 + t149;
+            let t190 = t140 - t138;
             let t191 = k(0.4444444444444444) * t190 - k(0.2222222222222222) * t189
                 - k(0.4444444444444444) * t188;
             let t192 = k(0.6666666666666666)
@@ -5892,8 +5912,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Carried<T> {
             let t196 = k(0.6666666666666666) * t181 + k(0.3333333333333333) * t180
                 - k(0.6666666666666666) * t179;
             let t197 = k(1.0) / (t196 * t195 + (t194 * t193 - t191 * t187));
-            let t198 = t15 * t93 + (t44 * t92 - t66 * t91);
-            let t199 = k(0.6666666666666666) * (t94 + t198);
+            let t198 = t19 * t3 - (t46 * t35 + t68 * t59);
+            let t199 = t19 * t7 + (t46 * t37 + t68 * t61);
             (
                 t3,
                 t7,
@@ -5930,19 +5950,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Carried<T> {
                 t87,
                 t89,
                 t90,
-                t94,
-                t95,
-                t96,
-                t139,
-                t143,
-                t145,
-                t146,
-                t147,
-                t148,
-                t159,
-                t160,
-                t168,
-                t169,
+                t91,
+                t100,
+                t101,
+                t109,
+                t110,
+                t115,
+                t116,
+                t117,
+                t118,
+                t119,
+                t120,
+                t123,
+                t166,
+                t170,
+                t172,
+                t173,
                 t174,
                 t175,
                 t178,
@@ -5975,88 +5998,92 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Carried<T> {
             t252,
             t253,
         ) = {
-            let t200 = k(1.3333333333333333) * t139;
-            let t201 = k(0.06666666666666667) * t143;
-            let t202 = arm_wx * arm_wx;
-            let t203 = k(0.01) * arm_wx;
-            let t204 = arm_wy * (t147 - t203)
-                + (k(0.1) * (arm_wx * arm_wz) - k(0.03) * (t146 - t202));
-            let t205 = k(0.02) * arm_dwx + k(0.25) * arm_dwy + k(0.01) * arm_dwz
-                + (t204 + (t81 * t199 - (t201 + (t200 - t80 * t199))));
-            let t206 = t19 * t3 - (t46 * t35 + t68 * t59);
-            let t207 = t19 * t7 + (t46 * t37 + t68 * t61);
-            let t208 = t19 * t10 + (t46 * t39 - t68 * t63);
-            let t209 = (t49 * t198 + t44 * t94) * t86 + (t71 * t198 - t66 * t94) * t83;
-            let t210 = (t23 * t198 - t15 * t94) * t89 - t209
-                + (t208 * t174 - (t207 * t168 + t206 * t159));
+            let t200 = t19 * t10 + (t46 * t39 - t68 * t63);
+            let t201 = t15 * t118 + (t44 * t117 - t66 * t116);
+            let t202 = t86 * (t49 * t201 + t44 * t119) + t83 * (t71 * t201 - t66 * t119);
+            let t203 = t89 * (t23 * t201 - t15 * t119) - t202
+                + (t115 * t200 - (t109 * t199 + t100 * t198));
+            let t204 = k(0.6666666666666666) * (t201 + t119);
+            let t205 = k(1.3333333333333333) * t166;
+            let t206 = k(0.06666666666666667) * t170;
+            let t207 = arm_wx * arm_wx;
+            let t208 = k(0.01) * arm_wx;
+            let t209 = arm_wy * (t174 - t208)
+                + (k(0.1) * (arm_wx * arm_wz) - k(0.03) * (t173 - t207));
+            let t210 = k(0.02) * arm_dwx + k(0.25) * arm_dwy + k(0.01) * arm_dwz
+                + (t209 + (t81 * t204 - (t206 + (t205 - t80 * t204))));
             let t211 = k(0.4) * t22 * t90 - (k(0.4) * t48 * t87 + k(0.4) * t70 * t84);
-            let t212 = t211 - (t210 - t205);
-            let t213 = t96 + k(0.3333333333333333) * t198;
-            let t214 = arm_wz * (t148 + t203)
-                - (k(0.05) * (arm_wx * arm_wy) + k(0.02) * (t145 - t202));
-            let t215 = k(0.03) * arm_dwx - k(0.01) * arm_dwy - k(0.2) * arm_dwz
-                - (t214 + (t81 * t213 - (t201 + (t200 - t80 * t213))));
-            let t216 = t23 * t3 - (t49 * t35 - t71 * t59);
-            let t217 = t23 * t7 + (t49 * t37 - t71 * t61);
-            let t218 = t23 * t10 + (t49 * t39 + t71 * t63);
-            let t219 = (t46 * t198 + t44 * t95) * t86 - (t68 * t198 + t66 * t95) * t83;
-            let t220 = (t19 * t198 - t15 * t95) * t89 - t219
-                - (t218 * t174 - (t217 * t168 + t216 * t159));
+            let t212 = t211 + (t210 - t203);
+            let t213 = t23 * t3 - (t49 * t35 - t71 * t59);
+            let t214 = t23 * t7 + (t49 * t37 - t71 * t61);
+            let t215 = t23 * t10 + (t49 * t39 + t71 * t63);
+            let t216 = t86 * (t46 * t201 + t44 * t120) - t83 * (t68 * t201 + t66 * t120);
+            let t217 = t89 * (t19 * t201 - t15 * t120) - t216
+                - (t115 * t215 - (t109 * t214 + t100 * t213));
+            let t218 = k(0.3333333333333333) * t201 + t123;
+            let t219 = arm_wz * (t175 + t208)
+                - (k(0.05) * (arm_wx * arm_wy) + k(0.02) * (t172 - t207));
+            let t220 = k(0.03) * arm_dwx - k(0.01) * arm_dwy - k(0.2) * arm_dwz
+                - (t219 + (t81 * t218 - (t206 + (t205 - t80 * t218))));
             let t221 = (k(0.4) * t45 - k(0.2) * t43) * t87
                 - (k(0.4) * t67 - k(0.2) * t65) * t84;
-            let t222 = (k(0.4) * t18 + k(0.2) * t14) * t90 - t221 - (t220 + t215);
+            let t222 = (k(0.4) * t18 + k(0.2) * t14) * t90 - t221 - (t220 + t217);
             let t223 = t195 * t197 * t222 + (t193 * t197 * t212 - t187 * t197 * t178);
             let t224 = k(0.6666666666666666) * t191;
             let t225 = t197 * (t224 - k(0.3333333333333333) * t196) * t212
                 - t197 * (k(0.6666666666666666) * (t194 - t196)) * t178;
-            let t226 = (k(1.7888543819998317) * t45 - k(0.8944271909999159) * t43) * t86
-                - (k(1.7888543819998317) * t67 - k(0.8944271909999159) * t65) * t83;
-            let t227 = (k(1.4907119849998598) * t48
-                - (k(0.5962847939999439) * t45 + k(1.1925695879998879) * t43)) * t86
-                + (k(1.4907119849998598) * t70
-                    + (k(0.5962847939999439) * t67 + k(1.1925695879998879) * t65)) * t83;
-            let t228 = (k(1.4907119849998598) * t22
-                - (k(0.5962847939999439) * t18 - k(1.1925695879998879) * t14)) * t89
+            let t226 = t86 * (k(1.7888543819998317) * t45 - k(0.8944271909999159) * t43)
+                - t83 * (k(1.7888543819998317) * t67 - k(0.8944271909999159) * t65);
+            let t227 = t86
+                * (k(1.4907119849998598) * t48
+                    - (k(0.5962847939999439) * t45 + k(1.1925695879998879) * t43))
+                + t83
+                    * (k(1.4907119849998598) * t70
+                        + (k(0.5962847939999439) * t67 + k(1.1925695879998879) * t65));
+            let t228 = t89
+                * (k(1.4907119849998598) * t22
+                    - (k(0.5962847939999439) * t18 - k(1.1925695879998879) * t14))
                 - t227;
             let t229 = k(0.4472135954999579)
-                * (k(0.5962847939999439) * t169 + k(0.29814239699997197) * t160)
+                * (k(0.5962847939999439) * t101 + k(0.29814239699997197) * t91)
                 + k(0.8944271909999159)
-                    * (k(0.5962847939999439) * t207 + k(0.29814239699997197) * t206);
-            let t230 = t208 + t206;
-            let t231 = t175 + t160;
+                    * (k(0.5962847939999439) * t199 + k(0.29814239699997197) * t198);
+            let t230 = t200 + t198;
+            let t231 = t110 + t91;
             let t232 = k(0.3975231959999626) * t231 - k(0.1987615979999813) * t230
-                + k(0.49690399499995325) * (t218 + t216);
+                + k(0.49690399499995325) * (t215 + t213);
             let t233 = k(0.4472135954999579)
-                * (k(0.5962847939999439) * t175 - k(0.7453559924999299) * t160)
+                * (k(0.5962847939999439) * t110 - k(0.7453559924999299) * t91)
                 + k(0.8944271909999159)
-                    * (k(0.5962847939999439) * t208 - k(0.7453559924999299) * t206);
-            let t234 = k(0.6666666666666666) * t217;
-            let t235 = k(0.6666666666666666) * t207;
-            let t236 = t235 + k(0.3333333333333333) * t206;
-            let t237 = k(0.6666666666666666) * t169;
-            let t238 = t237 + k(0.3333333333333333) * t160;
+                    * (k(0.5962847939999439) * t200 - k(0.7453559924999299) * t198);
+            let t234 = k(0.6666666666666666) * t214;
+            let t235 = k(0.6666666666666666) * t199;
+            let t236 = t235 + k(0.3333333333333333) * t198;
+            let t237 = k(0.6666666666666666) * t101;
+            let t238 = t237 + k(0.3333333333333333) * t91;
             let t239 = k(0.5962847939999439) * t238 - k(0.29814239699997197) * t236
-                + k(0.7453559924999299) * (t234 + k(0.3333333333333333) * t216);
+                + k(0.7453559924999299) * (t234 + k(0.3333333333333333) * t213);
             let t240 = k(0.29814239699997197) * t231 + k(0.5962847939999439) * t230;
             let t241 = k(0.4472135954999579) * t238 + k(0.8944271909999159) * t236;
             let t242 = t241 * t232 - t240 * t239;
             let t243 = k(0.4472135954999579)
-                * (k(0.29814239699997197) * t175 + k(0.7453559924999299) * t169)
+                * (k(0.29814239699997197) * t110 + k(0.7453559924999299) * t101)
                 + k(0.8944271909999159)
-                    * (k(0.29814239699997197) * t208 + k(0.7453559924999299) * t207);
-            let t244 = k(0.3333333333333333) * t208 - t235;
-            let t245 = k(0.3333333333333333) * t175 - t237;
+                    * (k(0.29814239699997197) * t200 + k(0.7453559924999299) * t199);
+            let t244 = k(0.3333333333333333) * t200 - t235;
+            let t245 = k(0.3333333333333333) * t110 - t237;
             let t246 = k(0.5962847939999439) * t245 - k(0.29814239699997197) * t244
-                + k(0.7453559924999299) * (k(0.3333333333333333) * t218 - t234);
+                + k(0.7453559924999299) * (k(0.3333333333333333) * t215 - t234);
             let t247 = k(0.4472135954999579) * t245 + k(0.8944271909999159) * t244;
             let t248 = t247 * t239 - t241 * t246;
             let t249 = t240 * t246 - t247 * t232;
             let t250 = k(1.0) / (t229 * t249 + (t233 * t248 + t243 * t242));
-            let t251 = t250 * (t246 * t229 - t239 * t243) * t168
-                + t250 * (t239 * t233 - t232 * t229) * t159;
-            let t252 = t250 * (t241 * t243 - t247 * t229) * t168
-                + t250 * (t240 * t229 - t241 * t233) * t159;
-            let t253 = t249 * t250 * t174 + (t248 * t250 * t168 + t242 * t250 * t159);
+            let t251 = t109 * (t250 * (t246 * t229 - t239 * t243))
+                + t100 * (t250 * (t239 * t233 - t232 * t229));
+            let t252 = t109 * (t250 * (t241 * t243 - t247 * t229))
+                + t100 * (t250 * (t240 * t229 - t241 * t233));
+            let t253 = t115 * (t249 * t250)
+                + (t109 * (t248 * t250) + t100 * (t242 * t250));
             (
                 t222,
                 t223,
@@ -6082,10 +6109,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Carried<T> {
             -t90,
             -t223,
             -(t197 * (k(0.3333333333333333) * t194 - t224) * t222 + t225),
-            t226 - (k(1.7888543819998317) * t18 + k(0.8944271909999159) * t14) * t89,
+            t226 - t89 * (k(1.7888543819998317) * t18 + k(0.8944271909999159) * t14),
             t228,
-            -(t250 * (t232 * t243 - t246 * t233) * t174 + t251),
-            t250 * (t247 * t233 - t240 * t243) * t174 + t252,
+            -(t115 * (t250 * (t232 * t243 - t246 * t233)) + t251),
+            t115 * (t250 * (t247 * t233 - t240 * t243)) + t252,
             t253,
         ];
     }
@@ -8584,6 +8611,453 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Carried<T> {
             -t282,
         ];
     }
+    /// Writes λ: 802 operations (342 ±, 460 ×, 0 ÷) and 15 functions.
+    fn corrected_multipliers(
+        &self,
+        t: T,
+        y: &Self::State,
+        accelerations: &Self::Velocities,
+        lambda: &mut Self::Rows,
+    ) {
+        let k = T::constant;
+        let arm_rx = y[0];
+        let arm_ry = y[1];
+        let arm_rz = y[2];
+        let slider_rx = y[7];
+        let slider_ry = y[8];
+        let slider_rz = y[9];
+        let arm_e0 = y[3];
+        let arm_e1 = y[4];
+        let arm_e2 = y[5];
+        let arm_e3 = y[6];
+        let slider_e0 = y[10];
+        let slider_e1 = y[11];
+        let slider_e2 = y[12];
+        let slider_e3 = y[13];
+        let arm_sx = y[14];
+        let arm_sy = y[15];
+        let arm_sz = y[16];
+        let slider_sx = y[20];
+        let slider_sy = y[21];
+        let slider_sz = y[22];
+        let arm_wx = y[17];
+        let arm_wy = y[18];
+        let arm_wz = y[19];
+        let slider_wx = y[23];
+        let slider_wy = y[24];
+        let slider_wz = y[25];
+        let turn0 = y[27];
+        let arm_dsx = accelerations[0];
+        let arm_dsy = accelerations[1];
+        let arm_dsz = accelerations[2];
+        let arm_dwx = accelerations[3];
+        let arm_dwy = accelerations[4];
+        let arm_dwz = accelerations[5];
+        let slider_dsx = accelerations[6];
+        let slider_dsy = accelerations[7];
+        let slider_dsz = accelerations[8];
+        let slider_dwx = accelerations[9];
+        let slider_dwy = accelerations[10];
+        let slider_dwz = accelerations[11];
+        let (
+            t2,
+            t14,
+            t15,
+            t18,
+            t19,
+            t22,
+            t34,
+            t43,
+            t44,
+            t45,
+            t46,
+            t48,
+            t58,
+            t65,
+            t66,
+            t67,
+            t68,
+            t70,
+            t80,
+            t82,
+            t84,
+            t85,
+            t87,
+            t88,
+            t90,
+            t91,
+            t96,
+            t138,
+            t141,
+            t145,
+            t148,
+            t152,
+            t155,
+            t158,
+            t176,
+            t178,
+            t180,
+            t181,
+            t182,
+            t183,
+            t186,
+            t188,
+            t189,
+            t193,
+            t194,
+            t197,
+            t199,
+        ) = {
+            let t0 = slider_e0 * slider_e2;
+            let t1 = slider_e1 * slider_e3;
+            let t2 = t1 - t0;
+            let t3 = k(2.0) * t2;
+            let t4 = slider_e0 * slider_e1;
+            let t5 = slider_e2 * slider_e3;
+            let t6 = t5 + t4;
+            let t7 = k(2.0) * t6;
+            let t8 = slider_e0 * slider_e0;
+            let t9 = k(0.5) - (t8 + slider_e3 * slider_e3);
+            let t10 = k(2.0) * t9;
+            let t11 = k(0.05) * (t10 * slider_wx + t3 * slider_wz)
+                - k(0.1) * (t7 * slider_wx - t3 * slider_wy);
+            let t12 = arm_e0 * arm_e2;
+            let t13 = arm_e1 * arm_e3;
+            let t14 = t13 - t12;
+            let t15 = k(2.0) * t14;
+            let t16 = arm_e0 * arm_e1;
+            let t17 = arm_e2 * arm_e3;
+            let t18 = t17 + t16;
+            let t19 = k(2.0) * t18;
+            let t20 = t19 * arm_wx - t15 * arm_wy;
+            let t21 = arm_e0 * arm_e0;
+            let t22 = k(0.5) - (t21 + arm_e3 * arm_e3);
+            let t23 = k(2.0) * t22;
+            let t24 = t23 * arm_wx + t15 * arm_wz;
+            let t25 = t23 * arm_wy + t19 * arm_wz;
+            let t26 = arm_sz + (k(0.2) * t25 - k(0.1) * t24 - k(0.1) * t20)
+                - (slider_sz - t11);
+            let t27 = k(1.3333333333333333) * t22
+                + (k(0.6666666666666666) * t18 - k(1.3333333333333333) * t14);
+            let t28 = k(0.2) * t22;
+            let t29 = slider_rz + (k(0.2) * t9 + k(0.1) * t6);
+            let t30 = t29 - (arm_rz - (t28 - (k(0.2) * t18 + k(0.4) * t14)));
+            let t31 = t30
+                * (k(0.6666666666666666) * t25 + k(0.3333333333333333) * t24
+                    - k(0.6666666666666666) * t20) + t27 * t26;
+            let t32 = slider_e0 * slider_e3;
+            let t33 = slider_e1 * slider_e2;
+            let t34 = t33 + t32;
+            let t35 = k(2.0) * t34;
+            let t36 = k(0.5) - (t8 + slider_e2 * slider_e2);
+            let t37 = k(2.0) * t36;
+            let t38 = t5 - t4;
+            let t39 = k(2.0) * t38;
+            let t40 = k(0.05) * (t39 * slider_wx - t35 * slider_wz)
+                - k(0.1) * (t37 * slider_wx + t35 * slider_wy);
+            let t41 = arm_e0 * arm_e3;
+            let t42 = arm_e1 * arm_e2;
+            let t43 = t42 + t41;
+            let t44 = k(2.0) * t43;
+            let t45 = k(0.5) - (t21 + arm_e2 * arm_e2);
+            let t46 = k(2.0) * t45;
+            let t47 = t46 * arm_wx + t44 * arm_wy;
+            let t48 = t17 - t16;
+            let t49 = k(2.0) * t48;
+            let t50 = t49 * arm_wx - t44 * arm_wz;
+            let t51 = t49 * arm_wy + t46 * arm_wz;
+            let t52 = arm_sy - (k(0.2) * t51 - k(0.1) * t50 - k(0.1) * t47)
+                - (slider_sy + t40);
+            let t53 = k(1.3333333333333333) * t48
+                + (k(0.6666666666666666) * t45 + k(1.3333333333333333) * t43);
+            let t54 = k(0.2) * t48;
+            let t55 = slider_ry - (k(0.2) * t38 + k(0.1) * t36);
+            let t56 = t55 - (arm_ry + (t54 - (k(0.2) * t45 - k(0.4) * t43)));
+            let t57 = t56
+                * (k(0.6666666666666666) * t51 + k(0.3333333333333333) * t50
+                    - k(0.6666666666666666) * t47) + t53 * t52;
+            let t58 = k(0.5) - (t8 + slider_e1 * slider_e1);
+            let t59 = k(2.0) * t58;
+            let t60 = t33 - t32;
+            let t61 = k(2.0) * t60;
+            let t62 = t1 + t0;
+            let t63 = k(2.0) * t62;
+            let t64 = k(0.05) * (t63 * slider_wx + t59 * slider_wz)
+                + k(0.1) * (t61 * slider_wx + t59 * slider_wy);
+            let t65 = k(0.5) - (t21 + arm_e1 * arm_e1);
+            let t66 = k(2.0) * t65;
+            let t67 = t42 - t41;
+            let t68 = k(2.0) * t67;
+            let t69 = t68 * arm_wx + t66 * arm_wy;
+            let t70 = t13 + t12;
+            let t71 = k(2.0) * t70;
+            let t72 = t71 * arm_wx + t66 * arm_wz;
+            let t73 = t71 * arm_wy - t68 * arm_wz;
+            let t74 = arm_sx - (k(0.2) * t73 - k(0.1) * t72 + k(0.1) * t69)
+                - (slider_sx + t64);
+            let t75 = k(1.3333333333333333) * t70
+                - (k(0.6666666666666666) * t67 + k(1.3333333333333333) * t65);
+            let t76 = k(0.2) * t70;
+            let t77 = slider_rx - (k(0.2) * t62 - k(0.1) * t60);
+            let t78 = t77 - (arm_rx + (t76 + (k(0.2) * t67 - k(0.4) * t65)));
+            let t79 = t78
+                * (k(0.6666666666666666) * t73 + k(0.3333333333333333) * t72
+                    + k(0.6666666666666666) * t69) + t75 * t74;
+            let t80 = k(0.5) * (t79 + t57 - t31);
+            let t81 = t27 * t30 - (t53 * t56 + t75 * t78);
+            let t82 = k(30.0) * (k(0.1) + t81);
+            let t83 = t75 * t82 + t75 * t80;
+            let t84 = k(0.6) * slider_dsx - (k(0.6) + t83);
+            let t85 = t84 + (k(1.5) * arm_dsx - (k(1.5) - t83));
+            let t86 = t53 * t82 + t53 * t80;
+            let t87 = k(0.6) * slider_dsy + (k(5.4) - t86);
+            let t88 = t87 + (k(1.5) * arm_dsy + (k(13.5) + t86));
+            let t89 = t27 * t82 + t27 * t80;
+            let t90 = k(0.6) * slider_dsz - (k(1.8) - t89);
+            let t91 = t90 + (k(1.5) * arm_dsz - (k(4.5) + t89));
+            let t92 = arm_rx - t77;
+            let t93 = arm_ry - t55;
+            let t94 = arm_rz - t29;
+            let t95 = t23 * t94 - (t49 * t93 + t71 * t92);
+            let t96 = k(0.6666666666666666) * (t19 * t94 - (t46 * t93 - t68 * t92));
+            let t97 = t96 - k(0.3333333333333333) * t95;
+            let t98 = k(6.0) * t;
+            let t99 = t98.sin();
+            let t100 = k(0.5) * t99;
+            let t101 = t100.cos();
+            let t102 = t100.sin();
+            let t103 = k(0.4472135954999579) * t102;
+            let t104 = k(0.2) + k(4.0) * t;
+            let t105 = t104.sin();
+            let t106 = k(0.7) * t105;
+            let t107 = t106.sin();
+            let t108 = k(0.8944271909999159) * t102;
+            let t109 = t106.cos();
+            let t110 = t109 * t108 + t107 * t103;
+            let t111 = t107 * t108 - t109 * t103;
+            let t112 = k(0.3333333333333333) * (t111 * t19 + (t101 * t68 - t110 * t46))
+                + k(0.6666666666666666) * (t111 * t15 + (t110 * t44 - t101 * t66));
+            let t113 = k(0.6666666666666666) * (t101 * t71 + t110 * t49 - t111 * t23)
+                - t112;
+            let t114 = k(0.4) - k(0.4) * t101;
+            let t115 = t107 * t114;
+            let t116 = k(0.2) + k(0.8) * t101;
+            let t117 = t109 * t116 - t115;
+            let t118 = t109 * t114;
+            let t119 = t118 + t107 * t116;
+            let t120 = k(0.3333333333333333) * (t119 * t19 - (t108 * t68 + t117 * t46))
+                + k(0.6666666666666666) * (t119 * t15 + (t117 * t44 + t108 * t66));
+            let t121 = k(0.6666666666666666) * (t108 * t71 - t117 * t49 + t119 * t23)
+                + t120;
+            let t122 = k(0.8) + k(0.2) * t101;
+            let t123 = t118 - t107 * t122;
+            let t124 = t115 + t109 * t122;
+            let t125 = k(0.3333333333333333) * (t124 * t19 + (t103 * t68 - t123 * t46))
+                + k(0.6666666666666666) * (t124 * t15 + (t123 * t44 - t103 * t66));
+            let t126 = k(0.6666666666666666) * (t103 * t71 + t123 * t49 - t124 * t23)
+                - t125;
+            let t127 = k(0.6666666666666666) * t126
+                + (k(0.3333333333333333) * t121 - k(0.6666666666666666) * t113);
+            let t128 = turn0.cos();
+            let t129 = k(0.3333333333333333) * t126
+                + k(0.6666666666666666) * (t121 + t113);
+            let t130 = turn0.sin();
+            let t131 = (t128 * t129 - t130 * t127).atan2(t130 * t129 + t128 * t127);
+            let t132 = k(0.3) - (turn0 + t131);
+            let t133 = t98.cos();
+            let t134 = k(2.8) * t104.cos();
+            let t135 = k(0.3333333333333333) * (t134 * t101)
+                - k(0.6666666666666666) * (t134 * t108 - k(1.3416407864998738) * t133);
+            let t136 = t135
+                + k(0.6666666666666666) * (t134 * t103 + k(2.6832815729997477) * t133)
+                - (k(0.3333333333333333) * arm_wx + k(0.6666666666666666) * arm_wy
+                    + k(0.6666666666666666) * arm_wz);
+            let t137 = t82 * t97
+                + (k(0.03333333333333333) * t136
+                    + (k(0.6666666666666666) * t132 + t80 * t97));
+            let t138 = arm_wy * arm_wy;
+            let t139 = arm_wz * arm_wz;
+            let t140 = k(0.02) * arm_wz;
+            let t141 = k(0.03) * arm_wy;
+            let t142 = arm_wx * (t141 + t140)
+                + (k(0.05) * (arm_wy * arm_wz) + k(0.01) * (t139 - t138));
+            let t143 = k(0.3) * arm_dwx + k(0.02) * arm_dwy - k(0.03) * arm_dwz
+                - (t142 + t137);
+            let t144 = k(0.1) * (t7 * t27 + (t37 * t53 - t61 * t75))
+                - k(0.05) * (t10 * t27 + (t39 * t53 + t63 * t75));
+            let t145 = slider_wy * slider_wy;
+            let t146 = slider_wz * slider_wz;
+            let t147 = k(0.001) * slider_wz;
+            let t148 = k(0.002) * slider_wy;
+            let t149 = slider_wx * (t148 - t147)
+                - (k(0.005) * (slider_wy * slider_wz) - k(0.003) * (t146 - t145));
+            let t150 = k(0.02) * slider_dwx + k(0.001) * slider_dwy
+                + k(0.002) * slider_dwz + (t149 + (t82 * t144 + t80 * t144));
+            let t151 = (k(0.1) * t38 - k(0.2) * t36) * t87
+                + (k(0.1) * t62 + k(0.2) * t60) * t84;
+            let t152 = (k(0.1) * t9 - k(0.2) * t6) * t90 - t151 + t150;
+            let t153 = k(0.6666666666666666) * t81;
+            let t154 = k(0.1) - t153;
+            let t155 = k(0.1) + k(0.3333333333333333) * t81;
+            let t156 = (t49 * t155 + t46 * t154) * t87 + (t71 * t155 - t68 * t154) * t84;
+            let t157 = (t23 * t155 + t19 * t154) * t90 - t156 - t152 - t143;
+            let t158 = t157 - (t28 * t91 - (t54 * t88 + t76 * t85));
+            let t159 = k(0.25) * t99;
+            let t160 = t159.cos();
+            let t161 = k(0.35) * t105;
+            let t162 = t161.cos();
+            let t163 = t162 * t160;
+            let t164 = t161.sin();
+            let t165 = t164 * t160;
+            let t166 = t159.sin();
+            let t167 = k(0.8944271909999159) * t166;
+            let t168 = k(0.4472135954999579) * t166;
+            let t169 = t162 * t168 - t164 * t167;
+            let t170 = t164 * t168 + t162 * t167;
+            let t171 = t170 * arm_e0 - t169 * arm_e1 + t165 * arm_e2 - t163 * arm_e3;
+            let t172 = t169 * arm_e0 + t170 * arm_e1 - t163 * arm_e2 - t165 * arm_e3;
+            let t173 = t165 * arm_e0 - t163 * arm_e1 - t170 * arm_e2 + t169 * arm_e3;
+            let t174 = k(0.3333333333333333) * t173 + k(0.6666666666666666) * t172
+                + k(0.6666666666666666) * t171;
+            let t175 = k(2.0) * t174;
+            let t176 = k(1.0) - t174 * t175;
+            let t177 = k(0.4) * t22 * t91 - (k(0.4) * t48 * t88 + k(0.4) * t70 * t85);
+            let t178 = t15 * t94 + (t44 * t93 - t66 * t92);
+            let t179 = k(0.6666666666666666) * (t178 + t95);
+            let t180 = k(1.3333333333333333) * t132;
+            let t181 = k(0.06666666666666667) * t136;
+            let t182 = arm_wx * arm_wx;
+            let t183 = k(0.01) * arm_wx;
+            let t184 = arm_wy * (t140 - t183)
+                + (k(0.1) * (arm_wx * arm_wz) - k(0.03) * (t139 - t182));
+            let t185 = k(0.02) * arm_dwx + k(0.25) * arm_dwy + k(0.01) * arm_dwz
+                + (t184 + (t82 * t179 - (t181 + (t180 - t80 * t179))));
+            let t186 = t3 * t27 - (t35 * t53 - t59 * t75);
+            let t187 = k(0.1) * t186;
+            let t188 = slider_wx * slider_wx;
+            let t189 = k(0.003) * slider_wx;
+            let t190 = slider_wy * (t147 + t189)
+                - (k(0.005) * (slider_wx * slider_wz) - k(0.002) * (t146 - t188));
+            let t191 = k(0.001) * slider_dwx + k(0.03) * slider_dwy
+                - k(0.003) * slider_dwz + (t190 - (t82 * t187 + t80 * t187));
+            let t192 = k(0.2) * t2 * t90 + (k(0.2) * t34 * t87 - k(0.2) * t58 * t84);
+            let t193 = t192 + t191;
+            let t194 = k(0.2) - t153;
+            let t195 = (t49 * t194 - t44 * t154) * t87 + (t71 * t194 + t66 * t154) * t84;
+            let t196 = (t23 * t194 + t15 * t154) * t90 - t195 + t193 + t185;
+            let t197 = t196 + t177;
+            let t198 = t163 * arm_e0 + t165 * arm_e1 + t169 * arm_e2 + t170 * arm_e3;
+            let t199 = t198 * t175;
+            (
+                t2,
+                t14,
+                t15,
+                t18,
+                t19,
+                t22,
+                t34,
+                t43,
+                t44,
+                t45,
+                t46,
+                t48,
+                t58,
+                t65,
+                t66,
+                t67,
+                t68,
+                t70,
+                t80,
+                t82,
+                t84,
+                t85,
+                t87,
+                t88,
+                t90,
+                t91,
+                t96,
+                t138,
+                t141,
+                t145,
+                t148,
+                t152,
+                t155,
+                t158,
+                t176,
+                t178,
+                t180,
+                t181,
+                t182,
+                t183,
+                t186,
+                t188,
+                t189,
+                t193,
+                t194,
+                t197,
+                t199,
+            )
+        };
+        let (t211, t216, t220, t221, t222, t224) = {
+            let t200 = k(0.6666666666666666) * t199;
+            let t201 = k(0.2222222222222222) - k(0.2222222222222222) * t176;
+            let t202 = t201 + t200;
+            let t203 = (k(0.4) * t45 - k(0.2) * t43) * t88
+                - (k(0.4) * t67 - k(0.2) * t65) * t85;
+            let t204 = k(0.3333333333333333) * t178 + t96;
+            let t205 = arm_wz * (t141 + t183)
+                - (k(0.05) * (arm_wx * arm_wy) + k(0.02) * (t138 - t182));
+            let t206 = k(0.03) * arm_dwx - k(0.01) * arm_dwy - k(0.2) * arm_dwz
+                - (t205 + (t82 * t204 - (t181 + (t180 - t80 * t204))));
+            let t207 = k(0.05) * t186;
+            let t208 = slider_wz * (t148 + t189)
+                - (k(0.01) * (slider_wx * slider_wy) - k(0.001) * (t145 - t188));
+            let t209 = k(0.002) * slider_dwx - k(0.003) * slider_dwy
+                + k(0.025) * slider_dwz - (t208 + (t82 * t207 + t80 * t207));
+            let t210 = k(0.1) * t2 * t90 + (k(0.1) * t34 * t87 - k(0.1) * t58 * t84);
+            let t211 = t210 + t209;
+            let t212 = (t46 * t194 + t44 * t155) * t87 - (t68 * t194 + t66 * t155) * t84;
+            let t213 = (t19 * t194 - t15 * t155) * t90 - t212 + t211 - t206;
+            let t214 = t213 + ((k(0.4) * t18 + k(0.2) * t14) * t91 - t203);
+            let t215 = t201 - t200;
+            let t216 = t215 * t214
+                + (t202 * t197
+                    - (k(0.1111111111111111) + k(0.8888888888888888) * t176) * t158);
+            let t217 = k(0.4444444444444444) + k(0.5555555555555556) * t176;
+            let t218 = k(0.3333333333333333) * t199;
+            let t219 = k(0.4444444444444444) - k(0.4444444444444444) * t176;
+            let t220 = (t219 + t218) * t214 + (t217 * t197 - t215 * t158);
+            let t221 = t217 * t214 + ((t219 - t218) * t197 - t202 * t158);
+            let t222 = t87 * (k(1.7888543819998317) * t45 - k(0.8944271909999159) * t43)
+                - t84 * (k(1.7888543819998317) * t67 - k(0.8944271909999159) * t65);
+            let t223 = t87
+                * (k(1.4907119849998598) * t48
+                    - (k(0.5962847939999439) * t45 + k(1.1925695879998879) * t43))
+                + t84
+                    * (k(1.4907119849998598) * t70
+                        + (k(0.5962847939999439) * t67 + k(1.1925695879998879) * t65));
+            let t224 = t90
+                * (k(1.4907119849998598) * t22
+                    - (k(0.5962847939999439) * t18 - k(1.1925695879998879) * t14))
+                - t223;
+            (t211, t216, t220, t221, t222, t224)
+        };
+        *lambda = [
+            -t85,
+            -t88,
+            -t91,
+            k(0.3333333333333333) * t221 - k(0.6666666666666666) * (t220 - t216),
+            k(0.3333333333333333) * t220 + k(0.6666666666666666) * t216
+                - k(0.6666666666666666) * t221,
+            t222 - t90 * (k(1.7888543819998317) * t18 + k(0.8944271909999159) * t14),
+            t224,
+            -(k(0.7453559924999299) * t211
+                + (k(0.29814239699997197) * t193 - k(0.5962847939999439) * t152)),
+            k(0.8944271909999159) * t193 + k(0.4472135954999579) * t152,
+            k(0.6666666666666666) * t211
+                - (k(0.3333333333333333) * t193 - k(0.6666666666666666) * t152),
+        ];
+    }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Ports for Carried<T> {
     type Outputs = [T; 20];
@@ -8635,7 +9109,6 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Carried<T> {
         let slider_dwy = accelerations[10];
         let slider_dwz = accelerations[11];
         let (
-            t2,
             t3,
             t7,
             t10,
@@ -8650,7 +9123,6 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Carried<T> {
             t29,
             t30,
             t31,
-            t36,
             t37,
             t39,
             t41,
@@ -8665,7 +9137,6 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Carried<T> {
             t57,
             t58,
             t59,
-            t62,
             t63,
             t65,
             t67,
@@ -8708,24 +9179,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Carried<T> {
             t131,
             t132,
             t133,
-            t134,
-            t135,
-            t136,
-            t137,
-            t138,
             t140,
-            t141,
             t142,
             t143,
+            t144,
             t145,
             t146,
-            t147,
-            t148,
-            t150,
-            t151,
-            t152,
             t153,
-            t160,
+            t154,
+            t155,
+            t156,
+            t157,
             t161,
             t162,
             t163,
@@ -8735,20 +9199,21 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Carried<T> {
             t167,
             t168,
             t169,
-            t170,
             t171,
             t172,
+            t173,
             t174,
+            t175,
             t176,
+            t177,
             t179,
+            t180,
             t181,
-            t183,
+            t182,
             t184,
             t185,
             t186,
             t187,
-            t190,
-            t191,
             t194,
             t195,
             t196,
@@ -8910,87 +9375,85 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Carried<T> {
                 + (k(0.6666666666666666) * t113 + k(0.3333333333333333) * t116);
             let t132 = t122
                 + (k(0.6666666666666666) * t123 + k(0.3333333333333333) * t124);
-            let t133 = arm_rx - t83;
-            let t134 = arm_ry - t59;
-            let t135 = arm_rz - t31;
-            let t136 = t23 * t135 - (t51 * t134 + t75 * t133);
-            let t137 = t19 * t135 - (t48 * t134 - t72 * t133);
-            let t138 = k(0.6666666666666666) * t137;
-            let t139 = t138 - k(0.3333333333333333) * t136;
-            let t140 = k(0.6666666666666666) * (t124 * t15 + (t116 * t46 - t96 * t70));
-            let t141 = t124 * t19 + (t96 * t72 - t116 * t48);
-            let t142 = k(0.3333333333333333) * t141;
-            let t143 = t96 * t75 + t116 * t51 - t124 * t23;
-            let t144 = k(0.6666666666666666) * t143 - (t142 + t140);
-            let t145 = k(0.6666666666666666) * (t123 * t15 + (t113 * t46 + t115 * t70));
-            let t146 = t123 * t19 - (t115 * t72 + t113 * t48);
-            let t147 = k(0.3333333333333333) * t146;
-            let t148 = t115 * t75 - t113 * t51 + t123 * t23;
-            let t149 = k(0.6666666666666666) * t148 + (t147 + t145);
-            let t150 = k(0.6666666666666666) * (t121 * t15 + (t109 * t46 - t114 * t70));
-            let t151 = t121 * t19 + (t114 * t72 - t109 * t48);
-            let t152 = k(0.3333333333333333) * t151;
-            let t153 = t114 * t75 + t109 * t51 - t121 * t23;
-            let t154 = k(0.6666666666666666) * t153 - (t152 + t150);
-            let t155 = k(0.6666666666666666) * t154
-                + (k(0.3333333333333333) * t149 - k(0.6666666666666666) * t144);
-            let t156 = turn0.cos();
-            let t157 = k(0.3333333333333333) * t154
-                + k(0.6666666666666666) * (t149 + t144);
-            let t158 = turn0.sin();
-            let t159 = (t156 * t157 - t158 * t155).atan2(t158 * t157 + t156 * t155);
-            let t160 = k(0.3) - (turn0 + t159);
-            let t161 = k(0.6666666666666666) * t160;
-            let t162 = t92.cos();
-            let t163 = k(2.8) * t103.cos();
-            let t164 = t163 * t114 + k(2.6832815729997477) * t162;
-            let t165 = t163 * t115 - k(1.3416407864998738) * t162;
-            let t166 = t163 * t96;
-            let t167 = k(0.3333333333333333) * t166 - k(0.6666666666666666) * t165
-                + k(0.6666666666666666) * t164
-                - (k(0.3333333333333333) * arm_wx + k(0.6666666666666666) * arm_wy
-                    + k(0.6666666666666666) * arm_wz);
-            let t168 = k(0.03333333333333333) * t167;
-            let t169 = arm_wy * arm_wy;
-            let t170 = arm_wz * arm_wz;
-            let t171 = k(0.02) * arm_wz;
-            let t172 = k(0.03) * arm_wy;
-            let t173 = arm_wx * (t172 + t171)
-                + (k(0.05) * (arm_wy * arm_wz) + k(0.01) * (t170 - t169));
-            let t174 = k(0.3) * arm_dwx + k(0.02) * arm_dwy - k(0.03) * arm_dwz
-                - (t173 + (t88 * t139 + (t168 + (t161 + t87 * t139))));
-            let t175 = k(0.1) * (t7 * t27 + (t39 * t55 - t65 * t79))
+            let t133 = t15 * t3 + (t46 * t37 + t70 * t63);
+            let t134 = k(0.1) * (t7 * t27 + (t39 * t55 - t65 * t79))
                 - k(0.05) * (t10 * t27 + (t41 * t55 + t67 * t79));
-            let t176 = slider_wy * slider_wy;
-            let t177 = slider_wz * slider_wz;
-            let t178 = k(0.001) * slider_wz;
-            let t179 = k(0.002) * slider_wy;
-            let t180 = slider_wx * (t179 - t178)
-                - (k(0.005) * (slider_wy * slider_wz) - k(0.003) * (t177 - t176));
-            let t181 = k(0.02) * slider_dwx;
-            let t182 = t181 + k(0.001) * slider_dwy + k(0.002) * slider_dwz
-                + (t180 + (t88 * t175 + t87 * t175));
-            let t183 = k(0.1) * t66 + k(0.2) * t64;
-            let t184 = k(0.1) * t40 - k(0.2) * t38;
-            let t185 = k(0.1) * t9 - k(0.2) * t6;
-            let t186 = t185 * t119 - (t184 * t100 + t183 * t90) + t182;
-            let t187 = t15 * t3 + (t46 * t37 + t70 * t63);
-            let t188 = t3 * t27 - (t37 * t55 - t63 * t79);
-            let t189 = k(0.1) * t188;
-            let t190 = slider_wx * slider_wx;
-            let t191 = k(0.003) * slider_wx;
-            let t192 = slider_wy * (t178 + t191)
-                - (k(0.005) * (slider_wx * slider_wz) - k(0.002) * (t177 - t190));
-            let t193 = k(0.001) * slider_dwx + k(0.03) * slider_dwy
-                - k(0.003) * slider_dwz + (t192 - (t88 * t189 + t87 * t189));
-            let t194 = k(0.2) * t62;
-            let t195 = k(0.2) * t36;
-            let t196 = k(0.2) * t2;
-            let t197 = t196 * t119 + (t195 * t100 - t194 * t90) + t193;
-            let t198 = t15 * t7 - (t46 * t39 + t70 * t65);
-            let t199 = k(0.05) * t188;
+            let t135 = slider_wy * slider_wy;
+            let t136 = slider_wz * slider_wz;
+            let t137 = k(0.001) * slider_wz;
+            let t138 = k(0.002) * slider_wy;
+            let t139 = slider_wx * (t138 - t137)
+                - (k(0.005) * (slider_wy * slider_wz) - k(0.003) * (t136 - t135));
+            let t140 = k(0.02) * slider_dwx;
+            let t141 = t140 + k(0.001) * slider_dwy + k(0.002) * slider_dwz
+                + (t139 + (t88 * t134 + t87 * t134));
+            let t142 = k(0.1) * t66 + k(0.2) * t64;
+            let t143 = k(0.1) * t40 - k(0.2) * t38;
+            let t144 = k(0.1) * t9 - k(0.2) * t6;
+            let t145 = t144 * t119 - (t143 * t100 + t142 * t90) + t141;
+            let t146 = t15 * t7 - (t46 * t39 + t70 * t65);
+            let t147 = t3 * t27 - (t37 * t55 - t63 * t79);
+            let t148 = k(0.1) * t147;
+            let t149 = slider_wx * slider_wx;
+            let t150 = k(0.003) * slider_wx;
+            let t151 = slider_wy * (t137 + t150)
+                - (k(0.005) * (slider_wx * slider_wz) - k(0.002) * (t136 - t149));
+            let t152 = k(0.001) * slider_dwx + k(0.03) * slider_dwy
+                - k(0.003) * slider_dwz + (t151 - (t88 * t148 + t87 * t148));
+            let t153 = k(0.2) * t62;
+            let t154 = k(0.2) * t36;
+            let t155 = k(0.2) * t2;
+            let t156 = t155 * t119 + (t154 * t100 - t153 * t90) + t152;
+            let t157 = t15 * t10 - (t46 * t41 - t70 * t67);
+            let t158 = k(0.05) * t147;
+            let t159 = slider_wz * (t138 + t150)
+                - (k(0.01) * (slider_wx * slider_wy) - k(0.001) * (t135 - t149));
+            let t160 = k(0.002) * slider_dwx - k(0.003) * slider_dwy
+                + k(0.025) * slider_dwz - (t159 + (t88 * t158 + t87 * t158));
+            let t161 = k(0.1) * t62;
+            let t162 = k(0.1) * t36;
+            let t163 = k(0.1) * t2;
+            let t164 = t163 * t119 + (t162 * t100 - t161 * t90) + t160;
+            let t165 = arm_rx - t83;
+            let t166 = arm_ry - t59;
+            let t167 = arm_rz - t31;
+            let t168 = t23 * t167 - (t51 * t166 + t75 * t165);
+            let t169 = t19 * t167 - (t48 * t166 - t72 * t165);
+            let t170 = t100 * (t51 * t169 - t48 * t168)
+                + t90 * (t75 * t169 + t72 * t168);
+            let t171 = t119 * (t23 * t169 - t19 * t168) - t170
+                - (t164 * t157 - (t156 * t146 + t145 * t133));
+            let t172 = k(0.6666666666666666) * t169;
+            let t173 = t172 - k(0.3333333333333333) * t168;
+            let t174 = k(0.6666666666666666) * (t124 * t15 + (t116 * t46 - t96 * t70));
+            let t175 = t124 * t19 + (t96 * t72 - t116 * t48);
+            let t176 = k(0.3333333333333333) * t175;
+            let t177 = t96 * t75 + t116 * t51 - t124 * t23;
+            let t178 = k(0.6666666666666666) * t177 - (t176 + t174);
+            let t179 = k(0.6666666666666666) * (t123 * t15 + (t113 * t46 + t115 * t70));
+            let t180 = t123 * t19 - (t115 * t72 + t113 * t48);
+            let t181 = k(0.3333333333333333) * t180;
+            let t182 = t115 * t75 - t113 * t51 + t123 * t23;
+            let t183 = k(0.6666666666666666) * t182 + (t181 + t179);
+            let t184 = k(0.6666666666666666) * (t121 * t15 + (t109 * t46 - t114 * t70));
+            let t185 = t121 * t19 + (t114 * t72 - t109 * t48);
+            let t186 = k(0.3333333333333333) * t185;
+            let t187 = t114 * t75 + t109 * t51 - t121 * t23;
+            let t188 = k(0.6666666666666666) * t187 - (t186 + t184);
+            let t189 = k(0.6666666666666666) * t188
+                + (k(0.3333333333333333) * t183 - k(0.6666666666666666) * t178);
+            let t190 = turn0.cos();
+            let t191 = k(0.3333333333333333) * t188
+                + k(0.6666666666666666) * (t183 + t178);
+            let t192 = turn0.sin();
+            let t193 = (t190 * t191 - t192 * t189).atan2(t192 * t191 + t190 * t189);
+            let t194 = k(0.3) - (turn0 + t193);
+            let t195 = k(0.6666666666666666) * t194;
+            let t196 = t92.cos();
+            let t197 = k(2.8) * t103.cos();
+            let t198 = t197 * t114 + k(2.6832815729997477) * t196;
+            let t199 = t197 * t115 - k(1.3416407864998738) * t196;
             (
-                t2,
                 t3,
                 t7,
                 t10,
@@ -9005,7 +9468,6 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Carried<T> {
                 t29,
                 t30,
                 t31,
-                t36,
                 t37,
                 t39,
                 t41,
@@ -9020,7 +9482,6 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Carried<T> {
                 t57,
                 t58,
                 t59,
-                t62,
                 t63,
                 t65,
                 t67,
@@ -9063,24 +9524,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Carried<T> {
                 t131,
                 t132,
                 t133,
-                t134,
-                t135,
-                t136,
-                t137,
-                t138,
                 t140,
-                t141,
                 t142,
                 t143,
+                t144,
                 t145,
                 t146,
-                t147,
-                t148,
-                t150,
-                t151,
-                t152,
                 t153,
-                t160,
+                t154,
+                t155,
+                t156,
+                t157,
                 t161,
                 t162,
                 t163,
@@ -9090,20 +9544,21 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Carried<T> {
                 t167,
                 t168,
                 t169,
-                t170,
                 t171,
                 t172,
+                t173,
                 t174,
+                t175,
                 t176,
+                t177,
                 t179,
+                t180,
                 t181,
-                t183,
+                t182,
                 t184,
                 t185,
                 t186,
                 t187,
-                t190,
-                t191,
                 t194,
                 t195,
                 t196,
@@ -9113,6 +9568,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Carried<T> {
             )
         };
         let (
+            t201,
             t260,
             t266,
             t268,
@@ -9137,35 +9593,36 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Carried<T> {
             t356,
             t357,
         ) = {
-            let t200 = slider_wz * (t179 + t191)
-                - (k(0.01) * (slider_wx * slider_wy) - k(0.001) * (t176 - t190));
-            let t201 = k(0.002) * slider_dwx - k(0.003) * slider_dwy
-                + k(0.025) * slider_dwz - (t200 + (t88 * t199 + t87 * t199));
-            let t202 = k(0.1) * t62;
-            let t203 = k(0.1) * t36;
-            let t204 = k(0.1) * t2;
-            let t205 = t204 * t119 + (t203 * t100 - t202 * t90) + t201;
-            let t206 = t15 * t10 - (t46 * t41 - t70 * t67);
-            let t207 = (t51 * t137 - t48 * t136) * t100
-                + (t75 * t137 + t72 * t136) * t90;
-            let t208 = (t23 * t137 - t19 * t136) * t119 - t207
-                - (t206 * t205 - (t198 * t197 + t187 * t186));
+            let t200 = t197 * t96;
+            let t201 = k(0.3333333333333333) * t200 - k(0.6666666666666666) * t199
+                + k(0.6666666666666666) * t198
+                - (k(0.3333333333333333) * arm_wx + k(0.6666666666666666) * arm_wy
+                    + k(0.6666666666666666) * arm_wz);
+            let t202 = k(0.03333333333333333) * t201;
+            let t203 = arm_wy * arm_wy;
+            let t204 = arm_wz * arm_wz;
+            let t205 = k(0.02) * arm_wz;
+            let t206 = k(0.03) * arm_wy;
+            let t207 = arm_wx * (t206 + t205)
+                + (k(0.05) * (arm_wy * arm_wz) + k(0.01) * (t204 - t203));
+            let t208 = k(0.3) * arm_dwx + k(0.02) * arm_dwy - k(0.03) * arm_dwz
+                - (t207 + (t88 * t173 + (t202 + (t195 + t87 * t173))));
             let t209 = t30 * t120 - (t58 * t101 + t82 * t91);
-            let t210 = t209 + (t208 + t174);
-            let t211 = t152 - t150;
-            let t212 = t147 - t145;
-            let t213 = t142 - t140;
+            let t210 = t209 + (t208 + t171);
+            let t211 = t186 - t184;
+            let t212 = t181 - t179;
+            let t213 = t176 - t174;
             let t214 = k(0.6666666666666666) * (t213 - t212)
                 + k(0.3333333333333333) * t211;
-            let t215 = t150 - k(0.3333333333333333) * t153;
-            let t216 = t145 + k(0.3333333333333333) * t148;
-            let t217 = t140 - k(0.3333333333333333) * t143;
+            let t215 = t184 - k(0.3333333333333333) * t187;
+            let t216 = t179 + k(0.3333333333333333) * t182;
+            let t217 = t174 - k(0.3333333333333333) * t177;
             let t218 = k(0.6666666666666666) * (t217 - t216)
                 + k(0.3333333333333333) * t215;
             let t219 = k(0.6666666666666666) * (t218 - t214);
-            let t220 = t153 - t151;
-            let t221 = t148 + t146;
-            let t222 = t143 - t141;
+            let t220 = t187 - t185;
+            let t221 = t182 + t180;
+            let t222 = t177 - t175;
             let t223 = k(0.4444444444444444) * t222 - k(0.2222222222222222) * t221
                 - k(0.4444444444444444) * t220;
             let t224 = k(0.4444444444444444) * (t222 + t221)
@@ -9178,41 +9635,41 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Carried<T> {
             let t229 = k(0.6666666666666666) * t213 + k(0.3333333333333333) * t212
                 - k(0.6666666666666666) * t211;
             let t230 = k(1.0) / (t229 * t228 + (t227 * t226 - t223 * t219));
-            let t231 = t15 * t135 + (t46 * t134 - t70 * t133);
-            let t232 = k(0.6666666666666666) * (t136 + t231);
-            let t233 = k(1.3333333333333333) * t160;
-            let t234 = k(0.06666666666666667) * t167;
-            let t235 = arm_wx * arm_wx;
-            let t236 = k(0.01) * arm_wx;
-            let t237 = arm_wy * (t171 - t236)
-                + (k(0.1) * (arm_wx * arm_wz) - k(0.03) * (t170 - t235));
-            let t238 = k(0.02) * arm_dwx + k(0.25) * arm_dwy + k(0.01) * arm_dwz
-                + (t237 + (t88 * t232 - (t234 + (t233 - t87 * t232))));
-            let t239 = t19 * t3 - (t48 * t37 + t72 * t63);
-            let t240 = t19 * t7 + (t48 * t39 + t72 * t65);
-            let t241 = t19 * t10 + (t48 * t41 - t72 * t67);
-            let t242 = (t51 * t231 + t46 * t136) * t100
-                + (t75 * t231 - t70 * t136) * t90;
-            let t243 = (t23 * t231 - t15 * t136) * t119 - t242
-                + (t241 * t205 - (t240 * t197 + t239 * t186));
+            let t231 = t19 * t3 - (t48 * t37 + t72 * t63);
+            let t232 = t19 * t7 + (t48 * t39 + t72 * t65);
+            let t233 = t19 * t10 + (t48 * t41 - t72 * t67);
+            let t234 = t15 * t167 + (t46 * t166 - t70 * t165);
+            let t235 = t100 * (t51 * t234 + t46 * t168)
+                + t90 * (t75 * t234 - t70 * t168);
+            let t236 = t119 * (t23 * t234 - t15 * t168) - t235
+                + (t164 * t233 - (t156 * t232 + t145 * t231));
+            let t237 = k(0.6666666666666666) * (t234 + t168);
+            let t238 = k(1.3333333333333333) * t194;
+            let t239 = k(0.06666666666666667) * t201;
+            let t240 = arm_wx * arm_wx;
+            let t241 = k(0.01) * arm_wx;
+            let t242 = arm_wy * (t205 - t241)
+                + (k(0.1) * (arm_wx * arm_wz) - k(0.03) * (t204 - t240));
+            let t243 = k(0.02) * arm_dwx + k(0.25) * arm_dwy + k(0.01) * arm_dwz
+                + (t242 + (t88 * t237 - (t239 + (t238 - t87 * t237))));
             let t244 = k(0.4) * t22 * t120 - (k(0.4) * t50 * t101 + k(0.4) * t74 * t91);
-            let t245 = t244 - (t243 - t238);
-            let t246 = t138 + k(0.3333333333333333) * t231;
-            let t247 = arm_wz * (t172 + t236)
-                - (k(0.05) * (arm_wx * arm_wy) + k(0.02) * (t169 - t235));
-            let t248 = k(0.03) * arm_dwx - k(0.01) * arm_dwy - k(0.2) * arm_dwz
-                - (t247 + (t88 * t246 - (t234 + (t233 - t87 * t246))));
-            let t249 = t23 * t3 - (t51 * t37 - t75 * t63);
-            let t250 = t23 * t7 + (t51 * t39 - t75 * t65);
-            let t251 = t23 * t10 + (t51 * t41 + t75 * t67);
-            let t252 = (t48 * t231 + t46 * t137) * t100
-                - (t72 * t231 + t70 * t137) * t90;
-            let t253 = (t19 * t231 - t15 * t137) * t119 - t252
-                - (t251 * t205 - (t250 * t197 + t249 * t186));
+            let t245 = t244 + (t243 - t236);
+            let t246 = t23 * t3 - (t51 * t37 - t75 * t63);
+            let t247 = t23 * t7 + (t51 * t39 - t75 * t65);
+            let t248 = t23 * t10 + (t51 * t41 + t75 * t67);
+            let t249 = t100 * (t48 * t234 + t46 * t169)
+                - t90 * (t72 * t234 + t70 * t169);
+            let t250 = t119 * (t19 * t234 - t15 * t169) - t249
+                - (t164 * t248 - (t156 * t247 + t145 * t246));
+            let t251 = k(0.3333333333333333) * t234 + t172;
+            let t252 = arm_wz * (t206 + t241)
+                - (k(0.05) * (arm_wx * arm_wy) + k(0.02) * (t203 - t240));
+            let t253 = k(0.03) * arm_dwx - k(0.01) * arm_dwy - k(0.2) * arm_dwz
+                - (t252 + (t88 * t251 - (t239 + (t238 - t87 * t251))));
             let t254 = (k(0.4) * t47 - k(0.2) * t45) * t101
                 - (k(0.4) * t71 - k(0.2) * t69) * t91;
             let t255 = (k(0.4) * t18 + k(0.2) * t14) * t120 - t254;
-            let t256 = t255 - (t253 + t248);
+            let t256 = t255 - (t253 + t250);
             let t257 = t228 * t230 * t256 + (t226 * t230 * t245 - t219 * t230 * t210);
             let t258 = k(0.6666666666666666) * t223;
             let t259 = t230 * (t258 - k(0.3333333333333333) * t229) * t245
@@ -9233,66 +9690,67 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Carried<T> {
             let t270 = k(1.7888543819998317) * t71 - k(0.8944271909999159) * t69;
             let t271 = k(1.7888543819998317) * t47 - k(0.8944271909999159) * t45;
             let t272 = k(1.7888543819998317) * t18 + k(0.8944271909999159) * t14;
-            let t273 = t272 * t119 - (t271 * t100 - t270 * t90);
+            let t273 = t119 * t272 - (t100 * t271 - t90 * t270);
             let t274 = k(1.4907119849998598) * t74
                 + (k(0.5962847939999439) * t71 + k(1.1925695879998879) * t69);
             let t275 = k(1.4907119849998598) * t50
                 - (k(0.5962847939999439) * t47 + k(1.1925695879998879) * t45);
             let t276 = k(1.4907119849998598) * t22
                 - (k(0.5962847939999439) * t18 - k(1.1925695879998879) * t14);
-            let t277 = t276 * t119 - (t275 * t100 + t274 * t90);
+            let t277 = t119 * t276 - (t100 * t275 + t90 * t274);
             let t278 = t274 * t277 - t270 * t273;
             let t279 = t275 * t277 + t271 * t273;
             let t280 = t276 * t277 + t272 * t273;
-            let t281 = (t183 * t274 + t184 * t275 + t185 * t276) * t277
-                - (t183 * t270 - t184 * t271 - t185 * t272) * t273;
+            let t281 = t277 * (t142 * t274 + t143 * t275 + t144 * t276)
+                - t273 * (t142 * t270 - t143 * t271 - t144 * t272);
             let t282 = k(0.4472135954999579)
-                * (k(0.5962847939999439) * t198 + k(0.29814239699997197) * t187)
+                * (k(0.5962847939999439) * t146 + k(0.29814239699997197) * t133)
                 + k(0.8944271909999159)
-                    * (k(0.5962847939999439) * t240 + k(0.29814239699997197) * t239);
-            let t283 = t241 + t239;
-            let t284 = t206 + t187;
+                    * (k(0.5962847939999439) * t232 + k(0.29814239699997197) * t231);
+            let t283 = t233 + t231;
+            let t284 = t157 + t133;
             let t285 = k(0.3975231959999626) * t284 - k(0.1987615979999813) * t283
-                + k(0.49690399499995325) * (t251 + t249);
+                + k(0.49690399499995325) * (t248 + t246);
             let t286 = k(0.4472135954999579)
-                * (k(0.5962847939999439) * t206 - k(0.7453559924999299) * t187)
+                * (k(0.5962847939999439) * t157 - k(0.7453559924999299) * t133)
                 + k(0.8944271909999159)
-                    * (k(0.5962847939999439) * t241 - k(0.7453559924999299) * t239);
-            let t287 = k(0.6666666666666666) * t250;
-            let t288 = k(0.6666666666666666) * t240;
-            let t289 = t288 + k(0.3333333333333333) * t239;
-            let t290 = k(0.6666666666666666) * t198;
-            let t291 = t290 + k(0.3333333333333333) * t187;
+                    * (k(0.5962847939999439) * t233 - k(0.7453559924999299) * t231);
+            let t287 = k(0.6666666666666666) * t247;
+            let t288 = k(0.6666666666666666) * t232;
+            let t289 = t288 + k(0.3333333333333333) * t231;
+            let t290 = k(0.6666666666666666) * t146;
+            let t291 = t290 + k(0.3333333333333333) * t133;
             let t292 = k(0.5962847939999439) * t291 - k(0.29814239699997197) * t289
-                + k(0.7453559924999299) * (t287 + k(0.3333333333333333) * t249);
+                + k(0.7453559924999299) * (t287 + k(0.3333333333333333) * t246);
             let t293 = k(0.29814239699997197) * t284 + k(0.5962847939999439) * t283;
             let t294 = k(0.4472135954999579) * t291 + k(0.8944271909999159) * t289;
             let t295 = t294 * t285 - t293 * t292;
             let t296 = k(0.4472135954999579)
-                * (k(0.29814239699997197) * t206 + k(0.7453559924999299) * t198)
+                * (k(0.29814239699997197) * t157 + k(0.7453559924999299) * t146)
                 + k(0.8944271909999159)
-                    * (k(0.29814239699997197) * t241 + k(0.7453559924999299) * t240);
-            let t297 = k(0.3333333333333333) * t241 - t288;
-            let t298 = k(0.3333333333333333) * t206 - t290;
+                    * (k(0.29814239699997197) * t233 + k(0.7453559924999299) * t232);
+            let t297 = k(0.3333333333333333) * t233 - t288;
+            let t298 = k(0.3333333333333333) * t157 - t290;
             let t299 = k(0.5962847939999439) * t298 - k(0.29814239699997197) * t297
-                + k(0.7453559924999299) * (k(0.3333333333333333) * t251 - t287);
+                + k(0.7453559924999299) * (k(0.3333333333333333) * t248 - t287);
             let t300 = k(0.4472135954999579) * t298 + k(0.8944271909999159) * t297;
             let t301 = t300 * t292 - t294 * t299;
             let t302 = t293 * t299 - t300 * t285;
             let t303 = k(1.0) / (t282 * t302 + (t286 * t301 + t296 * t295));
-            let t304 = t303 * (t299 * t282 - t292 * t296) * t197
-                + t303 * (t292 * t286 - t285 * t282) * t186;
-            let t305 = t303 * (t285 * t296 - t299 * t286) * t205 + t304;
-            let t306 = t303 * (t294 * t296 - t300 * t282) * t197
-                + t303 * (t293 * t282 - t294 * t286) * t186;
-            let t307 = t303 * (t300 * t286 - t293 * t296) * t205 + t306;
-            let t308 = t302 * t303 * t205 + (t301 * t303 * t197 + t295 * t303 * t186);
+            let t304 = t156 * (t303 * (t299 * t282 - t292 * t296))
+                + t145 * (t303 * (t292 * t286 - t285 * t282));
+            let t305 = t164 * (t303 * (t285 * t296 - t299 * t286)) + t304;
+            let t306 = t156 * (t303 * (t294 * t296 - t300 * t282))
+                + t145 * (t303 * (t293 * t282 - t294 * t286));
+            let t307 = t164 * (t303 * (t300 * t286 - t293 * t296)) + t306;
+            let t308 = t164 * (t302 * t303)
+                + (t156 * (t301 * t303) + t145 * (t295 * t303));
             let t309 = t296 * t308 + (t299 * t307 + (t300 * t305 - t281));
-            let t310 = (t194 * t274 - t195 * t275 + t196 * t276) * t277
-                - (t194 * t270 + t195 * t271 - t196 * t272) * t273;
+            let t310 = t277 * (t153 * t274 - t154 * t275 + t155 * t276)
+                - t273 * (t153 * t270 + t154 * t271 - t155 * t272);
             let t311 = t286 * t308 + (t285 * t307 + (t293 * t305 - t310));
-            let t312 = (t202 * t274 - t203 * t275 + t204 * t276) * t277
-                - (t202 * t270 + t203 * t271 - t204 * t272) * t273;
+            let t312 = t277 * (t161 * t274 - t162 * t275 + t163 * t276)
+                - t273 * (t161 * t270 + t162 * t271 - t163 * t272);
             let t313 = t282 * t308 + (t292 * t307 + (t294 * t305 - t312));
             let t314 = slider_ry - t59;
             let t315 = slider_rz - t31;
@@ -9310,22 +9768,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Carried<T> {
             let t323 = k(0.1) * slider_wy + k(0.02) * slider_wz;
             let t324 = k(0.05) * slider_dwz - k(0.1) * slider_dwx
                 + (slider_wz * t323 + slider_wx * t321);
-            let t325 = t181 + k(0.05) * slider_dwy
+            let t325 = t140 + k(0.05) * slider_dwy
                 - (slider_wx * t320 - slider_wy * t323);
             let t326 = k(1.0) - (slider_dsx - (t67 * t325 - (t65 * t324 - t63 * t322)));
             let t327 = k(9.0) + (slider_dsy - (t41 * t325 + (t39 * t324 - t37 * t322)));
             let t328 = k(3.0) - (slider_dsz + (t10 * t325 + (t7 * t324 + t3 * t322)));
-            let t329 = t234 + t233;
-            let t330 = k(3.0) * t162;
+            let t329 = t239 + t238;
+            let t330 = k(3.0) * t196;
             let t331 = t330 * t94;
             let t332 = t330 * t96;
             let t333 = k(0.3) * (k(0.4) + k(3.0) * t).cos()
                 + (k(0.08944271909999159) * t332 - k(0.1) * t331);
-            let t334 = t333 * t91 + (t164 * t329 - (t165 * t329 - t166 * (t168 + t161)));
+            let t334 = t333 * t91 + (t198 * t329 - (t199 * t329 - t200 * (t202 + t195)));
             let t335 = k(0.8944271909999159) * t332;
-            let t336 = t163 * t105;
+            let t336 = t197 * t105;
             let t337 = k(0.4472135954999579) * t332;
-            let t338 = t163 * t107;
+            let t338 = t197 * t107;
             let t339 = t114 * t338 + t105 * t337 - (t115 * t336 - t107 * t335);
             let t340 = k(0.4) * t331;
             let t341 = t106 * t336 - t107 * t340;
@@ -9354,6 +9812,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Carried<T> {
                 + k(0.6666666666666666) * t349) * t257
                 - ((k(0.2) * t347 - k(0.1) * t345) * t120 - (t344 + t334));
             (
+                t201,
                 t260,
                 t266,
                 t268,
@@ -9398,7 +9857,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Carried<T> {
             slider_wx,
             slider_wy,
             slider_wz,
-            -(t167 * (k(0.1) * t167) + t86 * t87),
+            -(t201 * (k(0.1) * t201) + t86 * t87),
             t357
                 - (k(0.6666666666666666) * (t356 - t354) - k(0.3333333333333333) * t349)
                     * t260,

@@ -30,6 +30,7 @@
 //! | to_joints | (x, u) of a maximal state | 181 | 224 | 0 | 405 | 0 of 8 |
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 273 | 358 | 3 | 634 | 0 of 4 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 403 | 517 | 3 | 923 | 0 of 12 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 392 | 490 | 0 | 882 | 0 of 8 |
 
 /// The mechanism `carried_block`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -2442,7 +2443,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
         let t91 = k(0.6666666666666666) * t90;
         let t92 = t91 - k(0.3333333333333333) * t89;
         let t93 = k(0.6666666666666666) * t89;
-        let t94 = t82 * t92 - (t81 * (k(0.3333333333333333) * t90 - t93) + t77 * t92);
+        let t94 = t82 * t92 + (t81 * (t93 - k(0.3333333333333333) * t90) - t77 * t92);
         let t95 = k(0.3333333333333333) * (t15 * t7 - (t43 * t36 + t64 * t59))
             + k(0.6666666666666666) * (t15 * t3 + (t43 * t34 + t64 * t57));
         let t96 = k(0.6666666666666666) * (t15 * t10 - (t43 * t38 - t64 * t61)) + t95;
@@ -2472,18 +2473,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
         let t114 = arm_wx * (t113 + t112)
             + (k(0.05) * (arm_wy * arm_wz) + k(0.01) * (t111 - t110));
         let t115 = t15 * t88 + (t43 * t87 - t64 * t86);
-        let t116 = k(0.6666666666666666) * (t89 - t115);
+        let t116 = k(0.6666666666666666) * (t115 - t89);
         let t117 = k(0.3333333333333333) * t115;
         let t118 = k(0.4) * t106;
-        let t119 = t118 + (t82 * t116 + (t81 * (t93 + t117) - t77 * t116));
+        let t119 = t118 - (t82 * t116 - (t81 * (t117 + t93) + t77 * t116));
         let t120 = k(0.013333333333333334) * t108;
         let t121 = arm_wx * arm_wx;
         let t122 = k(0.01) * arm_wx;
         let t123 = arm_wy * (t112 - t122)
             + (k(0.1) * (arm_wx * arm_wz) - k(0.03) * (t111 - t121));
-        let t124 = t91 - t117;
+        let t124 = t117 - t91;
         let t125 = t82 * t124
-            + (t81 * (k(0.6666666666666666) * (t90 + t115)) - t77 * t124);
+            - (t81 * (k(0.6666666666666666) * (t115 + t90)) + t77 * t124);
         let t126 = arm_wz * (t113 + t122)
             - (k(0.05) * (arm_wx * arm_wy) + k(0.02) * (t110 - t121));
         let t127 = t10 * t27 + (t38 * t52 - t61 * t73);
@@ -2516,7 +2517,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
             k(4.5) + t85,
             t114 - (t109 - (t107 + t94)),
             -(t123 + (t120 - t119)),
-            -(t126 + (t120 - (t118 + t125))),
+            -(t126 + (t120 - (t118 - t125))),
             k(0.6) - t83,
             t84 - k(5.4),
             k(1.8) - t85,
@@ -3127,7 +3128,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
             let t206 = t148 * t121 + (t146 * t119 + t147 * t120);
             let t207 = t148 * t126 - (t146 * t124 - t147 * t125);
             let t208 = t116 * t142 + (t114 * t139 - t112 * t136);
-            let t209 = k(0.6) * (t149 * t208)
+            let t209 = k(0.6) * (t208 * t149)
                 - (t207 * t134 - (t206 * t132 - t205 * t128));
             let t210 = t137 * t208 - t112 * t144;
             let t211 = t140 * t208 + t114 * t144;
@@ -3159,7 +3160,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
             let t233 = t143 * t115 - (t140 * t113 - t137 * t111);
             let t234 = t143 * t121 - (t137 * t119 - t140 * t120);
             let t235 = t137 * t124 + t140 * t125 + t143 * t126;
-            let t236 = k(0.6) * (t144 * t208)
+            let t236 = k(0.6) * (t208 * t144)
                 - (t235 * t134 - (t234 * t132 - t233 * t128));
             let t237 = t146 * t208 + t112 * t149;
             let t238 = t147 * t208 + t114 * t149;
@@ -3630,7 +3631,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
             let t497 = t496 - k(0.3333333333333333) * t144;
             let t498 = k(0.6666666666666666) * t144;
             let t499 = t307 * t497
-                - (t306 * (k(0.3333333333333333) * t149 - t498) + t305 * t497);
+                + (t306 * (t498 - k(0.3333333333333333) * t149) - t305 * t497);
             let t500 = k(0.02) * arm_wz;
             let t501 = k(0.03) * arm_wy;
             let t502 = arm_wx * (t501 + t500)
@@ -3642,9 +3643,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
                 + (t502 - (t337 - (t335 + t499)) + t495);
             let t507 = t212 * t494 + (t211 * t492 - t210 * t490)
                 - (t207 * t488 - (t206 * t486 - t205 * t484));
-            let t508 = k(0.6666666666666666) * (t144 - t208);
+            let t508 = k(0.6666666666666666) * (t208 - t144);
             let t509 = k(0.3333333333333333) * t208;
-            let t510 = t357 + (t307 * t508 + (t306 * (t498 + t509) - t305 * t508));
+            let t510 = t357 - (t307 * t508 - (t306 * (t509 + t498) + t305 * t508));
             let t511 = k(0.01) * arm_wx;
             let t512 = arm_wy * (t500 - t511)
                 + (k(0.1) * t377 - k(0.03) * (t374 - t379));
@@ -3652,13 +3653,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
                 - (t512 + (t358 - t510) + t507);
             let t514 = t239 * t494 + (t238 * t492 + t237 * t490)
                 + (t235 * t488 - (t234 * t486 - t233 * t484));
-            let t515 = t496 - t509;
+            let t515 = t509 - t496;
             let t516 = t307 * t515
-                + (t306 * (k(0.6666666666666666) * (t149 + t208)) - t305 * t515);
+                - (t306 * (k(0.6666666666666666) * (t208 + t149)) + t305 * t515);
             let t517 = arm_wz * (t501 + t511)
                 - (k(0.05) * t376 + k(0.02) * (t373 - t379));
             let t518 = t250 * t505 + (t249 * t504 + t248 * t503)
-                - (t517 + (t358 - (t357 + t516)) + t514);
+                - (t517 + (t358 - (t357 - t516)) + t514);
             let t519 = k(0.3333333333333333) * (t227 - (t224 + k(0.84) * t10))
                 + k(0.6666666666666666) * (t201 + (t198 + k(0.42) * t10));
             let t520 = t388 - t387;
@@ -3824,14 +3825,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
             t46,
             t47,
             t49,
-            t50,
             t54,
             t67,
             t68,
             t69,
             t70,
             t72,
-            t73,
             t77,
             t83,
             t90,
@@ -3842,32 +3841,32 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
             t97,
             t99,
             t100,
-            t104,
-            t105,
-            t106,
             t108,
+            t109,
+            t110,
             t111,
-            t112,
             t113,
             t114,
+            t115,
             t116,
             t117,
-            t118,
             t119,
             t120,
+            t121,
             t122,
             t123,
-            t124,
-            t125,
-            t126,
-            t137,
-            t138,
-            t139,
-            t140,
-            t156,
-            t161,
-            t162,
-            t168,
+            t141,
+            t146,
+            t147,
+            t153,
+            t159,
+            t163,
+            t164,
+            t167,
+            t169,
+            t171,
+            t172,
+            t173,
             t174,
             t177,
             t179,
@@ -3996,104 +3995,104 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
             let t98 = t28 * t91 + (t89 * t90 - t28 * t83);
             let t99 = k(0.6) * block_dsz - (k(1.8) - t98);
             let t100 = t99 + (k(1.5) * arm_dsz - (k(4.5) + t98));
-            let t101 = arm_rx - t80;
-            let t102 = arm_ry - t57;
-            let t103 = arm_rz - t30;
-            let t104 = t23 * t103 - (t50 * t102 + t73 * t101);
-            let t105 = t19 * t103 - (t47 * t102 - t70 * t101);
-            let t106 = k(0.6666666666666666) * t105;
-            let t107 = t106 - k(0.3333333333333333) * t104;
-            let t108 = k(0.6666666666666666) * t104;
-            let t109 = t91 * t107
-                - (t90 * (k(0.3333333333333333) * t105 - t108) + t83 * t107);
-            let t110 = t15 * t3 + (t45 * t36 + t68 * t61);
-            let t111 = k(0.6666666666666666) * t110;
-            let t112 = t15 * t7 - (t45 * t38 + t68 * t63);
-            let t113 = k(0.3333333333333333) * t112;
-            let t114 = t15 * t10 - (t45 * t40 - t68 * t65);
-            let t115 = k(0.6666666666666666) * t114 + (t113 + t111);
-            let t116 = t19 * t3 - (t47 * t36 + t70 * t61);
-            let t117 = k(0.6666666666666666) * t116;
-            let t118 = t19 * t7 + (t70 * t63 + t47 * t38);
-            let t119 = k(0.3333333333333333) * t118;
-            let t120 = t19 * t10 - (t70 * t65 - t47 * t40);
-            let t121 = k(0.6666666666666666) * t120 + (t119 + t117);
-            let t122 = t23 * t3 - (t50 * t36 - t73 * t61);
-            let t123 = k(0.6666666666666666) * t122;
-            let t124 = t23 * t7 - (t73 * t63 - t50 * t38);
-            let t125 = k(0.3333333333333333) * t124;
-            let t126 = t73 * t65 + t50 * t40 + t23 * t10;
-            let t127 = k(0.6666666666666666) * t126 + (t125 + t123);
-            let t128 = k(0.6666666666666666) * t127
-                + (k(0.3333333333333333) * t121 + k(0.6666666666666666) * t115);
-            let t129 = turn0.cos();
-            let t130 = k(0.3333333333333333) * t127
-                + k(0.6666666666666666) * (t121 - t115);
-            let t131 = turn0.sin();
-            let t132 = (t129 * t130 - t131 * t128).atan2(t131 * t130 + t129 * t128);
-            let t133 = turn0 + t132;
-            let t134 = k(0.2) * t133;
-            let t135 = k(0.3333333333333333) * arm_wx + k(0.6666666666666666) * arm_wy
+            let t101 = t10 * t28 + (t40 * t55 - t65 * t78);
+            let t102 = t7 * t28 + (t38 * t55 + t63 * t78);
+            let t103 = k(0.1) * t102 - k(0.05) * t101;
+            let t104 = t10 * t89 - (t40 * t87 + t65 * t85);
+            let t105 = t7 * t89 - (t38 * t87 - t63 * t85);
+            let t106 = t91 * t103
+                + (t90 * (k(0.1) * t105 - k(0.05) * t104) - t83 * t103);
+            let t107 = t15 * t3 + (t45 * t36 + t68 * t61);
+            let t108 = k(0.6666666666666666) * t107;
+            let t109 = t15 * t7 - (t45 * t38 + t68 * t63);
+            let t110 = k(0.3333333333333333) * t109;
+            let t111 = t15 * t10 - (t45 * t40 - t68 * t65);
+            let t112 = k(0.6666666666666666) * t111 + (t110 + t108);
+            let t113 = t19 * t3 - (t47 * t36 + t70 * t61);
+            let t114 = k(0.6666666666666666) * t113;
+            let t115 = t19 * t7 + (t70 * t63 + t47 * t38);
+            let t116 = k(0.3333333333333333) * t115;
+            let t117 = t19 * t10 - (t70 * t65 - t47 * t40);
+            let t118 = k(0.6666666666666666) * t117 + (t116 + t114);
+            let t119 = t23 * t3 - (t50 * t36 - t73 * t61);
+            let t120 = k(0.6666666666666666) * t119;
+            let t121 = t23 * t7 - (t73 * t63 - t50 * t38);
+            let t122 = k(0.3333333333333333) * t121;
+            let t123 = t73 * t65 + t50 * t40 + t23 * t10;
+            let t124 = k(0.6666666666666666) * t123 + (t122 + t120);
+            let t125 = k(0.6666666666666666) * t124
+                + (k(0.3333333333333333) * t118 + k(0.6666666666666666) * t112);
+            let t126 = turn0.cos();
+            let t127 = k(0.3333333333333333) * t124
+                + k(0.6666666666666666) * (t118 - t112);
+            let t128 = turn0.sin();
+            let t129 = (t126 * t127 - t128 * t125).atan2(t128 * t127 + t126 * t125);
+            let t130 = turn0 + t129;
+            let t131 = k(0.2) * t130;
+            let t132 = k(0.3333333333333333) * arm_wx + k(0.6666666666666666) * arm_wy
                 + k(0.6666666666666666) * arm_wz
                 - (k(0.3333333333333333) * block_wx + k(0.6666666666666666) * block_wy
                     + k(0.6666666666666666) * block_wz);
-            let t136 = k(0.006666666666666667) * t135;
-            let t137 = arm_wy * arm_wy;
-            let t138 = arm_wz * arm_wz;
-            let t139 = k(0.02) * arm_wz;
-            let t140 = k(0.03) * arm_wy;
-            let t141 = arm_wx * (t140 + t139)
-                + (k(0.05) * (arm_wy * arm_wz) + k(0.01) * (t138 - t137));
-            let t142 = k(0.3) * arm_dwx + k(0.02) * arm_dwy - k(0.03) * arm_dwz
-                - (t141 - (t136 - (t134 + t109)));
-            let t143 = t10 * t28 + (t40 * t55 - t65 * t78);
-            let t144 = t7 * t28 + (t38 * t55 + t63 * t78);
-            let t145 = k(0.1) * t144 - k(0.05) * t143;
-            let t146 = t10 * t89 - (t40 * t87 + t65 * t85);
-            let t147 = t7 * t89 - (t38 * t87 - t63 * t85);
-            let t148 = t91 * t145
-                + (t90 * (k(0.1) * t147 - k(0.05) * t146) - t83 * t145);
-            let t149 = block_wy * block_wy;
-            let t150 = block_wz * block_wz;
-            let t151 = k(0.001) * block_wz;
-            let t152 = k(0.002) * block_wy;
-            let t153 = block_wx * (t152 - t151)
-                - (k(0.005) * (block_wy * block_wz) - k(0.003) * (t150 - t149));
-            let t154 = k(0.02) * block_dwx + k(0.001) * block_dwy + k(0.002) * block_dwz
-                + (t153 - (t136 - (t134 + t148)));
-            let t155 = (k(0.1) * t39 - k(0.2) * t37) * t96
+            let t133 = k(0.006666666666666667) * t132;
+            let t134 = block_wy * block_wy;
+            let t135 = block_wz * block_wz;
+            let t136 = k(0.001) * block_wz;
+            let t137 = k(0.002) * block_wy;
+            let t138 = block_wx * (t137 - t136)
+                - (k(0.005) * (block_wy * block_wz) - k(0.003) * (t135 - t134));
+            let t139 = k(0.02) * block_dwx + k(0.001) * block_dwy + k(0.002) * block_dwz
+                + (t138 - (t133 - (t131 + t106)));
+            let t140 = (k(0.1) * t39 - k(0.2) * t37) * t96
                 + (k(0.1) * t64 + k(0.2) * t62) * t93;
-            let t156 = (k(0.1) * t9 - k(0.2) * t6) * t99 - t155 + t154;
-            let t157 = t3 * t28 - (t36 * t55 + t61 * t78);
-            let t158 = k(0.03) * t143 - k(0.1) * t157;
-            let t159 = t3 * t89 + (t36 * t87 - t61 * t85);
-            let t160 = t91 * t158
-                + (t90 * (k(0.03) * t146 - k(0.1) * t159) - t83 * t158);
-            let t161 = k(0.4) * t133;
-            let t162 = k(0.013333333333333334) * t135;
-            let t163 = block_wx * block_wx;
-            let t164 = k(0.003) * block_wx;
-            let t165 = block_wy * (t151 + t164)
-                - (k(0.005) * (block_wx * block_wz) - k(0.002) * (t150 - t163));
-            let t166 = k(0.001) * block_dwx + k(0.03) * block_dwy - k(0.003) * block_dwz
-                + (t165 - (t162 - (t161 + t160)));
-            let t167 = (k(0.06) * t39 + k(0.2) * t35) * t96
+            let t141 = (k(0.1) * t9 - k(0.2) * t6) * t99 - t140 + t139;
+            let t142 = t3 * t28 - (t36 * t55 + t61 * t78);
+            let t143 = k(0.03) * t101 - k(0.1) * t142;
+            let t144 = t3 * t89 + (t36 * t87 - t61 * t85);
+            let t145 = t91 * t143
+                + (t90 * (k(0.03) * t104 - k(0.1) * t144) - t83 * t143);
+            let t146 = k(0.4) * t130;
+            let t147 = k(0.013333333333333334) * t132;
+            let t148 = block_wx * block_wx;
+            let t149 = k(0.003) * block_wx;
+            let t150 = block_wy * (t136 + t149)
+                - (k(0.005) * (block_wx * block_wz) - k(0.002) * (t135 - t148));
+            let t151 = k(0.001) * block_dwx + k(0.03) * block_dwy - k(0.003) * block_dwz
+                + (t150 - (t147 - (t146 + t145)));
+            let t152 = (k(0.06) * t39 + k(0.2) * t35) * t96
                 + (k(0.06) * t64 - k(0.2) * t60) * t93;
-            let t168 = (k(0.06) * t9 - k(0.2) * t2) * t99 - t167 - t166;
-            let t169 = k(0.05) * t157 - k(0.03) * t144;
-            let t170 = t91 * t169
-                + (t90 * (k(0.05) * t159 - k(0.03) * t147) - t83 * t169);
-            let t171 = block_wz * (t152 + t164)
-                - (k(0.01) * (block_wx * block_wy) - k(0.001) * (t149 - t163));
-            let t172 = k(0.002) * block_dwx - k(0.003) * block_dwy + k(0.025) * block_dwz
-                - (t171 + (t162 - (t161 - t170)));
-            let t173 = (k(0.06) * t37 + k(0.1) * t35) * t96
+            let t153 = (k(0.06) * t9 - k(0.2) * t2) * t99 - t152 - t151;
+            let t154 = k(0.05) * t142 - k(0.03) * t102;
+            let t155 = t91 * t154
+                + (t90 * (k(0.05) * t144 - k(0.03) * t105) - t83 * t154);
+            let t156 = block_wz * (t137 + t149)
+                - (k(0.01) * (block_wx * block_wy) - k(0.001) * (t134 - t148));
+            let t157 = k(0.002) * block_dwx - k(0.003) * block_dwy + k(0.025) * block_dwz
+                - (t156 + (t147 - (t146 - t155)));
+            let t158 = (k(0.06) * t37 + k(0.1) * t35) * t96
                 - (k(0.06) * t62 + k(0.1) * t60) * t93;
-            let t174 = (k(0.06) * t6 - k(0.1) * t2) * t99 - t173 - t172;
-            let t175 = (t50 * t105 - t47 * t104) * t96 + (t73 * t105 + t70 * t104) * t93;
-            let t176 = (t23 * t105 - t19 * t104) * t99 - t175
-                + (t114 * t174 - (t112 * t168 - t110 * t156));
-            let t177 = t29 * t100 - (t56 * t97 + t79 * t94) + (t176 + t142);
+            let t159 = (k(0.06) * t6 - k(0.1) * t2) * t99 - t158 - t157;
+            let t160 = arm_rx - t80;
+            let t161 = arm_ry - t57;
+            let t162 = arm_rz - t30;
+            let t163 = t23 * t162 - (t50 * t161 + t73 * t160);
+            let t164 = t19 * t162 - (t47 * t161 - t70 * t160);
+            let t165 = t96 * (t50 * t164 - t47 * t163) + t93 * (t73 * t164 + t70 * t163);
+            let t166 = t99 * (t23 * t164 - t19 * t163) - t165
+                + (t111 * t159 - (t109 * t153 - t107 * t141));
+            let t167 = k(0.6666666666666666) * t164;
+            let t168 = t167 - k(0.3333333333333333) * t163;
+            let t169 = k(0.6666666666666666) * t163;
+            let t170 = t91 * t168
+                + (t90 * (t169 - k(0.3333333333333333) * t164) - t83 * t168);
+            let t171 = arm_wy * arm_wy;
+            let t172 = arm_wz * arm_wz;
+            let t173 = k(0.02) * arm_wz;
+            let t174 = k(0.03) * arm_wy;
+            let t175 = arm_wx * (t174 + t173)
+                + (k(0.05) * (arm_wy * arm_wz) + k(0.01) * (t172 - t171));
+            let t176 = k(0.3) * arm_dwx + k(0.02) * arm_dwy - k(0.03) * arm_dwz
+                - (t175 - (t133 - (t131 + t170)));
+            let t177 = t29 * t100 - (t56 * t97 + t79 * t94) + (t176 + t166);
             let t178 = k(1.3333333333333333) * t18;
             let t179 = t178 + k(0.6666666666666666) * t14;
             let t180 = k(1.3333333333333333) * t46;
@@ -4118,8 +4117,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
             let t195 = k(0.3333333333333333) * t192 - t187;
             let t196 = k(0.4472135954999579) * t183 - k(0.8944271909999159) * t181;
             let t197 = k(1.0) / (t196 * t195 + (t194 * t193 - t191 * t188));
-            let t198 = t15 * t103 + (t45 * t102 - t68 * t101);
-            let t199 = k(0.6666666666666666) * (t104 - t198);
+            let t198 = t15 * t162 + (t45 * t161 - t68 * t160);
+            let t199 = t96 * (t50 * t198 + t45 * t163) + t93 * (t73 * t198 - t68 * t163);
             (
                 t14,
                 t15,
@@ -4133,14 +4132,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
                 t46,
                 t47,
                 t49,
-                t50,
                 t54,
                 t67,
                 t68,
                 t69,
                 t70,
                 t72,
-                t73,
                 t77,
                 t83,
                 t90,
@@ -4151,32 +4148,32 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
                 t97,
                 t99,
                 t100,
-                t104,
-                t105,
-                t106,
                 t108,
+                t109,
+                t110,
                 t111,
-                t112,
                 t113,
                 t114,
+                t115,
                 t116,
                 t117,
-                t118,
                 t119,
                 t120,
+                t121,
                 t122,
                 t123,
-                t124,
-                t125,
-                t126,
-                t137,
-                t138,
-                t139,
-                t140,
-                t156,
-                t161,
-                t162,
-                t168,
+                t141,
+                t146,
+                t147,
+                t153,
+                t159,
+                t163,
+                t164,
+                t167,
+                t169,
+                t171,
+                t172,
+                t173,
                 t174,
                 t177,
                 t179,
@@ -4194,51 +4191,51 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
             )
         };
         let (t217, t218, t219, t220, t221, t237, t240, t241, t242, t243) = {
-            let t200 = k(0.3333333333333333) * t198;
-            let t201 = t161 + (t91 * t199 + (t90 * (t108 + t200) - t83 * t199));
-            let t202 = arm_wx * arm_wx;
-            let t203 = k(0.01) * arm_wx;
-            let t204 = arm_wy * (t139 - t203)
-                + (k(0.1) * (arm_wx * arm_wz) - k(0.03) * (t138 - t202));
-            let t205 = k(0.02) * arm_dwx + k(0.25) * arm_dwy + k(0.01) * arm_dwz
-                + (t204 + (t162 - t201));
-            let t206 = (t50 * t198 + t45 * t104) * t96 + (t73 * t198 - t68 * t104) * t93;
-            let t207 = (t23 * t198 - t15 * t104) * t99 - t206
-                - (t120 * t174 - (t118 * t168 - t116 * t156));
+            let t200 = t99 * (t23 * t198 - t15 * t163) - t199
+                - (t117 * t159 - (t115 * t153 - t113 * t141));
+            let t201 = k(0.6666666666666666) * (t198 - t163);
+            let t202 = k(0.3333333333333333) * t198;
+            let t203 = t146 - (t91 * t201 - (t90 * (t202 + t169) + t83 * t201));
+            let t204 = arm_wx * arm_wx;
+            let t205 = k(0.01) * arm_wx;
+            let t206 = arm_wy * (t173 - t205)
+                + (k(0.1) * (arm_wx * arm_wz) - k(0.03) * (t172 - t204));
+            let t207 = k(0.02) * arm_dwx + k(0.25) * arm_dwy + k(0.01) * arm_dwz
+                + (t206 + (t147 - t203));
             let t208 = k(0.4) * t22 * t100 - (k(0.4) * t49 * t97 + k(0.4) * t72 * t94);
-            let t209 = t208 - (t207 - t205);
-            let t210 = t106 - t200;
-            let t211 = t91 * t210
-                + (t90 * (k(0.6666666666666666) * (t105 + t198)) - t83 * t210);
-            let t212 = arm_wz * (t140 + t203)
-                - (k(0.05) * (arm_wx * arm_wy) + k(0.02) * (t137 - t202));
-            let t213 = k(0.03) * arm_dwx - k(0.01) * arm_dwy - k(0.2) * arm_dwz
-                - (t212 + (t162 - (t161 + t211)));
-            let t214 = (t47 * t198 + t45 * t105) * t96 - (t70 * t198 + t68 * t105) * t93;
-            let t215 = (t19 * t198 - t15 * t105) * t99 - t214
-                + (t126 * t174 - (t124 * t168 - t122 * t156));
+            let t209 = t208 + (t207 - t200);
+            let t210 = t96 * (t47 * t198 + t45 * t164) - t93 * (t70 * t198 + t68 * t164);
+            let t211 = t99 * (t19 * t198 - t15 * t164) - t210
+                + (t123 * t159 - (t121 * t153 - t119 * t141));
+            let t212 = t202 - t167;
+            let t213 = t91 * t212
+                - (t90 * (k(0.6666666666666666) * (t198 + t164)) + t83 * t212);
+            let t214 = arm_wz * (t174 + t205)
+                - (k(0.05) * (arm_wx * arm_wy) + k(0.02) * (t171 - t204));
+            let t215 = k(0.03) * arm_dwx - k(0.01) * arm_dwy - k(0.2) * arm_dwz
+                - (t214 + (t147 - (t146 - t213)));
             let t216 = (k(0.4) * t46 - k(0.2) * t44) * t97
                 - (k(0.4) * t69 - k(0.2) * t67) * t94;
-            let t217 = (k(0.4) * t18 + k(0.2) * t14) * t100 - t216 - (t215 + t213);
+            let t217 = (k(0.4) * t18 + k(0.2) * t14) * t100 - t216 - (t215 + t211);
             let t218 = t195 * t197 * t217 + (t193 * t197 * t209 + t188 * t197 * t177);
             let t219 = k(0.6666666666666666) * t194;
             let t220 = t197 * (k(0.6666666666666666) * (t191 + t196)) * t209
                 + t197 * (t219 + k(0.3333333333333333) * t196) * t177;
-            let t221 = (t27 - t179) * t99 - ((t54 - t181) * t96 + (t77 + t183) * t93);
-            let t222 = t125 - t123;
-            let t223 = t119 - t117;
-            let t224 = t113 - t111;
+            let t221 = t99 * (t27 - t179) - (t96 * (t54 - t181) + t93 * (t77 + t183));
+            let t222 = t122 - t120;
+            let t223 = t116 - t114;
+            let t224 = t110 - t108;
             let t225 = k(0.6666666666666666) * (t224 - t223)
                 - k(0.3333333333333333) * t222;
-            let t226 = t123 + k(0.3333333333333333) * t126;
-            let t227 = t117 + k(0.3333333333333333) * t120;
-            let t228 = t111 + k(0.3333333333333333) * t114;
+            let t226 = t120 + k(0.3333333333333333) * t123;
+            let t227 = t114 + k(0.3333333333333333) * t117;
+            let t228 = t108 + k(0.3333333333333333) * t111;
             let t229 = k(0.6666666666666666) * (t228 - t227)
                 - k(0.3333333333333333) * t226;
             let t230 = k(0.6666666666666666) * (t229 - t225);
-            let t231 = t126 + t124;
-            let t232 = t120 + t118;
-            let t233 = t114 + t112;
+            let t231 = t123 + t121;
+            let t232 = t117 + t115;
+            let t233 = t111 + t109;
             let t234 = k(0.4444444444444444) * t233 + k(0.2222222222222222) * t232
                 + k(0.4444444444444444) * t231;
             let t235 = k(0.6666666666666666)
@@ -4250,10 +4247,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
             let t239 = k(0.6666666666666666) * t224 + k(0.3333333333333333) * t223
                 + k(0.6666666666666666) * t222;
             let t240 = k(1.0) / (t239 * t238 - (t237 * t236 - t234 * t230));
-            let t241 = t238 * t240 * t174 - (t236 * t240 * t168 - t230 * t240 * t156);
+            let t241 = t159 * (t238 * t240)
+                - (t153 * (t236 * t240) - t141 * (t230 * t240));
             let t242 = k(0.6666666666666666) * t234;
-            let t243 = t240 * (t242 + k(0.3333333333333333) * t239) * t168
-                - t240 * (k(0.6666666666666666) * (t237 - t239)) * t156;
+            let t243 = t153 * (t240 * (t242 + k(0.3333333333333333) * t239))
+                - t141 * (t240 * (k(0.6666666666666666) * (t237 - t239)));
             (t217, t218, t219, t220, t221, t237, t240, t241, t242, t243)
         };
         *lambda = [
@@ -4264,7 +4262,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
             -(t197 * (k(0.3333333333333333) * t191 - t219) * t217 + t220),
             t221,
             t241,
-            t240 * (k(0.3333333333333333) * t237 + t242) * t174 - t243,
+            t159 * (t240 * (k(0.3333333333333333) * t237 + t242)) - t243,
         ];
     }
 }
@@ -5629,6 +5627,467 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             t213,
         ];
     }
+    /// Writes λ: 882 operations (392 ±, 490 ×, 0 ÷) and 3 functions.
+    fn corrected_multipliers(
+        &self,
+        _t: T,
+        y: &Self::State,
+        accelerations: &Self::Velocities,
+        lambda: &mut Self::Rows,
+    ) {
+        let k = T::constant;
+        let arm_rx = y[0];
+        let arm_ry = y[1];
+        let arm_rz = y[2];
+        let block_rx = y[7];
+        let block_ry = y[8];
+        let block_rz = y[9];
+        let arm_e0 = y[3];
+        let arm_e1 = y[4];
+        let arm_e2 = y[5];
+        let arm_e3 = y[6];
+        let block_e0 = y[10];
+        let block_e1 = y[11];
+        let block_e2 = y[12];
+        let block_e3 = y[13];
+        let arm_sx = y[14];
+        let arm_sy = y[15];
+        let arm_sz = y[16];
+        let block_sx = y[20];
+        let block_sy = y[21];
+        let block_sz = y[22];
+        let arm_wx = y[17];
+        let arm_wy = y[18];
+        let arm_wz = y[19];
+        let block_wx = y[23];
+        let block_wy = y[24];
+        let block_wz = y[25];
+        let turn0 = y[27];
+        let arm_dsx = accelerations[0];
+        let arm_dsy = accelerations[1];
+        let arm_dsz = accelerations[2];
+        let arm_dwx = accelerations[3];
+        let arm_dwy = accelerations[4];
+        let arm_dwz = accelerations[5];
+        let block_dsx = accelerations[6];
+        let block_dsy = accelerations[7];
+        let block_dsz = accelerations[8];
+        let block_dwx = accelerations[9];
+        let block_dwy = accelerations[10];
+        let block_dwz = accelerations[11];
+        let (
+            t14,
+            t15,
+            t18,
+            t19,
+            t23,
+            t27,
+            t44,
+            t45,
+            t46,
+            t47,
+            t50,
+            t54,
+            t67,
+            t68,
+            t69,
+            t70,
+            t73,
+            t77,
+            t83,
+            t88,
+            t90,
+            t92,
+            t93,
+            t95,
+            t96,
+            t98,
+            t99,
+            t104,
+            t105,
+            t124,
+            t127,
+            t143,
+            t154,
+            t155,
+            t161,
+            t166,
+            t172,
+            t174,
+            t176,
+            t178,
+            t181,
+            t183,
+            t184,
+            t185,
+            t186,
+            t187,
+            t189,
+            t191,
+            t192,
+            t194,
+            t195,
+            t196,
+            t197,
+            t198,
+            t199,
+        ) = {
+            let t0 = block_e0 * block_e2;
+            let t1 = block_e1 * block_e3;
+            let t2 = t1 - t0;
+            let t3 = k(2.0) * t2;
+            let t4 = block_e0 * block_e1;
+            let t5 = block_e2 * block_e3;
+            let t6 = t5 + t4;
+            let t7 = k(2.0) * t6;
+            let t8 = block_e0 * block_e0;
+            let t9 = k(0.5) - (t8 + block_e3 * block_e3);
+            let t10 = k(2.0) * t9;
+            let t11 = k(0.03) * (t10 * block_wy + t7 * block_wz)
+                - k(0.05) * (t10 * block_wx + t3 * block_wz);
+            let t12 = arm_e0 * arm_e2;
+            let t13 = arm_e1 * arm_e3;
+            let t14 = t13 - t12;
+            let t15 = k(2.0) * t14;
+            let t16 = arm_e0 * arm_e1;
+            let t17 = arm_e2 * arm_e3;
+            let t18 = t17 + t16;
+            let t19 = k(2.0) * t18;
+            let t20 = t19 * arm_wx - t15 * arm_wy;
+            let t21 = arm_e0 * arm_e0;
+            let t22 = k(0.5) - (t21 + arm_e3 * arm_e3);
+            let t23 = k(2.0) * t22;
+            let t24 = t23 * arm_wx + t15 * arm_wz;
+            let t25 = t23 * arm_wy + t19 * arm_wz;
+            let t26 = arm_sz + (k(0.2) * t25 - k(0.1) * t24 - k(0.1) * t20)
+                - (block_sz + (t11 + k(0.1) * (t7 * block_wx - t3 * block_wy)));
+            let t27 = k(1.3333333333333333) * t22;
+            let t28 = k(0.6666666666666666) * t18 + k(1.3333333333333333) * t14 + t27;
+            let t29 = k(0.2) * t22;
+            let t30 = block_rz + (k(0.2) * t9 + (k(0.1) * t6 + k(0.06) * t2));
+            let t31 = t30 - (arm_rz - (t29 - (k(0.2) * t18 + k(0.4) * t14)));
+            let t32 = t31
+                * (k(0.6666666666666666) * t25 - k(0.3333333333333333) * t24
+                    + k(0.6666666666666666) * t20) - t28 * t26;
+            let t33 = block_e0 * block_e3;
+            let t34 = block_e1 * block_e2;
+            let t35 = t34 + t33;
+            let t36 = k(2.0) * t35;
+            let t37 = k(0.5) - (t8 + block_e2 * block_e2);
+            let t38 = k(2.0) * t37;
+            let t39 = t5 - t4;
+            let t40 = k(2.0) * t39;
+            let t41 = k(0.03) * (t40 * block_wy + t38 * block_wz)
+                - k(0.05) * (t40 * block_wx - t36 * block_wz);
+            let t42 = arm_e0 * arm_e3;
+            let t43 = arm_e1 * arm_e2;
+            let t44 = t43 + t42;
+            let t45 = k(2.0) * t44;
+            let t46 = k(0.5) - (t21 + arm_e2 * arm_e2);
+            let t47 = k(2.0) * t46;
+            let t48 = t47 * arm_wx + t45 * arm_wy;
+            let t49 = t17 - t16;
+            let t50 = k(2.0) * t49;
+            let t51 = t50 * arm_wx - t45 * arm_wz;
+            let t52 = t50 * arm_wy + t47 * arm_wz;
+            let t53 = arm_sy - (k(0.2) * t52 - k(0.1) * t51 - k(0.1) * t48)
+                - (block_sy - (t41 + k(0.1) * (t38 * block_wx + t36 * block_wy)));
+            let t54 = k(1.3333333333333333) * t49;
+            let t55 = k(0.6666666666666666) * t46 - k(1.3333333333333333) * t44 + t54;
+            let t56 = k(0.2) * t49;
+            let t57 = block_ry - (k(0.2) * t39 + (k(0.1) * t37 - k(0.06) * t35));
+            let t58 = t57 - (arm_ry + (t56 - (k(0.2) * t46 - k(0.4) * t44)));
+            let t59 = t58
+                * (k(0.6666666666666666) * t52 - k(0.3333333333333333) * t51
+                    + k(0.6666666666666666) * t48) - t55 * t53;
+            let t60 = k(0.5) - (t8 + block_e1 * block_e1);
+            let t61 = k(2.0) * t60;
+            let t62 = t34 - t33;
+            let t63 = k(2.0) * t62;
+            let t64 = t1 + t0;
+            let t65 = k(2.0) * t64;
+            let t66 = k(0.03) * (t65 * block_wy - t63 * block_wz)
+                - k(0.05) * (t65 * block_wx + t61 * block_wz);
+            let t67 = k(0.5) - (t21 + arm_e1 * arm_e1);
+            let t68 = k(2.0) * t67;
+            let t69 = t43 - t42;
+            let t70 = k(2.0) * t69;
+            let t71 = t70 * arm_wx + t68 * arm_wy;
+            let t72 = t13 + t12;
+            let t73 = k(2.0) * t72;
+            let t74 = t73 * arm_wx + t68 * arm_wz;
+            let t75 = t73 * arm_wy - t70 * arm_wz;
+            let t76 = arm_sx - (k(0.2) * t75 - k(0.1) * t74 + k(0.1) * t71)
+                - (block_sx - (t66 - k(0.1) * (t63 * block_wx + t61 * block_wy)));
+            let t77 = k(1.3333333333333333) * t72;
+            let t78 = k(0.6666666666666666) * t69 - k(1.3333333333333333) * t67 - t77;
+            let t79 = k(0.2) * t72;
+            let t80 = block_rx - (k(0.2) * t64 - (k(0.1) * t62 - k(0.06) * t60));
+            let t81 = t80 - (arm_rx + (t79 + (k(0.2) * t69 - k(0.4) * t67)));
+            let t82 = t81
+                * (k(0.6666666666666666) * t75 - k(0.3333333333333333) * t74
+                    - k(0.6666666666666666) * t71) + t78 * t76;
+            let t83 = k(0.8) * (t82 + t59 - t32);
+            let t84 = k(1.3333333333333333) * -(t67 + t69) + k(0.6666666666666666) * t72;
+            let t85 = k(1.3333333333333333) * (t44 + t46) + k(0.6666666666666666) * t49;
+            let t86 = k(1.3333333333333333) * (t14 - t18) - k(0.6666666666666666) * t22;
+            let t87 = t31 * t86 + (t58 * t85 + t81 * t84);
+            let t88 = k(40.0) * (k(0.05) + t87);
+            let t89 = t28 * t31 - (t55 * t58 - t78 * t81);
+            let t90 = k(25.0) * t89;
+            let t91 = t78 * t90 + (t84 * t88 - t78 * t83);
+            let t92 = k(0.6) * block_dsx - (k(0.6) - t91);
+            let t93 = t92 + (k(1.5) * arm_dsx - (k(1.5) + t91));
+            let t94 = t55 * t90 - (t85 * t88 + t55 * t83);
+            let t95 = k(0.6) * block_dsy + (k(5.4) - t94);
+            let t96 = t95 + (k(1.5) * arm_dsy + (k(13.5) + t94));
+            let t97 = t28 * t90 + (t86 * t88 - t28 * t83);
+            let t98 = k(0.6) * block_dsz - (k(1.8) - t97);
+            let t99 = t98 + (k(1.5) * arm_dsz - (k(4.5) + t97));
+            let t100 = arm_rx - t80;
+            let t101 = arm_ry - t57;
+            let t102 = arm_rz - t30;
+            let t103 = t23 * t102 - (t50 * t101 + t73 * t100);
+            let t104 = t19 * t102 - (t47 * t101 - t70 * t100);
+            let t105 = k(0.6666666666666666) * t104;
+            let t106 = t105 - k(0.3333333333333333) * t103;
+            let t107 = k(0.6666666666666666) * t103;
+            let t108 = t90 * t106
+                + (t88 * (t107 - k(0.3333333333333333) * t104) - t83 * t106);
+            let t109 = k(0.3333333333333333) * (t15 * t7 - (t45 * t38 + t68 * t63))
+                + k(0.6666666666666666) * (t15 * t3 + (t45 * t36 + t68 * t61));
+            let t110 = k(0.6666666666666666) * (t15 * t10 - (t45 * t40 - t68 * t65))
+                + t109;
+            let t111 = k(0.3333333333333333) * (t19 * t7 + (t70 * t63 + t47 * t38))
+                + k(0.6666666666666666) * (t19 * t3 - (t47 * t36 + t70 * t61));
+            let t112 = k(0.6666666666666666) * (t19 * t10 - (t70 * t65 - t47 * t40))
+                + t111;
+            let t113 = k(0.3333333333333333) * (t23 * t7 - (t73 * t63 - t50 * t38))
+                + k(0.6666666666666666) * (t23 * t3 - (t50 * t36 - t73 * t61));
+            let t114 = k(0.6666666666666666) * (t73 * t65 + t50 * t40 + t23 * t10)
+                + t113;
+            let t115 = k(0.6666666666666666) * t114
+                + (k(0.3333333333333333) * t112 + k(0.6666666666666666) * t110);
+            let t116 = turn0.cos();
+            let t117 = k(0.3333333333333333) * t114
+                + k(0.6666666666666666) * (t112 - t110);
+            let t118 = turn0.sin();
+            let t119 = (t116 * t117 - t118 * t115).atan2(t118 * t117 + t116 * t115);
+            let t120 = turn0 + t119;
+            let t121 = k(0.2) * t120;
+            let t122 = k(0.3333333333333333) * arm_wx + k(0.6666666666666666) * arm_wy
+                + k(0.6666666666666666) * arm_wz
+                - (k(0.3333333333333333) * block_wx + k(0.6666666666666666) * block_wy
+                    + k(0.6666666666666666) * block_wz);
+            let t123 = k(0.006666666666666667) * t122;
+            let t124 = arm_wy * arm_wy;
+            let t125 = arm_wz * arm_wz;
+            let t126 = k(0.02) * arm_wz;
+            let t127 = k(0.03) * arm_wy;
+            let t128 = arm_wx * (t127 + t126)
+                + (k(0.05) * (arm_wy * arm_wz) + k(0.01) * (t125 - t124));
+            let t129 = k(0.3) * arm_dwx + k(0.02) * arm_dwy - k(0.03) * arm_dwz
+                - (t128 - (t123 - (t121 + t108)));
+            let t130 = t10 * t28 + (t40 * t55 - t65 * t78);
+            let t131 = t7 * t28 + (t38 * t55 + t63 * t78);
+            let t132 = k(0.1) * t131 - k(0.05) * t130;
+            let t133 = t10 * t86 - (t40 * t85 + t65 * t84);
+            let t134 = t7 * t86 - (t38 * t85 - t63 * t84);
+            let t135 = t90 * t132
+                + (t88 * (k(0.1) * t134 - k(0.05) * t133) - t83 * t132);
+            let t136 = block_wy * block_wy;
+            let t137 = block_wz * block_wz;
+            let t138 = k(0.001) * block_wz;
+            let t139 = k(0.002) * block_wy;
+            let t140 = block_wx * (t139 - t138)
+                - (k(0.005) * (block_wy * block_wz) - k(0.003) * (t137 - t136));
+            let t141 = k(0.02) * block_dwx + k(0.001) * block_dwy + k(0.002) * block_dwz
+                + (t140 - (t123 - (t121 + t135)));
+            let t142 = (k(0.1) * t39 - k(0.2) * t37) * t95
+                + (k(0.1) * t64 + k(0.2) * t62) * t92;
+            let t143 = (k(0.1) * t9 - k(0.2) * t6) * t98 - t142 + t141;
+            let t144 = arm_e3 * block_e0 - arm_e2 * block_e1 + arm_e1 * block_e2
+                - arm_e0 * block_e3;
+            let t145 = arm_e2 * block_e0 + arm_e3 * block_e1 - arm_e0 * block_e2
+                - arm_e1 * block_e3;
+            let t146 = arm_e1 * block_e0 - arm_e0 * block_e1 - arm_e3 * block_e2
+                + arm_e2 * block_e3;
+            let t147 = k(0.3333333333333333) * t146 + k(0.6666666666666666) * t145
+                + k(0.6666666666666666) * t144;
+            let t148 = k(2.0) * t147;
+            let t149 = k(1.0) - t147 * t148;
+            let t150 = t3 * t28 - (t36 * t55 + t61 * t78);
+            let t151 = k(0.03) * t130 - k(0.1) * t150;
+            let t152 = t3 * t86 + (t36 * t85 - t61 * t84);
+            let t153 = t90 * t151
+                + (t88 * (k(0.03) * t133 - k(0.1) * t152) - t83 * t151);
+            let t154 = k(0.4) * t120;
+            let t155 = k(0.013333333333333334) * t122;
+            let t156 = block_wx * block_wx;
+            let t157 = k(0.003) * block_wx;
+            let t158 = block_wy * (t138 + t157)
+                - (k(0.005) * (block_wx * block_wz) - k(0.002) * (t137 - t156));
+            let t159 = k(0.001) * block_dwx + k(0.03) * block_dwy - k(0.003) * block_dwz
+                + (t158 - (t155 - (t154 + t153)));
+            let t160 = (k(0.06) * t39 + k(0.2) * t35) * t95
+                + (k(0.06) * t64 - k(0.2) * t60) * t92;
+            let t161 = (k(0.06) * t9 - k(0.2) * t2) * t98 - t160 - t159;
+            let t162 = arm_e0 * block_e0 + arm_e1 * block_e1 + arm_e2 * block_e2
+                + arm_e3 * block_e3;
+            let t163 = t162 * t148;
+            let t164 = k(0.6666666666666666) * t163;
+            let t165 = k(0.2222222222222222) - k(0.2222222222222222) * t149;
+            let t166 = t165 + t164;
+            let t167 = k(0.05) * t150 - k(0.03) * t131;
+            let t168 = t90 * t167
+                + (t88 * (k(0.05) * t152 - k(0.03) * t134) - t83 * t167);
+            let t169 = block_wz * (t139 + t157)
+                - (k(0.01) * (block_wx * block_wy) - k(0.001) * (t136 - t156));
+            let t170 = k(0.002) * block_dwx - k(0.003) * block_dwy + k(0.025) * block_dwz
+                - (t169 + (t155 - (t154 - t168)));
+            let t171 = (k(0.06) * t37 + k(0.1) * t35) * t95
+                - (k(0.06) * t62 + k(0.1) * t60) * t92;
+            let t172 = (k(0.06) * t6 - k(0.1) * t2) * t98 - t171 - t170;
+            let t173 = t165 - t164;
+            let t174 = t173 * t172
+                + (t166 * t161
+                    - (k(0.1111111111111111) + k(0.8888888888888888) * t149) * t143);
+            let t175 = k(0.6666666666666666) * t89;
+            let t176 = k(0.3333333333333333) * t87 + (k(0.1) - t175);
+            let t177 = k(0.6666666666666666) * t87;
+            let t178 = t177 - (k(0.1) + k(0.3333333333333333) * t89);
+            let t179 = (t50 * t178 - t47 * t176) * t95 + (t73 * t178 + t70 * t176) * t92;
+            let t180 = (t23 * t178 - t19 * t176) * t98 - t179 - t174 + t129;
+            let t181 = t180 + (t29 * t99 - (t56 * t96 + t79 * t93));
+            let t182 = k(0.6666666666666666) * arm_e3
+                + (k(0.6666666666666666) * arm_e1 - k(0.3333333333333333) * arm_e2);
+            let t183 = k(2.0) * t182;
+            let t184 = k(1.0) - t182 * t183;
+            let t185 = k(0.4444444444444444) + k(0.5555555555555556) * t184;
+            let t186 = k(0.4) * t22 * t99 - (k(0.4) * t49 * t96 + k(0.4) * t72 * t93);
+            let t187 = t15 * t102 + (t45 * t101 - t68 * t100);
+            let t188 = k(0.6666666666666666) * (t187 - t103);
+            let t189 = k(0.3333333333333333) * t187;
+            let t190 = t154 - (t90 * t188 - (t88 * (t189 + t107) + t83 * t188));
+            let t191 = arm_wx * arm_wx;
+            let t192 = k(0.01) * arm_wx;
+            let t193 = arm_wy * (t126 - t192)
+                + (k(0.1) * (arm_wx * arm_wz) - k(0.03) * (t125 - t191));
+            let t194 = k(0.02) * arm_dwx + k(0.25) * arm_dwy + k(0.01) * arm_dwz
+                + (t193 + (t155 - t190));
+            let t195 = k(0.4444444444444444) + k(0.5555555555555556) * t149;
+            let t196 = k(0.3333333333333333) * t163;
+            let t197 = k(0.4444444444444444) - k(0.4444444444444444) * t149;
+            let t198 = (t197 + t196) * t172 + (t195 * t161 - t173 * t143);
+            let t199 = t177 + (k(0.2) + t175);
+            (
+                t14,
+                t15,
+                t18,
+                t19,
+                t23,
+                t27,
+                t44,
+                t45,
+                t46,
+                t47,
+                t50,
+                t54,
+                t67,
+                t68,
+                t69,
+                t70,
+                t73,
+                t77,
+                t83,
+                t88,
+                t90,
+                t92,
+                t93,
+                t95,
+                t96,
+                t98,
+                t99,
+                t104,
+                t105,
+                t124,
+                t127,
+                t143,
+                t154,
+                t155,
+                t161,
+                t166,
+                t172,
+                t174,
+                t176,
+                t178,
+                t181,
+                t183,
+                t184,
+                t185,
+                t186,
+                t187,
+                t189,
+                t191,
+                t192,
+                t194,
+                t195,
+                t196,
+                t197,
+                t198,
+                t199,
+            )
+        };
+        let (t212, t218, t220, t221, t222) = {
+            let t200 = (t50 * t199 - t45 * t176) * t95 + (t73 * t199 + t68 * t176) * t92;
+            let t201 = (t23 * t199 + t15 * t176) * t98 - t200 - t198 + t194;
+            let t202 = t201 + t186;
+            let t203 = arm_e0 * t183;
+            let t204 = k(0.6666666666666666) * t203;
+            let t205 = k(0.2222222222222222) - k(0.2222222222222222) * t184;
+            let t206 = t205 + t204;
+            let t207 = (k(0.4) * t46 - k(0.2) * t44) * t96
+                - (k(0.4) * t69 - k(0.2) * t67) * t93;
+            let t208 = t189 - t105;
+            let t209 = t90 * t208
+                - (t88 * (k(0.6666666666666666) * (t187 + t104)) + t83 * t208);
+            let t210 = arm_wz * (t127 + t192)
+                - (k(0.05) * (arm_wx * arm_wy) + k(0.02) * (t124 - t191));
+            let t211 = k(0.03) * arm_dwx - k(0.01) * arm_dwy - k(0.2) * arm_dwz
+                - (t210 + (t155 - (t154 - t209)));
+            let t212 = t195 * t172 + ((t197 - t196) * t161 - t166 * t143);
+            let t213 = (t47 * t199 - t45 * t178) * t95 - (t70 * t199 - t68 * t178) * t92;
+            let t214 = (t19 * t199 + t15 * t178) * t98 - t213 - t212 - t211;
+            let t215 = t214 + ((k(0.4) * t18 + k(0.2) * t14) * t99 - t207);
+            let t216 = k(0.3333333333333333) * t203;
+            let t217 = k(0.4444444444444444) - k(0.4444444444444444) * t184;
+            let t218 = (t217 - t216) * t215 - (t206 * t202 - t185 * t181);
+            let t219 = t205 - t204;
+            let t220 = t206 * t215
+                - ((k(0.1111111111111111) + k(0.8888888888888888) * t184) * t202
+                    - t219 * t181);
+            let t221 = k(0.7453559924999299)
+                * (t185 * t215 - (t219 * t202 - (t217 + t216) * t181));
+            let t222 = t95
+                * (t54 - (k(1.3333333333333333) * t46 - k(0.6666666666666666) * t44))
+                + t92
+                    * (t77
+                        + (k(1.3333333333333333) * t69 - k(0.6666666666666666) * t67));
+            (t212, t218, t220, t221, t222)
+        };
+        *lambda = [
+            -t93,
+            -t96,
+            -t99,
+            k(0.29814239699997197) * t220 + k(0.5962847939999439) * t218 - t221,
+            k(0.4472135954999579) * t218 - k(0.8944271909999159) * t220,
+            t98 * (t27 - (k(1.3333333333333333) * t18 + k(0.6666666666666666) * t14))
+                - t222,
+            k(0.6666666666666666) * (t198 - t174) - k(0.3333333333333333) * t212,
+            k(0.6666666666666666) * t212
+                - (k(0.3333333333333333) * t198 + k(0.6666666666666666) * t174),
+        ];
+    }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Ports for CarriedBlock<T> {
     type Outputs = [T; 12];
@@ -5737,41 +6196,41 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for CarriedBlock<T> {
             t103,
             t105,
             t106,
-            t107,
-            t108,
-            t109,
-            t110,
-            t111,
-            t112,
             t114,
+            t115,
+            t116,
             t117,
-            t118,
             t119,
             t120,
+            t121,
             t122,
             t123,
-            t124,
             t125,
             t126,
+            t127,
             t128,
             t129,
-            t130,
-            t131,
-            t132,
-            t143,
-            t144,
-            t145,
             t146,
+            t147,
+            t148,
+            t149,
+            t154,
+            t155,
+            t160,
             t161,
             t162,
             t163,
-            t164,
+            t168,
             t169,
             t170,
+            t171,
+            t172,
+            t173,
+            t174,
             t175,
             t176,
-            t177,
-            t178,
+            t179,
+            t181,
             t183,
             t184,
             t185,
@@ -5907,109 +6366,109 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for CarriedBlock<T> {
             let t104 = t28 * t97 + (t95 * t96 - t28 * t89);
             let t105 = k(0.6) * block_dsz - (k(1.8) - t104);
             let t106 = t105 + (k(1.5) * arm_dsz - (k(4.5) + t104));
-            let t107 = arm_rx - t86;
-            let t108 = arm_ry - t61;
-            let t109 = arm_rz - t32;
-            let t110 = t23 * t109 - (t52 * t108 + t77 * t107);
-            let t111 = t19 * t109 - (t49 * t108 - t74 * t107);
-            let t112 = k(0.6666666666666666) * t111;
-            let t113 = t112 - k(0.3333333333333333) * t110;
-            let t114 = k(0.6666666666666666) * t110;
-            let t115 = t97 * t113
-                - (t96 * (k(0.3333333333333333) * t111 - t114) + t89 * t113);
-            let t116 = t15 * t3 + (t47 * t38 + t72 * t65);
-            let t117 = k(0.6666666666666666) * t116;
-            let t118 = t15 * t7 - (t47 * t40 + t72 * t67);
-            let t119 = k(0.3333333333333333) * t118;
-            let t120 = t15 * t10 - (t47 * t42 - t72 * t69);
-            let t121 = k(0.6666666666666666) * t120 + (t119 + t117);
-            let t122 = t19 * t3 - (t49 * t38 + t74 * t65);
-            let t123 = k(0.6666666666666666) * t122;
-            let t124 = t19 * t7 + (t74 * t67 + t49 * t40);
-            let t125 = k(0.3333333333333333) * t124;
-            let t126 = t19 * t10 - (t74 * t69 - t49 * t42);
-            let t127 = k(0.6666666666666666) * t126 + (t125 + t123);
-            let t128 = t23 * t3 - (t52 * t38 - t77 * t65);
-            let t129 = k(0.6666666666666666) * t128;
-            let t130 = t23 * t7 - (t77 * t67 - t52 * t40);
-            let t131 = k(0.3333333333333333) * t130;
-            let t132 = t77 * t69 + t52 * t42 + t23 * t10;
-            let t133 = k(0.6666666666666666) * t132 + (t131 + t129);
-            let t134 = k(0.6666666666666666) * t133
-                + (k(0.3333333333333333) * t127 + k(0.6666666666666666) * t121);
-            let t135 = turn0.cos();
-            let t136 = k(0.3333333333333333) * t133
-                + k(0.6666666666666666) * (t127 - t121);
-            let t137 = turn0.sin();
-            let t138 = (t135 * t136 - t137 * t134).atan2(t137 * t136 + t135 * t134);
-            let t139 = turn0 + t138;
-            let t140 = k(0.2) * t139;
-            let t141 = k(0.3333333333333333) * arm_wx + k(0.6666666666666666) * arm_wy
+            let t107 = t10 * t28 + (t42 * t57 - t69 * t82);
+            let t108 = t7 * t28 + (t40 * t57 + t67 * t82);
+            let t109 = k(0.1) * t108 - k(0.05) * t107;
+            let t110 = t10 * t95 - (t42 * t93 + t69 * t91);
+            let t111 = t7 * t95 - (t40 * t93 - t67 * t91);
+            let t112 = t97 * t109
+                + (t96 * (k(0.1) * t111 - k(0.05) * t110) - t89 * t109);
+            let t113 = t15 * t3 + (t47 * t38 + t72 * t65);
+            let t114 = k(0.6666666666666666) * t113;
+            let t115 = t15 * t7 - (t47 * t40 + t72 * t67);
+            let t116 = k(0.3333333333333333) * t115;
+            let t117 = t15 * t10 - (t47 * t42 - t72 * t69);
+            let t118 = k(0.6666666666666666) * t117 + (t116 + t114);
+            let t119 = t19 * t3 - (t49 * t38 + t74 * t65);
+            let t120 = k(0.6666666666666666) * t119;
+            let t121 = t19 * t7 + (t74 * t67 + t49 * t40);
+            let t122 = k(0.3333333333333333) * t121;
+            let t123 = t19 * t10 - (t74 * t69 - t49 * t42);
+            let t124 = k(0.6666666666666666) * t123 + (t122 + t120);
+            let t125 = t23 * t3 - (t52 * t38 - t77 * t65);
+            let t126 = k(0.6666666666666666) * t125;
+            let t127 = t23 * t7 - (t77 * t67 - t52 * t40);
+            let t128 = k(0.3333333333333333) * t127;
+            let t129 = t77 * t69 + t52 * t42 + t23 * t10;
+            let t130 = k(0.6666666666666666) * t129 + (t128 + t126);
+            let t131 = k(0.6666666666666666) * t130
+                + (k(0.3333333333333333) * t124 + k(0.6666666666666666) * t118);
+            let t132 = turn0.cos();
+            let t133 = k(0.3333333333333333) * t130
+                + k(0.6666666666666666) * (t124 - t118);
+            let t134 = turn0.sin();
+            let t135 = (t132 * t133 - t134 * t131).atan2(t134 * t133 + t132 * t131);
+            let t136 = turn0 + t135;
+            let t137 = k(0.2) * t136;
+            let t138 = k(0.3333333333333333) * arm_wx + k(0.6666666666666666) * arm_wy
                 + k(0.6666666666666666) * arm_wz
                 - (k(0.3333333333333333) * block_wx + k(0.6666666666666666) * block_wy
                     + k(0.6666666666666666) * block_wz);
-            let t142 = k(0.006666666666666667) * t141;
-            let t143 = arm_wy * arm_wy;
-            let t144 = arm_wz * arm_wz;
-            let t145 = k(0.02) * arm_wz;
-            let t146 = k(0.03) * arm_wy;
-            let t147 = arm_wx * (t146 + t145)
-                + (k(0.05) * (arm_wy * arm_wz) + k(0.01) * (t144 - t143));
-            let t148 = k(0.3) * arm_dwx + k(0.02) * arm_dwy - k(0.03) * arm_dwz
-                - (t147 - (t142 - (t140 + t115)));
-            let t149 = t10 * t28 + (t42 * t57 - t69 * t82);
-            let t150 = t7 * t28 + (t40 * t57 + t67 * t82);
-            let t151 = k(0.1) * t150 - k(0.05) * t149;
-            let t152 = t10 * t95 - (t42 * t93 + t69 * t91);
-            let t153 = t7 * t95 - (t40 * t93 - t67 * t91);
-            let t154 = t97 * t151
-                + (t96 * (k(0.1) * t153 - k(0.05) * t152) - t89 * t151);
-            let t155 = block_wy * block_wy;
-            let t156 = block_wz * block_wz;
-            let t157 = k(0.001) * block_wz;
-            let t158 = k(0.002) * block_wy;
-            let t159 = block_wx * (t158 - t157)
-                - (k(0.005) * (block_wy * block_wz) - k(0.003) * (t156 - t155));
-            let t160 = k(0.02) * block_dwx + k(0.001) * block_dwy + k(0.002) * block_dwz
-                + (t159 - (t142 - (t140 + t154)));
-            let t161 = k(0.1) * t68 + k(0.2) * t66;
-            let t162 = k(0.1) * t41 - k(0.2) * t39;
-            let t163 = k(0.1) * t9 - k(0.2) * t6;
-            let t164 = t163 * t105 - (t162 * t102 + t161 * t99) + t160;
-            let t165 = t3 * t28 - (t38 * t57 + t65 * t82);
-            let t166 = k(0.03) * t149 - k(0.1) * t165;
-            let t167 = t3 * t95 + (t38 * t93 - t65 * t91);
-            let t168 = t97 * t166
-                + (t96 * (k(0.03) * t152 - k(0.1) * t167) - t89 * t166);
-            let t169 = k(0.4) * t139;
-            let t170 = k(0.013333333333333334) * t141;
-            let t171 = block_wx * block_wx;
-            let t172 = k(0.003) * block_wx;
-            let t173 = block_wy * (t157 + t172)
-                - (k(0.005) * (block_wx * block_wz) - k(0.002) * (t156 - t171));
-            let t174 = k(0.001) * block_dwx + k(0.03) * block_dwy - k(0.003) * block_dwz
-                + (t173 - (t170 - (t169 + t168)));
-            let t175 = k(0.06) * t68 - k(0.2) * t64;
-            let t176 = k(0.06) * t41 + k(0.2) * t37;
-            let t177 = k(0.06) * t9 - k(0.2) * t2;
-            let t178 = t177 * t105 - (t176 * t102 + t175 * t99) - t174;
-            let t179 = k(0.05) * t165 - k(0.03) * t150;
-            let t180 = t97 * t179
-                + (t96 * (k(0.05) * t167 - k(0.03) * t153) - t89 * t179);
-            let t181 = block_wz * (t158 + t172)
-                - (k(0.01) * (block_wx * block_wy) - k(0.001) * (t155 - t171));
-            let t182 = k(0.002) * block_dwx - k(0.003) * block_dwy + k(0.025) * block_dwz
-                - (t181 + (t170 - (t169 - t180)));
-            let t183 = k(0.06) * t66 + k(0.1) * t64;
-            let t184 = k(0.06) * t39 + k(0.1) * t37;
-            let t185 = k(0.06) * t6 - k(0.1) * t2;
-            let t186 = t185 * t105 - (t184 * t102 - t183 * t99) - t182;
-            let t187 = (t52 * t111 - t49 * t110) * t102
-                + (t77 * t111 + t74 * t110) * t99;
-            let t188 = (t23 * t111 - t19 * t110) * t105 - t187
-                + (t120 * t186 - (t118 * t178 - t116 * t164));
+            let t139 = k(0.006666666666666667) * t138;
+            let t140 = block_wy * block_wy;
+            let t141 = block_wz * block_wz;
+            let t142 = k(0.001) * block_wz;
+            let t143 = k(0.002) * block_wy;
+            let t144 = block_wx * (t143 - t142)
+                - (k(0.005) * (block_wy * block_wz) - k(0.003) * (t141 - t140));
+            let t145 = k(0.02) * block_dwx + k(0.001) * block_dwy + k(0.002) * block_dwz
+                + (t144 - (t139 - (t137 + t112)));
+            let t146 = k(0.1) * t68 + k(0.2) * t66;
+            let t147 = k(0.1) * t41 - k(0.2) * t39;
+            let t148 = k(0.1) * t9 - k(0.2) * t6;
+            let t149 = t148 * t105 - (t147 * t102 + t146 * t99) + t145;
+            let t150 = t3 * t28 - (t38 * t57 + t65 * t82);
+            let t151 = k(0.03) * t107 - k(0.1) * t150;
+            let t152 = t3 * t95 + (t38 * t93 - t65 * t91);
+            let t153 = t97 * t151
+                + (t96 * (k(0.03) * t110 - k(0.1) * t152) - t89 * t151);
+            let t154 = k(0.4) * t136;
+            let t155 = k(0.013333333333333334) * t138;
+            let t156 = block_wx * block_wx;
+            let t157 = k(0.003) * block_wx;
+            let t158 = block_wy * (t142 + t157)
+                - (k(0.005) * (block_wx * block_wz) - k(0.002) * (t141 - t156));
+            let t159 = k(0.001) * block_dwx + k(0.03) * block_dwy - k(0.003) * block_dwz
+                + (t158 - (t155 - (t154 + t153)));
+            let t160 = k(0.06) * t68 - k(0.2) * t64;
+            let t161 = k(0.06) * t41 + k(0.2) * t37;
+            let t162 = k(0.06) * t9 - k(0.2) * t2;
+            let t163 = t162 * t105 - (t161 * t102 + t160 * t99) - t159;
+            let t164 = k(0.05) * t150 - k(0.03) * t108;
+            let t165 = t97 * t164
+                + (t96 * (k(0.05) * t152 - k(0.03) * t111) - t89 * t164);
+            let t166 = block_wz * (t143 + t157)
+                - (k(0.01) * (block_wx * block_wy) - k(0.001) * (t140 - t156));
+            let t167 = k(0.002) * block_dwx - k(0.003) * block_dwy + k(0.025) * block_dwz
+                - (t166 + (t155 - (t154 - t165)));
+            let t168 = k(0.06) * t66 + k(0.1) * t64;
+            let t169 = k(0.06) * t39 + k(0.1) * t37;
+            let t170 = k(0.06) * t6 - k(0.1) * t2;
+            let t171 = t170 * t105 - (t169 * t102 - t168 * t99) - t167;
+            let t172 = arm_rx - t86;
+            let t173 = arm_ry - t61;
+            let t174 = arm_rz - t32;
+            let t175 = t23 * t174 - (t52 * t173 + t77 * t172);
+            let t176 = t19 * t174 - (t49 * t173 - t74 * t172);
+            let t177 = t102 * (t52 * t176 - t49 * t175)
+                + t99 * (t77 * t176 + t74 * t175);
+            let t178 = t105 * (t23 * t176 - t19 * t175) - t177
+                + (t117 * t171 - (t115 * t163 - t113 * t149));
+            let t179 = k(0.6666666666666666) * t176;
+            let t180 = t179 - k(0.3333333333333333) * t175;
+            let t181 = k(0.6666666666666666) * t175;
+            let t182 = t97 * t180
+                + (t96 * (t181 - k(0.3333333333333333) * t176) - t89 * t180);
+            let t183 = arm_wy * arm_wy;
+            let t184 = arm_wz * arm_wz;
+            let t185 = k(0.02) * arm_wz;
+            let t186 = k(0.03) * arm_wy;
+            let t187 = arm_wx * (t186 + t185)
+                + (k(0.05) * (arm_wy * arm_wz) + k(0.01) * (t184 - t183));
+            let t188 = k(0.3) * arm_dwx + k(0.02) * arm_dwy - k(0.03) * arm_dwz
+                - (t187 - (t139 - (t137 + t182)));
             let t189 = t31 * t106 - (t60 * t103 + t85 * t100);
-            let t190 = t189 + (t188 + t148);
+            let t190 = t189 + (t188 + t178);
             let t191 = k(1.3333333333333333) * t18;
             let t192 = t191 + k(0.6666666666666666) * t14;
             let t193 = k(1.3333333333333333) * t48;
@@ -6078,41 +6537,41 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for CarriedBlock<T> {
                 t103,
                 t105,
                 t106,
-                t107,
-                t108,
-                t109,
-                t110,
-                t111,
-                t112,
                 t114,
+                t115,
+                t116,
                 t117,
-                t118,
                 t119,
                 t120,
+                t121,
                 t122,
                 t123,
-                t124,
                 t125,
                 t126,
+                t127,
                 t128,
                 t129,
-                t130,
-                t131,
-                t132,
-                t143,
-                t144,
-                t145,
                 t146,
+                t147,
+                t148,
+                t149,
+                t154,
+                t155,
+                t160,
                 t161,
                 t162,
                 t163,
-                t164,
+                t168,
                 t169,
                 t170,
+                t171,
+                t172,
+                t173,
+                t174,
                 t175,
                 t176,
-                t177,
-                t178,
+                t179,
+                t181,
                 t183,
                 t184,
                 t185,
@@ -6145,37 +6604,37 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for CarriedBlock<T> {
             let t209 = k(0.3333333333333333) * t206 - t201;
             let t210 = k(0.4472135954999579) * t196 - k(0.8944271909999159) * t194;
             let t211 = k(1.0) / (t210 * t209 + (t208 * t207 - t205 * t202));
-            let t212 = t15 * t109 + (t47 * t108 - t72 * t107);
-            let t213 = k(0.6666666666666666) * (t110 - t212);
-            let t214 = k(0.3333333333333333) * t212;
-            let t215 = t169 + (t97 * t213 + (t96 * (t114 + t214) - t89 * t213));
-            let t216 = arm_wx * arm_wx;
-            let t217 = k(0.01) * arm_wx;
-            let t218 = arm_wy * (t145 - t217)
-                + (k(0.1) * (arm_wx * arm_wz) - k(0.03) * (t144 - t216));
-            let t219 = k(0.02) * arm_dwx + k(0.25) * arm_dwy + k(0.01) * arm_dwz
-                + (t218 + (t170 - t215));
-            let t220 = (t52 * t212 + t47 * t110) * t102
-                + (t77 * t212 - t72 * t110) * t99;
-            let t221 = (t23 * t212 - t15 * t110) * t105 - t220
-                - (t126 * t186 - (t124 * t178 - t122 * t164));
+            let t212 = t15 * t174 + (t47 * t173 - t72 * t172);
+            let t213 = t102 * (t52 * t212 + t47 * t175)
+                + t99 * (t77 * t212 - t72 * t175);
+            let t214 = t105 * (t23 * t212 - t15 * t175) - t213
+                - (t123 * t171 - (t121 * t163 - t119 * t149));
+            let t215 = k(0.6666666666666666) * (t212 - t175);
+            let t216 = k(0.3333333333333333) * t212;
+            let t217 = t154 - (t97 * t215 - (t96 * (t216 + t181) + t89 * t215));
+            let t218 = arm_wx * arm_wx;
+            let t219 = k(0.01) * arm_wx;
+            let t220 = arm_wy * (t185 - t219)
+                + (k(0.1) * (arm_wx * arm_wz) - k(0.03) * (t184 - t218));
+            let t221 = k(0.02) * arm_dwx + k(0.25) * arm_dwy + k(0.01) * arm_dwz
+                + (t220 + (t155 - t217));
             let t222 = k(0.4) * t22 * t106 - (k(0.4) * t51 * t103 + k(0.4) * t76 * t100);
-            let t223 = t222 - (t221 - t219);
-            let t224 = t112 - t214;
-            let t225 = t97 * t224
-                + (t96 * (k(0.6666666666666666) * (t111 + t212)) - t89 * t224);
-            let t226 = arm_wz * (t146 + t217)
-                - (k(0.05) * (arm_wx * arm_wy) + k(0.02) * (t143 - t216));
-            let t227 = k(0.03) * arm_dwx - k(0.01) * arm_dwy - k(0.2) * arm_dwz
-                - (t226 + (t170 - (t169 + t225)));
-            let t228 = (t49 * t212 + t47 * t111) * t102
-                - (t74 * t212 + t72 * t111) * t99;
-            let t229 = (t19 * t212 - t15 * t111) * t105 - t228
-                + (t132 * t186 - (t130 * t178 - t128 * t164));
+            let t223 = t222 + (t221 - t214);
+            let t224 = t102 * (t49 * t212 + t47 * t176)
+                - t99 * (t74 * t212 + t72 * t176);
+            let t225 = t105 * (t19 * t212 - t15 * t176) - t224
+                + (t129 * t171 - (t127 * t163 - t125 * t149));
+            let t226 = t216 - t179;
+            let t227 = t97 * t226
+                - (t96 * (k(0.6666666666666666) * (t212 + t176)) + t89 * t226);
+            let t228 = arm_wz * (t186 + t219)
+                - (k(0.05) * (arm_wx * arm_wy) + k(0.02) * (t183 - t218));
+            let t229 = k(0.03) * arm_dwx - k(0.01) * arm_dwy - k(0.2) * arm_dwz
+                - (t228 + (t155 - (t154 - t227)));
             let t230 = (k(0.4) * t48 - k(0.2) * t46) * t103
                 - (k(0.4) * t73 - k(0.2) * t71) * t100;
             let t231 = (k(0.4) * t18 + k(0.2) * t14) * t106 - t230;
-            let t232 = t231 - (t229 + t227);
+            let t232 = t231 - (t229 + t225);
             let t233 = t209 * t211 * t232 + (t207 * t211 * t223 + t202 * t211 * t190);
             let t234 = k(0.6666666666666666) * t208;
             let t235 = t211 * (k(0.6666666666666666) * (t205 + t210)) * t223
@@ -6196,24 +6655,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for CarriedBlock<T> {
             let t246 = t81 + t196;
             let t247 = t56 - t194;
             let t248 = t27 - t192;
-            let t249 = t248 * t105 - (t247 * t102 + t246 * t99);
+            let t249 = t105 * t248 - (t102 * t247 + t99 * t246);
             let t250 = t246 * t249;
             let t251 = t247 * t249;
             let t252 = t248 * t249;
-            let t253 = t131 - t129;
-            let t254 = t125 - t123;
-            let t255 = t119 - t117;
+            let t253 = t128 - t126;
+            let t254 = t122 - t120;
+            let t255 = t116 - t114;
             let t256 = k(0.6666666666666666) * (t255 - t254)
                 - k(0.3333333333333333) * t253;
-            let t257 = t129 + k(0.3333333333333333) * t132;
-            let t258 = t123 + k(0.3333333333333333) * t126;
-            let t259 = t117 + k(0.3333333333333333) * t120;
+            let t257 = t126 + k(0.3333333333333333) * t129;
+            let t258 = t120 + k(0.3333333333333333) * t123;
+            let t259 = t114 + k(0.3333333333333333) * t117;
             let t260 = k(0.6666666666666666) * (t259 - t258)
                 - k(0.3333333333333333) * t257;
             let t261 = k(0.6666666666666666) * (t260 - t256);
-            let t262 = t132 + t130;
-            let t263 = t126 + t124;
-            let t264 = t120 + t118;
+            let t262 = t129 + t127;
+            let t263 = t123 + t121;
+            let t264 = t117 + t115;
             let t265 = k(0.4444444444444444) * t264 + k(0.2222222222222222) * t263
                 + k(0.4444444444444444) * t262;
             let t266 = k(0.4444444444444444) * (t264 - t263)
@@ -6226,16 +6685,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for CarriedBlock<T> {
             let t271 = k(0.6666666666666666) * t255 + k(0.3333333333333333) * t254
                 + k(0.6666666666666666) * t253;
             let t272 = k(1.0) / (t271 * t270 - (t269 * t268 - t265 * t261));
-            let t273 = t270 * t272 * t186 - (t268 * t272 * t178 - t261 * t272 * t164);
-            let t274 = t265 * t273 - (t161 * t246 + t162 * t247 + t163 * t248) * t249;
+            let t273 = t171 * (t270 * t272)
+                - (t163 * (t268 * t272) - t149 * (t261 * t272));
+            let t274 = t265 * t273 - t249 * (t146 * t246 + t147 * t247 + t148 * t248);
             let t275 = k(0.6666666666666666) * t265;
-            let t276 = t272 * (t275 + k(0.3333333333333333) * t271) * t178
-                - t272 * (k(0.6666666666666666) * (t269 - t271)) * t164;
-            let t277 = t272 * (k(0.3333333333333333) * t269 + t275) * t186 - t276;
+            let t276 = t163 * (t272 * (t275 + k(0.3333333333333333) * t271))
+                - t149 * (t272 * (k(0.6666666666666666) * (t269 - t271)));
+            let t277 = t171 * (t272 * (k(0.3333333333333333) * t269 + t275)) - t276;
             let t278 = t266 * t277 - t274;
-            let t279 = t269 * t273 - (t175 * t246 + t176 * t247 + t177 * t248) * t249;
+            let t279 = t269 * t273 - t249 * (t160 * t246 + t161 * t247 + t162 * t248);
             let t280 = t260 * t277 - t279;
-            let t281 = t271 * t273 + (t183 * t246 - t184 * t247 - t185 * t248) * t249;
+            let t281 = t271 * t273 + t249 * (t168 * t246 - t169 * t247 - t170 * t248);
             let t282 = t256 * t277 - t281;
             let t283 = block_ry - t61;
             let t284 = block_rz - t32;

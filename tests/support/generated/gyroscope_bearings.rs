@@ -34,6 +34,7 @@
 //! | to_joints | (x, u) of a maximal state | 63 | 72 | 0 | 135 | 0 of 6 |
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 14 | 23 | 1 | 38 | 0 of 3 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 56 | 92 | 1 | 149 | 6 of 18 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 54 | 80 | 0 | 134 | 0 of 15 |
 
 /// The mechanism `gyroscope_bearings`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -1995,12 +1996,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeBearings<T> {
         let t28 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
         let t29 = t28 * (t21 * t27 - (t15 * t24 + t9 * t23))
             + t22 * (t21 * t18 + (t15 * t12 + t9 * t7));
-        let t30 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
-        let t31 = k(2.0) * (t17 + t16);
-        let t32 = k(2.0) * (t26 - t25);
-        let t33 = k(2.0) * (k(0.5) - (t6 + rotor_e3 * rotor_e3));
-        let t34 = (t21 * t33 - (t15 * t32 - t9 * t31)) * t30 + t29;
-        let t35 = t34 - k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx);
+        let t30 = k(2.0) * (t17 + t16);
+        let t31 = k(2.0) * (t26 - t25);
+        let t32 = k(2.0) * (k(0.5) - (t6 + rotor_e3 * rotor_e3));
+        let t33 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
+        let t34 = t33 * (t21 * t32 - (t15 * t31 - t9 * t30)) + t29;
+        let t35 = k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx) - t34;
         let t36 = outer_ring_e0 * outer_ring_e0;
         let t37 = k(2.0) * (k(0.5) - (t36 + outer_ring_e1 * outer_ring_e1));
         let t38 = outer_ring_e0 * outer_ring_e3;
@@ -2020,25 +2021,25 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeBearings<T> {
         let t52 = k(2.0) * t51;
         let t53 = t52 * t27 + (t46 * t23 + t48 * t24);
         let t54 = t28 * t53 + t22 * (t52 * t18 - (t48 * t12 + t46 * t7));
-        let t55 = t52 * t33 - (t46 * t31 - t48 * t32);
+        let t55 = t52 * t32 - (t46 * t30 - t48 * t31);
         let t56 = t20 + t19;
         let t57 = t50 - t49;
         let t58 = k(0.5) - (t8 + inner_ring_e3 * inner_ring_e3);
         let t59 = t4 * (k(0.00025) * t58)
             - (t2 * (k(0.00025) * t57) + t0 * (k(0.00025) * t56));
-        let t60 = k(2e-6) * inner_ring_dwy + (t59 + (t55 * t30 + t54));
+        let t60 = k(2e-6) * inner_ring_dwy + (t59 + (t55 * t33 + t54));
         let t61 = t43 * t52 - (t40 * t48 + t37 * t46);
         let t62 = k(2.0) * t56;
         let t63 = k(2.0) * t57;
         let t64 = k(2.0) * t58;
         let t65 = t64 * t27 - (t62 * t23 - t63 * t24);
         let t66 = t28 * t65 + t22 * (t64 * t18 - (t63 * t12 - t62 * t7));
-        let t67 = t62 * t31 + t63 * t32 + t64 * t33;
+        let t67 = t62 * t30 + t63 * t31 + t64 * t32;
         let t68 = t4 * (k(0.00025) * t51)
             - (t2 * (k(0.00025) * t47) - t0 * (k(0.00025) * t45));
         let t69 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz)
-            + (t68 - (t67 * t30 + t66));
-        let t70 = (t43 * t64 - (t40 * t63 - t37 * t62)) * t69 - (t61 * t60 + t44 * t35);
+            + (t68 - (t67 * t33 + t66));
+        let t70 = (t43 * t64 - (t40 * t63 - t37 * t62)) * t69 - (t61 * t60 - t44 * t35);
         let t71 = k(2e-6) * outer_ring_dwx - t70;
         let t72 = k(2.0) * (k(0.5) - (t36 + outer_ring_e3 * outer_ring_e3));
         let t73 = k(2.0) * (t42 + t41);
@@ -2047,9 +2048,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeBearings<T> {
         let t76 = outer_ring_e2 * outer_ring_e3;
         let t77 = k(2.0) * (t76 - t75);
         let t78 = (t72 * t52 - (t73 * t46 - t77 * t48)) * t60
-            + (t72 * t21 - (t77 * t15 - t73 * t9)) * t35;
+            - (t72 * t21 - (t77 * t15 - t73 * t9)) * t35;
         let t79 = (t73 * t62 + t77 * t63 + t72 * t64) * t69 - t78;
-        let t80 = t79 - k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz);
+        let t80 = k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz) - t79;
         let t81 = k(2.0) * (t39 - t38);
         let t82 = k(2.0) * (k(0.5) - (t36 + outer_ring_e2 * outer_ring_e2));
         let t83 = k(2.0) * (t76 + t75);
@@ -2061,18 +2062,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeBearings<T> {
             -(k(0.01) * outer_ring_dsx + t1),
             -(k(0.1) + k(0.01) * outer_ring_dsy + t3),
             -(k(0.01) * outer_ring_dsz + t5),
-            t73 * t74 * t80 - t37 * t74 * t71,
-            t72 * t74 * t80 - t43 * t74 * t71,
+            -(t73 * t74 * t80 + t37 * t74 * t71),
+            -(t72 * t74 * t80 + t43 * t74 * t71),
             -t1,
             -t3,
             -t5,
-            -(t85 * t86 * t60 + t84 * t86 * t35),
-            t61 * t86 * t60 + t44 * t86 * t35,
+            t84 * t86 * t35 - t85 * t86 * t60,
+            t61 * t86 * t60 - t44 * t86 * t35,
             -t0,
             -t2,
             -t4,
-            t67 * t87 * t30 + t28 * (t65 * t87),
-            t55 * t87 * t30 + t28 * (t53 * t87),
+            t67 * t87 * t33 + t28 * (t65 * t87),
+            t55 * t87 * t33 + t28 * (t53 * t87),
         ];
     }
 }
@@ -2412,6 +2413,119 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeBearings<T> {
             rotor_wy * t9 + (t19 * t15 + t22 * t14),
         ];
     }
+    /// Writes λ: 134 operations (54 ±, 80 ×, 0 ÷).
+    fn corrected_multipliers(
+        &self,
+        _t: T,
+        y: &Self::State,
+        accelerations: &Self::Velocities,
+        lambda: &mut Self::Rows,
+    ) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        let outer_ring_dsx = accelerations[0];
+        let outer_ring_dsy = accelerations[1];
+        let outer_ring_dsz = accelerations[2];
+        let outer_ring_dwx = accelerations[3];
+        let outer_ring_dwz = accelerations[5];
+        let inner_ring_dsx = accelerations[6];
+        let inner_ring_dsy = accelerations[7];
+        let inner_ring_dsz = accelerations[8];
+        let inner_ring_dwx = accelerations[9];
+        let inner_ring_dwy = accelerations[10];
+        let inner_ring_dwz = accelerations[11];
+        let rotor_dsx = accelerations[12];
+        let rotor_dsy = accelerations[13];
+        let rotor_dsz = accelerations[14];
+        let rotor_dwx = accelerations[15];
+        let rotor_dwy = accelerations[16];
+        let rotor_dwz = accelerations[17];
+        let t0 = k(0.08) * rotor_dsx;
+        let t1 = k(0.01) * inner_ring_dsx + t0;
+        let t2 = k(0.8) + k(0.08) * rotor_dsy;
+        let t3 = k(0.1) + k(0.01) * inner_ring_dsy + t2;
+        let t4 = k(0.08) * rotor_dsz;
+        let t5 = k(0.01) * inner_ring_dsz + t4;
+        let t6 = k(1e-5) * rotor_dwx
+            - k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx);
+        let t7 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t8 = k(2.0) * t7;
+        let t9 = k(1.0) - t7 * t8;
+        let t10 = inner_ring_e0 * inner_ring_e1;
+        let t11 = inner_ring_e2 * inner_ring_e3;
+        let t12 = t2 * (k(0.00025) * (t11 - t10))
+            + t0
+                * (k(0.00025)
+                    * (inner_ring_e1 * inner_ring_e3 + inner_ring_e0 * inner_ring_e2));
+        let t13 = inner_ring_e0 * inner_ring_e0;
+        let t14 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t15 = k(2.0) * t14;
+        let t16 = k(1.0) - t14 * t15;
+        let t17 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
+        let t18 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
+        let t19 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t20 = t19 * t15;
+        let t21 = t20 * t18 - t17 * t16;
+        let t22 = t21
+            - (t4 * (k(0.00025) * (k(0.5) - (t13 + inner_ring_e3 * inner_ring_e3)))
+                - t12);
+        let t23 = k(2e-6) * inner_ring_dwy - t22;
+        let t24 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t25 = t24 * t8;
+        let t26 = t25 * t23 + t9 * t6;
+        let t27 = k(2e-6) * outer_ring_dwx + t26;
+        let t28 = k(2.0) * outer_ring_e2;
+        let t29 = k(1.0) - outer_ring_e2 * t28;
+        let t30 = t2 * (k(0.00025) * (k(0.5) - (t13 + inner_ring_e2 * inner_ring_e2)))
+            - t0
+                * (k(0.00025)
+                    * (inner_ring_e1 * inner_ring_e2 - inner_ring_e0 * inner_ring_e3));
+        let t31 = t16 * t18 + t17 * t20;
+        let t32 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz)
+            - (t31 - (t4 * (k(0.00025) * (t11 + t10)) - t30));
+        let t33 = t32 - k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz);
+        let t34 = outer_ring_e0 * t28;
+        *lambda = [
+            -(k(0.01) * outer_ring_dsx + t1),
+            -(k(0.1) + k(0.01) * outer_ring_dsy + t3),
+            -(k(0.01) * outer_ring_dsz + t5),
+            -(t34 * t33 + t29 * t27),
+            t29 * t33 - t34 * t27,
+            -t1,
+            -t3,
+            -t5,
+            t25 * t6 - t9 * t23,
+            t26,
+            -t0,
+            -t2,
+            -t4,
+            t31,
+            -t21,
+        ];
+    }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Ports for GyroscopeBearings<T> {
     type Outputs = [T; 24];
@@ -2491,12 +2605,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for GyroscopeBearings<T> {
         let t28 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
         let t29 = t28 * (t21 * t27 - (t15 * t24 + t9 * t23))
             + t22 * (t21 * t18 + (t15 * t12 + t9 * t7));
-        let t30 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
-        let t31 = k(2.0) * (t17 + t16);
-        let t32 = k(2.0) * (t26 - t25);
-        let t33 = k(2.0) * (k(0.5) - (t6 + rotor_e3 * rotor_e3));
-        let t34 = (t21 * t33 - (t15 * t32 - t9 * t31)) * t30 + t29;
-        let t35 = t34 - k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx);
+        let t30 = k(2.0) * (t17 + t16);
+        let t31 = k(2.0) * (t26 - t25);
+        let t32 = k(2.0) * (k(0.5) - (t6 + rotor_e3 * rotor_e3));
+        let t33 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
+        let t34 = t33 * (t21 * t32 - (t15 * t31 - t9 * t30)) + t29;
+        let t35 = k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx) - t34;
         let t36 = outer_ring_e0 * outer_ring_e0;
         let t37 = k(2.0) * (k(0.5) - (t36 + outer_ring_e1 * outer_ring_e1));
         let t38 = outer_ring_e0 * outer_ring_e3;
@@ -2516,25 +2630,25 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for GyroscopeBearings<T> {
         let t52 = k(2.0) * t51;
         let t53 = t52 * t27 + (t46 * t23 + t48 * t24);
         let t54 = t28 * t53 + t22 * (t52 * t18 - (t48 * t12 + t46 * t7));
-        let t55 = t52 * t33 - (t46 * t31 - t48 * t32);
+        let t55 = t52 * t32 - (t46 * t30 - t48 * t31);
         let t56 = t20 + t19;
         let t57 = t50 - t49;
         let t58 = k(0.5) - (t8 + inner_ring_e3 * inner_ring_e3);
         let t59 = t0 * (k(0.00025) * t58)
             - (t4 * (k(0.00025) * t57) + t2 * (k(0.00025) * t56));
-        let t60 = k(2e-6) * inner_ring_dwy + (t59 + (t55 * t30 + t54));
+        let t60 = k(2e-6) * inner_ring_dwy + (t59 + (t55 * t33 + t54));
         let t61 = t43 * t52 - (t40 * t48 + t37 * t46);
         let t62 = k(2.0) * t56;
         let t63 = k(2.0) * t57;
         let t64 = k(2.0) * t58;
         let t65 = t64 * t27 - (t62 * t23 - t63 * t24);
         let t66 = t28 * t65 + t22 * (t64 * t18 - (t63 * t12 - t62 * t7));
-        let t67 = t62 * t31 + t63 * t32 + t64 * t33;
+        let t67 = t62 * t30 + t63 * t31 + t64 * t32;
         let t68 = t0 * (k(0.00025) * t51)
             - (t4 * (k(0.00025) * t47) - t2 * (k(0.00025) * t45));
         let t69 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz)
-            + (t68 - (t67 * t30 + t66));
-        let t70 = (t43 * t64 - (t40 * t63 - t37 * t62)) * t69 - (t61 * t60 + t44 * t35);
+            + (t68 - (t67 * t33 + t66));
+        let t70 = (t43 * t64 - (t40 * t63 - t37 * t62)) * t69 - (t61 * t60 - t44 * t35);
         let t71 = k(2e-6) * outer_ring_dwx - t70;
         let t72 = k(2.0) * (k(0.5) - (t36 + outer_ring_e3 * outer_ring_e3));
         let t73 = k(2.0) * (t42 + t41);
@@ -2543,11 +2657,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for GyroscopeBearings<T> {
         let t76 = outer_ring_e2 * outer_ring_e3;
         let t77 = k(2.0) * (t76 - t75);
         let t78 = (t72 * t52 - (t73 * t46 - t77 * t48)) * t60
-            + (t72 * t21 - (t77 * t15 - t73 * t9)) * t35;
+            - (t72 * t21 - (t77 * t15 - t73 * t9)) * t35;
         let t79 = (t73 * t62 + t77 * t63 + t72 * t64) * t69 - t78;
-        let t80 = t79 - k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz);
-        let t81 = t73 * t74 * t80 - t37 * t74 * t71;
-        let t82 = t72 * t74 * t80 - t43 * t74 * t71;
+        let t80 = k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz) - t79;
+        let t81 = t73 * t74 * t80 + t37 * t74 * t71;
+        let t82 = t72 * t74 * t80 + t43 * t74 * t71;
         let t83 = t73 * t82 - t72 * t81;
         let t84 = t37 * t82 - t43 * t81;
         let t85 = k(2.0) * (t39 - t38);
@@ -2556,21 +2670,21 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for GyroscopeBearings<T> {
         let t88 = t87 * t21 - (t86 * t15 + t85 * t9);
         let t89 = t87 * t52 + (t85 * t46 + t86 * t48);
         let t90 = k(1.0) / (t44 * t89 - t61 * t88);
-        let t91 = t89 * t90 * t60 + t88 * t90 * t35;
-        let t92 = t61 * t90 * t60 + t44 * t90 * t35;
+        let t91 = t89 * t90 * t60 - t88 * t90 * t35;
+        let t92 = t61 * t90 * t60 - t44 * t90 * t35;
         let t93 = t89 * t92 - t61 * t91;
         let t94 = t88 * t92 - t44 * t91;
         let t95 = t46 * t94 + t9 * t93;
         let t96 = t48 * t94 + t15 * t93;
         let t97 = t52 * t94 - t21 * t93;
         let t98 = k(1.0) / (t53 * t67 - t55 * t65);
-        let t99 = t67 * t98 * t30 + t28 * (t65 * t98);
-        let t100 = t55 * t98 * t30 + t28 * (t53 * t98);
+        let t99 = t67 * t98 * t33 + t28 * (t65 * t98);
+        let t100 = t55 * t98 * t33 + t28 * (t53 * t98);
         let t101 = t67 * t100 - t55 * t99;
         let t102 = t65 * t100 - t53 * t99;
-        let t103 = t31 * t102 + t23 * t101;
-        let t104 = t32 * t102 - t24 * t101;
-        let t105 = t33 * t102 - t27 * t101;
+        let t103 = t30 * t102 + t23 * t101;
+        let t104 = t31 * t102 - t24 * t101;
+        let t105 = t32 * t102 - t27 * t101;
         let t106 = k(0.01) * inner_ring_wz + k(0.002) * inner_ring_wx;
         let t107 = k(0.005) * inner_ring_wx - k(0.01) * inner_ring_wy;
         let t108 = k(0.002) * inner_ring_dwy + k(0.005) * inner_ring_dwz
@@ -2587,9 +2701,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for GyroscopeBearings<T> {
             k(0.01) * outer_ring_dsz + t1,
             k(0.01) * outer_ring_dsx + t3,
             k(0.1) + k(0.01) * outer_ring_dsy + t5,
-            t72 * t84 - t43 * t83,
-            t37 * t83 - t73 * t84,
-            -(t77 * t84 + t40 * t83),
+            t43 * t83 - t72 * t84,
+            t73 * t84 - t37 * t83,
+            t77 * t84 + t40 * t83,
             t43 * t1 + (t40 * t5 - t37 * t3),
             t87 * t1 - (t86 * t5 - t85 * t3),
             t77 * t5 + t73 * t3 - t72 * t1,

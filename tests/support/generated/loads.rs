@@ -30,6 +30,7 @@
 //! | to_joints | (x, u) of a maximal state | 13 | 16 | 0 | 29 | 0 of 4 |
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 17 | 26 | 0 | 43 | 0 of 2 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 23 | 38 | 0 | 61 | 6 of 12 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 45 | 66 | 0 | 111 | 0 of 10 |
 
 /// The mechanism `loads`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -1070,15 +1071,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Loads<T> {
         let t8 = disc_e2 * disc_e3;
         let t9 = t8 + t7;
         let t10 = k(0.6) * t9;
-        let t11 = disc_e0 * disc_e2;
-        let t12 = disc_e1 * disc_e3;
-        let t13 = k(0.01) * (disc_dwx + (k(2.0) * (t12 - t11) + disc_wy * disc_wz));
-        let t14 = k(2.0) * (t1 + t0);
-        let t15 = k(2.0) * t2;
-        let t16 = k(2.0) * t5;
-        let t17 = k(2.0) * (k(0.5) - (t4 + disc_e1 * disc_e1));
-        let t18 = k(1.0) / (t17 * t16 - t15 * t14);
-        let t19 = k(2.0) * (t8 - t7) * t6 - k(2.0) * (t12 + t11) * t3;
+        let t11 = k(2.0) * (t1 + t0);
+        let t12 = k(2.0) * t2;
+        let t13 = k(2.0) * t5;
+        let t14 = k(2.0) * (k(0.5) - (t4 + disc_e1 * disc_e1));
+        let t15 = k(1.0) / (t14 * t13 - t12 * t11);
+        let t16 = disc_e0 * disc_e2;
+        let t17 = disc_e1 * disc_e3;
+        let t18 = k(0.01) * (disc_dwx + (k(2.0) * (t17 - t16) + disc_wy * disc_wz));
+        let t19 = k(2.0) * (t8 - t7) * t6 - k(2.0) * (t17 + t16) * t3;
         let t20 = k(0.2) * (k(2.0) * (k(0.5) - (t4 + disc_e3 * disc_e3)) * t10 + t19);
         let t21 = k(0.01) * disc_dwy
             - (k(0.01) * (disc_wx * disc_wz) - (k(0.02) * t9 - t20));
@@ -1113,23 +1114,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Loads<T> {
         let t49 = k(1.0) / (t33 * t48 + t45 * t44);
         let t50 = k(0.2) * carriage_dwy
             - k(0.1) * (k(2.0) * t42 + carriage_wx * carriage_wz);
-        let t51 = t49 * (t37 * t45) * t50 - t49 * (t37 * t33) * t28;
+        let t51 = t50 * (t49 * (t37 * t45)) - t49 * (t37 * t33) * t28;
         let t52 = carriage_wx * carriage_wy
             - (k(2.0) * t38 - (k(2.0) * t36 + k(10.0) * t32));
         let t53 = k(0.2) * carriage_dwz + k(0.1) * t52;
-        let t54 = t49 * (t43 * t45) * t50 - t49 * (t43 * t33) * t28;
-        let t55 = t49 * (t39 * t46 - t47 * t40) * t53
-            + (t48 * t49 * t50 + t44 * t49 * t28);
+        let t54 = t50 * (t49 * (t43 * t45)) - t49 * (t43 * t33) * t28;
+        let t55 = t53 * (t49 * (t39 * t46 - t47 * t40))
+            + (t50 * (t48 * t49) + t44 * t49 * t28);
         *lambda = [
             t3 - k(4.0) * disc_dsx,
             -(k(4.0) * disc_dsy + t6),
             t10 - k(4.0) * disc_dsz,
-            t16 * t18 * t21 - t14 * t18 * t13,
-            t15 * t18 * t21 - t17 * t18 * t13,
+            t21 * (t13 * t15) - t18 * (t11 * t15),
+            t21 * (t12 * t15) - t18 * (t14 * t15),
             k(1.2) * carriage_dsx + k(0.8) * (k(5.0) - k(2.0) * carriage_dsy),
             k(1.0) - k(2.0) * carriage_dsz,
-            t49 * (t40 * t45 + t46 * t33) * t53 - t51,
-            -(t49 * (t47 * t33 + t39 * t45) * t53 + t54),
+            t53 * (t49 * (t40 * t45 + t46 * t33)) - t51,
+            -(t53 * (t49 * (t47 * t33 + t39 * t45)) + t54),
             -t55,
         ];
     }
@@ -1312,6 +1313,82 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Loads<T> {
             k(0.0),
             k(0.0),
             k(0.0),
+        ];
+    }
+    /// Writes λ: 111 operations (45 ±, 66 ×, 0 ÷).
+    fn corrected_multipliers(
+        &self,
+        _t: T,
+        y: &Self::State,
+        accelerations: &Self::Velocities,
+        lambda: &mut Self::Rows,
+    ) {
+        let k = T::constant;
+        let disc_e0 = y[3];
+        let disc_e1 = y[4];
+        let disc_e2 = y[5];
+        let disc_e3 = y[6];
+        let carriage_e0 = y[10];
+        let carriage_e1 = y[11];
+        let carriage_e2 = y[12];
+        let carriage_e3 = y[13];
+        let disc_wx = y[17];
+        let disc_wy = y[18];
+        let disc_wz = y[19];
+        let carriage_wx = y[23];
+        let carriage_wy = y[24];
+        let carriage_wz = y[25];
+        let disc_dsx = accelerations[0];
+        let disc_dsy = accelerations[1];
+        let disc_dsz = accelerations[2];
+        let disc_dwx = accelerations[3];
+        let disc_dwy = accelerations[4];
+        let carriage_dsx = accelerations[6];
+        let carriage_dsy = accelerations[7];
+        let carriage_dsz = accelerations[8];
+        let carriage_dwx = accelerations[9];
+        let carriage_dwy = accelerations[10];
+        let carriage_dwz = accelerations[11];
+        let t0 = k(0.6) * (disc_e1 * disc_e2 - disc_e0 * disc_e3);
+        let t1 = disc_e0 * disc_e0;
+        let t2 = k(0.6) * (k(0.5) - (t1 + disc_e2 * disc_e2));
+        let t3 = disc_e0 * disc_e1;
+        let t4 = disc_e2 * disc_e3;
+        let t5 = t4 + t3;
+        let t6 = k(0.6) * t5;
+        let t7 = disc_e0 * disc_e2;
+        let t8 = disc_e1 * disc_e3;
+        let t9 = k(0.01) * (disc_dwx + (k(2.0) * (t8 - t7) + disc_wy * disc_wz));
+        let t10 = k(2.0) * disc_e3;
+        let t11 = disc_e0 * t10;
+        let t12 = k(2.0) * (t4 - t3) * t2 - k(2.0) * (t8 + t7) * t0;
+        let t13 = k(0.2) * (k(2.0) * (k(0.5) - (t1 + disc_e3 * disc_e3)) * t6 + t12);
+        let t14 = k(0.01) * disc_dwy
+            - (k(0.01) * (disc_wx * disc_wz) - (k(0.02) * t5 - t13));
+        let t15 = k(1.0) - disc_e3 * t10;
+        let t16 = carriage_e0 * carriage_e3;
+        let t17 = carriage_e1 * carriage_e2;
+        let t18 = carriage_e0 * carriage_e2;
+        let t19 = carriage_e1 * carriage_e3;
+        let t20 = k(2.0) * (t19 + t18) - (k(2.0) * (t19 - t18) + k(10.0) * (t17 + t16));
+        let t21 = carriage_e0 * carriage_e0;
+        let t22 = k(2.0) * (k(0.5) - (t21 + carriage_e3 * carriage_e3))
+            - k(10.0) * (carriage_e2 * carriage_e3 - carriage_e0 * carriage_e1);
+        let t23 = carriage_dwx
+            + (k(2.0) * (k(0.5) - (t21 + carriage_e1 * carriage_e1)) + t22);
+        let t24 = k(0.2) * carriage_dwy
+            - k(0.1) * (k(2.0) * (t17 - t16) + carriage_wx * carriage_wz);
+        *lambda = [
+            t0 - k(4.0) * disc_dsx,
+            -(k(4.0) * disc_dsy + t2),
+            t6 - k(4.0) * disc_dsz,
+            -(t15 * t14 + t11 * t9),
+            t15 * t9 - t11 * t14,
+            k(1.2) * carriage_dsx + k(0.8) * (k(5.0) - k(2.0) * carriage_dsy),
+            k(1.0) - k(2.0) * carriage_dsz,
+            -(k(0.2) * carriage_dwz + k(0.1) * (carriage_wx * carriage_wy - t20)),
+            k(0.8) * t24 - k(0.06) * t23,
+            k(0.6) * t24 + k(0.08) * t23,
         ];
     }
 }

@@ -31,6 +31,7 @@
 //! | to_joints | (x, u) of a maximal state | 33 | 44 | 0 | 77 | 0 of 6 |
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 15 | 27 | 2 | 44 | 0 of 3 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 49 | 79 | 2 | 130 | 0 of 6 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 32 | 44 | 0 | 76 | 0 of 3 |
 
 /// The mechanism `planar`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -611,36 +612,37 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Planar<T> {
         let t0 = k(6.4) + k(0.8) * block_dsz;
         let t1 = block_e0 * block_e3;
         let t2 = block_e1 * block_e2;
-        let t3 = t2 - t1;
-        let t4 = block_e0 * block_e2;
-        let t5 = block_e1 * block_e3;
-        let t6 = t5 + t4;
-        let t7 = k(1.2) - k(0.8) * block_dsx;
-        let t8 = block_e0 * block_e0;
-        let t9 = k(0.5) - (t8 + block_e2 * block_e2);
-        let t10 = block_e0 * block_e1;
-        let t11 = block_e2 * block_e3;
-        let t12 = t11 - t10;
-        let t13 = k(3.2) + k(0.8) * block_dsy;
-        let t14 = t13 * (k(0.2) * t12 - k(0.1) * t9) - t7 * (k(0.2) * t6 + k(0.1) * t3);
-        let t15 = k(0.5) - (t8 + block_e3 * block_e3);
-        let t16 = k(0.005) * (block_wy * block_wz) + k(0.01) * block_dwx
-            - (t0 * (k(0.2) * t15 - k(0.1) * (t11 + t10)) - t14);
-        let t17 = t2 + t1;
-        let t18 = k(2.0) * t17;
-        let t19 = k(2.0) * t3;
-        let t20 = k(2.0) * t9;
-        let t21 = k(0.5) - (t8 + block_e1 * block_e1);
-        let t22 = k(2.0) * t21;
-        let t23 = k(1.0) / (t22 * t20 - t19 * t18);
-        let t24 = t13 * (k(0.4) * t12 - k(0.1) * t17)
-            - t7 * (k(0.4) * t6 + k(0.1) * t21);
+        let t3 = t2 + t1;
+        let t4 = k(2.0) * t3;
+        let t5 = t2 - t1;
+        let t6 = k(2.0) * t5;
+        let t7 = block_e0 * block_e0;
+        let t8 = k(0.5) - (t7 + block_e2 * block_e2);
+        let t9 = k(2.0) * t8;
+        let t10 = k(0.5) - (t7 + block_e1 * block_e1);
+        let t11 = k(2.0) * t10;
+        let t12 = k(1.0) / (t11 * t9 - t6 * t4);
+        let t13 = block_e0 * block_e2;
+        let t14 = block_e1 * block_e3;
+        let t15 = t14 + t13;
+        let t16 = k(1.2) - k(0.8) * block_dsx;
+        let t17 = block_e0 * block_e1;
+        let t18 = block_e2 * block_e3;
+        let t19 = t18 - t17;
+        let t20 = k(3.2) + k(0.8) * block_dsy;
+        let t21 = t20 * (k(0.2) * t19 - k(0.1) * t8)
+            - t16 * (k(0.2) * t15 + k(0.1) * t5);
+        let t22 = k(0.5) - (t7 + block_e3 * block_e3);
+        let t23 = k(0.005) * (block_wy * block_wz) + k(0.01) * block_dwx
+            - (t0 * (k(0.2) * t22 - k(0.1) * (t18 + t17)) - t21);
+        let t24 = t20 * (k(0.4) * t19 - k(0.1) * t3)
+            - t16 * (k(0.4) * t15 + k(0.1) * t10);
         let t25 = k(0.015) * (block_wx * block_wz) - k(0.02) * block_dwy
-            + (t0 * (k(0.4) * t15 + k(0.1) * (t5 - t4)) - t24);
+            + (t0 * (k(0.4) * t22 + k(0.1) * (t14 - t13)) - t24);
         *lambda = [
             -t0,
-            -(t20 * t23 * t25 + t18 * t23 * t16),
-            -(t19 * t23 * t25 + t22 * t23 * t16),
+            -(t25 * (t9 * t12) + t23 * (t4 * t12)),
+            -(t25 * (t6 * t12) + t23 * (t11 * t12)),
         ];
     }
 }
@@ -854,6 +856,53 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Planar<T> {
             -t18,
         ];
     }
+    /// Writes λ: 76 operations (32 ±, 44 ×, 0 ÷).
+    fn corrected_multipliers(
+        &self,
+        _t: T,
+        y: &Self::State,
+        accelerations: &Self::Velocities,
+        lambda: &mut Self::Rows,
+    ) {
+        let k = T::constant;
+        let block_e0 = y[3];
+        let block_e1 = y[4];
+        let block_e2 = y[5];
+        let block_e3 = y[6];
+        let block_wx = y[10];
+        let block_wy = y[11];
+        let block_wz = y[12];
+        let block_dsx = accelerations[0];
+        let block_dsy = accelerations[1];
+        let block_dsz = accelerations[2];
+        let block_dwx = accelerations[3];
+        let block_dwy = accelerations[4];
+        let t0 = k(6.4) + k(0.8) * block_dsz;
+        let t1 = block_e0 * block_e3;
+        let t2 = block_e1 * block_e2;
+        let t3 = block_e0 * block_e2;
+        let t4 = block_e1 * block_e3;
+        let t5 = t4 + t3;
+        let t6 = k(1.2) - k(0.8) * block_dsx;
+        let t7 = block_e0 * block_e0;
+        let t8 = block_e0 * block_e1;
+        let t9 = block_e2 * block_e3;
+        let t10 = t9 - t8;
+        let t11 = k(3.2) + k(0.8) * block_dsy;
+        let t12 = t11 * (k(0.2) * t10 - k(0.1) * (k(0.5) - (t7 + block_e2 * block_e2)));
+        let t13 = k(0.5) - (t7 + block_e3 * block_e3);
+        let t14 = t0 * (k(0.2) * t13 - k(0.1) * (t9 + t8))
+            - (t12 - t6 * (k(0.2) * t5 + k(0.1) * (t2 - t1)));
+        let t15 = k(0.005) * (block_wy * block_wz) + k(0.01) * block_dwx - t14;
+        let t16 = k(2.0) * block_e3;
+        let t17 = block_e0 * t16;
+        let t18 = t6 * (k(0.4) * t5 + k(0.1) * (k(0.5) - (t7 + block_e1 * block_e1)));
+        let t19 = t0 * (k(0.4) * t13 + k(0.1) * (t4 - t3))
+            - (t11 * (k(0.4) * t10 - k(0.1) * (t2 + t1)) - t18);
+        let t20 = k(0.015) * (block_wx * block_wz) - k(0.02) * block_dwy + t19;
+        let t21 = k(1.0) - block_e3 * t16;
+        *lambda = [-t0, t21 * t20 - t17 * t15, t17 * t20 + t21 * t15];
+    }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Ports for Planar<T> {
     type Outputs = [T; 6];
@@ -882,44 +931,45 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Planar<T> {
         let t0 = k(6.4) + k(0.8) * block_dsz;
         let t1 = block_e0 * block_e3;
         let t2 = block_e1 * block_e2;
-        let t3 = t2 - t1;
-        let t4 = block_e0 * block_e2;
-        let t5 = block_e1 * block_e3;
-        let t6 = t5 + t4;
-        let t7 = k(1.2) - k(0.8) * block_dsx;
-        let t8 = block_e0 * block_e0;
-        let t9 = k(0.5) - (t8 + block_e2 * block_e2);
-        let t10 = block_e0 * block_e1;
-        let t11 = block_e2 * block_e3;
-        let t12 = t11 - t10;
-        let t13 = k(3.2) + k(0.8) * block_dsy;
-        let t14 = t13 * (k(0.2) * t12 - k(0.1) * t9) - t7 * (k(0.2) * t6 + k(0.1) * t3);
-        let t15 = t11 + t10;
-        let t16 = k(0.5) - (t8 + block_e3 * block_e3);
-        let t17 = t0 * (k(0.2) * t16 - k(0.1) * t15);
-        let t18 = k(0.005) * (block_wy * block_wz) + k(0.01) * block_dwx - (t17 - t14);
-        let t19 = t2 + t1;
-        let t20 = k(2.0) * t19;
-        let t21 = k(2.0) * t3;
-        let t22 = k(2.0) * t9;
-        let t23 = k(0.5) - (t8 + block_e1 * block_e1);
-        let t24 = k(2.0) * t23;
-        let t25 = k(1.0) / (t24 * t22 - t21 * t20);
-        let t26 = t13 * (k(0.4) * t12 - k(0.1) * t19)
-            - t7 * (k(0.4) * t6 + k(0.1) * t23);
-        let t27 = t5 - t4;
-        let t28 = t0 * (k(0.4) * t16 + k(0.1) * t27);
+        let t3 = t2 + t1;
+        let t4 = k(2.0) * t3;
+        let t5 = t2 - t1;
+        let t6 = k(2.0) * t5;
+        let t7 = block_e0 * block_e0;
+        let t8 = k(0.5) - (t7 + block_e2 * block_e2);
+        let t9 = k(2.0) * t8;
+        let t10 = k(0.5) - (t7 + block_e1 * block_e1);
+        let t11 = k(2.0) * t10;
+        let t12 = k(1.0) / (t11 * t9 - t6 * t4);
+        let t13 = block_e0 * block_e2;
+        let t14 = block_e1 * block_e3;
+        let t15 = t14 + t13;
+        let t16 = k(1.2) - k(0.8) * block_dsx;
+        let t17 = block_e0 * block_e1;
+        let t18 = block_e2 * block_e3;
+        let t19 = t18 - t17;
+        let t20 = k(3.2) + k(0.8) * block_dsy;
+        let t21 = t20 * (k(0.2) * t19 - k(0.1) * t8)
+            - t16 * (k(0.2) * t15 + k(0.1) * t5);
+        let t22 = t18 + t17;
+        let t23 = k(0.5) - (t7 + block_e3 * block_e3);
+        let t24 = t0 * (k(0.2) * t23 - k(0.1) * t22);
+        let t25 = k(0.005) * (block_wy * block_wz) + k(0.01) * block_dwx - (t24 - t21);
+        let t26 = t20 * (k(0.4) * t19 - k(0.1) * t3)
+            - t16 * (k(0.4) * t15 + k(0.1) * t10);
+        let t27 = t14 - t13;
+        let t28 = t0 * (k(0.4) * t23 + k(0.1) * t27);
         let t29 = k(0.015) * (block_wx * block_wz) - k(0.02) * block_dwy + (t28 - t26);
-        let t30 = t22 * t25 * t29 + t20 * t25 * t18;
-        let t31 = t21 * t25 * t29 + t24 * t25 * t18;
-        let t32 = t22 * t31 + (t17 - t21 * t30);
-        let t33 = t20 * t31 + (t28 - t24 * t30);
-        let t34 = t0 * (k(0.4) * t15 + k(0.2) * t27);
-        let t35 = block_ry - (block_ry + (k(0.1) * t12 + (k(0.2) * t9 + k(0.4) * t19)));
-        let t36 = t0 * t35 + (k(2.0) * t6 * t34 + (t21 * t33 - t24 * t32));
-        let t37 = block_rx - (block_rx + (k(0.1) * t6 - (k(0.2) * t3 + k(0.4) * t23)));
-        let t38 = t0 * t37 - (k(2.0) * t12 * t34 - (t22 * t33 - t20 * t32));
-        let t39 = k(2.0) * t16 * t34 - (k(2.0) * t15 * t33 + k(2.0) * t27 * t32);
+        let t30 = t29 * (t9 * t12) + t25 * (t4 * t12);
+        let t31 = t29 * (t6 * t12) + t25 * (t11 * t12);
+        let t32 = t9 * t31 + (t24 - t6 * t30);
+        let t33 = t4 * t31 + (t28 - t11 * t30);
+        let t34 = t0 * (k(0.4) * t22 + k(0.2) * t27);
+        let t35 = block_ry - (block_ry + (k(0.1) * t19 + (k(0.2) * t8 + k(0.4) * t3)));
+        let t36 = t0 * t35 + (k(2.0) * t15 * t34 + (t6 * t33 - t11 * t32));
+        let t37 = block_rx - (block_rx + (k(0.1) * t15 - (k(0.2) * t5 + k(0.4) * t10)));
+        let t38 = t0 * t37 - (k(2.0) * t19 * t34 - (t9 * t33 - t4 * t32));
+        let t39 = k(2.0) * t23 * t34 - (k(2.0) * t22 * t33 + k(2.0) * t27 * t32);
         *out = [k(0.0), k(0.0), t0, t36, -t38, -t39];
     }
     fn n_outputs(&self) -> usize {

@@ -31,6 +31,7 @@
 //! | to_joints | (x, u) of a maximal state | 4 | 6 | 0 | 10 | 0 of 9 |
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 0 | 6 | 0 | 6 | 0 of 4 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 24 | 46 | 0 | 70 | 0 of 6 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 6 | 7 | 0 | 13 | 0 of 2 |
 
 /// The mechanism `point_on_line`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -592,6 +593,25 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PointOnLine<T> {
             k(0.5) * (bead_wy * bead_wz),
             k(0.4) * (bead_wx * bead_wz),
             -(k(0.75) * (bead_wx * bead_wy)),
+        ];
+    }
+    /// Writes λ: 13 operations (6 ±, 7 ×, 0 ÷).
+    fn corrected_multipliers(
+        &self,
+        _t: T,
+        _y: &Self::State,
+        accelerations: &Self::Velocities,
+        lambda: &mut Self::Rows,
+    ) {
+        let k = T::constant;
+        let bead_dsx = accelerations[0];
+        let bead_dsy = accelerations[1];
+        let bead_dsz = accelerations[2];
+        let t0 = k(6.867) + k(0.7) * bead_dsz;
+        let t1 = k(0.6666666666666666) * (k(0.21) - k(0.7) * bead_dsx);
+        *lambda = [
+            t1 - k(0.23333333333333334) * bead_dsy - k(0.6666666666666666) * t0,
+            t1 + k(0.4666666666666667) * bead_dsy + k(0.3333333333333333) * t0,
         ];
     }
 }

@@ -34,6 +34,7 @@
 //! | to_joints | (x, u) of a maximal state | 0 | 0 | 0 | 0 | 0 of 7 |
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 25 | 36 | 0 | 61 | 0 of 3 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 53 | 76 | 0 | 129 | 0 of 6 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 1 | 3 | 0 | 4 | 0 of 3 |
 
 /// The mechanism `spherical`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -961,6 +962,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Spherical<T> {
             -(k(0.7127863881640194) * t16),
             -t17,
             t18,
+        ];
+    }
+    /// Writes λ: 4 operations (1 ±, 3 ×, 0 ÷).
+    fn corrected_multipliers(
+        &self,
+        _t: T,
+        _y: &Self::State,
+        accelerations: &Self::Velocities,
+        lambda: &mut Self::Rows,
+    ) {
+        let k = T::constant;
+        let top_dsx = accelerations[0];
+        let top_dsy = accelerations[1];
+        let top_dsz = accelerations[2];
+        *lambda = [
+            -(k(15.0) * top_dsx),
+            -(k(15.0) * top_dsy),
+            -(k(147.15) + k(15.0) * top_dsz),
         ];
     }
 }

@@ -684,6 +684,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Tether<T> {
             -(k(0.25) * (bob_wx * bob_wy)),
         ];
     }
+    /// Writes λ: 0 operations (0 ±, 0 ×, 0 ÷).
+    fn corrected_multipliers(
+        &self,
+        _t: T,
+        _y: &Self::State,
+        _accelerations: &Self::Velocities,
+        lambda: &mut Self::Rows,
+    ) {
+        *lambda = [];
+    }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Ports for Tether<T> {
     type Outputs = [T; 0];
