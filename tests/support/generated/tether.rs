@@ -20,12 +20,32 @@
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 4 |
 //! | newton_step | dependent positions, one Newton step | 11 | 13 | 1 | 25 | 0 of 7 |
 //! | solve_velocities | dependent velocities, eq. (19) | 0 | 0 | 0 | 0 | 0 of 6 |
-//! | joint_accelerations | u̇ in joint coordinates | 37 | 64 | 1 | 102 | 0 of 6 |
+//! | joint_accelerations | u̇ in joint coordinates | 81 | 130 | 4 | 215 | 0 of 6 |
 //! | joint_derivative | ẋ but for u̇ | 12 | 27 | 1 | 40 | 0 of 8 |
 //! | to_maximal | (q, v) of a joint state | 0 | 0 | 0 | 0 | 0 of 13 |
 //! | to_joints | (x, u) of a maximal state | 0 | 0 | 0 | 0 | 0 of 13 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 37 | 64 | 1 | 102 | 0 of 6 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 49 | 82 | 1 | 132 | 0 of 6 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 81 | 130 | 4 | 215 | 0 of 6 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 93 | 142 | 4 | 239 | 0 of 6 |
+//!
+//! # Proof
+//!
+//! Equal to the textbook's at a random point modulo a prime of 521 bits:
+//! * phi: Φ of eqs. (7) to (12)
+//! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
+//! * applied_force, accelerations, multipliers: eq. (17)
+//! * derivative: eqs. (14) and (16)
+//! * energy, read_joints: their definitions
+//! * chart_vectors, newton_step: Newton's step for Φ = 0
+//! * solve_velocities: eq. (19)
+//! * to_maximal, to_joints: Φ = 0, eq. (18) and the joint coordinates
+//! * joint_accelerations: eq. (17) on the constraints
+//! * joint_derivative: eqs. (14) and (16) on the constraints
+//! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
+//! * corrected_derivative: eqs. (14) and (16) on the constraints
+//! * corrected_multipliers: eq. (17) on the constraints
+//!
+//! All of it holds but with a probability below 1e-145.
+//! Not proved: the size of rounding errors.
 
 /// The mechanism `tether`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -436,7 +456,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Tether<T> {
     fn rates(&self) -> Self::Rates {
         [T::constant(0.0); 6]
     }
-    /// Writes u̇: 102 operations (37 ±, 64 ×, 1 ÷) and 1 functions.
+    /// Writes u̇: 215 operations (81 ±, 130 ×, 4 ÷) and 1 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
         let k = T::constant;
         let x0 = x[0];
@@ -452,32 +472,89 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Tether<T> {
         let u3 = x[10];
         let u4 = x[11];
         let u5 = x[12];
-        let t0 = x3 * x3;
-        let t1 = x3 * x6;
-        let t2 = x4 * x5;
-        let t3 = x1 * (k(2.0) * (t2 + t1)) - x0 * (k(2.0) * (k(0.5) - (t0 + x4 * x4)));
-        let t4 = x3 * x5;
-        let t5 = x4 * x6;
-        let t6 = x2 * (k(2.0) * (t5 - t4)) + t3;
-        let t7 = x3 * x4;
-        let t8 = x5 * x6;
-        let t9 = x1 * (k(2.0) * (k(0.5) - (t0 + x5 * x5))) - x0 * (k(2.0) * (t2 - t1));
-        let t10 = t9 - x2 * (k(2.0) * (t8 + t7));
-        let t11 = x0 * (k(2.0) * (t5 + t4)) + x1 * (k(2.0) * (t8 - t7));
-        let t12 = t11 - x2 * (k(2.0) * (k(0.5) - (t0 + x6 * x6)));
-        let t13 = x5 * t12 + x6 * t10;
-        let t14 = x5 * t6 + x4 * t10;
-        let t15 = x6 * t6 - x4 * t12;
-        let t16 = x6 * t15 + x5 * t14 - (x3 * t13 + k(0.5) * t6);
-        let t17 = k(1.0) / (x0 * x0 + (x2 * x2 + x1 * x1)).sqrt();
-        let t18 = k(1.2) * ((x1 * u1 + x0 * u0 + x2 * u2) * t17);
-        let t19 = k(160.0) - t17 * (k(96.0) - t18);
-        let t20 = x6 * t13 - k(0.5) * t10 + (x3 * t15 + x4 * t14);
-        let t21 = x4 * t15 - x3 * t14 + (k(0.5) * t12 - x5 * t13);
+        let t0 = (x2 * x2 + (x1 * x1 + x0 * x0)).sqrt();
+        let t1 = k(1.0) / t0;
+        let t2 = x0 * t1;
+        let t3 = x1 * t1;
+        let t4 = x2 * t1;
+        let t5 = k(0.3) * (u2 * t4 + (u1 * t3 + u0 * t2)) - k(40.0) * (k(0.6) - t0);
+        let t6 = t2 * t5;
+        let t7 = x3 * x3;
+        let t8 = k(0.5) - (t7 + x4 * x4);
+        let t9 = k(2.0) * t8;
+        let t10 = t3 * t5;
+        let t11 = x3 * x6;
+        let t12 = x4 * x5;
+        let t13 = t12 + t11;
+        let t14 = k(2.0) * t13;
+        let t15 = t4 * t5;
+        let t16 = x3 * x5;
+        let t17 = x4 * x6;
+        let t18 = t17 - t16;
+        let t19 = k(2.0) * t18;
+        let t20 = t19 * t15 + (t14 * t10 - t9 * t6);
+        let t21 = t12 - t11;
+        let t22 = k(2.0) * t21;
+        let t23 = k(0.5) - (t7 + x5 * x5);
+        let t24 = k(2.0) * t23;
+        let t25 = x3 * x4;
+        let t26 = x5 * x6;
+        let t27 = t26 + t25;
+        let t28 = k(2.0) * t27;
+        let t29 = t28 * t15 - (t24 * t10 - t22 * t6);
+        let t30 = t17 + t16;
+        let t31 = k(2.0) * t30;
+        let t32 = t26 - t25;
+        let t33 = k(2.0) * t32;
+        let t34 = k(0.5) - (t7 + x6 * x6);
+        let t35 = k(2.0) * t34;
+        let t36 = t35 * t15 - (t33 * t10 + t31 * t6);
+        let t37 = t31 * t36 - (t22 * t29 - t9 * t20);
+        let t38 = k(1.0) / (t8 * t9 + t21 * t22 + t30 * t31);
+        let t39 = t38 * t37;
+        let t40 = t20 - t8 * t39;
+        let t41 = t29 + t21 * t39;
+        let t42 = t36 - t30 * t39;
+        let t43 = t33 * t42 + (t24 * t41 - t14 * t40);
+        let t44 = t30 * (t30 * t38);
+        let t45 = t21 * t38;
+        let t46 = t30 * t45;
+        let t47 = t8 * t38;
+        let t48 = t30 * t47;
+        let t49 = t32 + (t14 * t48 + t24 * t46 - t33 * t44);
+        let t50 = t21 * t45;
+        let t51 = t21 * t47;
+        let t52 = t23 - (t14 * t51 + t24 * t50 - t33 * t46);
+        let t53 = t8 * t47;
+        let t54 = t13 - (t14 * t53 + t24 * t51 - t33 * t48);
+        let t55 = k(1.0) / (t14 * t54 + t24 * t52 + t33 * t49);
+        let t56 = t55 * t43;
+        let t57 = t28 * (t41 - t52 * t56) + t19 * (t40 + t54 * t56);
+        let t58 = t52 * t55;
+        let t59 = t46 - t49 * t58;
+        let t60 = t54 * t55;
+        let t61 = t48 - t49 * t60;
+        let t62 = t19 * t61 - t28 * t59 + t35 * (t44 + t49 * (t49 * t55));
+        let t63 = t34 - t62;
+        let t64 = k(19.62) * t34;
+        let t65 = t51 + t52 * t60;
+        let t66 = t19 * t65 - t28 * (t50 + t52 * t58) + t35 * t59;
+        let t67 = t27 + t66;
+        let t68 = k(19.62) * t27;
+        let t69 = t19 * (t53 + t54 * t60) - t28 * t65 + t35 * t61;
+        let t70 = t18 - t69;
+        let t71 = k(19.62) * t18;
+        let t72 = t71 * t70 + t68 * t67 + t64 * t63 + (t35 * (t42 - t49 * t56) + t57);
+        let t73 = t72 / (t19 * t70 + t28 * t67 + t35 * t63);
+        let t74 = t71 - t19 * t73;
+        let t75 = t68 - t28 * t73;
+        let t76 = t64 - t35 * t73;
+        let t77 = t55 * (t43 + (t49 * t76 + (t52 * t75 - t54 * t74)));
+        let t78 = t21 * (t75 - t24 * t77) - t8 * (t74 + t14 * t77);
         *out = [
-            t19 * t16,
-            -(t19 * t20),
-            -(k(9.81) + t19 * t21),
+            t38 * (t37 + (t30 * (t76 - t33 * t77) - t78)),
+            t77,
+            -t73,
             -(k(0.5) * (u4 * u5)),
             k(0.6666666666666666) * (u3 * u5),
             -(k(0.25) * (u3 * u4)),
@@ -567,7 +644,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Tether<T> {
         x[12] = bob_wz;
         x[13] = y[13];
     }
-    /// Writes u̇ at a state that satisfies the constraints: 102 operations (37 ±, 64 ×, 1 ÷) and 1 functions.
+    /// Writes u̇ at a state that satisfies the constraints: 215 operations (81 ±, 130 ×, 4 ÷) and 1 functions.
     fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let bob_rx = y[0];
@@ -584,41 +661,95 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Tether<T> {
         let bob_wy = y[11];
         let bob_wz = y[12];
         let t0 = bob_e0 * bob_e0;
-        let t1 = bob_e0 * bob_e3;
-        let t2 = bob_e1 * bob_e2;
-        let t3 = k(2.0) * (t2 + t1) * bob_ry
-            - k(2.0) * (k(0.5) - (t0 + bob_e1 * bob_e1)) * bob_rx;
-        let t4 = bob_e0 * bob_e2;
-        let t5 = bob_e1 * bob_e3;
-        let t6 = k(2.0) * (t5 - t4) * bob_rz + t3;
-        let t7 = bob_e0 * bob_e1;
-        let t8 = bob_e2 * bob_e3;
-        let t9 = k(2.0) * (k(0.5) - (t0 + bob_e2 * bob_e2)) * bob_ry
-            - k(2.0) * (t2 - t1) * bob_rx;
-        let t10 = t9 - k(2.0) * (t8 + t7) * bob_rz;
-        let t11 = k(2.0) * (t5 + t4) * bob_rx + k(2.0) * (t8 - t7) * bob_ry;
-        let t12 = t11 - k(2.0) * (k(0.5) - (t0 + bob_e3 * bob_e3)) * bob_rz;
-        let t13 = bob_e2 * t12 + bob_e3 * t10;
-        let t14 = bob_e2 * t6 + bob_e1 * t10;
-        let t15 = bob_e3 * t6 - bob_e1 * t12;
-        let t16 = bob_e3 * t15 + bob_e2 * t14 - (bob_e0 * t13 + k(0.5) * t6);
-        let t17 = k(1.0)
-            / (bob_rx * bob_rx + (bob_ry * bob_ry + bob_rz * bob_rz)).sqrt();
-        let t18 = k(1.2)
-            * (t17 * (bob_rz * bob_sz + (bob_rx * bob_sx + bob_ry * bob_sy)));
-        let t19 = k(160.0) - t17 * (k(96.0) - t18);
-        let t20 = bob_e3 * t13 - k(0.5) * t10 + (bob_e0 * t15 + bob_e1 * t14);
-        let t21 = bob_e1 * t15 - bob_e0 * t14 + (k(0.5) * t12 - bob_e2 * t13);
+        let t1 = k(0.5) - (t0 + bob_e1 * bob_e1);
+        let t2 = k(2.0) * t1;
+        let t3 = bob_e0 * bob_e3;
+        let t4 = bob_e1 * bob_e2;
+        let t5 = t4 - t3;
+        let t6 = k(2.0) * t5;
+        let t7 = bob_e0 * bob_e2;
+        let t8 = bob_e1 * bob_e3;
+        let t9 = t8 + t7;
+        let t10 = k(2.0) * t9;
+        let t11 = k(1.0) / (t9 * t10 + (t5 * t6 + t1 * t2));
+        let t12 = t1 * t11;
+        let t13 = t1 * t12;
+        let t14 = t4 + t3;
+        let t15 = k(2.0) * t14;
+        let t16 = t5 * t12;
+        let t17 = k(0.5) - (t0 + bob_e2 * bob_e2);
+        let t18 = k(2.0) * t17;
+        let t19 = t9 * t12;
+        let t20 = bob_e0 * bob_e1;
+        let t21 = bob_e2 * bob_e3;
+        let t22 = t21 - t20;
+        let t23 = k(2.0) * t22;
+        let t24 = t14 + (t23 * t19 - (t18 * t16 + t15 * t13));
+        let t25 = t5 * t11;
+        let t26 = t5 * t25;
+        let t27 = t9 * t25;
+        let t28 = t17 + (t23 * t27 - (t18 * t26 + t15 * t16));
+        let t29 = t9 * (t9 * t11);
+        let t30 = t22 - (t23 * t29 - (t18 * t27 + t15 * t19));
+        let t31 = k(1.0) / (t23 * t30 + (t18 * t28 + t15 * t24));
+        let t32 = t24 * t31;
+        let t33 = t8 - t7;
+        let t34 = k(2.0) * t33;
+        let t35 = t16 + t28 * t32;
+        let t36 = t21 + t20;
+        let t37 = k(2.0) * t36;
+        let t38 = t19 - t30 * t32;
+        let t39 = k(0.5) - (t0 + bob_e3 * bob_e3);
+        let t40 = k(2.0) * t39;
+        let t41 = t40 * t38 - (t37 * t35 - t34 * (t13 + t24 * t32));
+        let t42 = t33 - t41;
+        let t43 = t28 * t31;
+        let t44 = t27 - t30 * t43;
+        let t45 = t40 * t44 - (t37 * (t26 + t28 * t43) - t34 * t35);
+        let t46 = t36 + t45;
+        let t47 = t40 * (t29 + t30 * (t30 * t31)) - (t37 * t44 - t34 * t38);
+        let t48 = t39 - t47;
+        let t49 = (bob_rx * bob_rx + bob_ry * bob_ry + bob_rz * bob_rz).sqrt();
+        let t50 = k(1.0) / t49;
+        let t51 = bob_rz * t50;
+        let t52 = bob_ry * t50;
+        let t53 = bob_rx * t50;
+        let t54 = k(40.0) * (k(0.6) - t49)
+            - k(0.3) * (bob_sx * t53 + bob_sy * t52 + bob_sz * t51);
+        let t55 = t53 * t54;
+        let t56 = t52 * t54;
+        let t57 = t51 * t54;
+        let t58 = t34 * t57 + (t15 * t56 - t2 * t55);
+        let t59 = t37 * t57 - (t18 * t56 - t6 * t55);
+        let t60 = t40 * t57 - (t23 * t56 + t10 * t55);
+        let t61 = t10 * t60 - (t6 * t59 - t2 * t58);
+        let t62 = t11 * t61;
+        let t63 = t58 - t1 * t62;
+        let t64 = t59 + t5 * t62;
+        let t65 = t60 - t9 * t62;
+        let t66 = t23 * t65 + (t18 * t64 - t15 * t63);
+        let t67 = t31 * t66;
+        let t68 = t37 * (t64 - t28 * t67) + t34 * (t63 + t24 * t67);
+        let t69 = k(19.62) * t33;
+        let t70 = k(19.62) * t36;
+        let t71 = k(19.62) * t39;
+        let t72 = t48 * t71 + (t46 * t70 + t42 * t69) - (t40 * (t65 - t30 * t67) + t68);
+        let t73 = t72 / (t40 * t48 + (t37 * t46 + t34 * t42));
+        let t74 = t69 - t34 * t73;
+        let t75 = t70 - t37 * t73;
+        let t76 = t71 - t40 * t73;
+        let t77 = t31 * (t66 - (t30 * t76 + (t28 * t75 - t24 * t74)));
+        let t78 = t5 * (t75 + t18 * t77) - t1 * (t74 - t15 * t77);
         *out = [
-            t19 * t16,
-            -(t19 * t20),
-            -(k(9.81) + t19 * t21),
+            -(t11 * (t61 - (t9 * (t76 + t23 * t77) - t78))),
+            -t77,
+            -t73,
             -(k(0.5) * (bob_wy * bob_wz)),
             k(0.6666666666666666) * (bob_wx * bob_wz),
             -(k(0.25) * (bob_wx * bob_wy)),
         ];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 132 operations (49 ±, 82 ×, 1 ÷) and 1 functions.
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 239 operations (93 ±, 142 ×, 4 ÷) and 1 functions.
     fn corrected_accelerations(
         &self,
         _t: T,
@@ -639,46 +770,100 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Tether<T> {
         let bob_wx = y[10];
         let bob_wy = y[11];
         let bob_wz = y[12];
-        let t0 = bob_e0 * bob_e1;
-        let t1 = bob_e2 * bob_e3;
-        let t2 = k(2.0) * (t1 + t0);
+        let t0 = bob_e0 * bob_e0;
+        let t1 = k(0.5) - (t0 + bob_e1 * bob_e1);
+        let t2 = k(2.0) * t1;
         let t3 = bob_e0 * bob_e3;
         let t4 = bob_e1 * bob_e2;
-        let t5 = k(2.0) * (t4 - t3);
-        let t6 = bob_e0 * bob_e0;
-        let t7 = k(2.0) * (k(0.5) - (t6 + bob_e2 * bob_e2));
-        let t8 = t7 * bob_ry - t5 * bob_rx - t2 * bob_rz;
-        let t9 = k(2.0) * (k(0.5) - (t6 + bob_e3 * bob_e3));
-        let t10 = k(2.0) * (t1 - t0);
-        let t11 = bob_e0 * bob_e2;
-        let t12 = bob_e1 * bob_e3;
-        let t13 = k(2.0) * (t12 + t11);
-        let t14 = t13 * bob_rx + t10 * bob_ry - t9 * bob_rz;
-        let t15 = bob_e2 * t14 + bob_e3 * t8;
-        let t16 = k(2.0) * (k(0.5) - (t6 + bob_e1 * bob_e1));
-        let t17 = k(2.0) * (t4 + t3);
-        let t18 = k(2.0) * (t12 - t11);
-        let t19 = t18 * bob_rz + (t17 * bob_ry - t16 * bob_rx);
-        let t20 = bob_e2 * t19 + bob_e1 * t8;
-        let t21 = bob_e3 * t19 - bob_e1 * t14;
-        let t22 = bob_e1 * t21 - bob_e0 * t20 + (k(0.5) * t14 - bob_e2 * t15);
-        let t23 = k(1.0)
-            / (bob_rx * bob_rx + (bob_ry * bob_ry + bob_rz * bob_rz)).sqrt();
-        let t24 = k(1.2)
-            * (t23 * (bob_rz * bob_sz + (bob_rx * bob_sx + bob_ry * bob_sy)));
-        let t25 = k(160.0) - t23 * (k(96.0) - t24);
-        let t26 = k(9.81) + t25 * t22;
-        let t27 = bob_e3 * t15 - k(0.5) * t8 + (bob_e0 * t21 + bob_e1 * t20);
-        let t28 = t25 * t27;
-        let t29 = bob_e3 * t21 + bob_e2 * t20 - (bob_e0 * t15 + k(0.5) * t19);
-        let t30 = t25 * t29;
-        let t31 = t16 * t30 + (t17 * t28 + t18 * t26);
-        let t32 = t5 * t30 + (t7 * t28 - t2 * t26);
-        let t33 = t13 * t30 - (t10 * t28 - t9 * t26);
+        let t5 = t4 - t3;
+        let t6 = k(2.0) * t5;
+        let t7 = bob_e0 * bob_e2;
+        let t8 = bob_e1 * bob_e3;
+        let t9 = t8 + t7;
+        let t10 = k(2.0) * t9;
+        let t11 = k(1.0) / (t9 * t10 + (t5 * t6 + t1 * t2));
+        let t12 = t1 * t11;
+        let t13 = t1 * t12;
+        let t14 = t4 + t3;
+        let t15 = k(2.0) * t14;
+        let t16 = t5 * t12;
+        let t17 = k(0.5) - (t0 + bob_e2 * bob_e2);
+        let t18 = k(2.0) * t17;
+        let t19 = t9 * t12;
+        let t20 = bob_e0 * bob_e1;
+        let t21 = bob_e2 * bob_e3;
+        let t22 = t21 - t20;
+        let t23 = k(2.0) * t22;
+        let t24 = t14 + (t23 * t19 - (t18 * t16 + t15 * t13));
+        let t25 = t5 * t11;
+        let t26 = t5 * t25;
+        let t27 = t9 * t25;
+        let t28 = t17 + (t23 * t27 - (t18 * t26 + t15 * t16));
+        let t29 = t9 * (t9 * t11);
+        let t30 = t22 - (t23 * t29 - (t18 * t27 + t15 * t19));
+        let t31 = k(1.0) / (t23 * t30 + (t18 * t28 + t15 * t24));
+        let t32 = t24 * t31;
+        let t33 = t8 - t7;
+        let t34 = k(2.0) * t33;
+        let t35 = t16 + t28 * t32;
+        let t36 = t21 + t20;
+        let t37 = k(2.0) * t36;
+        let t38 = t19 - t30 * t32;
+        let t39 = k(0.5) - (t0 + bob_e3 * bob_e3);
+        let t40 = k(2.0) * t39;
+        let t41 = t40 * t38 - (t37 * t35 - t34 * (t13 + t24 * t32));
+        let t42 = t33 - t41;
+        let t43 = t28 * t31;
+        let t44 = t27 - t30 * t43;
+        let t45 = t40 * t44 - (t37 * (t26 + t28 * t43) - t34 * t35);
+        let t46 = t36 + t45;
+        let t47 = t40 * (t29 + t30 * (t30 * t31)) - (t37 * t44 - t34 * t38);
+        let t48 = t39 - t47;
+        let t49 = (bob_rx * bob_rx + bob_ry * bob_ry + bob_rz * bob_rz).sqrt();
+        let t50 = k(1.0) / t49;
+        let t51 = bob_rz * t50;
+        let t52 = bob_ry * t50;
+        let t53 = bob_rx * t50;
+        let t54 = k(40.0) * (k(0.6) - t49)
+            - k(0.3) * (bob_sx * t53 + bob_sy * t52 + bob_sz * t51);
+        let t55 = t53 * t54;
+        let t56 = t52 * t54;
+        let t57 = t51 * t54;
+        let t58 = t34 * t57 + (t15 * t56 - t2 * t55);
+        let t59 = t37 * t57 - (t18 * t56 - t6 * t55);
+        let t60 = t40 * t57 - (t23 * t56 + t10 * t55);
+        let t61 = t10 * t60 - (t6 * t59 - t2 * t58);
+        let t62 = t11 * t61;
+        let t63 = t58 - t1 * t62;
+        let t64 = t59 + t5 * t62;
+        let t65 = t60 - t9 * t62;
+        let t66 = t23 * t65 + (t18 * t64 - t15 * t63);
+        let t67 = t31 * t66;
+        let t68 = t37 * (t64 - t28 * t67) + t34 * (t63 + t24 * t67);
+        let t69 = k(19.62) * t33;
+        let t70 = k(19.62) * t36;
+        let t71 = k(19.62) * t39;
+        let t72 = t48 * t71 + (t46 * t70 + t42 * t69) - (t40 * (t65 - t30 * t67) + t68);
+        let t73 = t72 / (t40 * t48 + (t37 * t46 + t34 * t42));
+        let t74 = t34 * t73;
+        let t75 = t69 - t74;
+        let t76 = t37 * t73;
+        let t77 = t70 - t76;
+        let t78 = t40 * t73;
+        let t79 = t71 - t78;
+        let t80 = t31 * (t66 - (t30 * t79 + (t28 * t77 - t24 * t75)));
+        let t81 = t15 * t80;
+        let t82 = t18 * t80;
+        let t83 = t23 * t80;
+        let t84 = t9 * (t79 + t83) - (t5 * (t77 + t82) - t1 * (t75 - t81));
+        let t85 = t11 * (t61 - t84);
+        let t86 = t2 * t85 - (t74 + t81);
+        let t87 = t6 * t85 + (t76 - t82);
+        let t88 = t10 * t85 - (t78 - t83);
         *out = [
-            t13 * t33 + (t5 * t32 + t16 * t31),
-            t10 * t33 - (t7 * t32 + t17 * t31),
-            t2 * t32 - t18 * t31 - t9 * t33,
+            -(t10 * t88 + (t6 * t87 + t2 * t86)),
+            t18 * t87 + t15 * t86 - t23 * t88,
+            t40 * t88 - (t37 * t87 - t34 * t86),
             -(k(0.5) * (bob_wy * bob_wz)),
             k(0.6666666666666666) * (bob_wx * bob_wz),
             -(k(0.25) * (bob_wx * bob_wy)),

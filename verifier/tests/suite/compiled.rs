@@ -106,6 +106,9 @@ where
         let mut accelerations = mechanism.velocities();
         mechanism.corrected_accelerations(t, &y, &mut accelerations);
         same("corrected_accelerations", accelerations.as_ref());
+        let mut lambda = mechanism.rows();
+        mechanism.corrected_multipliers(t, &y, &accelerations, &mut lambda);
+        same("corrected_multipliers", lambda.as_ref());
         mechanism.corrected_derivative(t, &y, &mut dy);
         same("corrected_derivative", dy.as_ref());
     }
