@@ -157,14 +157,7 @@ impl Module {
         let choice = if text.contains("gyro_sim::charts") { Choice::Charts } else { Choice::Pivoting };
         let joints = JointLayout::of(model);
         let name = skeleton::type_name(&model.name);
-        let has_multipliers = text.contains("fn corrected_multipliers");
-        let expected = skeleton::text(
-            model,
-            &name,
-            &tables,
-            choice,
-            joints.as_ref().map(|joints| (joints, has_multipliers)),
-        );
+        let expected = skeleton::text(model, &name, &tables, choice, joints.as_ref());
         let expected = expected.parse().expect("the expected text consists of tokens");
         let mut matched = Matched::default();
         matched.walk(expected, tokens, text.lines().count())?;
@@ -272,10 +265,7 @@ impl Module {
             ("to_joints", n_joints),
             ("joint_accelerations_at", n_rates),
             ("corrected_accelerations", if self.joints.is_some() { 6 * n } else { 0 }),
-            (
-                "corrected_multipliers",
-                if self.programs.contains_key("corrected_multipliers") { rows } else { 0 },
-            ),
+            ("corrected_multipliers", if self.joints.is_some() { rows } else { 0 }),
         ];
         let found = |name: &str| self.programs.get(name).map_or(0, |program| program.results.len());
         let patterns = [

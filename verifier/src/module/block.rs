@@ -274,13 +274,10 @@ impl<'a> Reader<'a> {
 
     /// `gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);` or the like, after its buffer.
     fn compute_first(&mut self, before: Before, statement: &Stmt) -> Result<(), Refusal> {
-        if text(statement) != before.call {
-            return Err(refused(statement));
-        }
-        for argument in ["t", "x", "y"] {
-            if let Some(entry) = self.names.get_mut(argument) {
-                entry.is_used = true;
-            }
+        let is_call = text(statement) == before.call;
+        for argument in before.arguments() {
+            let entry = self.names.get_mut(argument).filter(|_| is_call);
+            entry.ok_or_else(|| refused(statement))?.is_used = true;
         }
         self.bind(before.buffer.to_owned(), Known::Accelerations, statement.span())
     }

@@ -22,7 +22,7 @@ pub fn text(
     type_name: &str,
     tables: &[Spline],
     choice: Choice,
-    joints: Option<(&JointLayout, bool)>,
+    joints: Option<&JointLayout>,
 ) -> String {
     [
         constants(tables),
@@ -31,7 +31,7 @@ pub fn text(
         mechanism(model, type_name),
         partition(model, type_name, choice, joints.is_some()),
         equations(model, type_name),
-        joints.map(|(joints, multipliers)| joint_space(type_name, joints, multipliers)).unwrap_or_default(),
+        joints.map(|joints| joint_space(type_name, joints)).unwrap_or_default(),
         ports(model, type_name),
     ]
     .concat()
@@ -374,9 +374,7 @@ fn multipliers(name: &str, accelerations: &str) -> String {
     )
 }
 
-fn joint_space(name: &str, joints: &JointLayout, has_multipliers: bool) -> String {
-    let multipliers =
-        if has_multipliers { multipliers("corrected_multipliers", "Velocities") } else { String::new() };
+fn joint_space(name: &str, joints: &JointLayout) -> String {
     let (n_state, n_rates) = (joints.n_state(), joints.n_rates);
     format!(
         "impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for {name}<T> {{
@@ -391,10 +389,11 @@ fn joint_space(name: &str, joints: &JointLayout, has_multipliers: bool) -> Strin
             fn to_maximal(&self, ANY_t: T, ANY_x: &Self::Joints, y: &mut Self::State) {{ HOLE_to_maximal }}
             fn to_joints(&self, ANY_t: T, ANY_y: &Self::State, x: &mut Self::Joints) {{ HOLE_to_joints }}
             {}
-            {multipliers}
+            {}
         }}",
         buffers(&[("rates", "Rates", &n_rates.to_string())]),
         fillings(&[("joint_accelerations_at", "Rates"), ("corrected_accelerations", "Velocities")]),
+        multipliers("corrected_multipliers", "Velocities"),
     )
 }
 

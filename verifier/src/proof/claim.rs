@@ -90,10 +90,8 @@ impl Claim {
                 JointAccelerationsAt,
                 CorrectedAccelerations,
                 CorrectedDerivative,
+                CorrectedMultipliers,
             ]);
-        }
-        if module.programs.contains_key("corrected_multipliers") {
-            claims.push(CorrectedMultipliers);
         }
         claims
     }

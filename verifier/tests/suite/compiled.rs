@@ -1,9 +1,9 @@
 //! The interpreter over `f64` computes what the compiler makes of the same text, bit by bit.
 
-use gyro_sim::{Equations, Mechanism, Ode, Ports};
+use gyro_sim::{Equations, JointSpace, Mechanism, Ode, Partition, Ports};
 use gyro_verifier::atoms::Elementary;
 use gyro_verifier::interpreter::{Given, constants, run};
-use gyro_verifier::module::Module;
+use gyro_verifier::module::{Module, source_of_accelerations};
 use gyro_verifier::point::Point;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -22,11 +22,10 @@ const STATES: usize = 20;
 
 #[test]
 fn an_interpreted_tree_is_a_compiled_one() {
-    check(
-        "torsion",
-        include_str!("../../../gyro-sim/src/generated/torsion.rs"),
-        &torsion::Torsion::<f64>::default(),
-    );
+    let code = include_str!("../../../gyro-sim/src/generated/torsion.rs");
+    let mechanism = torsion::Torsion::<f64>::default();
+    check("torsion", code, &mechanism);
+    check_joints("torsion", code, &mechanism);
 }
 
 #[test]
@@ -51,10 +50,7 @@ fn check<M>(page: &str, code: &str, mechanism: &M)
 where
     M: Ode<Scalar = f64> + Mechanism + Equations + Ports,
 {
-    let page = crate::support::page(page);
-    // The start has literals that no formula has.
-    let formulas = code.split("fn derivative").nth(1).expect("formulas after the start");
-    let module = Module::read(&page.model, code, &literals(formulas)).expect("the emitted subset");
+    let (page, module) = read(page, code);
     let mut random = ChaCha8Rng::seed_from_u64(9);
     for _ in 0..STATES {
         let mut y = mechanism.start();
@@ -64,14 +60,77 @@ where
     }
 }
 
+fn read(page: &str, code: &str) -> (crate::support::Page, Module) {
+    let page = crate::support::page(page);
+    // A start has literals that no formula has.
+    let is_start = |function: &str| function.starts_with("start(") || function.starts_with("joint_start(");
+    let formulas: String = code.split("fn ").filter(|function| !is_start(function)).collect();
+    let module = Module::read(&page.model, code, &literals(&formulas)).expect("the emitted subset");
+    (page, module)
+}
+
+/// The functions of joint coordinates.
+fn check_joints<M>(page: &str, code: &str, mechanism: &M)
+where
+    M: JointSpace<Scalar = f64> + Partition,
+{
+    let (page, module) = read(page, code);
+    let numbers: Vec<f64> = constants((), &module);
+    let mut random = ChaCha8Rng::seed_from_u64(10);
+    for _ in 0..STATES {
+        let (t, mut x, mut y) = (random.random_range(-1.0..1.0), mechanism.joint_start(), mechanism.start());
+        x.as_mut().iter_mut().chain(y.as_mut()).for_each(|x| *x = random.random_range(-1.0..1.0));
+        let point = point(&page.model, t, y.as_ref());
+        let run = |function: &str, accelerations: &[f64]| {
+            let given = Given { point: &point, accelerations, charts: &[], joints: x.as_ref() };
+            run(&module, &module.programs[function], &numbers, &Elementary, &given).expect("numbers")
+        };
+        let same = |function: &str, compiled: &[f64]| {
+            let accelerations = run(source_of_accelerations(function), &[]);
+            assert_same(function, &run(function, &accelerations), compiled);
+        };
+        let mut rates = mechanism.rates();
+        mechanism.joint_accelerations(t, &x, &mut rates);
+        same("joint_accelerations", rates.as_ref());
+        mechanism.joint_accelerations_at(t, &y, &mut rates);
+        same("joint_accelerations_at", rates.as_ref());
+        let mut dx = x.clone();
+        mechanism.joint_derivative(t, &x, &mut dx);
+        same("joint_derivative", dx.as_ref());
+        let mut joints = x.clone();
+        mechanism.to_joints(t, &y, &mut joints);
+        same("to_joints", joints.as_ref());
+        let (mut maximal, mut dy) = (y.clone(), y.clone());
+        mechanism.to_maximal(t, &x, &mut maximal);
+        same("to_maximal", maximal.as_ref());
+        let mut accelerations = mechanism.velocities();
+        mechanism.corrected_accelerations(t, &y, &mut accelerations);
+        same("corrected_accelerations", accelerations.as_ref());
+        let mut lambda = mechanism.rows();
+        mechanism.corrected_multipliers(t, &y, &accelerations, &mut lambda);
+        same("corrected_multipliers", lambda.as_ref());
+        mechanism.corrected_derivative(t, &y, &mut dy);
+        same("corrected_derivative", dy.as_ref());
+    }
+}
+
+fn point(model: &gyro_model::Model, t: f64, state: &[f64]) -> Point<f64> {
+    let values =
+        |fields: &[gyro_model::Parameter]| fields.iter().map(|f| gyro_model::to_f64(&f.value)).collect();
+    let (parameters, inputs) = (values(&model.parameters), values(&model.inputs));
+    Point { context: (), t, state: state.to_vec(), parameters, inputs }
+}
+
+fn assert_same(function: &str, interpreted: &[f64], compiled: &[f64]) {
+    let bits = |numbers: &[f64]| numbers.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+    assert_eq!(bits(interpreted), bits(compiled), "{function}: {interpreted:?} {compiled:?}");
+}
+
 fn compare<M>(module: &Module, model: &gyro_model::Model, mechanism: &M, t: f64, y: &M::State)
 where
     M: Ode<Scalar = f64> + Mechanism + Equations + Ports,
 {
-    let values =
-        |fields: &[gyro_model::Parameter]| fields.iter().map(|f| gyro_model::to_f64(&f.value)).collect();
-    let (parameters, inputs) = (values(&model.parameters), values(&model.inputs));
-    let point = Point { context: (), t, state: y.as_ref().to_vec(), parameters, inputs };
+    let point = point(model, t, y.as_ref());
     let numbers: Vec<f64> = constants((), module);
     let mut accelerations = mechanism.accelerations_buffer();
     mechanism.accelerations(t, y, &mut accelerations);
@@ -79,8 +138,7 @@ where
         let given = Given { point: &point, accelerations: accelerations.as_ref(), charts: &[], joints: &[] };
         let program = &module.programs[function];
         let interpreted = run(module, program, &numbers, &Elementary, &given).expect("numbers");
-        let bits = |numbers: &[f64]| numbers.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
-        assert_eq!(bits(&interpreted), bits(compiled), "{function}: {interpreted:?} {compiled:?}");
+        assert_same(function, &interpreted, compiled);
     };
     same("accelerations", accelerations.as_ref());
     let mut dy = y.clone();

@@ -170,7 +170,10 @@ fn change_node(program: &mut Program, fault: &Fault) -> Option<()> {
 fn other(source: Source) -> Option<Source> {
     Some(match source {
         Source::State(k) => Source::State(if k % 7 == 0 { k + 1 } else { k - 1 }),
-        Source::Acceleration(k) => Source::Acceleration(if k % 6 == 0 { k + 1 } else { k - 1 }),
+        Source::Acceleration(0) => return None,
+        Source::Acceleration(k) => Source::Acceleration(k - 1),
+        Source::Joint(0) => return None,
+        Source::Joint(k) => Source::Joint(k - 1),
         Source::Chart(chart, k) => Source::Chart(chart, (k + 1) % 4),
         Source::Parameter(k) if k > 0 => Source::Parameter(k - 1),
         _ => return None,

@@ -4,8 +4,10 @@
 mod support;
 
 mod compiled;
+mod dependencies;
 mod faults;
 mod mutants;
 mod needless;
 mod proofs;
 mod rounding;
+mod verdicts;

@@ -67,10 +67,17 @@ fn is_killed(decider: &Decider<9>, mutant: &Module, function: &str) -> bool {
     let claims = Claim::all(mutant);
     let mut claims = claims.into_iter().filter(|claim| claim.functions().contains(&function));
     claims.any(|claim| !matches!(decider.decide(mutant, claim, 1, SEED), Verdict::Proved { .. }))
-        || decider.sparsity(mutant, SEED).is_some_and(|problems| !problems.is_empty())
+        || decider.sparsity(mutant, SEED).is_ok_and(|problems| !problems.is_empty())
 }
 
-/// Faults of the derivation of γ, and others spread evenly over all possible ones.
+/// Functions that were there before those of joint coordinates.
+fn is_of_maximal(function: &str) -> bool {
+    let of_joints = ["corrected", "joint_", "to_"];
+    !of_joints.iter().any(|start| function.starts_with(start))
+}
+
+/// Faults of the derivation of γ, and others, half of them in functions of joint coordinates if there are any, spread evenly over all
+/// possible ones.
 fn sample(module: &Module, count: usize) -> Vec<(String, Fault)> {
     let is_derivation = |fault: &Fault| {
         matches!(fault, Fault::ForgottenTerm | Fault::TransposedRotation(_) | Fault::ForgottenVelocities(_))
@@ -78,8 +85,13 @@ fn sample(module: &Module, count: usize) -> Vec<(String, Fault)> {
     let (mut sample, mut all): (Vec<_>, Vec<_>) =
         faults(module).into_iter().partition(|(name, fault)| name == "gamma" && is_derivation(fault));
     let mut random = ChaCha8Rng::seed_from_u64(SEED);
-    let others = count.min(all.len());
-    sample.extend((0..others).map(|_| all.swap_remove(random.random_range(0..all.len()))));
+    let (of_maximal, of_joints): (Vec<_>, Vec<_>) =
+        std::mem::take(&mut all).into_iter().partition(|(name, _)| is_of_maximal(name));
+    let n_joints = (count / 2).min(of_joints.len());
+    for (mut all, count) in [(of_maximal, count - n_joints), (of_joints, n_joints)] {
+        let count = count.min(all.len());
+        sample.extend((0..count).map(|_| all.swap_remove(random.random_range(0..all.len()))));
+    }
     sample
 }
 
@@ -145,6 +157,20 @@ fn edited(page: &Page) -> Vec<(String, String)> {
         ("operations (", "operations (1"),
         ("//! | phi | Φ | ", "//! | phi | Φ | 1"),
         ("gyro_sim::Energy {", "gyro_sim::Energy::<T> {"),
+        ("gyro_sim::JointSpace for", "gyro_sim::Ports for"),
+        (
+            "gyro_sim::JointSpace::joint_accelerations(self",
+            "gyro_sim::JointSpace::joint_accelerations_at(self",
+        ),
+        ("gyro_sim::JointSpace::corrected_accelerations(self", "gyro_sim::Equations::accelerations(self"),
+        ("gyro_sim::Equations::velocities(self)", "gyro_sim::JointSpace::rates(self)"),
+        ("rates[0]", "rates[1]"),
+        ("*dx = [u0", "*dx = [rates[0]"),
+        ("x[0] = ", "x[1] = "),
+        ("x[0] = x0", "x[0] = x[0]"),
+        ("fn to_joints(", "fn to_joint("),
+        ("type Joints = [T; ", "type Joints = [T; 1"),
+        ("| to_maximal |", "| to_minimal |"),
     ];
     let edits = edits.into_iter().filter(|(from, _)| page.code.contains(from));
     edits.map(|(from, to)| (page.code.replacen(from, to, 1), format!("`{from}` became `{to}`"))).collect()
