@@ -13,6 +13,7 @@ mod long_run;
 mod moving_base;
 mod paper_scenes;
 mod reactions;
+mod recursive_twin;
 mod robustness;
 mod scalars;
 mod terms;

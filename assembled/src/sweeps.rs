@@ -1,0 +1,289 @@
+//! The three sweeps of the recursion: out to the leaves, in to the roots, and out again.
+
+use crate::lowered::{Lowered, Moment, Place};
+use crate::motion::Motion;
+use crate::number::{Number, number};
+use crate::recursion::{Hinge, Limb, Recursion, Space};
+use crate::screws::{End, Inertia6, Screw, Six, angular, apply, carried, dot, linear, plus, six};
+use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
+
+/// One body's quantities, in global axes and about the common point.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Node<T> {
+    /// A(p).
+    a: Matrix3<T>,
+    /// The mass centre, seen from the common point.
+    centre: Vector3<T>,
+    velocity: Six<T>,
+    /// The acceleration that the body would have at constant joint rates.
+    coasting: Six<T>,
+    /// Of its mass centre, the same.
+    centre_coasting: Vector3<T>,
+    /// The body's inertia with its descendants'.
+    inertia: Inertia6<T>,
+    /// The force with its descendants', less what coasting takes.
+    force: Six<T>,
+    /// The acceleration less [`Node::coasting`].
+    rest: Six<T>,
+}
+
+/// A freedom of a joint, solved for: `q̈ = drive − load · (what the parent has beyond coasting)`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Free<T> {
+    motion: Six<T>,
+    drive: T,
+    load: Six<T>,
+}
+
+impl<T: Number> Node<T> {
+    pub(crate) fn new() -> Self {
+        let (zero, none) = (Vector3::zeros(), [number(0.0); 6]);
+        Self {
+            a: Matrix3::zeros(),
+            centre: zero,
+            velocity: none,
+            coasting: none,
+            centre_coasting: zero,
+            inertia: [none; 6],
+            force: none,
+            rest: none,
+        }
+    }
+
+    /// A body whose motion is known.
+    fn known(motion: &Motion<T>, origin: &Vector3<T>) -> Self {
+        let (centre, omega, omega_dot) = (motion.r - origin, motion.omega(), motion.a * motion.w_dot);
+        let at_origin = motion.s_dot - omega_dot.cross(&centre) - omega.cross(&motion.s);
+        Self {
+            a: motion.a,
+            centre,
+            velocity: six(&(motion.s - omega.cross(&centre)), &omega),
+            coasting: six(&at_origin, &omega_dot),
+            ..Self::new()
+        }
+    }
+}
+
+impl<T: Number> Free<T> {
+    pub(crate) fn new() -> Self {
+        let none = [number(0.0); 6];
+        Self { motion: none, drive: number(0.0), load: none }
+    }
+}
+
+/// Writes `(s̈, ẇ')` of every body to `out`.
+pub(crate) fn accelerations<T: Number>(
+    recursion: &Recursion<T>,
+    lowered: &Lowered<T>,
+    at: Moment<'_, T>,
+    space: &mut Space<T>,
+    out: &mut [T],
+) {
+    let Some(first) = recursion.limbs.first() else {
+        out.fill(number(0.0));
+        return;
+    };
+    let origin = lowered.r(at.y, first.slot);
+    place_roots(recursion, lowered, at, &origin, &mut space.nodes);
+    let has_forces = !lowered.elements.is_empty();
+    if has_forces {
+        space.forces.fill(number(0.0));
+        lowered.add_page_force(at, &mut space.forces);
+    }
+    let n_roots = space.nodes.len() - recursion.limbs.len();
+    let (nodes, free) = (&mut space.nodes, &mut space.turning);
+    for (index, limb) in recursion.limbs.iter().enumerate() {
+        let mut node = moving(lowered, at, limb.slot, &origin);
+        coast(recursion, limb, &nodes[limb.parent], &mut node, free);
+        let force = has_forces.then(|| &space.forces[6 * limb.slot..6 * limb.slot + 6]);
+        load(lowered, limb.slot, force, &mut node);
+        nodes[n_roots + index] = node;
+    }
+    for (index, limb) in recursion.limbs.iter().enumerate().rev() {
+        let (before, node) = nodes.split_at_mut(n_roots + index);
+        let parent = (limb.parent >= n_roots).then(|| &mut before[limb.parent]);
+        fold(limb, &mut node[0], parent, free);
+    }
+    for (slot, _) in &recursion.held {
+        out[6 * slot..6 * slot + 6].fill(number(0.0));
+    }
+    for (index, limb) in recursion.limbs.iter().enumerate() {
+        let (before, node) = nodes.split_at_mut(n_roots + index);
+        release(limb, &before[limb.parent], &mut node[0], free);
+        write(&node[0], &mut out[6 * limb.slot..6 * limb.slot + 6]);
+    }
+}
+
+/// The ground, driven bodies, and constrained bodies at rest where the state has them.
+fn place_roots<T: Number>(
+    recursion: &Recursion<T>,
+    lowered: &Lowered<T>,
+    at: Moment<'_, T>,
+    origin: &Vector3<T>,
+    nodes: &mut [Node<T>],
+) {
+    let zero = Vector3::zeros();
+    nodes[0].centre = -origin;
+    nodes[0].a = Matrix3::identity();
+    let first_held = 1 + lowered.driven.len();
+    for (index, node) in nodes[1..first_held].iter_mut().enumerate() {
+        *node = Node::known(&lowered.driven_motion(at.t, index), origin);
+    }
+    for (node, &(slot, _)) in nodes[first_held..].iter_mut().zip(&recursion.held) {
+        let pose = Motion::new(lowered.r(at.y, slot), lowered.p(at.y, slot), zero, zero);
+        *node = Node::known(&pose, origin);
+    }
+}
+
+/// A moving body by itself.
+#[inline]
+fn moving<T: Number>(lowered: &Lowered<T>, at: Moment<'_, T>, slot: usize, origin: &Vector3<T>) -> Node<T> {
+    let Motion { r, a, s, w, .. } = lowered.motion(at, &Place::Slot(slot));
+    let (centre, omega) = (r - origin, a * w);
+    Node { a, centre, velocity: six(&(s - omega.cross(&centre)), &omega), ..Node::new() }
+}
+
+/// The joint's screws, and the acceleration that the parent's and the velocities make.
+///
+/// What a joint's screws add to a parent's motion is carried along by the body that they are fixed in: with all of them in one
+/// body the acceleration gains `v_parent × v_child`; of a joint with screws in both, the part x of the relative velocity that is
+/// fixed in the first body makes `−(v_child − v_parent) × x` besides.
+#[inline]
+fn coast<T: Number>(
+    recursion: &Recursion<T>,
+    limb: &Limb<T>,
+    parent: &Node<T>,
+    node: &mut Node<T>,
+    free: &mut [Free<T>],
+) {
+    let Some(hinge) = &limb.hinge else {
+        // The mass centre keeps its velocity, and the body its ω.
+        let omega = angular(&node.velocity);
+        let velocity = linear(&node.velocity) + omega.cross(&node.centre);
+        node.coasting = six(&velocity.cross(&omega), &Vector3::zeros());
+        return;
+    };
+    let (first, second) = match hinge.child {
+        End::First => (&*node, parent),
+        End::Second => (parent, &*node),
+    };
+    let point = second.centre + second.a * hinge.point;
+    for (free, screw) in free[hinge.screws.clone()].iter_mut().zip(&recursion.screws[hinge.screws.clone()]) {
+        let a = if screw.of == End::First { &first.a } else { &second.a };
+        free.motion = screw.motion(&(a * screw.axis), &point);
+    }
+    let mut gained = carried(&parent.velocity, &node.velocity);
+    if hinge.is_mixed {
+        let relative = plus(&second.velocity, number(-1.0), &first.velocity);
+        let of_first = first_part(recursion, hinge, &relative, &point, free);
+        let between = plus(&node.velocity, number(-1.0), &parent.velocity);
+        gained = plus(&gained, number(-1.0), &carried(&between, &of_first));
+    }
+    node.coasting = plus(&parent.coasting, number(1.0), &gained);
+}
+
+/// The part of a relative velocity that is due to the screw fixed in the first body, which comes first and is orthogonal to those
+/// of its kind.
+fn first_part<T: Number>(
+    recursion: &Recursion<T>,
+    hinge: &Hinge<T>,
+    relative: &Six<T>,
+    point: &Vector3<T>,
+    free: &[Free<T>],
+) -> Six<T> {
+    let Screw { turn, .. } = recursion.screws[hinge.screws.start];
+    let motion = &free[hinge.screws.start].motion;
+    let rate = if turn > number(0.0) {
+        angular(motion).dot(&angular(relative))
+    } else {
+        linear(motion).dot(&(linear(relative) + angular(relative).cross(point)))
+    };
+    motion.map(|x| x * rate)
+}
+
+/// Inertia, and the force that is left beyond coasting.
+#[inline]
+fn load<T: Number>(lowered: &Lowered<T>, slot: usize, page_force: Option<&[T]>, node: &mut Node<T>) {
+    let body = &lowered.bodies[slot];
+    let (omega, omega_dot) = (angular(&node.velocity), angular(&node.coasting));
+    let velocity = linear(&node.velocity) + omega.cross(&node.centre);
+    let turning = node.a * body.inertia * node.a.transpose();
+    node.centre_coasting = linear(&node.coasting) + omega_dot.cross(&node.centre) + omega.cross(&velocity);
+    let mut force = (lowered.gravity - node.centre_coasting) * body.mass;
+    let mut torque = -(turning * omega_dot) - omega.cross(&(turning * omega));
+    if let Some(&[fx, fy, fz, nx, ny, nz]) = page_force.and_then(|force| force.first_chunk::<6>()) {
+        force += Vector3::new(fx, fy, fz);
+        torque += node.a * Vector3::new(nx, ny, nz);
+    }
+    node.force = six(&force, &(torque + node.centre.cross(&force)));
+    node.inertia = inertia(body.mass, &node.centre, &turning);
+}
+
+/// `[m I, −m c̃; m c̃, J + m (c·c I − c cᵀ)]`.
+#[inline]
+fn inertia<T: Number>(mass: T, c: &Vector3<T>, turning: &Matrix3<T>) -> Inertia6<T> {
+    let (o, h) = (number(0.0), c * mass);
+    let [xx, yy, zz] = [h.x * c.x, h.y * c.y, h.z * c.z];
+    let (xy, xz, yz) =
+        (turning[(0, 1)] - h.x * c.y, turning[(0, 2)] - h.x * c.z, turning[(1, 2)] - h.y * c.z);
+    [
+        [mass, o, o, o, h.z, -h.y],
+        [o, mass, o, -h.z, o, h.x],
+        [o, o, mass, h.y, -h.x, o],
+        [o, -h.z, h.y, turning[(0, 0)] + yy + zz, xy, xz],
+        [h.z, o, -h.x, xy, turning[(1, 1)] + xx + zz, yz],
+        [-h.y, h.x, o, xz, yz, turning[(2, 2)] + xx + yy],
+    ]
+}
+
+/// Eliminates a joint's accelerations, the child's side first, and loads the parent, if that moves, with the rest.
+#[inline]
+fn fold<T: Number>(limb: &Limb<T>, node: &mut Node<T>, parent: Option<&mut Node<T>>, free: &mut [Free<T>]) {
+    let Some(hinge) = &limb.hinge else { return };
+    for (index, free) in free[hinge.screws.clone()].iter_mut().enumerate().rev() {
+        let thrust = apply(&node.inertia, &free.motion);
+        let reciprocal = T::one() / dot(&free.motion, &thrust);
+        free.drive = dot(&free.motion, &node.force) * reciprocal;
+        free.load = thrust.map(|x| x * reciprocal);
+        if index > 0 || parent.is_some() {
+            for (column, load) in node.inertia.iter_mut().zip(free.load) {
+                *column = plus(column, -load, &thrust);
+            }
+            node.force = plus(&node.force, -free.drive, &thrust);
+        }
+    }
+    if let Some(parent) = parent {
+        for (column, of_child) in parent.inertia.iter_mut().zip(&node.inertia) {
+            *column = plus(column, number(1.0), of_child);
+        }
+        parent.force = plus(&parent.force, number(1.0), &node.force);
+    }
+}
+
+/// The acceleration beyond coasting, from the parent's.
+#[inline]
+fn release<T: Number>(limb: &Limb<T>, parent: &Node<T>, node: &mut Node<T>, free: &[Free<T>]) {
+    let Some(hinge) = &limb.hinge else {
+        node.rest = solve(&node.inertia, &node.force);
+        return;
+    };
+    let drive = |rest: Six<T>, free: &Free<T>| plus(&rest, free.drive - dot(&free.load, &rest), &free.motion);
+    node.rest = free[hinge.screws.clone()].iter().fold(parent.rest, drive);
+}
+
+/// Of a free body; not finite where the inertia is not positive definite.
+fn solve<T: Number>(inertia: &Inertia6<T>, force: &Six<T>) -> Six<T> {
+    match Matrix6::from(*inertia).cholesky() {
+        Some(factor) => factor.solve(&Vector6::from(*force)).into(),
+        None => [T::zero() / T::zero(); 6],
+    }
+}
+
+#[inline]
+fn write<T: Number>(node: &Node<T>, out: &mut [T]) {
+    let turn = angular(&node.rest);
+    let centre = node.centre_coasting + linear(&node.rest) + turn.cross(&node.centre);
+    let turn = node.a.tr_mul(&(angular(&node.coasting) + turn));
+    out[..3].copy_from_slice(centre.as_slice());
+    out[3..].copy_from_slice(turn.as_slice());
+}
