@@ -1,11 +1,11 @@
 //! The three sweeps of the recursion: out to the leaves, in to the roots, and out again.
 
-use crate::lowered::{Lowered, Moment, Place};
+use crate::lowered::{Body, Lowered, Moment};
 use crate::motion::Motion;
 use crate::number::{Number, number};
 use crate::recursion::{Hinge, Limb, Recursion, Space};
 use crate::screws::{End, Inertia6, Screw, Six, angular, apply, carried, dot, linear, plus, six};
-use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
+use nalgebra::{Matrix3, Matrix6, Vector3, Vector4, Vector6};
 
 /// One body's quantities, in global axes and about the common point.
 #[derive(Clone, Copy, Debug)]
@@ -14,6 +14,7 @@ pub(crate) struct Node<T> {
     a: Matrix3<T>,
     /// The mass centre, seen from the common point.
     centre: Vector3<T>,
+    centre_velocity: Vector3<T>,
     velocity: Six<T>,
     /// The acceleration that the body would have at constant joint rates.
     coasting: Six<T>,
@@ -41,6 +42,7 @@ impl<T: Number> Node<T> {
         Self {
             a: Matrix3::zeros(),
             centre: zero,
+            centre_velocity: zero,
             velocity: none,
             coasting: none,
             centre_coasting: zero,
@@ -57,6 +59,7 @@ impl<T: Number> Node<T> {
         Self {
             a: motion.a,
             centre,
+            centre_velocity: motion.s,
             velocity: six(&(motion.s - omega.cross(&centre)), &omega),
             coasting: six(&at_origin, &omega_dot),
             ..Self::new()
@@ -93,11 +96,12 @@ pub(crate) fn accelerations<T: Number>(
     let n_roots = space.nodes.len() - recursion.limbs.len();
     let (nodes, free) = (&mut space.nodes, &mut space.turning);
     for (index, limb) in recursion.limbs.iter().enumerate() {
-        let mut node = moving(lowered, at, limb.slot, &origin);
-        coast(recursion, limb, &nodes[limb.parent], &mut node, free);
+        let (before, node) = nodes.split_at_mut(n_roots + index);
+        let node = &mut node[0];
+        place(lowered, at, limb.slot, &origin, node);
+        coast(recursion, limb, &before[limb.parent], node, free);
         let force = has_forces.then(|| &space.forces[6 * limb.slot..6 * limb.slot + 6]);
-        load(lowered, limb.slot, force, &mut node);
-        nodes[n_roots + index] = node;
+        load(&lowered.bodies[limb.slot], &lowered.gravity, force, node);
     }
     for (index, limb) in recursion.limbs.iter().enumerate().rev() {
         let (before, node) = nodes.split_at_mut(n_roots + index);
@@ -135,12 +139,42 @@ fn place_roots<T: Number>(
     }
 }
 
-/// A moving body by itself.
+/// Where a moving body is and how it moves.
 #[inline]
-fn moving<T: Number>(lowered: &Lowered<T>, at: Moment<'_, T>, slot: usize, origin: &Vector3<T>) -> Node<T> {
-    let Motion { r, a, s, w, .. } = lowered.motion(at, &Place::Slot(slot));
-    let (centre, omega) = (r - origin, a * w);
-    Node { a, centre, velocity: six(&(s - omega.cross(&centre)), &omega), ..Node::new() }
+fn place<T: Number>(
+    lowered: &Lowered<T>,
+    at: Moment<'_, T>,
+    slot: usize,
+    origin: &Vector3<T>,
+    node: &mut Node<T>,
+) {
+    node.a = unit_rotation(&lowered.p(at.y, slot));
+    node.centre = lowered.r(at.y, slot) - origin;
+    node.centre_velocity = lowered.s(at.y, slot);
+    let omega = node.a * lowered.w(at.y, slot);
+    node.velocity = six(&(node.centre_velocity + node.centre.cross(&omega)), &omega);
+}
+
+/// Eq. (3) for a unit p, in its cheapest form.
+#[inline]
+fn unit_rotation<T: Number>(p: &Vector4<T>) -> Matrix3<T> {
+    let one = T::one();
+    let [e0, e1, e2, e3] = [p[0], p[1], p[2], p[3]];
+    let [d1, d2, d3] = [e1 + e1, e2 + e2, e3 + e3];
+    let [xx, yy, zz] = [e1 * d1, e2 * d2, e3 * d3];
+    let [xy, xz, yz] = [e1 * d2, e1 * d3, e2 * d3];
+    let [wx, wy, wz] = [e0 * d1, e0 * d2, e0 * d3];
+    Matrix3::new(
+        one - (yy + zz),
+        xy - wz,
+        xz + wy,
+        xy + wz,
+        one - (xx + zz),
+        yz - wx,
+        xz - wy,
+        yz + wx,
+        one - (xx + yy),
+    )
 }
 
 /// The joint's screws, and the acceleration that the parent's and the velocities make.
@@ -158,9 +192,7 @@ fn coast<T: Number>(
 ) {
     let Some(hinge) = &limb.hinge else {
         // The mass centre keeps its velocity, and the body its ω.
-        let omega = angular(&node.velocity);
-        let velocity = linear(&node.velocity) + omega.cross(&node.centre);
-        node.coasting = six(&velocity.cross(&omega), &Vector3::zeros());
+        node.coasting = six(&node.centre_velocity.cross(&angular(&node.velocity)), &Vector3::zeros());
         return;
     };
     let (first, second) = match hinge.child {
@@ -203,14 +235,13 @@ fn first_part<T: Number>(
 
 /// Inertia, and the force that is left beyond coasting.
 #[inline]
-fn load<T: Number>(lowered: &Lowered<T>, slot: usize, page_force: Option<&[T]>, node: &mut Node<T>) {
-    let body = &lowered.bodies[slot];
+fn load<T: Number>(body: &Body<T>, gravity: &Vector3<T>, page_force: Option<&[T]>, node: &mut Node<T>) {
     let (omega, omega_dot) = (angular(&node.velocity), angular(&node.coasting));
-    let velocity = linear(&node.velocity) + omega.cross(&node.centre);
     let turning = node.a * body.inertia * node.a.transpose();
-    node.centre_coasting = linear(&node.coasting) + omega_dot.cross(&node.centre) + omega.cross(&velocity);
-    let mut force = (lowered.gravity - node.centre_coasting) * body.mass;
-    let mut torque = -(turning * omega_dot) - omega.cross(&(turning * omega));
+    node.centre_coasting =
+        linear(&node.coasting) + omega_dot.cross(&node.centre) + omega.cross(&node.centre_velocity);
+    let mut force = (gravity - node.centre_coasting) * body.mass;
+    let mut torque = (turning * omega).cross(&omega) - turning * omega_dot;
     if let Some(&[fx, fy, fz, nx, ny, nz]) = page_force.and_then(|force| force.first_chunk::<6>()) {
         force += Vector3::new(fx, fy, fz);
         torque += node.a * Vector3::new(nx, ny, nz);
@@ -240,23 +271,30 @@ fn inertia<T: Number>(mass: T, c: &Vector3<T>, turning: &Matrix3<T>) -> Inertia6
 #[inline]
 fn fold<T: Number>(limb: &Limb<T>, node: &mut Node<T>, parent: Option<&mut Node<T>>, free: &mut [Free<T>]) {
     let Some(hinge) = &limb.hinge else { return };
-    for (index, free) in free[hinge.screws.clone()].iter_mut().enumerate().rev() {
-        let thrust = apply(&node.inertia, &free.motion);
-        let reciprocal = T::one() / dot(&free.motion, &thrust);
-        free.drive = dot(&free.motion, &node.force) * reciprocal;
-        free.load = thrust.map(|x| x * reciprocal);
-        if index > 0 || parent.is_some() {
-            for (column, load) in node.inertia.iter_mut().zip(free.load) {
-                *column = plus(column, -load, &thrust);
+    let mut free = free[hinge.screws.clone()].iter_mut().rev().peekable();
+    let one = T::one();
+    while let Some(screw) = free.next() {
+        let thrust = apply(&node.inertia, &screw.motion);
+        let reciprocal = one / dot(&screw.motion, &thrust);
+        screw.drive = dot(&screw.motion, &node.force) * reciprocal;
+        screw.load = thrust.map(|x| x * reciprocal);
+        if free.peek().is_some() {
+            node.inertia = std::array::from_fn(|k| plus(&node.inertia[k], -screw.load[k], &thrust));
+            node.force = plus(&node.force, -screw.drive, &thrust);
+        } else if let Some(parent) = parent {
+            for (k, column) in parent.inertia.iter_mut().enumerate() {
+                *column = plus(&plus(column, one, &node.inertia[k]), -screw.load[k], &thrust);
             }
-            node.force = plus(&node.force, -free.drive, &thrust);
+            parent.force = plus(&plus(&parent.force, one, &node.force), -screw.drive, &thrust);
+            return;
+        } else {
+            return;
         }
     }
+    // A fixed joint: all of the child.
     if let Some(parent) = parent {
-        for (column, of_child) in parent.inertia.iter_mut().zip(&node.inertia) {
-            *column = plus(column, number(1.0), of_child);
-        }
-        parent.force = plus(&parent.force, number(1.0), &node.force);
+        parent.inertia = std::array::from_fn(|k| plus(&parent.inertia[k], one, &node.inertia[k]));
+        parent.force = plus(&parent.force, one, &node.force);
     }
 }
 
