@@ -5,16 +5,17 @@
 //! function that callgrind can be told, in the order of the lines. With `--generate` it turns the page on standard input into a module on
 //! standard output, optimised as all of this is.
 
-use gyro_benches::{Kernel, Scene, counted, interleaved, kernels, runs};
+use gyro_benches::{Clock, Kernel, Scene, counted, interleaved, kernels, runs};
 use std::io::{IsTerminal, Read, Write, stderr, stdin, stdout};
 use std::time::Duration;
 
 /// Rounds of single kernels, and the time of one kernel in each.
-const ROUNDS: usize = 101;
-const SLICE: Duration = Duration::from_millis(1);
+const ROUNDS: usize = 201;
+const SLICE: (Duration, Clock) = (Duration::from_micros(500), Clock::Wall);
 
-/// Rounds of whole runs: the longest takes seconds.
+/// The same of whole runs, of which the longest takes seconds.
 const ROUNDS_OF_RUNS: usize = 5;
+const SLICE_OF_RUNS: (Duration, Clock) = (Duration::from_millis(100), Clock::Processor);
 
 /// Calls for callgrind.
 const CALLS: u64 = 100;
@@ -29,13 +30,13 @@ fn main() -> std::io::Result<()> {
         kernels(&scene).iter_mut().for_each(|kernel| counted(kernel, CALLS));
         return Ok(());
     }
-    print(&mut kernels(&scene), ROUNDS)?;
-    print(&mut runs(&scene), ROUNDS_OF_RUNS)
+    print(&mut kernels(&scene), ROUNDS, SLICE)?;
+    print(&mut runs(&scene), ROUNDS_OF_RUNS, SLICE_OF_RUNS)
 }
 
-fn print(kernels: &mut [Kernel<'_>], rounds: usize) -> std::io::Result<()> {
+fn print(kernels: &mut [Kernel<'_>], rounds: usize, slice: (Duration, Clock)) -> std::io::Result<()> {
     let is_watched = stderr().is_terminal();
-    let figures = interleaved(kernels, rounds, SLICE, |round| {
+    let figures = interleaved(kernels, rounds, slice, |round| {
         if is_watched {
             // Whoever watches loses nothing if this fails.
             let _ = write!(stderr(), "\rround {} of {rounds} ", round + 1);

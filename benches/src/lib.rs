@@ -12,5 +12,5 @@ mod sheet;
 
 pub use floor::Floor;
 pub use kernels::{Kernel, kernels, runs};
-pub use round::{Figure, counted, interleaved};
+pub use round::{Clock, Figure, counted, interleaved};
 pub use scene::Scene;

@@ -12,6 +12,32 @@ pub struct Figure {
     pub ratio: f64,
 }
 
+/// Which time counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Clock {
+    /// That of the day, exact: for slices so short that few are interrupted.
+    Wall,
+    /// What the processor has spent on this thread, exact to a few milliseconds, where the system tells; else that of the day.
+    Processor,
+}
+
+impl Clock {
+    /// ns since `began`, or since this thread was.
+    fn now(self, began: Instant) -> f64 {
+        let wall = began.elapsed().as_nanos() as f64;
+        match self {
+            Self::Wall => wall,
+            Self::Processor => processor_ns().unwrap_or(wall),
+        }
+    }
+}
+
+/// Linux keeps it here, in ns, brought up to date at the scheduler's ticks.
+fn processor_ns() -> Option<f64> {
+    let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+    text.split_whitespace().next()?.parse().ok()
+}
+
 /// Measures all kernels in turns, each for about `slice` in each of `rounds`; `tell` hears which round begins. A first round warms
 /// up and decides how often each is called in a slice.
 ///
@@ -20,7 +46,7 @@ pub struct Figure {
 pub fn interleaved(
     kernels: &mut [Kernel<'_>],
     rounds: usize,
-    slice: Duration,
+    (slice, clock): (Duration, Clock),
     mut tell: impl FnMut(usize),
 ) -> Vec<Figure> {
     let times: Vec<u64> = kernels.iter_mut().map(|kernel| calls_in(kernel, slice)).collect();
@@ -28,7 +54,7 @@ pub fn interleaved(
     for round in 0..rounds {
         tell(round);
         for ((kernel, times), samples) in kernels.iter_mut().zip(&times).zip(&mut samples) {
-            samples.push(ns_of_a_call(kernel, *times));
+            samples.push(ns_of_a_call(kernel, *times, clock));
         }
     }
     let first = samples[0].clone();
@@ -43,7 +69,7 @@ pub fn interleaved(
 fn calls_in(kernel: &mut Kernel<'_>, slice: Duration) -> u64 {
     let mut times = 1;
     loop {
-        let ns = ns_of_a_call(kernel, times) * times as f64;
+        let ns = ns_of_a_call(kernel, times, Clock::Wall) * times as f64;
         let wanted = slice.as_nanos() as f64;
         if ns >= wanted / 4.0 {
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
@@ -53,10 +79,11 @@ fn calls_in(kernel: &mut Kernel<'_>, slice: Duration) -> u64 {
     }
 }
 
-fn ns_of_a_call(kernel: &mut Kernel<'_>, times: u64) -> f64 {
+fn ns_of_a_call(kernel: &mut Kernel<'_>, times: u64, clock: Clock) -> f64 {
     let began = Instant::now();
+    let start = clock.now(began);
     kernel.repeat(times);
-    began.elapsed().as_nanos() as f64 / times as f64
+    (clock.now(began) - start) / times as f64
 }
 
 fn median(mut values: Vec<f64>) -> f64 {

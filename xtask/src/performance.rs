@@ -118,7 +118,10 @@ fn count(program: &Path) -> Result<Option<Vec<f64>>, Failure> {
     let _ = fs::remove_dir_all(&dumps);
     fs::create_dir_all(&dumps).map_err(|e| said(&dumps, &e))?;
     let mut command = Command::new("valgrind");
-    command.arg("--tool=callgrind").arg("--toggle-collect=*counted*").arg("--dump-after=*counted*");
+    command
+        .arg("--tool=callgrind")
+        .arg("--toggle-collect=gyro_benches::round::counted")
+        .arg("--dump-after=gyro_benches::round::counted");
     command.arg(format!("--callgrind-out-file={}", dumps.join("out").display())).arg(program).arg("--count");
     output(&mut command)?;
     let dump = |index: usize| fs::read_to_string(dumps.join(format!("out.{index}"))).ok();

@@ -21,11 +21,12 @@ struct Chain {
     bodies: usize,
     flops: String,
     generation_s: f64,
-    release_s: f64,
-    debug_s: f64,
+    /// None where rustc fails.
+    release_s: Option<f64>,
+    debug_s: Option<f64>,
     bytes: Option<u64>,
-    /// Accelerations: generated, recursive, careful.
-    ns: [f64; 3],
+    /// Accelerations: generated, recursive, careful; not of what rustc has not compiled.
+    ns: Option<[f64; 3]>,
 }
 
 /// Measures chains of up to so many bodies; a table in Markdown.
@@ -50,10 +51,12 @@ impl Chain {
         let Self { bodies, flops, generation_s, release_s, debug_s, bytes, ns } = self;
         let a_body = flops.parse::<f64>().map_or(String::new(), |flops| three(flops / *bodies as f64));
         let bytes = bytes.map_or(String::new(), |bytes| bytes.to_string());
-        let [generated, recursive, careful] = ns.map(three);
+        let seconds = |taken: &Option<f64>| taken.map_or("fails".to_owned(), |taken| format!("{taken:.1}"));
+        let (release_s, debug_s) = (seconds(release_s), seconds(debug_s));
+        let [generated, recursive, careful] = ns.map_or([(); 3].map(|()| String::new()), |ns| ns.map(three));
         format!(
-            "| {bodies} | {flops} | {a_body} | {generated} | {recursive} | {careful} | {generation_s:.2} | {release_s:.1} | \
-             {debug_s:.1} | {bytes} |\n"
+            "| {bodies} | {flops} | {a_body} | {generated} | {recursive} | {careful} | {generation_s:.2} | {release_s} | \
+             {debug_s} | {bytes} |\n"
         )
     }
 }
@@ -123,10 +126,10 @@ impl Place {
                 bodies,
                 flops,
                 generation_s,
-                release_s: 0.0,
-                debug_s: 0.0,
+                release_s: None,
+                debug_s: None,
                 bytes: None,
-                ns: [0.0; 3],
+                ns: None,
             });
         }
         self.write_program(sizes)?;
@@ -166,9 +169,16 @@ impl Place {
                 let name = format!("chain_{}", chain.bodies);
                 let _spinner = Spinner::new(format!("compiling {name}, profile {profile}"));
                 let before = children_cpu_s();
-                self.cargo(&["build", "--profile", profile, "--package", &name])?;
-                let taken = children_cpu_s() - before;
-                if profile == "release" { chain.release_s = taken } else { chain.debug_s = taken }
+                let outcome = self.cargo(&["build", "--profile", profile, "--package", &name]);
+                let taken = outcome.is_ok().then(|| children_cpu_s() - before);
+                if let Err(failure) = outcome {
+                    failure.report();
+                }
+                if profile == "release" {
+                    chain.release_s = taken;
+                } else {
+                    chain.debug_s = taken;
+                }
             }
         }
         for chain in chains {
@@ -180,13 +190,16 @@ impl Place {
     /// Times the accelerations of all chains in turns.
     fn run(&self, chains: &mut [Chain]) -> Result<(), Failure> {
         let _spinner = Spinner::new("running chains".to_owned());
+        let compiled = || chains.iter().filter(|chain| chain.release_s.is_some());
+        self.write_program(&compiled().map(|chain| chain.bodies).collect::<Vec<_>>())?;
         let said = self.cargo(&["run", "--release", "--package", "run"])?;
         let numbers: Vec<f64> = said.split_whitespace().filter_map(|word| word.parse().ok()).collect();
         let figures = numbers.as_chunks::<3>().0;
-        if figures.len() != chains.len() {
+        if figures.len() != compiled().count() {
             return Err(Failure::Run(format!("the chains ran and said {said}")));
         }
-        chains.iter_mut().zip(figures).for_each(|(chain, ns)| chain.ns = *ns);
+        let compiled = chains.iter_mut().filter(|chain| chain.release_s.is_some());
+        compiled.zip(figures).for_each(|(chain, ns)| chain.ns = Some(*ns));
         Ok(())
     }
 
@@ -251,7 +264,7 @@ pub fn solve_velocities(i: &<Chain as Partition>::Independent, y: &mut State) ->
 /// Prints three times a chain, ns: accelerations generated, recursive, careful. All agree, or it panics.
 fn program(sizes: &[usize]) -> String {
     let mut text = "use gyro_assembled::{Careful, Recursive};
-use gyro_benches::{Kernel, interleaved};
+use gyro_benches::{Clock, Kernel, interleaved};
 use gyro_sim::{Equations, Ode};
 use std::hint::black_box;
 use std::time::Duration;
@@ -275,7 +288,7 @@ fn main() {
             n_v = 6 * bodies
         );
     }
-    text += "    for figure in interleaved(&mut kernels, 51, Duration::from_millis(1), |_| ()) {
+    text += "    for figure in interleaved(&mut kernels, 51, (Duration::from_millis(1), Clock::Wall), |_| ()) {
         println!(\"{}\", figure.ns);
     }
 }
