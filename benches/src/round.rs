@@ -65,11 +65,15 @@ pub fn interleaved(
     samples.iter().map(figure).collect()
 }
 
+/// Tries at each number of calls: an interruption must not pass for a slow kernel, which would be called too seldom to stay warm.
+const TRIES: u32 = 5;
+
 /// How many calls take this long; at least one.
 fn calls_in(kernel: &mut Kernel<'_>, slice: Duration) -> u64 {
     let mut times = 1;
     loop {
-        let ns = ns_of_a_call(kernel, times, Clock::Wall) * times as f64;
+        let tries = (0..TRIES).map(|_| ns_of_a_call(kernel, times, Clock::Wall));
+        let ns = tries.fold(f64::INFINITY, f64::min) * times as f64;
         let wanted = slice.as_nanos() as f64;
         if ns >= wanted / 4.0 {
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
@@ -79,7 +83,12 @@ fn calls_in(kernel: &mut Kernel<'_>, slice: Duration) -> u64 {
     }
 }
 
+/// One in so many calls is made before those that are timed.
+const WARMING: u64 = 8;
+
 fn ns_of_a_call(kernel: &mut Kernel<'_>, times: u64, clock: Clock) -> f64 {
+    // The others have been in the caches meanwhile.
+    kernel.repeat(times / WARMING);
     let began = Instant::now();
     let start = clock.now(began);
     kernel.repeat(times);

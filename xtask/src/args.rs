@@ -210,7 +210,7 @@ pub(crate) struct PerformanceArgs {
     /// The page whose tables are to be replaced [default: docs/performance.md]
     #[arg(long, value_name = "FILE.md")]
     pub(crate) out: Option<PathBuf>,
-    /// Bodies of the longest chain
+    /// Bodies of the longest chain; 0 leaves the chains and their table alone
     #[arg(long, value_name = "N", default_value_t = 64)]
     pub(crate) bodies: usize,
 }

@@ -25,7 +25,9 @@ pub(crate) fn performance(args: &PerformanceArgs) -> Result<(), Failure> {
     let mut page = replaced(&page, "machine", &machine()?)?;
     page = replaced(&page, "kernels", &kernel_table(&kernels, counts.as_deref()))?;
     page = replaced(&page, "runs", &run_table(&runs))?;
-    page = replaced(&page, "scaling", &scaling::table(&program, args.bodies)?)?;
+    if args.bodies > 0 {
+        page = replaced(&page, "scaling", &scaling::table(&program, args.bodies)?)?;
+    }
     let is_new = files::write(&path, &page)?;
     eprintln!("{} {}", if is_new { "wrote" } else { "nothing new in" }, path.display());
     Ok(())

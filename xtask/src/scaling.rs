@@ -21,7 +21,7 @@ struct Chain {
     bodies: usize,
     flops: String,
     generation_s: f64,
-    /// None where rustc fails.
+    /// None where rustc fails, or is ended.
     release_s: Option<f64>,
     debug_s: Option<f64>,
     bytes: Option<u64>,
@@ -51,7 +51,8 @@ impl Chain {
         let Self { bodies, flops, generation_s, release_s, debug_s, bytes, ns } = self;
         let a_body = flops.parse::<f64>().map_or(String::new(), |flops| three(flops / *bodies as f64));
         let bytes = bytes.map_or(String::new(), |bytes| bytes.to_string());
-        let seconds = |taken: &Option<f64>| taken.map_or("fails".to_owned(), |taken| format!("{taken:.1}"));
+        let seconds =
+            |taken: &Option<f64>| taken.map_or("not compiled".to_owned(), |taken| format!("{taken:.1}"));
         let (release_s, debug_s) = (seconds(release_s), seconds(debug_s));
         let [generated, recursive, careful] = ns.map_or([(); 3].map(|()| String::new()), |ns| ns.map(three));
         format!(
