@@ -3,7 +3,7 @@
 use crate::floor::FLOPS;
 use crate::scene::{STEP, Scene};
 use crate::sheet::Sheet;
-use gyro_sim::{Equations, Ode, Partition, Partitioned, Rk4};
+use gyro_sim::{Equations, JointForm, JointSpace, Ode, Partition, Partitioned, Rk4};
 use std::fmt;
 use std::hint::black_box;
 
@@ -51,6 +51,7 @@ impl<'a> Kernel<'a> {
 }
 
 const JOINTS: &str = "joint accelerations in joint coordinates";
+const JOINTS_AT: &str = "joint accelerations from a corrected maximal state";
 const BODIES: &str = "accelerations of all bodies";
 const LOADS: &str = "the same with all multipliers";
 const DERIVATIVE: &str = "derivative of the state";
@@ -61,6 +62,7 @@ const NEWTON: &str = "Newton step of the positions";
 const VELOCITIES: &str = "solve of the velocities";
 
 const GENERATED: &str = "generated";
+const CORRECTED: &str = "generated, corrected state";
 const GENERATED_MAXIMAL: &str = "generated, paper's form";
 const RECURSIVE: &str = "recursive twin";
 const CAREFUL: &str = "careful twin";
@@ -73,6 +75,7 @@ pub fn kernels(scene: &Scene) -> Vec<Kernel<'_>> {
     let (on_heap, with_base_on_heap) = (maximal.to_vec(), with_base.to_vec());
     let mut kernels = vec![floor(scene)];
     kernels.extend(generated(GENERATED, &scene.generated, maximal, FOLDED));
+    kernels.extend(joint_space(&scene.generated, maximal, FOLDED));
     kernels.extend(solves(RECURSIVE, &scene.recursive, &on_heap, |_| None));
     kernels.extend(solves(CAREFUL, &scene.careful, &on_heap, |_| None));
     kernels.extend(terms(CAREFUL, &scene.careful, &on_heap, |_| None));
@@ -84,7 +87,8 @@ pub fn kernels(scene: &Scene) -> Vec<Kernel<'_>> {
 }
 
 /// The order of the table.
-const ORDER: [&str; 9] = [JOINTS, BODIES, LOADS, DERIVATIVE, PHI, PHI_Q, GAMMA, NEWTON, VELOCITIES];
+const ORDER: [&str; 10] =
+    [JOINTS, JOINTS_AT, BODIES, LOADS, DERIVATIVE, PHI, PHI_Q, GAMMA, NEWTON, VELOCITIES];
 
 fn floor(scene: &Scene) -> Kernel<'_> {
     let (floor, y) = (&scene.floor, scene.joints);
@@ -102,6 +106,41 @@ where
     let flops = move |functions: &[&str]| Some(sheet.flops(functions));
     let mut kernels = solves(side, mechanism, y, flops);
     kernels.extend(terms(side, mechanism, y, flops));
+    kernels
+}
+
+/// What a tree has besides: joint coordinates, and short ways for states that satisfy the constraints.
+fn joint_space<'a, M>(mechanism: &'a M, y: &M::State, sheet: Sheet) -> Vec<Kernel<'a>>
+where
+    M: JointSpace + Partition<Scalar = f64>,
+    M::State: 'a,
+{
+    let flops = move |functions: &[&str]| Some(sheet.flops(functions));
+    let mut kernels = Vec::new();
+    let (mut x, mut out) = (mechanism.joint_start(), mechanism.rates());
+    mechanism.to_joints(0.0, y, &mut x);
+    kernels.push(Kernel::new(JOINTS, GENERATED, flops(&["joint_accelerations"]), move || {
+        mechanism.joint_accelerations(0.0, black_box(&x), black_box(&mut out));
+    }));
+    let (state, mut out) = (y.clone(), mechanism.rates());
+    kernels.push(Kernel::new(JOINTS_AT, GENERATED, flops(&["joint_accelerations_at"]), move || {
+        mechanism.joint_accelerations_at(0.0, black_box(&state), black_box(&mut out));
+    }));
+    let (state, mut out) = (y.clone(), mechanism.velocities());
+    kernels.push(Kernel::new(BODIES, CORRECTED, flops(&["corrected_accelerations"]), move || {
+        mechanism.corrected_accelerations(0.0, black_box(&state), black_box(&mut out));
+    }));
+    let (state, mut out, mut lambda) = (y.clone(), mechanism.velocities(), mechanism.rows());
+    let both = flops(&["corrected_accelerations", "corrected_multipliers"]);
+    kernels.push(Kernel::new(LOADS, CORRECTED, both, move || {
+        mechanism.corrected_accelerations(0.0, black_box(&state), black_box(&mut out));
+        mechanism.corrected_multipliers(0.0, black_box(&state), black_box(&out), black_box(&mut lambda));
+    }));
+    let (state, mut dy) = (y.clone(), y.clone());
+    let both = flops(&["corrected_accelerations", "derivative"]);
+    kernels.push(Kernel::new(DERIVATIVE, CORRECTED, both, move || {
+        mechanism.corrected_derivative(0.0, black_box(&state), black_box(&mut dy));
+    }));
     kernels
 }
 
@@ -180,6 +219,15 @@ pub fn runs(scene: &Scene) -> Vec<Kernel<'_>> {
                 rk4.step(&scene.floor, f64::from(step) * STEP, STEP, &mut y);
             }
             black_box(y);
+        }),
+        Kernel::new(SECOND, "generated, joint coordinates, RK4", None, || {
+            let form = JointForm(&scene.generated);
+            let mut x = form.start();
+            let mut rk4 = Rk4::new(&x);
+            for step in 0..CORRECTIONS * STEPS_PER_CORRECTION {
+                rk4.step(&form, f64::from(step) * STEP, STEP, &mut x);
+            }
+            black_box(x);
         }),
         second(GENERATED, &scene.generated),
         second(RECURSIVE, &scene.recursive),
