@@ -411,8 +411,6 @@ impl<'a, const L: usize> Decider<'a, L> {
         let mut draw = draw.clone();
         if is_on_constraints(function) {
             draw.point.state = self.run(module, "to_maximal", &draw, &[], atoms)?;
-            // The buffer of `to_joints` holds any other state.
-            draw.joints.swap(0, 1);
         }
         let accelerations = self.run(module, source_of_accelerations(function), &draw, &[], atoms)?;
         Ok((draw, accelerations))
