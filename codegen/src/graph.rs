@@ -227,6 +227,7 @@ impl Graph {
         if x == Self::ONE {
             return self.constant(c.clone());
         }
+        let (opposite, x) = self.split_sign(x);
         let magnitude = c.abs();
         let scaled = if magnitude.is_one() {
             x
@@ -234,7 +235,7 @@ impl Graph {
             let magnitude = self.constant(magnitude);
             self.intern(Node::Mul(magnitude, x))
         };
-        if c.is_negative() { self.neg(scaled) } else { scaled }
+        if c.is_negative() == opposite { scaled } else { self.neg(scaled) }
     }
 
     /// An expression as constant times the rest; the rest of a constant is one.

@@ -2563,8 +2563,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
         let t46 = k(2.0) * t19;
         let t47 = t2 * (k(0.0002) * t13 + k(0.0004) * t26)
             - t0 * (k(0.0002) * t8 + k(0.0004) * t21);
-        let t48 = t4 * (k(0.0002) * t18 - k(0.0004) * t32) - t47
-            + k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
+        let t48 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz)
+            + (t4 * (k(0.0002) * t18 - k(0.0004) * t32) - t47);
         let t49 = t48 * (t37 * t46 - (t31 * t45 - t25 * t44)) + t43;
         let t50 = t29 - t28;
         let t51 = t35 + t34;
@@ -3229,8 +3229,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
             + t0 * (k(0.0001) * t26 + k(6e-5) * t23);
         let t33 = t30 + t29;
         let t34 = k(0.5) - (t27 + inner_ring_e3 * inner_ring_e3);
-        let t35 = t4 * (k(0.0001) * t34 - k(6e-5) * t33) - t32 - t20
-            + k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx);
+        let t35 = k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx)
+            + (t4 * (k(0.0001) * t34 - k(6e-5) * t33) - t32 - t20);
         let t36 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
             + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
         let t37 = k(2.0) * t36;
@@ -3253,8 +3253,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
         let t50 = k(1.0) - t48 * t49;
         let t51 = t2 * (k(0.0002) * t13 + k(0.0004) * t44)
             - t0 * (k(0.0002) * t8 + k(0.0004) * t43);
-        let t52 = t4 * (k(0.0002) * t18 - k(0.0004) * t46) - t51
-            + k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
+        let t52 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz)
+            + (t4 * (k(0.0002) * t18 - k(0.0004) * t46) - t51);
         let t53 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
             + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
         let t54 = t53 * t49;
@@ -3273,14 +3273,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
         let t64 = t50 * t52 + t54 * t47;
         let t65 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz)
             - (t64 - (t4 * (k(0.00025) * t33 - k(0.0001) * t42) - t63));
-        let t66 = t65 - k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz);
+        let t66 = k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz) - t65;
         let t67 = outer_ring_e0 * t61;
         *lambda = [
             -(k(0.01) * outer_ring_dsx + t1),
             -(k(0.1) + k(0.01) * outer_ring_dsy + t3),
             -(k(0.01) * outer_ring_dsz + t5),
-            -(t67 * t66 + t62 * t60),
-            t62 * t66 - t67 * t60,
+            t67 * t66 - t62 * t60,
+            -(t62 * t66 + t67 * t60),
             -t1,
             -t3,
             -t5,

@@ -1956,7 +1956,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
         let t50 = t49 * t27 + (t45 * t23 + t46 * t24);
         let t51 = t28 * t50 + t22 * (t49 * t18 - (t46 * t12 + t45 * t7));
         let t52 = t49 * t32 - (t45 * t30 - t46 * t31);
-        let t53 = k(2e-6) * inner_ring_dwy + (t52 * t33 + t51);
+        let t53 = k(2e-6) * inner_ring_dwy + (t33 * t52 + t51);
         let t54 = t43 * t49 - (t40 * t46 + t37 * t45);
         let t55 = k(2.0) * (t20 + t19);
         let t56 = k(2.0) * (t48 - t47);
@@ -1965,7 +1965,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
         let t59 = t28 * t58 + t22 * (t57 * t18 - (t56 * t12 - t55 * t7));
         let t60 = t55 * t30 + t56 * t31 + t57 * t32;
         let t61 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz)
-            - (t60 * t33 + t59);
+            - (t33 * t60 + t59);
         let t62 = (t43 * t57 - (t40 * t56 - t37 * t55)) * t61 - (t54 * t53 - t44 * t35);
         let t63 = k(2e-6) * outer_ring_dwx - t62;
         let t64 = k(2.0) * (k(0.5) - (t36 + outer_ring_e3 * outer_ring_e3));
@@ -1999,8 +1999,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
             -t0,
             -t2,
             -t4,
-            t60 * t79 * t33 + t28 * (t58 * t79),
-            t52 * t79 * t33 + t28 * (t50 * t79),
+            t33 * (t60 * t79) + t28 * (t58 * t79),
+            t33 * (t52 * t79) + t28 * (t50 * t79),
         ];
     }
 }
@@ -2357,8 +2357,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
         let t3 = k(0.01) * inner_ring_dsy + t2;
         let t4 = k(0.08) * rotor_dsz;
         let t5 = k(0.01) * inner_ring_dsz + t4;
-        let t6 = k(1e-5) * rotor_dwx
-            - k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx);
+        let t6 = k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx)
+            - k(1e-5) * rotor_dwx;
         let t7 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
             + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
         let t8 = k(2.0) * t7;
@@ -2368,33 +2368,33 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
         let t11 = k(2.0) * t10;
         let t12 = k(1.0) - t10 * t11;
         let t13 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
-        let t14 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
-        let t15 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+        let t14 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
             + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
-        let t16 = t15 * t11;
-        let t17 = t16 * t14 - t13 * t12;
+        let t15 = t14 * t11;
+        let t16 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
+        let t17 = t16 * t15 - t13 * t12;
         let t18 = k(2e-6) * inner_ring_dwy - t17;
         let t19 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
             + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
         let t20 = t19 * t8;
-        let t21 = t20 * t18 + t9 * t6;
+        let t21 = t20 * t18 - t9 * t6;
         let t22 = k(2e-6) * outer_ring_dwx + t21;
         let t23 = k(2.0) * outer_ring_e2;
         let t24 = k(1.0) - outer_ring_e2 * t23;
-        let t25 = t12 * t14 + t13 * t16;
-        let t26 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz) - t25
-            - k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz);
+        let t25 = t16 * t12 + t13 * t15;
+        let t26 = k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz)
+            - (k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz) - t25);
         let t27 = outer_ring_e0 * t23;
         *lambda = [
             -(k(0.01) * outer_ring_dsx + t1),
             -(k(0.01) * outer_ring_dsy + t3),
             -(k(0.01) * outer_ring_dsz + t5),
-            -(t27 * t26 + t24 * t22),
-            t24 * t26 - t27 * t22,
+            t27 * t26 - t24 * t22,
+            -(t24 * t26 + t27 * t22),
             -t1,
             -t3,
             -t5,
-            t20 * t6 - t9 * t18,
+            -(t9 * t18 + t20 * t6),
             t21,
             -t0,
             -t2,

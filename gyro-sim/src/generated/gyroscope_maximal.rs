@@ -2703,7 +2703,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
         let t61 = k(0.5) - (t11 + inner_ring_e3 * inner_ring_e3);
         let t62 = t6 * (k(0.00025) * t61)
             - (t3 * (k(0.00025) * t60) + t0 * (k(0.00025) * t59));
-        let t63 = k(2e-6) * inner_ring_dwy + (t62 + (t58 * t36 + t57));
+        let t63 = k(2e-6) * inner_ring_dwy + (t62 + (t36 * t58 + t57));
         let t64 = t46 * t55 - (t43 * t51 + t40 * t49);
         let t65 = k(2.0) * t59;
         let t66 = k(2.0) * t60;
@@ -2714,7 +2714,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
         let t71 = t6 * (k(0.00025) * t54)
             - (t3 * (k(0.00025) * t50) - t0 * (k(0.00025) * t48));
         let t72 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz)
-            + (t71 - (t70 * t36 + t69));
+            + (t71 - (t36 * t70 + t69));
         let t73 = (t46 * t67 - (t43 * t66 - t40 * t65)) * t72 - (t64 * t63 - t47 * t38);
         let t74 = k(2e-6) * outer_ring_dwx - t73;
         let t75 = base_e0 * base_e0;
@@ -2802,8 +2802,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
             -t0,
             -t3,
             -t6,
-            t70 * t137 * t36 + t31 * (t68 * t137),
-            t58 * t137 * t36 + t31 * (t56 * t137),
+            t36 * (t70 * t137) + t31 * (t68 * t137),
+            t36 * (t58 * t137) + t31 * (t56 * t137),
         ];
     }
 }
@@ -3249,8 +3249,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
         let t6 = k(0.08) * rotor_dsz;
         let t7 = k(0.01) * inner_ring_dsz + t6;
         let t8 = k(0.01) * outer_ring_dsz + t7;
-        let t9 = k(1e-5) * rotor_dwx
-            - k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx);
+        let t9 = k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx)
+            - k(1e-5) * rotor_dwx;
         let t10 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
             + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
         let t11 = k(2.0) * t10;
@@ -3267,11 +3267,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
         let t18 = k(2.0) * t17;
         let t19 = k(1.0) - t17 * t18;
         let t20 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
-        let t21 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
-        let t22 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+        let t21 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
             + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
-        let t23 = t22 * t18;
-        let t24 = t23 * t21 - t20 * t19;
+        let t22 = t21 * t18;
+        let t23 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
+        let t24 = t23 * t22 - t20 * t19;
         let t25 = t24
             - (t6 * (k(0.00025) * (k(0.5) - (t16 + inner_ring_e3 * inner_ring_e3)))
                 - t15);
@@ -3279,7 +3279,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
         let t27 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
             + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
         let t28 = t27 * t11;
-        let t29 = t28 * t26 + t12 * t9;
+        let t29 = t28 * t26 - t12 * t9;
         let t30 = k(2e-6) * outer_ring_dwx + t29;
         let t31 = base_e2 * outer_ring_e0 + base_e3 * outer_ring_e1
             - base_e0 * outer_ring_e2 - base_e1 * outer_ring_e3;
@@ -3289,27 +3289,27 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
             - t0
                 * (k(0.00025)
                     * (inner_ring_e1 * inner_ring_e2 - inner_ring_e0 * inner_ring_e3));
-        let t35 = t19 * t21 + t20 * t23;
+        let t35 = t23 * t19 + t20 * t22;
         let t36 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz)
             - (t35 - (t6 * (k(0.00025) * (t14 + t13)) - t34));
-        let t37 = t36 - k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz);
+        let t37 = k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz) - t36;
         let t38 = base_e0 * outer_ring_e0 + base_e1 * outer_ring_e1
             + base_e2 * outer_ring_e2 + base_e3 * outer_ring_e3;
         let t39 = t38 * t32;
-        let t40 = t39 * t37 - t33 * t30;
-        let t41 = k(1e-7) * base_dwx - t40;
+        let t40 = t39 * t37 + t33 * t30;
+        let t41 = k(1e-7) * base_dwx + t40;
         let t42 = base_e3 * base_e3;
         let t43 = base_e2 * base_e2;
         let t44 = base_e0 * base_e0;
         let t45 = t44 + base_e1 * base_e1;
         let t46 = k(2.0) / (base_e0 * (t45 + (t43 + t42)));
-        let t47 = t12 * t26 - t28 * t9;
+        let t47 = t12 * t26 + t28 * t9;
         let t48 = k(1e-7) * base_dwy
             + (k(1e-6) * (outer_ring_wx * outer_ring_wz + outer_ring_dwy) + t47);
         let t49 = base_e0 * base_e3;
         let t50 = base_e1 * base_e2;
-        let t51 = t33 * t37 + t39 * t30;
-        let t52 = k(1e-7) * base_dwz + t51;
+        let t51 = t33 * t37 - t39 * t30;
+        let t52 = k(1e-7) * base_dwz - t51;
         let t53 = base_e0 * base_e2;
         let t54 = base_e1 * base_e3;
         let t55 = (t54 + t53) * t46 * t52 + ((t50 - t49) * t46 * t48 + t45 * t46 * t41);
@@ -3327,8 +3327,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
             -t2,
             -t5,
             -t8,
-            t40,
-            t51,
+            -t40,
+            -t51,
             -t1,
             -t4,
             -t7,

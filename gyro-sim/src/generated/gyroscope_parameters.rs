@@ -2066,7 +2066,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeParameters<T> {
         let t56 = k(2.0) * (k(0.5) - (t8 + inner_ring_e3 * inner_ring_e3));
         let t57 = t4 * (t56 * self.rotor_offset)
             - (t2 * (t55 * self.rotor_offset) + t0 * (t54 * self.rotor_offset));
-        let t58 = self.ring_axial_inertia * inner_ring_dwy + (t57 + (t53 * t33 + t52));
+        let t58 = self.ring_axial_inertia * inner_ring_dwy + (t57 + (t33 * t53 + t52));
         let t59 = t44 * t50 - (t41 * t47 + t38 * t46);
         let t60 = t56 * t27 - (t54 * t23 - t55 * t24);
         let t61 = t28 * t60 + t22 * (t56 * t18 - (t55 * t12 - t54 * t7));
@@ -2074,7 +2074,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeParameters<T> {
         let t63 = t4 * (t50 * self.rotor_offset)
             - (t2 * (t47 * self.rotor_offset) - t0 * (t46 * self.rotor_offset));
         let t64 = inner_ring_wx * inner_ring_wy * t35
-            + self.ring_diametral_inertia * inner_ring_dwz + (t63 - (t62 * t33 + t61));
+            + self.ring_diametral_inertia * inner_ring_dwz + (t63 - (t33 * t62 + t61));
         let t65 = (t44 * t56 - (t41 * t55 - t38 * t54)) * t64 - (t59 * t58 - t45 * t36);
         let t66 = self.ring_axial_inertia * outer_ring_dwx - t65;
         let t67 = k(2.0) * (k(0.5) - (t37 + outer_ring_e3 * outer_ring_e3));
@@ -2109,8 +2109,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeParameters<T> {
             -t0,
             -t2,
             -t4,
-            t62 * t82 * t33 + t28 * (t60 * t82),
-            t53 * t82 * t33 + t28 * (t51 * t82),
+            t33 * (t62 * t82) + t28 * (t60 * t82),
+            t33 * (t53 * t82) + t28 * (t51 * t82),
         ];
     }
 }
@@ -2538,11 +2538,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
         let t17 = k(2.0) * t16;
         let t18 = k(1.0) - t16 * t17;
         let t19 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
-        let t20 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
-        let t21 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+        let t20 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
             + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
-        let t22 = t21 * t17;
-        let t23 = t22 * t20 - t19 * t18;
+        let t21 = t20 * t17;
+        let t22 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
+        let t23 = t22 * t21 - t19 * t18;
         let t24 = self.ring_axial_inertia * inner_ring_dwy - (t23 - t15);
         let t25 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
             + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
@@ -2558,7 +2558,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
                 * (k(2.0)
                     * (inner_ring_e1 * inner_ring_e2 - inner_ring_e0 * inner_ring_e3)
                     * self.rotor_offset);
-        let t32 = t18 * t20 + t19 * t22;
+        let t32 = t22 * t18 + t19 * t21;
         let t33 = inner_ring_wx * inner_ring_wy * t6
             + self.ring_diametral_inertia * inner_ring_dwz
             - (t32 - (t4 * (k(2.0) * (t12 + t11) * self.rotor_offset) - t31));

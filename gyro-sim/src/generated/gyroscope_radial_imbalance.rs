@@ -2021,9 +2021,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
         let t39 = k(2.0) * t13;
         let t40 = t4 * (k(0.0004) * t27)
             + (t2 * (k(0.0004) * t22) - t0 * (k(0.0004) * t16));
-        let t41 = t40 - k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
-        let t42 = t41 * (t31 * t39 - (t26 * t38 - t19 * t37)) - t36;
-        let t43 = k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx) + t42;
+        let t41 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz) - t40;
+        let t42 = t41 * (t31 * t39 - (t26 * t38 - t19 * t37)) + t36;
+        let t43 = k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx) - t42;
         let t44 = outer_ring_e0 * outer_ring_e0;
         let t45 = k(2.0) * (k(0.5) - (t44 + outer_ring_e1 * outer_ring_e1));
         let t46 = outer_ring_e0 * outer_ring_e3;
@@ -2041,7 +2041,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
         let t58 = t57 * t34 + (t53 * t32 + t54 * t33);
         let t59 = t35 * t58 + (t57 * t28 - (t54 * t23 + t53 * t17)) * t15;
         let t60 = t57 * t39 - (t53 * t37 - t54 * t38);
-        let t61 = k(2e-6) * inner_ring_dwy - (t60 * t41 - t59);
+        let t61 = k(2e-6) * inner_ring_dwy + (t60 * t41 + t59);
         let t62 = t51 * t57 - (t48 * t54 + t45 * t53);
         let t63 = k(2.0) * (t30 + t29);
         let t64 = k(2.0) * (t56 - t55);
@@ -2050,7 +2050,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
         let t67 = t35 * t66 + (t65 * t28 - (t64 * t23 - t63 * t17)) * t15;
         let t68 = t63 * t37 + t64 * t38 + t65 * t39;
         let t69 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz)
-            + (t68 * t41 - t67);
+            - (t68 * t41 + t67);
         let t70 = (t51 * t65 - (t48 * t64 - t45 * t63)) * t69 - (t62 * t61 - t52 * t43);
         let t71 = k(2e-6) * outer_ring_dwx - t70;
         let t72 = k(2.0) * (k(0.5) - (t44 + outer_ring_e3 * outer_ring_e3));
@@ -2084,8 +2084,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
             -t0,
             -t2,
             -t4,
-            t35 * (t66 * t87) - t68 * t87 * t41,
-            t35 * (t58 * t87) - t60 * t87 * t41,
+            t68 * t87 * t41 + t35 * (t66 * t87),
+            t60 * t87 * t41 + t35 * (t58 * t87),
         ];
     }
 }
@@ -2540,7 +2540,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
         let t9 = rotor_e0 * rotor_e0;
         let t10 = k(1e-5) * rotor_dwx
             + (t4 * (k(0.0004) * (k(0.5) - (t9 + rotor_e3 * rotor_e3))) - t8);
-        let t11 = t10 - k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx);
+        let t11 = k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx) - t10;
         let t12 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
             + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
         let t13 = k(2.0) * t12;
@@ -2552,40 +2552,40 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
         let t18 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
         let t19 = t2 * (k(0.0004) * (rotor_e1 * rotor_e2 + rotor_e0 * rotor_e3))
             - t0 * (k(0.0004) * (k(0.5) - (t9 + rotor_e1 * rotor_e1)));
-        let t20 = t4 * (k(0.0004) * (t7 - t6)) + t19
-            - k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
+        let t20 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz)
+            - (t4 * (k(0.0004) * (t7 - t6)) + t19);
         let t21 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
             + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
         let t22 = t21 * t16;
-        let t23 = t22 * t20 + t18 * t17;
-        let t24 = k(2e-6) * inner_ring_dwy + t23;
+        let t23 = t22 * t20 - t18 * t17;
+        let t24 = k(2e-6) * inner_ring_dwy - t23;
         let t25 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
             + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
         let t26 = t25 * t13;
-        let t27 = t26 * t24 + t14 * t11;
+        let t27 = t26 * t24 - t14 * t11;
         let t28 = k(2e-6) * outer_ring_dwx + t27;
         let t29 = k(2.0) * outer_ring_e2;
         let t30 = k(1.0) - outer_ring_e2 * t29;
-        let t31 = t17 * t20 - t18 * t22;
-        let t32 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz) + t31
-            - k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz);
+        let t31 = t17 * t20 + t18 * t22;
+        let t32 = k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz)
+            - (k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz) - t31);
         let t33 = outer_ring_e0 * t29;
         *lambda = [
             -(k(0.01) * outer_ring_dsx + t1),
             -(k(0.1) + k(0.01) * outer_ring_dsy + t3),
             -(k(0.01) * outer_ring_dsz + t5),
-            -(t33 * t32 + t30 * t28),
-            t30 * t32 - t33 * t28,
+            t33 * t32 - t30 * t28,
+            -(t30 * t32 + t33 * t28),
             -t1,
             -t3,
             -t5,
-            t26 * t11 - t14 * t24,
+            -(t14 * t24 + t26 * t11),
             t27,
             -t0,
             -t2,
             -t4,
-            -t31,
-            t23,
+            t31,
+            -t23,
         ];
     }
 }

@@ -2062,7 +2062,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeViscous<T> {
         let t59 = k(0.5) - (t8 + inner_ring_e3 * inner_ring_e3);
         let t60 = t4 * (k(0.00025) * t59)
             - (t2 * (k(0.00025) * t58) + t0 * (k(0.00025) * t57));
-        let t61 = k(2e-6) * inner_ring_dwy + (t60 + (t56 * t34 + t55));
+        let t61 = k(2e-6) * inner_ring_dwy + (t60 + (t34 * t56 + t55));
         let t62 = t44 * t53 - (t41 * t49 + t38 * t47);
         let t63 = k(2.0) * t57;
         let t64 = k(2.0) * t58;
@@ -2074,7 +2074,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeViscous<T> {
             - (t2 * (k(0.00025) * t48) - t0 * (k(0.00025) * t46));
         let t70 = outer_ring_wz - inner_ring_wz;
         let t71 = k(1e-6) * (inner_ring_wx * inner_ring_wy - t70 + inner_ring_dwz)
-            + (t69 - (t68 * t34 + t67));
+            + (t69 - (t34 * t68 + t67));
         let t72 = (t44 * t65 - (t41 * t64 - t38 * t63)) * t71 - (t62 * t61 - t45 * t36);
         let t73 = k(2e-6) * outer_ring_dwx - t72;
         let t74 = k(2.0) * (k(0.5) - (t37 + outer_ring_e3 * outer_ring_e3));
@@ -2108,8 +2108,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeViscous<T> {
             -t0,
             -t2,
             -t4,
-            t68 * t89 * t34 + t29 * (t66 * t89),
-            t56 * t89 * t34 + t29 * (t54 * t89),
+            t34 * (t68 * t89) + t29 * (t66 * t89),
+            t34 * (t56 * t89) + t29 * (t54 * t89),
         ];
     }
 }
@@ -2515,8 +2515,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeViscous<T> {
         let t4 = k(0.08) * rotor_dsz;
         let t5 = k(0.01) * inner_ring_dsz + t4;
         let t6 = inner_ring_wx - rotor_wx;
-        let t7 = k(1e-6) * t6 - k(1e-5) * rotor_dwx
-            + k(1e-6) * (inner_ring_wy * inner_ring_wz - t6 - inner_ring_dwx);
+        let t7 = k(1e-6) * (inner_ring_wy * inner_ring_wz - t6 - inner_ring_dwx)
+            + (k(1e-6) * t6 - k(1e-5) * rotor_dwx);
         let t8 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
             + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
         let t9 = k(2.0) * t8;
@@ -2533,11 +2533,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeViscous<T> {
         let t16 = k(2.0) * t15;
         let t17 = k(1.0) - t15 * t16;
         let t18 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
-        let t19 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
-        let t20 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+        let t19 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
             + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
-        let t21 = t20 * t16;
-        let t22 = t21 * t19 - t18 * t17;
+        let t20 = t19 * t16;
+        let t21 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
+        let t22 = t21 * t20 - t18 * t17;
         let t23 = t22
             - (t4 * (k(0.00025) * (k(0.5) - (t14 + inner_ring_e3 * inner_ring_e3)))
                 - t13);
@@ -2549,22 +2549,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeViscous<T> {
         let t28 = k(2e-6) * outer_ring_dwx + t27;
         let t29 = k(2.0) * outer_ring_e2;
         let t30 = k(1.0) - outer_ring_e2 * t29;
-        let t31 = outer_ring_wz - inner_ring_wz;
-        let t32 = t2 * (k(0.00025) * (k(0.5) - (t14 + inner_ring_e2 * inner_ring_e2)))
+        let t31 = t2 * (k(0.00025) * (k(0.5) - (t14 + inner_ring_e2 * inner_ring_e2)))
             - t0
                 * (k(0.00025)
                     * (inner_ring_e1 * inner_ring_e2 - inner_ring_e0 * inner_ring_e3));
-        let t33 = t17 * t19 + t18 * t21;
-        let t34 = k(1e-6) * (inner_ring_wx * inner_ring_wy - t31 + inner_ring_dwz)
-            - (t33 - (t4 * (k(0.00025) * (t12 + t11)) - t32));
-        let t35 = t34 - k(1e-6) * (outer_ring_wx * outer_ring_wy - t31 - outer_ring_dwz);
+        let t32 = t21 * t17 + t18 * t20;
+        let t33 = outer_ring_wz - inner_ring_wz;
+        let t34 = k(1e-6) * (inner_ring_wx * inner_ring_wy - t33 + inner_ring_dwz)
+            - (t32 - (t4 * (k(0.00025) * (t12 + t11)) - t31));
+        let t35 = k(1e-6) * (outer_ring_wx * outer_ring_wy - t33 - outer_ring_dwz) - t34;
         let t36 = outer_ring_e0 * t29;
         *lambda = [
             -(k(0.01) * outer_ring_dsx + t1),
             -(k(0.1) + k(0.01) * outer_ring_dsy + t3),
             -(k(0.01) * outer_ring_dsz + t5),
-            -(t36 * t35 + t30 * t28),
-            t30 * t35 - t36 * t28,
+            t36 * t35 - t30 * t28,
+            -(t30 * t35 + t36 * t28),
             -t1,
             -t3,
             -t5,
@@ -2573,7 +2573,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeViscous<T> {
             -t0,
             -t2,
             -t4,
-            t33,
+            t32,
             -t22,
         ];
     }

@@ -219,7 +219,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for PitchingGyroscope<T> {
         let t45 = k(2.0) * t44;
         let t46 = t22 * (t45 * t21 + (t39 * t17 + t41 * t18))
             + t16 * (t45 * t12 - (t41 * t6 + t39 * t1));
-        let t47 = (t45 * t26 - (t39 * t24 - t41 * t25)) * t27 + t46;
+        let t47 = t27 * (t45 * t26 - (t39 * t24 - t41 * t25)) + t46;
         let t48 = t14 + t13;
         let t49 = k(0.08) * rotor_dsx;
         let t50 = t43 - t42;
@@ -236,7 +236,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for PitchingGyroscope<T> {
         let t59 = k(2.0) * t52;
         let t60 = t22 * (t59 * t21 - (t57 * t17 - t58 * t18))
             + t16 * (t59 * t12 - (t58 * t6 - t57 * t1));
-        let t61 = (t57 * t24 + t58 * t25 + t59 * t26) * t27 + t60;
+        let t61 = t27 * (t57 * t24 + t58 * t25 + t59 * t26) + t60;
         let t62 = t53 * (k(0.00025) * t44)
             - (t51 * (k(0.00025) * t40) - t49 * (k(0.00025) * t38));
         let t63 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz)
@@ -1316,7 +1316,7 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for PitchingGyroscope<T> {
         let t45 = k(2.0) * t44;
         let t46 = t22 * (t45 * t21 + (t39 * t17 + t41 * t18))
             + t16 * (t45 * t12 - (t41 * t6 + t39 * t1));
-        let t47 = (t45 * t26 - (t39 * t24 - t41 * t25)) * t27 + t46;
+        let t47 = t27 * (t45 * t26 - (t39 * t24 - t41 * t25)) + t46;
         let t48 = t14 + t13;
         let t49 = k(0.08) * rotor_dsx;
         let t50 = t43 - t42;
@@ -1333,7 +1333,7 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for PitchingGyroscope<T> {
         let t59 = k(2.0) * t52;
         let t60 = t22 * (t59 * t21 - (t57 * t17 - t58 * t18))
             + t16 * (t59 * t12 - (t58 * t6 - t57 * t1));
-        let t61 = (t57 * t24 + t58 * t25 + t59 * t26) * t27 + t60;
+        let t61 = t27 * (t57 * t24 + t58 * t25 + t59 * t26) + t60;
         let t62 = t53 * (k(0.00025) * t44)
             - (t51 * (k(0.00025) * t40) - t49 * (k(0.00025) * t38));
         let t63 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz)
@@ -2494,7 +2494,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for PitchingGyroscope<T> {
         let t58 = k(0.5) - (t8 + inner_ring_e3 * inner_ring_e3);
         let t59 = t4 * (k(0.00025) * t58)
             - (t2 * (k(0.00025) * t57) + t0 * (k(0.00025) * t56));
-        let t60 = k(2e-6) * inner_ring_dwy + (t59 + (t55 * t33 + t54));
+        let t60 = k(2e-6) * inner_ring_dwy + (t59 + (t33 * t55 + t54));
         let t61 = t43 * t52 - (t40 * t48 + t37 * t46);
         let t62 = k(2.0) * t56;
         let t63 = k(2.0) * t57;
@@ -2505,7 +2505,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for PitchingGyroscope<T> {
         let t68 = t4 * (k(0.00025) * t51)
             - (t2 * (k(0.00025) * t47) - t0 * (k(0.00025) * t45));
         let t69 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz)
-            + (t68 - (t67 * t33 + t66));
+            + (t68 - (t33 * t67 + t66));
         let t70 = (t43 * t64 - (t40 * t63 - t37 * t62)) * t69 - (t61 * t60 - t44 * t35);
         let t71 = k(2e-6) * outer_ring_dwx - t70;
         let t72 = k(0.05) * (k(18.84955592153876) * t).sin();
@@ -2551,8 +2551,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for PitchingGyroscope<T> {
             -t0,
             -t2,
             -t4,
-            t67 * t99 * t33 + t28 * (t65 * t99),
-            t55 * t99 * t33 + t28 * (t53 * t99),
+            t33 * (t67 * t99) + t28 * (t65 * t99),
+            t33 * (t55 * t99) + t28 * (t53 * t99),
         ];
     }
 }
@@ -3388,8 +3388,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingGyroscope<T> {
         let t3 = k(0.1) + k(0.01) * inner_ring_dsy + t2;
         let t4 = k(0.08) * rotor_dsz;
         let t5 = k(0.01) * inner_ring_dsz + t4;
-        let t6 = k(1e-5) * rotor_dwx
-            - k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx);
+        let t6 = k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx)
+            - k(1e-5) * rotor_dwx;
         let t7 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
             + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
         let t8 = k(2.0) * t7;
@@ -3406,11 +3406,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingGyroscope<T> {
         let t15 = k(2.0) * t14;
         let t16 = k(1.0) - t14 * t15;
         let t17 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
-        let t18 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
-        let t19 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+        let t18 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
             + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
-        let t20 = t19 * t15;
-        let t21 = t20 * t18 - t17 * t16;
+        let t19 = t18 * t15;
+        let t20 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
+        let t21 = t20 * t19 - t17 * t16;
         let t22 = t21
             - (t4 * (k(0.00025) * (k(0.5) - (t13 + inner_ring_e3 * inner_ring_e3)))
                 - t12);
@@ -3418,7 +3418,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingGyroscope<T> {
         let t24 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
             + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
         let t25 = t24 * t8;
-        let t26 = t25 * t23 + t9 * t6;
+        let t26 = t25 * t23 - t9 * t6;
         let t27 = k(2e-6) * outer_ring_dwx + t26;
         let t28 = k(0.025) * (k(18.84955592153876) * t).sin();
         let t29 = t28.cos();
@@ -3438,10 +3438,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingGyroscope<T> {
             - t0
                 * (k(0.00025)
                     * (inner_ring_e1 * inner_ring_e2 - inner_ring_e0 * inner_ring_e3));
-        let t42 = t16 * t18 + t17 * t20;
+        let t42 = t20 * t16 + t17 * t19;
         let t43 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz)
             - (t42 - (t4 * (k(0.00025) * (t11 + t10)) - t41));
-        let t44 = t43 - k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz);
+        let t44 = k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz) - t43;
         let t45 = t34 * outer_ring_e0 + t32 * outer_ring_e1 - t37 * outer_ring_e2
             + t36 * outer_ring_e3;
         let t46 = t45 * t39;
@@ -3449,12 +3449,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingGyroscope<T> {
             -(k(0.01) * outer_ring_dsx + t1),
             -(k(0.1) + k(0.01) * outer_ring_dsy + t3),
             -(k(0.01) * outer_ring_dsz + t5),
-            -(t46 * t44 + t40 * t27),
-            t40 * t44 - t46 * t27,
+            t46 * t44 - t40 * t27,
+            -(t40 * t44 + t46 * t27),
             -t1,
             -t3,
             -t5,
-            t25 * t6 - t9 * t23,
+            -(t9 * t23 + t25 * t6),
             t26,
             -t0,
             -t2,

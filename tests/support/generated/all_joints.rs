@@ -287,7 +287,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for AllJoints<T> {
         let t12 = puck_e2 * puck_e3;
         let t13 = t12 - t11;
         let t14 = k(0.5) - (t1 + puck_e2 * puck_e2);
-        let t15 = k(1.0) - (puck_ry + k(0.2) * (t13 - t14));
+        let t15 = k(1.0) - (puck_ry - k(0.2) * (t14 - t13));
         let t16 = k(0.5) - (t1 + puck_e3 * puck_e3);
         let t17 = t12 + t11;
         let t18 = k(1.0) - (puck_rz + k(0.2) * (t17 - t16));
@@ -806,8 +806,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for AllJoints<T> {
             let t69 = t68 - t67;
             let t70 = sleeve_ry + (k(0.1) * t69 + (k(0.1) * t66 - t64))
                 - (shaft_ry - (k(0.1) * t62 - (t35 - k(0.1) * t59)));
-            let t71 = k(1.4142135623730951) * (t62 - t59) * t70
-                + k(1.4142135623730951) * (t45 + t46) * t57;
+            let t71 = k(1.4142135623730951) * (t59 - t62) * t70
+                - k(1.4142135623730951) * (t45 + t46) * t57;
             let t72 = t61 + t60;
             let t73 = shaft_e3 * shaft_e3;
             let t74 = k(0.5) - (t28 + t73);
@@ -865,7 +865,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for AllJoints<T> {
             let t113 = slide_e0 * slide_e0;
             let t114 = t113 + slide_e1 * slide_e1;
             let t115 = k(0.5) - t114;
-            let t116 = slide_rx - k(0.2) * (t112 - t115);
+            let t116 = slide_rx + k(0.2) * (t115 - t112);
             let t117 = slide_e0 * slide_e1;
             let t118 = slide_e2 * slide_e3;
             let t119 = t118 - t117;
@@ -881,7 +881,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for AllJoints<T> {
                 + k(0.6666666666666666) * (t123 + t116);
             let t128 = t121 - t120;
             let t129 = t115 + t128;
-            let t130 = k(1.8856180831641267) * t112 + k(0.4714045207910317) * -t129;
+            let t130 = k(1.8856180831641267) * t112 - k(0.4714045207910317) * t129;
             let t131 = slide_e2 * slide_e2;
             let t132 = k(0.5) - (t113 + t131);
             let t133 = t122 + t132;
@@ -891,14 +891,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for AllJoints<T> {
                 * (k(1.8856180831641267) * t125 - k(0.4714045207910317) * (t126 - t135))
                 - k(0.6666666666666666) * (t134 - t130);
             let t137 = k(0.6666666666666666) * t119 - k(1.3333333333333333) * t133
-                + (k(0.6666666666666666) * t112 - k(1.3333333333333333) * -t129);
+                + (k(0.6666666666666666) * t112 + k(1.3333333333333333) * t129);
             let t138 = nut_e0 * nut_e2;
             let t139 = nut_e1 * nut_e3;
             let t140 = t139 + t138;
             let t141 = nut_e0 * nut_e0;
             let t142 = t141 + nut_e1 * nut_e1;
             let t143 = k(0.5) - t142;
-            let t144 = nut_rx - k(0.2) * (t140 - t143)
+            let t144 = nut_rx + k(0.2) * (t143 - t140)
                 - (slide_rx + k(0.2) * (t112 - (t115 - t128)));
             let t145 = nut_e0 * nut_e1;
             let t146 = nut_e2 * nut_e3;
@@ -915,7 +915,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for AllJoints<T> {
             let t154 = k(0.5) - (t141 + t153);
             let t155 = t139 - t138;
             let t156 = nut_rz - k(0.2) * (t155 - t154)
-                - (slide_rz + k(0.2) * (t126 + t135 - t125));
+                - (slide_rz - k(0.2) * (t125 - (t126 + t135)));
             let t157 = t151
                 * (k(1.4907119849998598) * t119
                     - (k(0.5962847939999439) * t132 + k(1.1925695879998879) * t122))
@@ -1157,7 +1157,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for AllJoints<T> {
             let t242 = t235 + puck_e1 * puck_e1;
             let t243 = k(0.5) - t242;
             let t244 = k(1.9245008972987525) * t228
-                + k(0.3849001794597505) * (t241 - t243);
+                - k(0.3849001794597505) * (t243 - t241);
             let t245 = t231 + t230;
             let t246 = t227 - t226;
             let t247 = k(1.9245008972987525) * t236
@@ -1247,7 +1247,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for AllJoints<T> {
             )
         };
         *out = [
-            carrier_rx - k(0.2) * -t6 - k(0.1),
+            carrier_rx + k(0.2) * t6 - k(0.1),
             carrier_ry - k(0.2) * t10,
             carrier_rz - k(0.2) * t17 - k(0.4),
             k(0.3333333333333333) * t23 + k(0.6666666666666666) * t20
@@ -1255,9 +1255,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for AllJoints<T> {
             k(0.6666666666666666) * (t23 - t20) - k(0.3333333333333333) * t27,
             shaft_rx + t31 - (carrier_rx + k(0.2) * (t18 - t6)),
             shaft_ry - t35 - (carrier_ry + k(0.2) * (t21 + t10)),
-            shaft_rz - t39 - (carrier_rz + k(0.2) * (t17 - t25)),
+            shaft_rz - t39 - (carrier_rz - k(0.2) * (t25 - t17)),
             k(0.6) * t43 - k(0.8) * t44,
-            k(1.4142135623730951) * (t72 - t74) * t80 + t71,
+            k(1.4142135623730951) * (t72 - t74) * t80 - t71,
             -t82,
             -(k(0.7071067811865476) * (t105 - t98)),
             -t109,
@@ -1619,7 +1619,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for AllJoints<T> {
             let t112 = sleeve_ry + (k(0.1) * t104 + (k(0.1) * t102 - k(0.2) * t100))
                 - (shaft_ry - (k(0.1) * t58 - (k(0.4) * t70 - k(0.1) * t54)));
             let t113 = t112 * (k(0.7071067811865476) * (t110 + t109))
-                - k(1.4142135623730951) * (t58 - t54) * t111;
+                + k(1.4142135623730951) * (t54 - t58) * t111;
             let t114 = k(0.5) - (t87 + sleeve_e1 * sleeve_e1);
             let t115 = k(2.0) * t114;
             let t116 = t99 - t98;
@@ -1896,7 +1896,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for AllJoints<T> {
             let t207 = slide_sz - k(0.1) * (t192 - t184 + t181)
                 - (nut_sz + k(0.1) * (t206 - t201));
             let t208 = nut_rz - k(0.2) * (t204 - t199)
-                - (slide_rz + k(0.2) * (t177 + t179 - t182));
+                - (slide_rz - k(0.2) * (t182 - (t177 + t179)));
             let t209 = t208
                 * (k(0.4472135954999579) * t184 - k(0.8944271909999159) * t192)
                 - (k(1.7888543819998317) * t179 + k(0.8944271909999159) * t177) * t207;
@@ -1925,7 +1925,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for AllJoints<T> {
             let t228 = t222 * nut_wx + t227 * nut_wy;
             let t229 = slide_sx + k(0.1) * (t189 - t175 - t170)
                 - (nut_sx + k(0.1) * (t228 + t225));
-            let t230 = nut_rx - k(0.2) * (t223 - t226)
+            let t230 = nut_rx + k(0.2) * (t226 - t223)
                 - (slide_rx + k(0.2) * (t173 - (t166 - t168)));
             let t231 = t230
                 * (k(0.4472135954999579) * t175 - k(0.8944271909999159) * t189)
@@ -2397,7 +2397,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for AllJoints<T> {
         let t18 = puck_e0 * puck_e1;
         let t19 = puck_e2 * puck_e3;
         let t20 = puck_e0 * puck_e0;
-        let t21 = puck_ry + k(0.2) * (t19 - t18 - (k(0.5) - (t20 + puck_e2 * puck_e2)));
+        let t21 = puck_ry - k(0.2) * (k(0.5) - (t20 + puck_e2 * puck_e2) - (t19 - t18));
         let t22 = k(1.0) - t21;
         let t23 = puck_rz + k(0.2) * (t19 + t18 - (k(0.5) - (t20 + puck_e3 * puck_e3)));
         let t24 = k(1.0) - t23;
@@ -2529,8 +2529,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for AllJoints<T> {
         let puck_wz = y[90];
         let (
             t13,
-            t18,
             t20,
+            t23,
             t25,
             t43,
             t48,
@@ -2575,34 +2575,34 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for AllJoints<T> {
             t198,
             t199,
         ) = {
-            let t0 = carrier_e0 * carrier_e1;
-            let t1 = carrier_e2 * carrier_e3;
-            let t2 = t1 - t0;
-            let t3 = carrier_e2 * carrier_e2;
-            let t4 = carrier_e0 * carrier_e0;
-            let t5 = t4 + carrier_e1 * carrier_e1;
-            let t6 = carrier_e3 * carrier_e3;
-            let t7 = k(1.0) - (t6 + (t5 + t3));
-            let t8 = k(2.0) * (k(0.5) - (t4 + t3));
-            let t9 = t8 - t7;
-            let t10 = carrier_e0 * carrier_e3;
-            let t11 = carrier_e1 * carrier_e2;
-            let t12 = t11 + t10;
-            let t13 = k(1.3333333333333333) * t12 - k(0.3333333333333333) * t9
-                - k(1.3333333333333333) * t2;
-            let t14 = carrier_e0 * carrier_e2;
-            let t15 = carrier_e1 * carrier_e3;
-            let t16 = t15 + t14;
-            let t17 = k(2.0) * (k(0.5) - t5);
-            let t18 = t17 - t7;
-            let t19 = t11 - t10;
-            let t20 = k(0.6666666666666666) * (t19 - t18) - k(1.3333333333333333) * t16;
-            let t21 = k(2.0) * (k(0.5) - (t4 + t6));
-            let t22 = t21 - t7;
-            let t23 = t1 + t0;
-            let t24 = t15 - t14;
-            let t25 = k(1.3333333333333333) * t24 + k(0.6666666666666666) * t23
-                + k(0.6666666666666666) * t22;
+            let t0 = carrier_e2 * carrier_e2;
+            let t1 = carrier_e0 * carrier_e0;
+            let t2 = t1 + carrier_e1 * carrier_e1;
+            let t3 = carrier_e3 * carrier_e3;
+            let t4 = k(1.0) - (t3 + (t2 + t0));
+            let t5 = k(2.0) * (k(0.5) - (t1 + t3));
+            let t6 = t5 - t4;
+            let t7 = carrier_e0 * carrier_e1;
+            let t8 = carrier_e2 * carrier_e3;
+            let t9 = t8 + t7;
+            let t10 = carrier_e0 * carrier_e2;
+            let t11 = carrier_e1 * carrier_e3;
+            let t12 = t11 - t10;
+            let t13 = k(1.3333333333333333) * t12 + k(0.6666666666666666) * t9
+                + k(0.6666666666666666) * t6;
+            let t14 = t8 - t7;
+            let t15 = k(2.0) * (k(0.5) - (t1 + t0));
+            let t16 = t15 - t4;
+            let t17 = carrier_e0 * carrier_e3;
+            let t18 = carrier_e1 * carrier_e2;
+            let t19 = t18 + t17;
+            let t20 = k(1.3333333333333333) * t19 - k(0.3333333333333333) * t16
+                - k(1.3333333333333333) * t14;
+            let t21 = t11 + t10;
+            let t22 = k(2.0) * (k(0.5) - t2);
+            let t23 = t22 - t4;
+            let t24 = t18 - t17;
+            let t25 = k(0.6666666666666666) * (t24 - t23) - k(1.3333333333333333) * t21;
             let t26 = shaft_e0 * shaft_e2;
             let t27 = shaft_e1 * shaft_e3;
             let t28 = t27 - t26;
@@ -2611,7 +2611,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for AllJoints<T> {
             let t31 = shaft_e1 * shaft_e2;
             let t32 = t31 + t30;
             let t33 = k(2.0) * t32;
-            let t34 = k(2.0) * t2;
+            let t34 = k(2.0) * t14;
             let t35 = t34 * t33;
             let t36 = shaft_e2 * shaft_e2;
             let t37 = shaft_e0 * shaft_e0;
@@ -2621,15 +2621,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for AllJoints<T> {
             let t41 = k(0.5) - t38;
             let t42 = k(2.0) * t41;
             let t43 = t42 - t40;
-            let t44 = k(2.0) * t16;
-            let t45 = k(2.0) * t23;
+            let t44 = k(2.0) * t21;
+            let t45 = k(2.0) * t9;
             let t46 = t45 * t29;
-            let t47 = k(2.0) * t19;
-            let t48 = k(0.8) * (t47 * t43 + t33 * t9 - t46)
-                - k(0.6) * (t44 * t43 - t35 + t29 * t22);
-            let t49 = k(2.0) * t24 * t29;
-            let t50 = k(2.0) * t12 * t33;
-            let t51 = t46 - (t8 * t33 + t47 * t42);
+            let t47 = k(2.0) * t24;
+            let t48 = k(0.8) * (t47 * t43 + t33 * t16 - t46)
+                - k(0.6) * (t44 * t43 - t35 + t29 * t6);
+            let t49 = k(2.0) * t12 * t29;
+            let t50 = k(2.0) * t19 * t33;
+            let t51 = t46 - (t15 * t33 + t47 * t42);
             let t52 = k(0.5) - (t37 + t36);
             let t53 = k(2.0) * t52;
             let t54 = t31 - t30;
@@ -2647,26 +2647,26 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for AllJoints<T> {
             let t66 = t47 * t65;
             let t67 = k(0.5) - (t37 + t39);
             let t68 = k(2.0) * t67;
-            let t69 = shaft_wz * (t45 * t68 - (t66 - t8 * t63))
-                - (shaft_wy * (t61 + (t56 + t8 * t53)) + shaft_wx * t51);
-            let t70 = t21 * t29 - (t35 - t44 * t42);
+            let t69 = shaft_wz * (t45 * t68 - (t66 - t15 * t63))
+                - (shaft_wy * (t61 + (t56 + t15 * t53)) + shaft_wx * t51);
+            let t70 = t5 * t29 - (t35 - t44 * t42);
             let t71 = t44 * t55;
-            let t72 = shaft_wy * (t21 * t60 - (t71 - t34 * t53)) + shaft_wx * t70;
+            let t72 = shaft_wy * (t5 * t60 - (t71 - t34 * t53)) + shaft_wx * t70;
             let t73 = t44 * t65 + t34 * t63;
-            let t74 = k(0.8) * (carrier_wz - (shaft_wz * (t73 + t21 * t68) - t72))
+            let t74 = k(0.8) * (carrier_wz - (shaft_wz * (t73 + t5 * t68) - t72))
                 + k(0.6) * (carrier_wy + t69);
             let t75 = t68 - t40;
-            let t76 = t73 + t22 * t75;
+            let t76 = t73 + t6 * t75;
             let t77 = t53 - t40;
-            let t78 = t71 - t34 * t77 - t60 * t22;
-            let t79 = t66 - t63 * t9 - t45 * t75;
-            let t80 = t56 + t9 * t77 + t61;
+            let t78 = t71 - t34 * t77 - t60 * t6;
+            let t79 = t66 - t63 * t16 - t45 * t75;
+            let t80 = t56 + t16 * t77 + t61;
             let t81 = k(0.6) * (k(0.8) * t80 - k(0.6) * t79)
                 + k(0.8) * (k(0.8) * t78 - k(0.6) * t76);
             let t82 = k(0.6) * (k(0.6) * t80 + k(0.8) * t79)
                 + k(0.8) * (k(0.6) * t78 + k(0.8) * t76);
             let t83 = carrier_wz * t70
-                - (carrier_wy * t51 + carrier_wx * (t49 + (t50 + t17 * t42)));
+                - (carrier_wy * t51 + carrier_wx * (t49 + (t50 + t22 * t42)));
             let t84 = sleeve_e2 * sleeve_e2;
             let t85 = sleeve_e0 * sleeve_e0;
             let t86 = t85 + sleeve_e1 * sleeve_e1;
@@ -2692,12 +2692,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for AllJoints<T> {
             let t106 = sleeve_e1 * sleeve_e2;
             let t107 = t106 - t105;
             let t108 = k(2.0) * t107;
-            let t109 = t108 * t43 + t33 * t104 - t29 * t101
-                + (t99 * t43 - t33 * t95 + t29 * t91);
+            let t109 = t65 * t108 - t63 * t104 - t101 * t75
+                + (t65 * t99 + t63 * t95 + t75 * t91);
             let t110 = t55 * t108 + t77 * t104 + t60 * t101
                 + (t55 * t99 - t95 * t77 - t60 * t91);
-            let t111 = t65 * t108 - t63 * t104 - t101 * t75
-                + (t65 * t99 + t63 * t95 + t75 * t91);
+            let t111 = t108 * t43 + t33 * t104 - t29 * t101
+                + (t99 * t43 - t33 * t95 + t29 * t91);
             let t112 = k(0.9045340337332909) * shaft_wx
                 + k(0.30151134457776363) * shaft_wy - k(0.30151134457776363) * shaft_wz
                 - (k(0.9045340337332909) * sleeve_wx + k(0.30151134457776363) * sleeve_wy
@@ -2763,7 +2763,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for AllJoints<T> {
             let t153 = slide_e1 * slide_e2;
             let t154 = t153 + t152;
             let t155 = k(0.7) - (slide_ry - k(0.2) * (t154 + t151))
-                + (slide_rx - k(0.2) * (t145 - t148));
+                + (slide_rx + k(0.2) * (t148 - t145));
             let t156 = slide_e3 * slide_e3;
             let t157 = k(0.5) - (t146 + t156);
             let t158 = t144 - t143;
@@ -2823,8 +2823,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for AllJoints<T> {
             let t199 = puck_e0 * puck_e0;
             (
                 t13,
-                t18,
                 t20,
+                t23,
                 t25,
                 t43,
                 t48,
@@ -3038,20 +3038,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for AllJoints<T> {
             )
         };
         *out = [
-            -(k(0.3333333333333333) * t25 + k(0.6666666666666666) * (t20 - t13)),
-            k(0.6666666666666666) * t20 + k(0.3333333333333333) * t13
-                - k(0.6666666666666666) * t25,
+            -(k(0.6666666666666666) * (t25 - t20) + k(0.3333333333333333) * t13),
+            k(0.6666666666666666) * t25 + k(0.3333333333333333) * t20
+                - k(0.6666666666666666) * t13,
             k(0.3333333333333333) * carrier_wx + k(0.6666666666666666) * carrier_wy
                 + k(0.6666666666666666) * carrier_wz,
             -t48,
-            t18 * t43 + t50 + t49,
+            t23 * t43 + t50 + t49,
             -t74,
             t81,
             t82,
             shaft_wx + t83,
-            k(0.45226701686664544) * t111
-                - (k(0.45226701686664544) * t110 + k(0.30151134457776363) * t109),
-            k(0.5) * (t110 + t111),
+            k(0.45226701686664544) * t109
+                - (k(0.30151134457776363) * t111 + k(0.45226701686664544) * t110),
+            k(0.5) * (t110 + t109),
             -t112,
             t121 * t119 - (t118 * t116 + t115 * t113),
             t128 - (t142 + t135),
@@ -4338,7 +4338,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t102 = shaft_e2 * shaft_e3;
             let t103 = t102 - t101;
             let t104 = k(0.5) - (t57 + shaft_e2 * shaft_e2);
-            let t105 = k(1.4142135623730951) * (t103 - t104);
+            let t105 = k(1.4142135623730951) * (t104 - t103);
             let t106 = k(0.5) - (t57 + shaft_e3 * shaft_e3);
             let t107 = t102 + t101;
             let t108 = k(1.4142135623730951) * (t107 - t106);
@@ -4372,28 +4372,28 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t134 = sleeve_rx + (k(0.1) * t133 - (k(0.1) * t132 - k(0.2) * t131))
                 - (shaft_rx - (k(0.1) * t98 + (k(0.4) * t58 - k(0.1) * t99)));
             let t135 = k(1.4142135623730951) * (shaft_e2 - shaft_e3) * t134 + t130 * t100
-                + (k(0.7071067811865476) * (t78 - t95) * t127 - t121 * t105);
+                + (k(0.7071067811865476) * (t78 - t95) * t127 + t121 * t105);
             let t136 = k(0.1) * shaft_e0;
             let t137 = t44 + t136;
             let t138 = k(1.4142135623730951) * shaft_e0;
             let t139 = t45 + t136;
             let t140 = t128 - (t129 + t41);
             let t141 = k(1.4142135623730951) * (shaft_e2 + shaft_e3) * t134 + t140 * t100
-                - (t138 * t127 + t139 * t105);
+                - (t138 * t127 - t139 * t105);
             let t142 = t128 - t47;
             let t143 = t128 - (t46 + k(0.2) * shaft_e2);
             let t144 = k(4.0) * shaft_e2;
             let t145 = shaft_e0 - shaft_e1;
             let t146 = k(0.1) * t145;
             let t147 = shaft_e0 + shaft_e1;
-            let t148 = k(1.4142135623730951) * t147 * t134 + t100 * t146
-                + (k(0.7071067811865476) * (t73 + t144) * t127 + t143 * t105);
+            let t148 = k(1.4142135623730951) * t147 * t134 + t146 * t100
+                + (k(0.7071067811865476) * (t73 + t144) * t127 - t143 * t105);
             let t149 = k(0.2) * shaft_e3 - (t129 + t46);
             let t150 = k(4.0) * shaft_e3;
             let t151 = t129 - t47;
             let t152 = k(0.1) * t147;
-            let t153 = t134 * (k(1.4142135623730951) * t145) - t100 * t152
-                - (k(1.4142135623730951) * shaft_e2 * t127 + t151 * t105);
+            let t153 = k(1.4142135623730951) * t145 * t134 - t152 * t100
+                - (k(1.4142135623730951) * shaft_e2 * t127 - t151 * t105);
             let t154 = k(0.2) * sleeve_e2;
             let t155 = k(0.1) * sleeve_e1;
             let t156 = k(0.2) * sleeve_e0;
@@ -4436,10 +4436,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 + t140 * t177 + ((t180 - t187) * t127 - t139 * t178);
             let t189 = k(0.8528028654224418) * shaft_e0;
             let t190 = k(0.8528028654224418) * shaft_e1;
-            let t191 = k(1.2792042981336627) * t145 * t134 + t177 * t146
+            let t191 = k(1.2792042981336627) * t145 * t134 + t146 * t177
                 + ((t184 - (k(2.5584085962673253) * shaft_e2 - t190)) * t127
                     + t143 * t178);
-            let t192 = k(1.2792042981336627) * t147 * t134 + t177 * t152
+            let t192 = k(1.2792042981336627) * t147 * t134 + t152 * t177
                 + ((t185 + t189) * t127 + t151 * t178);
             let t193 = t192
                 + ((k(2.5584085962673253) * shaft_e3 - (t185 - t190)) * t120
@@ -4905,26 +4905,26 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t360 = k(0.4264014327112209)
                 * (k(0.9045340337332909) * (t340 + t346) + k(0.30151134457776363) * t359
                     - k(0.30151134457776363) * t358);
-            let t361 = k(0.2) * (slide_e1 - slide_e3);
-            let t362 = k(4.0) * slide_e0;
-            let t363 = k(2.0) * slide_e2;
-            let t364 = k(0.1) * (t363 + t362);
-            let t365 = slide_e0 - slide_e2;
-            let t366 = k(0.2) * t365;
-            let t367 = k(4.0) * slide_e1;
-            let t368 = k(2.0) * slide_e3;
-            let t369 = k(0.1) * (t368 + t367);
+            let t361 = k(4.0) * slide_e0;
+            let t362 = k(2.0) * slide_e2;
+            let t363 = k(0.1) * (t362 + t361);
+            let t364 = k(0.2) * (slide_e1 - slide_e3);
+            let t365 = k(4.0) * slide_e1;
+            let t366 = k(2.0) * slide_e3;
+            let t367 = k(0.1) * (t366 + t365);
+            let t368 = slide_e0 - slide_e2;
+            let t369 = k(0.2) * t368;
             let t370 = slide_e1 + slide_e3;
             let t371 = slide_e0 + slide_e2;
             let t372 = k(4.0) * slide_e3;
             let t373 = k(2.0) * slide_e1;
-            let t374 = t368 + t362;
+            let t374 = t366 + t361;
             let t375 = k(1.8856180831641267) * slide_e2;
             let t376 = t375 + k(0.23570226039551584) * t374;
-            let t377 = t368 - t362;
+            let t377 = t366 - t361;
             let t378 = k(1.8856180831641267) * slide_e1;
             let t379 = t378 - k(0.23570226039551584) * t377;
-            let t380 = t363 - t367;
+            let t380 = t362 - t365;
             let t381 = k(1.8856180831641267) * slide_e3;
             let t382 = t381 - k(0.23570226039551584) * t380;
             let t383 = k(1.8856180831641267) * slide_e0;
@@ -4937,9 +4937,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t390 = t378 + t389;
             let t391 = t375 + t389;
             let t392 = slide_e1 + slide_e2;
-            let t393 = k(0.6666666666666666) * (t379 + t376)
-                - k(0.3333333333333333)
-                    * (k(3.7712361663282534) * slide_e0 - k(0.4714045207910317) * t392);
+            let t393 = k(0.3333333333333333)
+                * (k(3.7712361663282534) * slide_e0 - k(0.4714045207910317) * t392)
+                - k(0.6666666666666666) * (t379 + t376);
             let t394 = slide_e0 - slide_e3;
             let t395 = slide_e0 + slide_e3;
             let t396 = slide_e1 - slide_e2;
@@ -5205,7 +5205,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t419 = slide_e2 * slide_e3;
             let t420 = t419 + t418;
             let t421 = k(1.7888543819998317) * t420 + k(0.8944271909999159) * t417;
-            let t422 = k(0.1) * (t362 + k(2.0) * t396);
+            let t422 = k(0.1) * (t361 + k(2.0) * t396);
             let t423 = k(0.5) - (t406 + slide_e3 * slide_e3);
             let t424 = nut_e0 * nut_e0;
             let t425 = k(0.5) - (t424 + nut_e3 * nut_e3);
@@ -5213,7 +5213,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t427 = nut_e1 * nut_e3;
             let t428 = t427 - t426;
             let t429 = nut_rz - k(0.2) * (t428 - t425)
-                - (slide_rz + k(0.2) * (t417 + t420 - t423));
+                - (slide_rz - k(0.2) * (t423 - (t417 + t420)));
             let t430 = k(0.8944271909999159) * slide_e2;
             let t431 = k(1.7888543819998317) * slide_e1;
             let t432 = k(0.1) * (t373 - t374);
@@ -5227,30 +5227,30 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t440 = nut_ry - k(0.2) * (t439 + t436)
                 - (slide_ry + k(0.2) * (t433 + (t412 - t413)));
             let t441 = k(0.8944271909999159) * slide_e3;
-            let t442 = k(0.1) * (t363 - t377);
+            let t442 = k(0.1) * (t362 - t377);
             let t443 = t416 + t415;
             let t444 = t427 + t426;
             let t445 = k(0.5) - (t424 + nut_e1 * nut_e1);
-            let t446 = nut_rx - k(0.2) * (t444 - t445)
+            let t446 = nut_rx + k(0.2) * (t445 - t444)
                 - (slide_rx + k(0.2) * (t443 - (t407 - t410)));
             let t447 = k(1.7888543819998317) * t394 * t446 - t442 * t411
                 + ((k(3.5777087639996634) * slide_e0 + t441) * t440 - t432 * t414);
             let t448 = k(0.2) * t395;
             let t449 = k(1.7888543819998317) * slide_e0;
-            let t450 = k(0.1) * (t368 + (t363 + t367));
+            let t450 = k(0.1) * (t366 + (t362 + t365));
             let t451 = k(1.7888543819998317) * t392 * t446 - t450 * t411
-                + (t430 * t440 - t414 * t366);
+                + (t430 * t440 - t369 * t414);
             let t452 = k(0.2) * t394;
             let t453 = k(0.8944271909999159) * slide_e0;
-            let t454 = k(0.1) * (t368 + (t373 + t386));
+            let t454 = k(0.1) * (t366 + (t373 + t386));
             let t455 = k(0.8944271909999159) * slide_e1;
             let t456 = k(0.2) * (slide_e0 + slide_e1);
             let t457 = t431 * t446 - t456 * t411
                 + ((k(3.5777087639996634) * slide_e2 + t455) * t440 + t454 * t414);
-            let t458 = k(0.1) * (t372 + k(2.0) * t392);
+            let t458 = k(0.1) * (k(2.0) * t392 + t372);
             let t459 = k(0.2) * t371;
             let t460 = k(0.2) * (slide_e0 - slide_e1);
-            let t461 = t449 * t446 - t411 * t460 - (t453 * t440 + t459 * t414);
+            let t461 = t449 * t446 - t460 * t411 - (t453 * t440 + t459 * t414);
             let t462 = k(2.0) * nut_e2;
             let t463 = k(4.0) * nut_e0;
             let t464 = k(0.1) * (t463 - t462);
@@ -5281,7 +5281,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t486 = k(1.4907119849998598) * slide_e2;
             let t487 = (t486 - (t485 + k(2.3851391759997758) * slide_e0)) * t446
                 - t442 * t479
-                - (t440 * (t484 - k(1.1925695879998879) * t394) - t432 * t480);
+                - ((t484 - k(1.1925695879998879) * t394) * t440 - t432 * t480);
             let t488 = t487
                 + ((k(2.9814239699997196) * slide_e0 + (t483 + t482)) * t429
                     + t422 * t481);
@@ -5290,13 +5290,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t491 = k(0.5962847939999439) * slide_e2;
             let t492 = k(1.4907119849998598) * slide_e3;
             let t493 = (t492 + (t491 - k(2.3851391759997758) * slide_e1)) * t446
-                - t450 * t479 - ((t482 + t490) * t440 - t480 * t366);
+                - t450 * t479 - ((t482 + t490) * t440 - t369 * t480);
             let t494 = k(1.1925695879998879) * slide_e0;
             let t495 = (t483 + t490) * t446 - t456 * t479
                 + ((t492 - k(1.1925695879998879) * t396) * t440 - t454 * t480);
             let t496 = (k(2.9814239699997196) * slide_e3
                 + (t491 - k(1.1925695879998879) * slide_e1)) * t429 + t458 * t481;
-            let t497 = (t484 - t489) * t446 + t479 * t460
+            let t497 = (t484 - t489) * t446 + t460 * t479
                 - ((t494 - t486) * t440 + t459 * t480);
             let t498 = k(1.3333333333333333) * t443
                 - (k(0.6666666666666666) * t410 + k(1.3333333333333333) * t407);
@@ -5333,24 +5333,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 - (k(0.29814239699997197) * t514 - k(0.5962847939999439) * t510);
             let t521 = k(1.0) / (t520 * t520 + t515 * t515);
             let t522 = t508 * t373;
-            let t523 = t507 * t363;
-            let t524 = t523 + t522 + t509 * t362;
+            let t523 = t507 * t362;
+            let t524 = t523 + t522 + t509 * t361;
             let t525 = t503 * t373;
-            let t526 = t501 * t363;
-            let t527 = t526 + t525 - t505 * t362;
+            let t526 = t501 * t362;
+            let t527 = t526 + t525 - t505 * t361;
             let t528 = t509 * t373;
-            let t529 = t507 * t368;
-            let t530 = t529 + t508 * t362 - t528;
+            let t529 = t507 * t366;
+            let t530 = t529 + t508 * t361 - t528;
             let t531 = t505 * t373;
-            let t532 = t501 * t368;
-            let t533 = t532 + t503 * t362 + t531;
+            let t532 = t501 * t366;
+            let t533 = t532 + t503 * t361 + t531;
             let t534 = k(0.4472135954999579) * t533 - k(0.8944271909999159) * t530;
-            let t535 = t509 * t363;
-            let t536 = t508 * t368;
-            let t537 = t507 * t362 - t536 - t535;
-            let t538 = t505 * t363;
-            let t539 = t503 * t368;
-            let t540 = t501 * t362 - t539 + t538;
+            let t535 = t509 * t362;
+            let t536 = t508 * t366;
+            let t537 = t507 * t361 - t536 - t535;
+            let t538 = t505 * t362;
+            let t539 = t503 * t366;
+            let t540 = t501 * t361 - t539 + t538;
             let t541 = k(0.4472135954999579) * t540 - k(0.8944271909999159) * t537;
             let t542 = k(0.5962847939999439) * t541 + k(0.29814239699997197) * t534
                 - k(0.7453559924999299)
@@ -5361,7 +5361,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t544 = k(2.6666666666666665) * slide_e0;
             let t545 = k(0.6666666666666666) * slide_e3;
             let t546 = (t399 + (t544 + t545)) * t446 - t442 * t498
-                - (t440 * (k(1.3333333333333333) * (slide_e1 + t394)) - t432 * t499);
+                - (k(1.3333333333333333) * (slide_e1 + t394) * t440 - t432 * t499);
             let t547 = t546 + ((t544 - (t404 + t399)) * t429 + t422 * t500)
                 + k(0.0031830988618379067) * t543;
             let t548 = k(2.0) * slide_e0;
@@ -5374,12 +5374,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t555 = t505 * t548;
             let t556 = t526 - t555;
             let t557 = k(0.4472135954999579) * t556 - k(0.8944271909999159) * t554;
-            let t558 = t509 * t368;
-            let t559 = t508 * t363;
-            let t560 = t507 * t367 - t559 + t558;
-            let t561 = t505 * t368;
-            let t562 = t503 * t363;
-            let t563 = t501 * t367 - t562 - t561;
+            let t558 = t509 * t366;
+            let t559 = t508 * t362;
+            let t560 = t507 * t365 - t559 + t558;
+            let t561 = t505 * t366;
+            let t562 = t503 * t362;
+            let t563 = t501 * t365 - t562 - t561;
             let t564 = k(0.4472135954999579) * t563 - k(0.8944271909999159) * t560;
             let t565 = k(0.5962847939999439) * t564 - k(0.29814239699997197) * t557
                 - k(0.7453559924999299)
@@ -5389,7 +5389,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                     - t515 * t565);
             let t567 = k(1.3333333333333333) * slide_e3;
             let t568 = (t567 - (t403 - k(2.6666666666666665) * slide_e1)) * t446
-                - t450 * t498 - (t440 * (k(1.3333333333333333) * t365) - t499 * t366);
+                - t450 * t498 - (k(1.3333333333333333) * t368 * t440 - t369 * t499);
             let t569 = t568 + ((t567 - t398) * t429 + t448 * t500)
                 + k(0.0031830988618379067) * t566;
             let t570 = t507 * t548;
@@ -5412,7 +5412,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                     - t515 * t582);
             let t584 = t405 * t446 + t456 * t498
                 - (k(1.3333333333333333) * (slide_e3 + t396) * t440 - t454 * t499);
-            let t585 = t584 + ((t402 + t545) * t429 + t500 * t452)
+            let t585 = t584 + ((t402 + t545) * t429 + t452 * t500)
                 + k(0.0031830988618379067) * t583;
             let t586 = t559 - t574 - t509 * t372;
             let t587 = t562 - t576 + t505 * t372;
@@ -5428,7 +5428,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t595 = t521
                 * (t520 * (k(0.4472135954999579) * t593 + k(0.8944271909999159) * t590)
                     - t515 * t594);
-            let t596 = t401 * t446 + t498 * t460
+            let t596 = t401 * t446 + t460 * t498
                 + (k(1.3333333333333333) * t371 * t440 - t459 * t499);
             let t597 = t596
                 + ((k(2.6666666666666665) * slide_e3 - (t403 - t400)) * t429
@@ -5681,7 +5681,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t619 = t521
                 * (t520 * (k(0.4472135954999579) * t617 - k(0.8944271909999159) * t610)
                     - t515 * t618);
-            let t620 = t466 * t498 - t499 * t465 - t464 * t500
+            let t620 = t466 * t498 - t465 * t499 - t464 * t500
                 - k(0.0031830988618379067) * t619;
             let t621 = t516 * t462;
             let t622 = k(2.0) * nut_e0;
@@ -5710,7 +5710,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t643 = t521
                 * (t520 * (k(0.4472135954999579) * t641 - k(0.8944271909999159) * t634)
                     - t515 * t642);
-            let t644 = t471 * t498 - t499 * t468 - t467 * t500
+            let t644 = t471 * t498 - t468 * t499 - t467 * t500
                 - k(0.0031830988618379067) * t643;
             let t645 = k(4.0) * nut_e2;
             let t646 = t516 * t475;
@@ -5761,21 +5761,21 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t681 = t680 * t373;
             let t682 = k(2.0) * t436;
             let t683 = k(2.0) * t444;
-            let t684 = t683 * t368;
+            let t684 = t683 * t366;
             let t685 = k(0.6666666666666666) * t533 + k(0.3333333333333333) * t530
-                - k(0.6666666666666666) * (t684 - t682 * t362 + t681);
-            let t686 = t680 * t363;
-            let t687 = t682 * t368;
+                - k(0.6666666666666666) * (t684 - t682 * t361 + t681);
+            let t686 = t680 * t362;
+            let t687 = t682 * t366;
             let t688 = k(0.6666666666666666) * t540 + k(0.3333333333333333) * t537
-                - k(0.6666666666666666) * (t683 * t362 + t687 + t686);
-            let t689 = t683 * t363;
+                - k(0.6666666666666666) * (t683 * t361 + t687 + t686);
+            let t689 = t683 * t362;
             let t690 = t680 * t548;
             let t691 = k(0.6666666666666666) * t556 + k(0.3333333333333333) * t554
                 + k(0.6666666666666666) * (t690 - t689);
-            let t692 = t680 * t368;
-            let t693 = t682 * t363;
+            let t692 = t680 * t366;
+            let t693 = t682 * t362;
             let t694 = k(0.6666666666666666) * t563 + k(0.3333333333333333) * t560
-                - k(0.6666666666666666) * (t683 * t367 + t693 - t692);
+                - k(0.6666666666666666) * (t683 * t365 + t693 - t692);
             let t695 = t683 * t373;
             let t696 = k(0.6666666666666666) * t577 - k(0.3333333333333333) * t575
                 - k(0.6666666666666666) * (t692 - (t695 + t682 * t386));
@@ -5805,7 +5805,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t710 = k(0.6666666666666666) * t675 - k(0.3333333333333333) * t673
                 + k(0.6666666666666666) * (t639 - t655 + t506 * t474);
             let t711 = k(0.6666666666666666) * t527 + k(0.3333333333333333) * t524
-                - k(0.6666666666666666) * (t689 - t697 - t680 * t362);
+                - k(0.6666666666666666) * (t689 - t697 - t680 * t361);
             let t712 = k(0.7453559924999299)
                 * (k(0.6666666666666666) * t552 + k(0.3333333333333333) * t550
                     - k(0.6666666666666666) * (t684 - t701));
@@ -6136,7 +6136,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t831 = k(1.4907119849998598) * lid_e2;
             let t832 = (t831 + (t830 + k(2.3851391759997758) * lid_e0)) * t810
                 + t809 * t824
-                - (t807 * (t829 + k(1.1925695879998879) * t811) + t806 * t825);
+                - ((t829 + k(1.1925695879998879) * t811) * t807 + t806 * t825);
             let t833 = t832
                 + ((k(2.9814239699997196) * lid_e0 - (t828 + t827)) * t803
                     - t802 * t826);
@@ -6151,7 +6151,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 - ((t837 + k(1.1925695879998879) * (lid_e1 - lid_e2)) * t807
                     + t818 * t825);
             let t841 = (k(2.9814239699997196) * lid_e3
-                - (t836 - k(1.1925695879998879) * lid_e1)) * t803 + t826 * t821;
+                - (t836 - k(1.1925695879998879) * lid_e1)) * t803 + t821 * t826;
             let t842 = (t829 + t834) * t810 + t721 * t824
                 + ((t839 + t831) * t807 + t822 * t825);
             let t843 = k(0.5) - (t70 + carrier_e1 * carrier_e1);
@@ -6265,15 +6265,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 - (k(0.3333333333333333) * t912
                     - k(0.6666666666666666) * (k(1.3333333333333333) * t43 + t911))
                     * t904;
-            let t914 = carrier_e3 - t17;
-            let t915 = t26 - t30;
+            let t914 = t26 - t30;
+            let t915 = carrier_e3 - t17;
             let t916 = t19 - t26;
-            let t917 = t905
-                * (k(0.6666666666666666) * t916
-                    + (k(0.6666666666666666) * t915 + k(0.4444444444444444) * t914))
-                - t904
-                    * (k(0.3333333333333333) * t916
-                        - k(0.6666666666666666) * (t915 - k(1.3333333333333333) * t914));
+            let t917 = (k(0.6666666666666666) * t916
+                + (k(0.4444444444444444) * t915 + k(0.6666666666666666) * t914)) * t905
+                - (k(0.3333333333333333) * t916
+                    + k(0.6666666666666666) * (k(1.3333333333333333) * t915 - t914))
+                    * t904;
             let t918 = t21 + t33;
             let t919 = t38 - (t21 + t23);
             let t920 = (k(0.6666666666666666) * t919
@@ -6423,19 +6422,19 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             -t96,
             -t97,
             -t100,
-            -t105,
+            t105,
             -t108,
             t135 + (k(0.7071067811865476) * (t78 + t95) * t120 + t111 * t108),
             t141 + (t138 * t120 - t137 * t108),
             t148 + (k(1.4142135623730951) * shaft_e3 * t120 - t142 * t108),
             k(0.7071067811865476) * (t69 + t150) * t120 + t149 * t108 - t153,
             t100,
-            t105,
+            -t105,
             t108,
-            t162 * t100 - t158 * t105 + t157 * t108,
-            t168 * t100 - t166 * t105 - t165 * t108,
-            t100 * t172 + t171 * t105 + t169 * t108,
-            t100 * t176 - t175 * t105 + t174 * t108,
+            t162 * t100 + t158 * t105 + t157 * t108,
+            t168 * t100 + t166 * t105 - t165 * t108,
+            t172 * t100 - t171 * t105 + t169 * t108,
+            t176 * t100 + t175 * t105 + t174 * t108,
             -t177,
             -t178,
             t179,
@@ -6448,8 +6447,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             -t179,
             t162 * t177 - t158 * t178 - t157 * t179,
             t168 * t177 - t166 * t178 + t165 * t179,
-            t177 * t172 + t171 * t178 - t169 * t179,
-            t177 * t176 - t175 * t178 - t174 * t179,
+            t172 * t177 + t171 * t178 - t169 * t179,
+            t176 * t177 - t175 * t178 - t174 * t179,
             k(0.7071067811865476) * (t220 - t211),
             -(k(0.7071067811865476) * (t232 + t226)),
             -(k(0.7071067811865476) * (t250 + t241)),
@@ -6472,16 +6471,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t360 - k(0.6396021490668313) * t324 - k(0.6396021490668313) * t321,
             k(0.7071067811865476),
             k(0.7071067811865476),
-            -(k(0.7071067811865476) * (t364 - t361)),
-            -(k(0.7071067811865476) * (t369 - t366)),
+            k(0.7071067811865476) * (t364 - t363),
+            k(0.7071067811865476) * (t369 - t367),
             -(k(0.1414213562373095) * (slide_e0 + t370)),
             -(k(0.1414213562373095) * (slide_e1 + t371)),
             k(-0.6666666666666666),
             k(0.6666666666666666),
             k(0.3333333333333333),
-            k(0.03333333333333333) * (t363 - t362)
-                + k(0.6666666666666666) * (t364 + t361),
-            k(0.6666666666666666) * (t369 + t366) - k(0.06666666666666667) * slide_e3,
+            k(0.03333333333333333) * (t362 - t361)
+                + k(0.6666666666666666) * (t364 + t363),
+            k(0.6666666666666666) * (t369 + t367) - k(0.06666666666666667) * slide_e3,
             k(0.06666666666666667) * slide_e0
                 + k(0.13333333333333333) * (slide_e0 - t370),
             k(0.13333333333333333) * (slide_e1 - t371)
@@ -6490,8 +6489,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             -(k(0.7071067811865476) * (t384 - t382)),
             k(0.7071067811865476) * (t388 + t385),
             k(0.7071067811865476) * (t391 + t390),
-            -t393,
-            -(k(0.6666666666666666) * (t384 + t382) + k(0.15713484026367722) * t394),
+            t393,
+            -(k(0.15713484026367722) * t394 + k(0.6666666666666666) * (t384 + t382)),
             k(0.6666666666666666) * (t388 - t385) - k(0.15713484026367722) * t395,
             t397,
             -(k(0.4714045207910317) * (slide_e1 + t377 - (slide_e2 - t374))),
@@ -6504,13 +6503,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             -t421,
             t447 + ((t431 - t430) * t429 - t422 * t421),
             t451 + ((t441 + t449) * t429 - t448 * t421),
-            t457 + ((k(1.7888543819998317) * slide_e3 - t453) * t429 + t421 * t452),
+            t457 + ((k(1.7888543819998317) * slide_e3 - t453) * t429 + t452 * t421),
             (k(1.7888543819998317) * slide_e2 + t455) * t429 - t458 * t421 - t461,
             t411,
             -t414,
             t421,
-            -(t466 * t411 + t414 * t465 + t464 * t421),
-            -(t471 * t411 + t414 * t468 + t467 * t421),
+            -(t466 * t411 + t465 * t414 + t464 * t421),
+            -(t471 * t411 + t468 * t414 + t467 * t421),
             t472 * t421 - (t472 * t411 - t473 * t414),
             -(t478 * t411 - t477 * t414 + t476 * t421),
             -t479,
@@ -6518,13 +6517,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t481,
             t488,
             t493 - ((k(1.1925695879998879) * slide_e3 - t489) * t429 - t448 * t481),
-            t495 + ((t494 + t485) * t429 - t481 * t452),
+            t495 + ((t494 + t485) * t429 - t452 * t481),
             t497 + t496,
             t479,
             t480,
             -t481,
-            t464 * t481 - (t466 * t479 - t480 * t465),
-            t467 * t481 - (t471 * t479 - t480 * t468),
+            t464 * t481 - (t466 * t479 - t465 * t480),
+            t467 * t481 - (t471 * t479 - t468 * t480),
             -(t472 * t479 + t473 * t480 + t472 * t481),
             t476 * t481 - (t478 * t479 + t477 * t480),
             -t498,
@@ -6624,11 +6623,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             -(k(0.3849001794597505) * puck_e3 + k(0.03849001794597505) * t771),
             k(0.9805806756909201) * t775 - k(0.19611613513818404) * t776,
             k(0.9805806756909201) * t779 - k(0.07548513560963972) * t770,
-            k(0.9805806756909201) * t781 + k(0.07548513560963972) * t769,
+            k(0.07548513560963972) * t769 + k(0.9805806756909201) * t781,
             -(k(0.19611613513818404) * t784 + k(0.9805806756909201) * t783),
             -t785,
             -t786,
-            t788 + k(0.07263560560673482) * t769,
+            k(0.07263560560673482) * t769 + t788,
             k(0.9813067629253163) * (t768 + t774) + k(0.03774256780481986) * t783
                 - k(0.1887128390240993) * t784,
             k(-1.0),
@@ -6667,7 +6666,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t812 + ((t805 - t804) * t803 + t802 * t801),
             t816 + ((t808 + t813) * t803 - t733 * t801),
             t820 + ((k(1.7888543819998317) * lid_e3 - t817) * t803 + t732 * t801),
-            (k(1.7888543819998317) * lid_e2 + t819) * t803 - t801 * t821 - t823,
+            (k(1.7888543819998317) * lid_e2 + t819) * t803 - t821 * t801 - t823,
             t797,
             -t799,
             t801,
@@ -6737,8 +6736,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t273,
             t548,
             t373,
-            t363,
-            t368,
+            t362,
+            t366,
             t622,
             t475,
             t462,
@@ -6934,7 +6933,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t6 = t5 - t4;
             let t7 = carrier_e0 * carrier_e0;
             let t8 = k(0.5) - (t7 + carrier_e1 * carrier_e1);
-            let t9 = k(0.2) * -(t8 + t6);
+            let t9 = k(0.2) * (t8 + t6);
             let t10 = carrier_e0 * carrier_e1;
             let t11 = carrier_e2 * carrier_e3;
             let t12 = t11 - t10;
@@ -7012,7 +7011,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t81 = t46 + t42;
             let t82 = k(1.4142135623730951) * t81;
             let t83 = t53 - t50;
-            let t84 = k(1.4142135623730951) * -t83;
+            let t84 = k(1.4142135623730951) * t83;
             let t85 = t57 - t55;
             let t86 = k(1.4142135623730951) * t85;
             let t87 = k(0.1) * t85;
@@ -7026,7 +7025,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t95 = k(0.5) - (t94 + sleeve_e3 * sleeve_e3);
             let t96 = sleeve_rz - (k(0.1) * t95 + (k(0.1) * t93 + k(0.2) * t90))
                 - (shaft_rz + (k(0.1) * t55 + (k(0.4) * t65 + k(0.1) * t57)));
-            let t97 = k(0.1) * -t83;
+            let t97 = k(0.1) * t83;
             let t98 = sleeve_e0 * sleeve_e3;
             let t99 = sleeve_e1 * sleeve_e2;
             let t100 = t99 + t98;
@@ -7041,7 +7040,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t108 = sleeve_rx + (k(0.1) * t107 - (k(0.1) * t106 - k(0.2) * t105))
                 - (shaft_rx - (k(0.1) * t42 + (k(0.4) * t59 - k(0.1) * t46)));
             let t109 = t108 * (k(1.4142135623730951) * (t46 - t42)) + t82 * t104
-                + (t103 * (k(1.4142135623730951) * -(t53 + t50)) + t84 * t97);
+                - (t103 * (k(1.4142135623730951) * (t53 + t50)) - t84 * t97);
             let t110 = k(0.1) * t65;
             let t111 = t56 - t110;
             let t112 = t96 * (k(1.4142135623730951) * t65);
@@ -7051,13 +7050,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t116 = k(0.1) * t59;
             let t117 = t43 - t116;
             let t118 = t108 * (k(1.4142135623730951) * t59);
-            let t119 = t118 - t82 * t117 - (t115 + t84 * t114) - (t112 - t86 * t111);
+            let t119 = t118 - t82 * t117 - (t115 - t84 * t114) - (t112 - t86 * t111);
             let t120 = t58 - t110;
             let t121 = t54 + t113;
             let t122 = t47 + t116;
-            let t123 = t118 - t82 * t122 - (t115 - t84 * t121) - (t112 + t86 * t120);
+            let t123 = t118 - t82 * t122 - (t115 + t84 * t121) - (t112 + t86 * t120);
             let t124 = k(0.1) * (t93 - t95);
-            let t125 = k(0.1) * (t102 - t101);
+            let t125 = k(0.1) * (t101 - t102);
             let t126 = k(0.1) * (t106 + t107);
             let t127 = k(0.1) * t90;
             let t128 = k(0.2) * t95;
@@ -7081,7 +7080,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t144 = k(1.2792042981336627) * t55
                 + (k(1.2792042981336627) * t57 - k(0.8528028654224418) * t65);
             let t145 = t108 * (k(1.2792042981336627) * t81) + t142 * t104
-                + (t103 * (k(1.2792042981336627) * -t83) + t143 * t97);
+                - (t103 * (k(1.2792042981336627) * t83) + t143 * t97);
             let t146 = k(1.2792042981336627) * t65;
             let t147 = k(1.2792042981336627) * t62;
             let t148 = k(1.2792042981336627) * t59;
@@ -7432,8 +7431,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t232 = nut_e1 * nut_e3;
             let t233 = t232 - t231;
             let t234 = nut_rz - k(0.2) * (t233 - t230)
-                - (slide_rz + k(0.2) * (t218 - t205));
-            let t235 = k(0.2) * -(t188 + t195);
+                - (slide_rz - k(0.2) * (t205 - t218));
+            let t235 = k(0.2) * (t188 + t195);
             let t236 = nut_e0 * nut_e1;
             let t237 = nut_e2 * nut_e3;
             let t238 = t237 - t236;
@@ -7445,21 +7444,21 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t243 = k(0.2) * (t191 - t200);
             let t244 = t232 + t231;
             let t245 = k(0.5) - (t229 + nut_e1 * nut_e1);
-            let t246 = nut_rx - k(0.2) * (t244 - t245)
+            let t246 = nut_rx + k(0.2) * (t245 - t244)
                 - (slide_rx + k(0.2) * (t200 - t214));
             let t247 = t246 * (k(1.7888543819998317) * t200) + t225 * t243
-                + (t242 * (k(1.7888543819998317) * t195) - t226 * t235);
+                + (t242 * (k(1.7888543819998317) * t195) + t226 * t235);
             let t248 = k(0.2) * t207;
             let t249 = k(0.2) * t197;
-            let t250 = k(0.2) * -t202;
-            let t251 = t246 * (k(0.8944271909999159) * t200) + t225 * t250
+            let t250 = k(0.2) * t202;
+            let t251 = t246 * (k(0.8944271909999159) * t200) - t225 * t250
                 + (t242 * (k(0.8944271909999159) * t195) - t226 * t249);
             let t252 = k(0.2) * (t206 - t203);
             let t253 = k(0.2) * (t196 + t188);
-            let t254 = k(0.2) * -(t201 + t191);
+            let t254 = k(0.2) * (t201 + t191);
             let t255 = t246
                 * (k(0.8944271909999159) * t191 + k(1.7888543819998317) * t201)
-                + t225 * t254
+                - t225 * t254
                 - (t242 * (k(0.8944271909999159) * t188 + k(1.7888543819998317) * t196)
                     + t226 * t253);
             let t256 = t255
@@ -7474,7 +7473,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t263 = t225 * t262 + t226 * t260 + t227 * t258;
             let t264 = k(0.2) * (t233 + t230);
             let t265 = k(0.2) * (t241 - t238);
-            let t266 = k(0.2) * -(t245 + t244);
+            let t266 = k(0.2) * (t245 + t244);
             let t267 = k(1.4907119849998598) * t200
                 + (k(0.5962847939999439) * t191 + k(1.1925695879998879) * t201);
             let t268 = k(1.4907119849998598) * t195
@@ -7485,13 +7484,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 * (k(0.5962847939999439) * t200 - k(1.4907119849998598) * t191)
                 + t267 * t243
                 + (t242 * (k(0.5962847939999439) * t195 + k(1.4907119849998598) * t188)
-                    + t268 * t235);
+                    - t268 * t235);
             let t271 = t270
                 - (t234 * (k(0.5962847939999439) * t205 + k(1.4907119849998598) * t203)
                     + t269 * t228);
             let t272 = t246
                 * (k(1.1925695879998879) * t200 - k(1.4907119849998598) * t201)
-                - t267 * t250
+                + t267 * t250
                 + (t242 * (k(1.1925695879998879) * t195 + k(1.4907119849998598) * t196)
                     - t268 * t249);
             let t273 = t272
@@ -7499,7 +7498,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                     - t269 * t248);
             let t274 = t246
                 * (k(1.1925695879998879) * t191 - k(0.5962847939999439) * t201)
-                - t267 * t254
+                + t267 * t254
                 - (t242 * (k(1.1925695879998879) * t188 - k(0.5962847939999439) * t196)
                     + t268 * t253);
             let t275 = t274
@@ -7545,22 +7544,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t310 = k(1.3333333333333333) * t188;
             let t311 = k(1.3333333333333333) * t191;
             let t312 = t246 * (k(0.6666666666666666) * t200 + t311) - t277 * t243
-                + (t242 * (k(0.6666666666666666) * t195 - t310) - t278 * t235);
+                + (t242 * (k(0.6666666666666666) * t195 - t310) + t278 * t235);
             let t313 = t312
                 - (t234 * (k(0.6666666666666666) * t205 - t309) - t279 * t228)
                 - k(0.0031830988618379067) * t308;
             let t314 = t305 * (k(0.4472135954999579) * t297)
                 - t304 * (k(0.5962847939999439) * t297 - k(0.7453559924999299) * t303);
             let t315 = t307 * t314;
-            let t316 = t246 * (k(1.3333333333333333) * -t202) - t277 * t250
-                + (t242 * (k(1.3333333333333333) * t197) - t278 * t249);
-            let t317 = t316 + (t234 * (k(1.3333333333333333) * t207) + t279 * t248)
-                - k(0.0031830988618379067) * t315;
+            let t316 = t246 * (k(1.3333333333333333) * t202) - t277 * t250
+                - (t242 * (k(1.3333333333333333) * t197) - t278 * t249);
+            let t317 = t316 - (t234 * (k(1.3333333333333333) * t207) + t279 * t248)
+                + k(0.0031830988618379067) * t315;
             let t318 = t305
                 * (k(0.4472135954999579) * t291 - k(0.8944271909999159) * t303)
                 - t304 * (k(0.5962847939999439) * t291 + k(0.29814239699997197) * t303);
             let t319 = t307 * t318;
-            let t320 = t246 * (t224 - t311) - t277 * t254
+            let t320 = t246 * (t224 - t311) + t277 * t254
                 - (t242 * (t223 - t310) + t278 * t253);
             let t321 = t320
                 - (t234 * (t309 + k(0.6666666666666666) * t206) - t279 * t252)
@@ -7585,8 +7584,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                     * (k(0.26666666666666666) * t326 - k(0.13333333333333333) * t325
                         + t332);
             let t334 = t307 * t333;
-            let t335 = t277 * t266 + t278 * t265 - t279 * t264
-                + k(0.0031830988618379067) * t334;
+            let t335 = t277 * t266 - t278 * t265 + t279 * t264
+                - k(0.0031830988618379067) * t334;
             let t336 = k(0.4472135954999579) * t290 - k(0.8944271909999159) * t286;
             let t337 = k(0.4472135954999579) * t302 - k(0.8944271909999159) * t301;
             let t338 = k(0.5962847939999439) * t337 - k(0.29814239699997197) * t336
@@ -7999,9 +7998,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t489 = t15 + t12;
             let t490 = t8 - t2;
             let t491 = t485
-                * (k(0.8888888888888888) * -t490 + k(0.4444444444444444) * t489
-                    - k(0.8888888888888888) * t488)
-                - t484
+                * (k(0.8888888888888888) * t490 - k(0.4444444444444444) * t489
+                    + k(0.8888888888888888) * t488)
+                + t484
                     * (k(0.8888888888888888) * (t490 + t489)
                         - k(0.4444444444444444) * t488);
             let t492 = t475 - k(0.6666666666666666) * t20;
@@ -8078,7 +8077,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             k(1.0),
             -t3,
             t3,
-            t9,
+            -t9,
             k(1.0),
             -t13,
             t13,
@@ -8088,23 +8087,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             -t18,
             t21,
             k(0.8888888888888888) * t22
-                - (k(0.8888888888888888) * t24 + k(0.4444444444444444) * -t23),
+                - (k(0.8888888888888888) * t24 - k(0.4444444444444444) * t23),
             -(k(0.6666666666666666) * t33 - k(0.3333333333333333) * t30
                 + k(0.6666666666666666) * t27),
             k(0.6666666666666666) * t39 - k(0.3333333333333333) * t37
                 + k(0.6666666666666666) * t35,
-            k(0.4444444444444444) * t22 - k(0.8888888888888888) * -(t24 + t23),
+            k(0.8888888888888888) * (t24 + t23) + k(0.4444444444444444) * t22,
             k(0.6666666666666666) * (t33 + t30) - k(0.3333333333333333) * t27,
             k(0.3333333333333333) * t35 - k(0.6666666666666666) * (t39 + t37),
             k(-1.0),
             k(0.2) * t24,
-            -(k(0.2) * -(t8 + t2)),
-            t9,
+            k(0.2) * (t8 + t2),
+            -t9,
             k(1.0),
             t43,
             -t47,
             k(-1.0),
-            k(0.2) * -t23,
+            -(k(0.2) * t23),
             -(k(0.2) * (t15 - t12)),
             t16,
             k(1.0),
@@ -8123,17 +8122,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             -t76,
             t80,
             -t82,
-            -t84,
+            t84,
             -t86,
             -(t109 + (t96 * (k(1.4142135623730951) * (t57 + t55)) + t86 * t87)),
             -t119,
             t123,
             t82,
-            t84,
+            -t84,
             t86,
             -(t82 * t126 + t84 * t125 + t86 * t124),
-            t82 * t135 + t84 * t132 - t86 * t129,
-            t86 * t137 - (t82 * t141 - t84 * t139),
+            t82 * t135 - t84 * t132 - t86 * t129,
+            t86 * t137 - (t82 * t141 + t84 * t139),
             -t142,
             -t143,
             t144,
@@ -8143,7 +8142,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t142,
             t143,
             -t144,
-            t144 * t124 - (t142 * t126 + t143 * t125),
+            t144 * t124 - (t142 * t126 - t143 * t125),
             t142 * t135 + t143 * t132 + t144 * t129,
             -(t142 * t141 - t143 * t139 + t144 * t137),
             -(k(0.7071067811865476) * (t167 + t163)),
@@ -8162,7 +8161,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             k(0.7071067811865476),
             k(0.7071067811865476),
             t192,
-            -(k(0.1414213562373095) * (t197 - t202)),
+            k(0.1414213562373095) * (t202 - t197),
             -t192,
             k(-0.6666666666666666),
             k(0.6666666666666666),
@@ -8177,7 +8176,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 + k(0.3333333333333333) * (t217 - k(1.8856180831641267) * t203),
             k(0.6666666666666666) * (t213 - t212)
                 + k(0.3333333333333333) * (t217 + k(1.8856180831641267) * t206),
-            k(0.15713484026367722) * t218 - k(0.31426968052735443) * -(t215 + t214),
+            k(0.31426968052735443) * (t215 + t214) + k(0.15713484026367722) * t218,
             k(0.7071067811865476) * (t222 - t221 + (t220 + t219)),
             k(0.7071067811865476) * (t222 - t224 + (t220 + t223)),
             -(k(0.9428090415820634) * t216),
@@ -8191,7 +8190,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             -t226,
             t227,
             t263,
-            -(t225 * t266 - t226 * t265 + t227 * t264),
+            t225 * t266 + t226 * t265 - t227 * t264,
             -t263,
             -t267,
             -t268,
@@ -8203,19 +8202,19 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t268,
             -t269,
             t276,
-            t269 * t264 - (t267 * t266 + t268 * t265),
+            t267 * t266 - t268 * t265 + t269 * t264,
             -t276,
             -t277,
             -t278,
             t279,
             -t313,
-            t317,
+            -t317,
             -t321,
             t277,
             t278,
             -t279,
             t331 + k(0.0031830988618379067) * t330,
-            -t335,
+            t335,
             -(t331 + k(0.0031830988618379067) * t339),
             k(0.8944271909999159) * t340,
             -(k(0.4472135954999579) * t340),
@@ -8271,14 +8270,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             k(0.19245008972987526),
             k(0.9622504486493763),
             k(0.03849001794597505) * (t395 - t392) + k(0.19245008972987526) * t390,
-            -(k(0.03849001794597505) * (t399 - t400) + k(0.19245008972987526) * t398),
+            k(0.03849001794597505) * (t400 - t399) - k(0.19245008972987526) * t398,
             k(0.9805806756909201) * t406 + k(0.19611613513818404) * t403,
             -(k(0.9805806756909201) * t408 + k(0.19611613513818404) * t407),
-            k(0.07548513560963972) * t409 - k(0.3774256780481986) * -t410,
+            k(0.3774256780481986) * t410 + k(0.07548513560963972) * t409,
             -t413,
             t414,
-            k(0.014527121121346966) * -t410 - k(0.3777051491550211) * (t399 + t392)
-                + k(0.07263560560673482) * t409,
+            k(0.07263560560673482) * t409
+                - (k(0.014527121121346966) * t410
+                    + k(0.3777051491550211) * (t399 + t392)),
             k(-1.0),
             -(k(0.4) * t107),
             t134,
@@ -8349,7 +8349,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             -(self.gear_ratio * t334),
             -(self.gear_ratio * t339),
             t487 * t486,
-            -(t487 * t491),
+            t487 * t491,
             t487 * t495,
         ];
     }
@@ -8747,8 +8747,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t157 = k(0.05) * (t150 * t134 + (t149 * t132 - t148 * t128))
                 + (k(0.05) * t156 + t155);
             let t158 = t157 + (k(0.05) * t139 + (t79 + k(0.05) * t138));
-            let t159 = k(1.4142135623730951) * (t76 - t72) * t158 + t154
-                + (t154 + t145 * (k(0.7071067811865476) * (t139 - t138)));
+            let t159 = k(1.4142135623730951) * (t72 - t76) * t158 - t154
+                - (t154 + t145 * (k(0.7071067811865476) * (t139 - t138)));
             let t160 = t85 * t102 + (t83 * t101 - t81 * t58);
             let t161 = t85 * t104 + (t83 * t102 + t81 * t63);
             let t162 = t112 - t111;
@@ -9100,7 +9100,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t281 = t280 + t279;
             let t282 = nut_e0 * nut_e0;
             let t283 = k(0.5) - (t282 + nut_e1 * nut_e1);
-            let t284 = nut_rx - k(0.2) * (t281 - t283)
+            let t284 = nut_rx + k(0.2) * (t283 - t281)
                 - (slide_rx + k(0.2) * (t242 - (t232 - t237)));
             let t285 = t243 * slide_wx + t233 * slide_wz;
             let t286 = t243 * slide_wy - t238 * slide_wz;
@@ -9159,7 +9159,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t326 = k(0.5) - (t282 + nut_e3 * nut_e3);
             let t327 = t280 - t279;
             let t328 = nut_rz - k(0.2) * (t327 - t326)
-                - (slide_rz + k(0.2) * (t261 + t263 - t265));
+                - (slide_rz - k(0.2) * (t265 - (t261 + t263)));
             let t329 = t266 * slide_wx + t262 * slide_wz;
             let t330 = t266 * slide_wy + t264 * slide_wz;
             let t331 = k(2.0) * (t309 + t308);
@@ -9812,7 +9812,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t79 + k(0.1) * (t32 - t46),
             -(t87 + k(0.1) * (t41 - t49)),
             k(0.6) * t97 - k(0.8) * t99,
-            t159 + t137 - t179,
+            -(t179 + (t159 - t137)),
             t188 + t187 + (t185 - t184 + (t182 - t181)),
             -(k(0.7071067811865476) * (t220 - t210)),
             -(k(0.6396021490668313) * t220 + t227),
@@ -10163,8 +10163,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t168 = k(0.6666666666666666) * self.motor;
             let t169 = k(1.8856180831641267) * t150
                 - k(0.4714045207910317) * (t162 - t157)
-                + (k(1.8856180831641267) * t144
-                    + k(0.4714045207910317) * -(t159 + t154));
+                + (k(1.8856180831641267) * t144 - k(0.4714045207910317) * (t159 + t154));
             let t170 = k(0.3333333333333333) * self.motor;
             let t171 = k(0.1) * (puck_wy - puck_wz);
             let t172 = puck_e0 * puck_e0;
@@ -10183,7 +10182,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t185 = puck_e2 * puck_e3;
             let t186 = t185 - t184;
             let t187 = k(0.5) - (t172 + puck_e2 * puck_e2);
-            let t188 = k(1.0) - (puck_ry + k(0.2) * (t186 - t187));
+            let t188 = k(1.0) - (puck_ry - k(0.2) * (t187 - t186));
             let t189 = k(0.5) - (t172 + puck_e3 * puck_e3);
             let t190 = t185 + t184;
             let t191 = k(1.0) - (puck_rz + k(0.2) * (t190 - t189));
@@ -11082,14 +11081,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t266 = t251 * t245 + t230 * t241 - t265
                 - (t198 * t167 + (t136 - t196 * t162));
             let t267 = t87 + t100;
-            let t268 = k(0.2) * -t267;
+            let t268 = k(0.2) * t267;
             let t269 = t214 * t215 + t212 * t213;
             let t270 = t225 * t269 + (t209 * t264 - t193 * t258) - k(0.5) * t225;
             let t271 = t252 * t245 + t231 * t241 - t270
                 - (t214 * t167 + (t139 - t212 * t162));
             let t272 = t95 + t106;
             let t273 = k(0.2) * t272;
-            let t274 = t273 * t271 - (t268 * t266 - t262 * t260)
+            let t274 = t273 * t271 + (t268 * t266 + t262 * t260)
                 - (t234 * t255 + (t233 * t249 + t227 * t226));
             let t275 = k(0.2) * t104;
             let t276 = k(0.2) * t100;
@@ -11097,12 +11096,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t278 = k(0.2) * t106;
             let t279 = t278 * t277 - (t276 * t266 - t275 * t260);
             let t280 = t176 + t104;
-            let t281 = k(0.2) * -t280;
+            let t281 = k(0.2) * t280;
             let t282 = t201 - t100;
             let t283 = k(0.2) * t282;
             let t284 = t217 + t106;
             let t285 = k(0.2) * t284;
-            let t286 = t285 * t271 - (t283 * t266 - t281 * t260)
+            let t286 = t285 * t271 - (t283 * t266 + t281 * t260)
                 + (t97 * t255 + (t98 * t249 + t127 * t226));
             let t287 = k(0.6666666666666666)
                 * (t279 - (k(0.005) * t175 - t127 * t118 + t286))
@@ -11111,25 +11110,25 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t288 = t217 - t95;
             let t289 = k(0.2) * t288;
             let t290 = t176 + t91;
-            let t291 = k(0.2) * -t290;
+            let t291 = k(0.2) * t290;
             let t292 = t201 + t87;
             let t293 = k(0.2) * t292;
-            let t294 = t293 * t266 - t291 * t260;
+            let t294 = t293 * t266 + t291 * t260;
             let t295 = t294 - t289 * t271 - (t109 * t255 + (t108 * t249 + t128 * t226));
             let t296 = t289 * t277 + t294 - (k(0.01) * t185 - t128 * t118 - t295);
             let t297 = t278 * t258 + (t276 * t257 - t275 * t256);
             let t298 = k(0.4) * t104;
             let t299 = t298 + t297;
             let t300 = t234 * t250 + (t233 * t229 - t227 * t174);
-            let t301 = t273 * t258 - (t268 * t257 - t262 * t256);
+            let t301 = t273 * t258 + (t268 * t257 + t262 * t256);
             let t302 = t301 - k(0.1) * t261 - t300;
             let t303 = t97 * t250 + (t98 * t229 - t127 * t174);
-            let t304 = t285 * t258 - (t283 * t257 - t281 * t256);
-            let t305 = t304 - k(0.1) * -t280 + t303;
-            let t306 = t289 * t258 - (t293 * t257 - t291 * t256);
+            let t304 = t285 * t258 - (t283 * t257 + t281 * t256);
+            let t305 = t304 + k(0.1) * t280 + t303;
+            let t306 = t289 * t258 - (t293 * t257 + t291 * t256);
             let t307 = t109 * t250 + (t108 * t229 - t128 * t174);
-            let t308 = t306 - k(0.1) * -t290 + t307;
-            let t309 = k(0.6666666666666666) * (t308 + (t306 - k(0.4) * -t290))
+            let t308 = t306 + k(0.1) * t290 + t307;
+            let t309 = k(0.6666666666666666) * (t308 + (t306 + k(0.4) * t290))
                 - (k(0.6666666666666666) * (t305 + t299)
                     - k(0.3333333333333333) * (t302 + t299));
             let t310 = k(0.1) * t189;
@@ -11137,12 +11136,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t312 = k(0.4) * t100;
             let t313 = t312 - t311;
             let t314 = t234 * t251 + (t233 * t230 - t227 * t200);
-            let t315 = t273 * t264 - (t268 * t263 - t262 * t257);
-            let t316 = t315 + k(0.1) * -t267 - t314;
+            let t315 = t273 * t264 + (t268 * t263 + t262 * t257);
+            let t316 = t315 - k(0.1) * t267 - t314;
             let t317 = t97 * t251 + (t98 * t230 - t127 * t200);
-            let t318 = t285 * t264 - (t283 * t263 - t281 * t257);
+            let t318 = t285 * t264 - (t283 * t263 + t281 * t257);
             let t319 = t318 + k(0.1) * t282 + t317;
-            let t320 = t289 * t264 - (t293 * t263 - t291 * t257);
+            let t320 = t289 * t264 - (t293 * t263 + t291 * t257);
             let t321 = t109 * t251 + (t108 * t230 - t128 * t200);
             let t322 = t320 + k(0.1) * t292 + t321;
             let t323 = k(0.6666666666666666) * (t322 + (t320 + k(0.4) * t292))
@@ -11153,12 +11152,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t326 = k(0.4) * t106;
             let t327 = t326 - t325;
             let t328 = t234 * t252 + (t233 * t231 - t227 * t216);
-            let t329 = t273 * t269 - (t268 * t264 - t262 * t258);
+            let t329 = t273 * t269 + (t268 * t264 + t262 * t258);
             let t330 = t329 - k(0.1) * t272 - t328;
             let t331 = t97 * t252 + (t98 * t231 - t127 * t216);
-            let t332 = t285 * t269 - (t283 * t264 - t281 * t258);
+            let t332 = t285 * t269 - (t283 * t264 + t281 * t258);
             let t333 = t332 - k(0.1) * t284 + t331;
-            let t334 = t289 * t269 - (t293 * t264 - t291 * t258);
+            let t334 = t289 * t269 - (t293 * t264 + t291 * t258);
             let t335 = t109 * t252 + (t108 * t231 - t128 * t216);
             let t336 = t334 - k(0.1) * t288 + t335;
             let t337 = k(0.6666666666666666) * (t336 + (t334 - k(0.4) * t288))
@@ -11185,18 +11184,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t355 = k(0.6666666666666666) * (t354 + t352)
                 - k(0.3333333333333333) * t350;
             let t356 = k(0.6666666666666666) * (t355 + t348);
-            let t357 = k(0.8888888888888888) * t261 + k(0.4444444444444444) * -t267
+            let t357 = k(0.8888888888888888) * t261 - k(0.4444444444444444) * t267
                 - k(0.8888888888888888) * t272;
             let t358 = k(0.6666666666666666)
-                * (k(0.8888888888888888) * -(t261 + t267)
-                    - k(0.4444444444444444) * t272);
-            let t359 = t358 - k(0.3333333333333333) * t348;
+                * (k(0.8888888888888888) * (t261 + t267) + k(0.4444444444444444) * t272);
+            let t359 = t358 + k(0.3333333333333333) * t348;
             let t360 = k(0.6666666666666666) * t354 - k(0.3333333333333333) * t352
                 + k(0.6666666666666666) * t350;
-            let t361 = k(0.3333333333333333) * t355 + t358;
+            let t361 = k(0.3333333333333333) * t355 - t358;
             let t362 = k(0.6666666666666666) * t347 - k(0.3333333333333333) * t344
                 + k(0.6666666666666666) * t341;
-            let t363 = k(1.0) / (t362 * t361 + (t360 * t359 + t357 * t356));
+            let t363 = k(1.0) / (t362 * t361 - (t360 * t359 - t357 * t356));
             let t364 = k(0.6666666666666666) * t182;
             let t365 = k(0.6666666666666666) * t188 + k(0.3333333333333333) * t186
                 - t364;
@@ -11214,43 +11212,43 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 + t370 * (t356 * t363);
             let t373 = t234 * t247 + t233 * t244;
             let t374 = t234 * t253 + t233 * t247;
-            let t375 = k(2.0) * (t273 * t328 - (t268 * t314 - t262 * t300))
-                - (t273 * t329 - (t268 * t315 - t262 * t301));
+            let t375 = k(2.0) * (t273 * t328 + (t268 * t314 + t262 * t300))
+                - (t273 * t329 + (t268 * t315 + t262 * t301));
             let t376 = k(0.02)
                 + (k(0.02) + (t375 + (k(0.01) - (t234 * t374 + t233 * t373))));
             let t377 = t278 * t330 + (t276 * t316 - t275 * t302);
             let t378 = t278 * t325 + (t276 * t311 - t275 * t297);
-            let t379 = t285 * t328 - (t283 * t314 - t281 * t300)
-                - (t273 * t331 - (t268 * t317 - t262 * t303));
-            let t380 = t379 - (t273 * t332 - (t268 * t318 - t262 * t304))
+            let t379 = t285 * t328 - (t283 * t314 + t281 * t300)
+                - (t273 * t331 + (t268 * t317 + t262 * t303));
+            let t380 = t379 - (t273 * t332 + (t268 * t318 + t262 * t304))
                 + (k(0.005) + (t97 * t374 + t98 * t373));
             let t381 = t278 * t333 + (t276 * t319 - t275 * t305);
             let t382 = t378 + (t381 + t377) - (k(0.02) + t380);
-            let t383 = t289 * t328 - (t293 * t314 - t291 * t300)
-                - (t273 * t335 - (t268 * t321 - t262 * t307));
-            let t384 = t383 - (t273 * t334 - (t268 * t320 - t262 * t306))
+            let t383 = t289 * t328 - (t293 * t314 + t291 * t300)
+                - (t273 * t335 + (t268 * t321 + t262 * t307));
+            let t384 = t383 - (t273 * t334 + (t268 * t320 + t262 * t306))
                 - (k(0.005) - (t109 * t374 + t108 * t373));
             let t385 = t278 * t334 + (t276 * t320 - t275 * t306);
             let t386 = t278 * t336 + (t276 * t322 - t275 * t308);
-            let t387 = t289 * t330 - (t293 * t316 - t291 * t302) + t386 + t385;
+            let t387 = t289 * t330 - (t293 * t316 + t291 * t302) + t386 + t385;
             let t388 = t387 - t384;
             let t389 = k(0.6666666666666666) * t388
                 - (k(0.6666666666666666) * t382
                     - k(0.3333333333333333) * (t378 + k(2.0) * t377 - t376));
             let t390 = k(0.6666666666666666) * t357;
             let t391 = t371 * (t363 * (t390 + k(0.3333333333333333) * t362))
-                - t370 * (t359 * t363);
+                + t370 * (t359 * t363);
             let t392 = t97 * t247 + t98 * t244;
             let t393 = t97 * t253 + t98 * t247;
-            let t394 = k(2.0) * (t285 * t331 - (t283 * t317 - t281 * t303))
-                + (t285 * t332 - (t283 * t318 - t281 * t304));
+            let t394 = k(2.0) * (t285 * t331 - (t283 * t317 + t281 * t303))
+                + (t285 * t332 - (t283 * t318 + t281 * t304));
             let t395 = k(0.02)
                 + (k(0.03) - (t394 - (k(0.01) - (t97 * t393 + t98 * t392))));
-            let t396 = t289 * t331 - (t293 * t317 - t291 * t303)
-                + (t285 * t335 - (t283 * t321 - t281 * t307));
-            let t397 = t396 + (t285 * t334 - (t283 * t320 - t281 * t306))
+            let t396 = t289 * t331 - (t293 * t317 + t291 * t303)
+                + (t285 * t335 - (t283 * t321 + t281 * t307));
+            let t397 = t396 + (t285 * t334 - (t283 * t320 + t281 * t306))
                 - (k(0.005) - (t109 * t393 + t108 * t392));
-            let t398 = t385 + (t386 + (t289 * t333 - (t293 * t319 - t291 * t305)));
+            let t398 = t385 + (t386 + (t289 * t333 - (t293 * t319 + t291 * t305)));
             let t399 = k(0.6666666666666666) * (t398 + t397);
             (
                 t201,
@@ -11482,9 +11480,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 + t370 * (t361 * t363);
             let t402 = t109 * (t109 * t253 + t108 * t247)
                 + t108 * (t109 * t247 + t108 * t244);
-            let t403 = t289 * t334 - (t293 * t320 - t291 * t306);
-            let t404 = t403 + k(2.0) * (t289 * t335 - (t293 * t321 - t291 * t307));
-            let t405 = k(2.0) * (t289 * t336 - (t293 * t322 - t291 * t308)) + t403;
+            let t403 = t289 * t334 - (t293 * t320 + t291 * t306);
+            let t404 = t403 + k(2.0) * (t289 * t335 - (t293 * t321 + t291 * t307));
+            let t405 = k(2.0) * (t289 * t336 - (t293 * t322 + t291 * t308)) + t403;
             let t406 = k(0.6666666666666666)
                 * (t405 - (k(0.04) + (k(0.025) - (t404 - (k(0.01) - t402)))))
                 + (k(0.3333333333333333) * t388 - t399);
@@ -11499,11 +11497,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t412 = t391 - t411;
             let t413 = t401 - t411;
             let t414 = t291 * t413;
-            let t415 = t310 + (t414 + (t275 * t412 + t275 * t410));
-            let t416 = t193 - (t281 * t412 + t262 * t410 - t414 - t415);
+            let t415 = t310 - (t414 - (t275 * t412 + t275 * t410));
+            let t416 = t193 + (t281 * t412 - t262 * t410 - t414 + t415);
             let t417 = t293 * t413;
             let t418 = t324 + (t417 + (t276 * t412 + t276 * t410));
-            let t419 = t209 - (t283 * t412 + t268 * t410 - t417 - t418);
+            let t419 = t209 - (t283 * t412 - t268 * t410 - t417 - t418);
             let t420 = t289 * t413;
             let t421 = t338 - (t420 - (t278 * t412 + t278 * t410));
             let t422 = t225 + (t285 * t412 + t273 * t410 - t420 + t421);
@@ -11523,16 +11521,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t434 = k(1.4142135623730951) * t433;
             let t435 = t419 + (t150 * t431 - t137 * t430);
             let t436 = t23 - t39;
-            let t437 = k(1.4142135623730951) * -t436;
+            let t437 = k(1.4142135623730951) * t436;
             let t438 = t422 + (t151 * t431 - t140 * t430);
             let t439 = t32 - t41;
             let t440 = k(1.4142135623730951) * t439;
             let t441 = t427 + t129 * t429;
             let t442 = k(0.1) * t439;
-            let t443 = k(0.1) * -t436;
+            let t443 = k(0.1) * t436;
             let t444 = k(0.1) * t433;
             let t445 = t82 * (k(1.4142135623730951) * (t12 - t37)) + t434 * t444
-                + (t69 * (k(1.4142135623730951) * -(t23 + t39)) + t437 * t443);
+                - (t69 * (k(1.4142135623730951) * (t23 + t39)) - t437 * t443);
             let t446 = t445
                 + (t56 * (k(1.4142135623730951) * (t32 + t41)) + t440 * t442);
             let t447 = k(0.1) * t45;
@@ -11544,13 +11542,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t453 = k(0.1) * t71;
             let t454 = t133 - t453;
             let t455 = t82 * (k(1.4142135623730951) * t71);
-            let t456 = t455 - t434 * t454 - (t452 + t437 * t451) - (t449 - t440 * t448);
+            let t456 = t455 - t434 * t454 - (t452 - t437 * t451) - (t449 - t440 * t448);
             let t457 = t151 - t447;
             let t458 = t150 + t450;
             let t459 = t149 + t453;
-            let t460 = t455 - t434 * t459 - (t452 - t437 * t458) - (t449 + t440 * t457);
+            let t460 = t455 - t434 * t459 - (t452 + t437 * t458) - (t449 + t440 * t457);
             let t461 = t460 * t431 + (t456 * t430 + t446 * t441)
-                - (t440 * t438 - (t437 * t435 + t434 * t432));
+                - (t440 * t438 + (t437 * t435 - t434 * t432));
             let t462 = puck_wx * puck_wz;
             let t463 = puck_e0 * puck_e0;
             let t464 = k(0.5) - (t463 + puck_e1 * puck_e1);
@@ -11894,7 +11892,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t603 = k(0.1) * (puck_wy - puck_wz);
             let t604 = k(0.1) * puck_wx;
             let t605 = k(1.2) - (puck_rx + k(0.2) * (t469 + t476));
-            let t606 = k(1.0) - (puck_ry + k(0.2) * (t485 - t481));
+            let t606 = k(1.0) - (puck_ry - k(0.2) * (t481 - t485));
             let t607 = k(1.0) - (puck_rz + k(0.2) * (t490 - t492));
             let t608 = (t607 * t607 + (t606 * t606 + t605 * t605)).sqrt();
             let t609 = k(1.0) / t608;
@@ -12007,21 +12005,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t697 = t488 - t490;
             let t698 = t464 + t469;
             let t699 = k(0.19245008972987526)
-                * (k(0.014527121121346966) * -t698
-                    - k(0.3777051491550211) * (t479 + t481)
-                    + k(0.07263560560673482) * t697);
-            let t700 = t699 - k(0.9622504486493763) * t696;
+                * (k(0.014527121121346966) * t698 + k(0.3777051491550211) * (t479 + t481)
+                    - k(0.07263560560673482) * t697);
+            let t700 = t699 + k(0.9622504486493763) * t696;
             let t701 = t691 + k(1.9245008972987525) * t490;
             let t702 = t694 - k(1.9245008972987525) * t469;
             let t703 = k(0.9805806756909201) * t702 + k(0.19611613513818404) * t701;
             let t704 = k(0.03774256780481986) * t702
                 - k(0.9813067629253163) * (t693 + k(1.9245008972987525) * t481)
                 - k(0.1887128390240993) * t701;
-            let t705 = k(0.9622504486493763) * t704 + t699;
+            let t705 = k(0.9622504486493763) * t704 - t699;
             let t706 = k(0.9805806756909201) * t695 + k(0.19611613513818404) * t692;
             let t707 = k(0.19245008972987526) * (t704 + t696);
-            let t708 = k(0.3774256780481986) * -t698 - k(0.07548513560963972) * t697;
-            let t709 = k(1.0) / (t708 * t707 - (t706 * t705 + t703 * t700));
+            let t708 = k(0.3774256780481986) * t698 + k(0.07548513560963972) * t697;
+            let t709 = k(1.0) / (t708 * t707 + (t706 * t705 - t703 * t700));
             let t710 = t579 + t472;
             let t711 = t477 * t462 + (t470 * t578 + t465 * t710);
             let t712 = k(0.9622504486493763) * t478
@@ -12036,7 +12033,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 * (k(0.9622504486493763) * t487 - k(0.19245008972987526) * (t585 + t717))
                 - k(0.03774256780481986) * t712;
             let t719 = k(0.1887128390240993) * t714 + t718;
-            let t720 = t719 * (t709 * (t716 - k(0.9622504486493763) * t706))
+            let t720 = t719 * (t709 * (t716 + k(0.9622504486493763) * t706))
                 + t715 * (t700 * t709);
             let t721 = k(0.004)
                 + (k(0.02) - (t602 * t633 + (t598 * t644 - t594 * t629)));
@@ -12055,7 +12052,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 - (t602 * t675 + (t598 * t679 - t594 * t673));
             let t731 = t683 * t725 + (t677 * t724 + t730);
             let t732 = k(0.9622504486493763) * t731 - k(0.19245008972987526) * t729;
-            let t733 = t719 * (t709 * (k(0.9622504486493763) * t703 + t716))
+            let t733 = t719 * (t709 * (k(0.9622504486493763) * t703 - t716))
                 + t715 * (t705 * t709);
             let t734 = t652 * t658 - (t651 * t664 + t650 * t655);
             let t735 = k(2.0) * (t652 * t659 - (t651 * t665 + t650 * t656)) + t734;
@@ -12075,58 +12072,58 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t744 = k(0.9622504486493763)
                 * (t683 * (t641 * t683) + (t677 * (t517 * t677) - t743));
             let t745 = t744 - k(0.19245008972987526) * (t740 + t731);
-            let t746 = t745 * t742 + (t741 * t733 - t732 * t720)
-                - (t539 * t690 - (t496 * t688 - t496 * t686));
+            let t746 = t745 * t742 + (t741 * t733 + t732 * t720)
+                + (t539 * t690 - (t496 * t688 - t496 * t686));
             let t747 = k(1.0)
                 / (k(0.9622504486493763) * t745
                     - k(0.19245008972987526) * (t741 + t732));
-            let t748 = t747 * (t746 + t684);
+            let t748 = t747 * (t746 - t684);
             let t749 = k(0.19245008972987526) * t748;
-            let t750 = t720 - t749;
+            let t750 = t720 + t749;
             let t751 = t733 + t749;
             let t752 = t742 - k(0.9622504486493763) * t748;
-            let t753 = t683 * t752 + (t668 * t751 - t649 * t750)
-                + (t542 * t539 - (t538 * t496 - t533 * t496));
-            let t754 = t641 * (t640 + t753);
+            let t753 = t683 * t752 + (t668 * t751 + t649 * t750)
+                - (t542 * t539 - (t538 * t496 - t533 * t496));
+            let t754 = t641 * (t640 - t753);
             let t755 = t496 - k(0.03774256780481986) * t754;
             let t756 = t496 + k(0.9813067629253163) * t754;
             let t757 = t539 - k(0.1887128390240993) * t754;
-            let t758 = t677 * t752 + (t661 * t751 - t637 * t750)
-                + (t516 * t757 + (t529 * t756 - t514 * t755));
-            let t759 = t517 * (t627 + t758);
+            let t758 = t677 * t752 + (t661 * t751 + t637 * t750)
+                - (t516 * t757 + (t529 * t756 - t514 * t755));
+            let t759 = t517 * (t627 - t758);
             let t760 = t650 * t751;
-            let t761 = t760 - t593 * t750 - (t755 + k(0.9805806756909201) * t759);
-            let t762 = t582 - (t669 * t752 + (t594 * t750 - t760) - t761);
+            let t761 = t760 + t593 * t750 + (t755 + k(0.9805806756909201) * t759);
+            let t762 = t582 + (t669 * t752 - (t594 * t750 + t760) - t761);
             let t763 = t651 * t751;
-            let t764 = t756 + (t763 - t597 * t750);
-            let t765 = t586 + (t670 * t752 - (t598 * t750 + t763) - t764);
+            let t764 = t756 - (t763 + t597 * t750);
+            let t765 = t586 - (t670 * t752 + (t598 * t750 - t763) + t764);
             let t766 = t652 * t751;
-            let t767 = t766 + t601 * t750 + (t757 - k(0.19611613513818404) * t759);
-            let t768 = t590 - (t671 * t752 + (t602 * t750 - t766) - t767);
+            let t767 = t766 - t601 * t750 - (t757 - k(0.19611613513818404) * t759);
+            let t768 = t590 + (t671 * t752 - (t602 * t750 + t766) - t767);
             let t769 = t47 * t489 + (t60 * t480 + t73 * t465);
             let t770 = t47 * t491 - (t60 * t482 + t73 * t470);
             let t771 = t47 * t493 - (t60 * t486 - t73 * t477);
-            let t772 = t771 * t752 + (t770 * t751 - t769 * t750);
+            let t772 = t771 * t752 + (t770 * t751 + t769 * t750);
             let t773 = t48 * t489 - (t61 * t480 + t74 * t465);
             let t774 = t48 * t491 + (t61 * t482 + t74 * t470);
             let t775 = t48 * t493 + (t61 * t486 - t74 * t477);
-            let t776 = t775 * t752 + (t774 * t751 - t773 * t750);
-            let t777 = k(0.0038) * t776 - (t508 * t768 + (t520 * t765 + t500 * t762));
-            let t778 = t776 - k(263.1578947368421) * (t564 + t777);
+            let t776 = t775 * t752 + (t774 * t751 + t773 * t750);
+            let t777 = k(0.0038) * t776 + (t508 * t768 + (t520 * t765 + t500 * t762));
+            let t778 = t776 + k(263.1578947368421) * (t564 - t777);
             let t779 = k(0.008) * t778 - k(0.02) * t772
-                - (t507 * t768 + (t519 * t765 + t498 * t762));
-            let t780 = t772 - k(50.0) * (t554 - t779);
+                + (t507 * t768 + (t519 * t765 + t498 * t762));
+            let t780 = t772 + k(50.0) * (t554 + t779);
             let t781 = t49 * t489 - (t62 * t480 - t75 * t465);
             let t782 = t49 * t491 + (t62 * t482 - t75 * t470);
             let t783 = t49 * t493 + (t62 * t486 + t75 * t477);
-            let t784 = t783 * t752 + (t782 * t751 - t781 * t750);
-            let t785 = k(0.025) * t784 + (t511 * t768 + (t523 * t765 - t505 * t762));
-            let t786 = t784 - k(40.0) * (t569 + t785);
-            let t787 = t762 - (t503 * t786 + (t556 * t778 - t544 * t780));
-            let t788 = t765 + (t522 * t786 - (t557 * t778 - t546 * t780));
-            let t789 = t768 + (t510 * t786 - (t558 * t778 - t548 * t780));
+            let t784 = t783 * t752 + (t782 * t751 + t781 * t750);
+            let t785 = k(0.025) * t784 - (t511 * t768 + (t523 * t765 - t505 * t762));
+            let t786 = t784 + k(40.0) * (t569 - t785);
+            let t787 = t762 + (t503 * t786 + (t556 * t778 - t544 * t780));
+            let t788 = t765 - (t522 * t786 - (t557 * t778 - t546 * t780));
+            let t789 = t768 - (t510 * t786 - (t558 * t778 - t548 * t780));
             let t790 = k(0.1) * (t26 - t27);
-            let t791 = k(0.1) * (t19 - t16);
+            let t791 = k(0.1) * (t16 - t19);
             let t792 = k(0.1) * (t4 + t7);
             let t793 = t434 * t792 + t437 * t791 + t440 * t790;
             let t794 = k(0.1) * t25;
@@ -12243,13 +12240,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t998,
             t999,
         ) = {
-            let t800 = t434 * t799 + t437 * t797 - t440 * t795;
+            let t800 = t434 * t799 - t437 * t797 - t440 * t795;
             let t801 = t794 - t509;
             let t802 = t796 + t521;
             let t803 = t798 + t502;
-            let t804 = t434 * t803 - t437 * t802 - t440 * t801;
+            let t804 = t434 * t803 + t437 * t802 - t440 * t801;
             let t805 = t804 * t786 + (t800 * t778 - t793 * t780)
-                + (t440 * t789 - (t437 * t788 + t434 * t787));
+                - (t440 * t789 + (t437 * t788 - t434 * t787));
             let t806 = t125 + t143;
             let t807 = shaft_wy * shaft_wz;
             let t808 = t38 * t807 - (t13 * t806 + t77 * t153);
@@ -12268,8 +12265,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t819 = k(0.05) * (t62 * t812 + (t61 * t553 - t60 * t562))
                 + (k(0.05) * t583 + t584);
             let t820 = t819 + (k(0.05) * t817 + (t208 + k(0.05) * t816));
-            let t821 = t437 * t820 + t818
-                + (t818 + t69 * (k(0.7071067811865476) * (t817 - t816)));
+            let t821 = t437 * t820 - t818
+                - (t818 + t69 * (k(0.7071067811865476) * (t817 - t816)));
             let t822 = t42 * t807 + (t33 * t806 - t51 * t153);
             let t823 = t42 * t809 + (t33 * t807 + t51 * t144);
             let t824 = t55 * (k(0.7071067811865476) * (t54 + t52));
@@ -12278,9 +12275,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t826 = t825 + (k(0.05) * t823 + (t224 + k(0.05) * t822));
             let t827 = t440 * t826 + t824
                 + (t824 + t56 * (k(0.7071067811865476) * (t823 - t822)));
-            let t828 = t827 - (t821 + t815) + (t805 - t461);
-            let t829 = t456 + (t440 * t140 - (t437 * t137 + t434 * t133));
-            let t830 = t460 - (t440 * t151 - (t437 * t150 - t434 * t149));
+            let t828 = t827 + (t821 - t815) - (t805 + t461);
+            let t829 = t456 + (t440 * t140 + (t437 * t137 - t434 * t133));
+            let t830 = t460 - (t440 * t151 + (t437 * t150 + t434 * t149));
             let t831 = t156 * t830 - (t148 * t829 - t129 * t446);
             let t832 = t831 * t161;
             let t833 = t446 - t158 * t832;
@@ -12289,14 +12286,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t836 = t834 * t228 - (t829 + t159 * t832);
             let t837 = t834 * t246 - (t830 - t160 * t832);
             let t838 = t834 * t172 - (t434 + t832 * t170);
-            let t839 = t834 * t198 + (t437 - t832 * t196);
+            let t839 = t834 * t198 - (t437 + t832 * t196);
             let t840 = t834 * t214 - (t440 + t832 * t212);
-            let t841 = t273 * t840 - (t268 * t839 - t262 * t838)
+            let t841 = t273 * t840 + (t268 * t839 + t262 * t838)
                 - (t234 * t837 + (t233 * t836 - t227 * t835));
             let t842 = t278 * t840 + (t276 * t839 - t275 * t838);
-            let t843 = t285 * t840 - (t283 * t839 - t281 * t838)
+            let t843 = t285 * t840 - (t283 * t839 + t281 * t838)
                 + (t97 * t837 + (t98 * t836 - t127 * t835));
-            let t844 = t289 * t840 - (t293 * t839 - t291 * t838);
+            let t844 = t289 * t840 - (t293 * t839 + t291 * t838);
             let t845 = t844 + (t844 + (t109 * t837 + (t108 * t836 - t128 * t835)));
             let t846 = k(0.6666666666666666) * t845
                 - (k(0.6666666666666666) * (t842 + t843)
@@ -12305,11 +12302,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t848 = k(0.3333333333333333) * t847;
             let t849 = k(0.6666666666666666) * t847;
             let t850 = t291 * t849;
-            let t851 = t850 + (t275 * t849 - t275 * t848);
-            let t852 = t281 * t849 - t262 * t848 - t850 - t851;
+            let t851 = t850 - (t275 * t849 - t275 * t848);
+            let t852 = t281 * t849 + t262 * t848 - t850 - t851;
             let t853 = t293 * t849;
             let t854 = t853 + (t276 * t849 - t276 * t848);
-            let t855 = t283 * t849 - t268 * t848 - t853 - t854;
+            let t855 = t283 * t849 + t268 * t848 - t853 - t854;
             let t856 = t289 * t849;
             let t857 = t856 - (t278 * t849 - t278 * t848);
             let t858 = t285 * t849 - t273 * t848 - t856 - t857;
@@ -12317,28 +12314,28 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t860 = t108 * t849 - (t98 * t849 + t233 * t848);
             let t861 = t109 * t849 - (t97 * t849 + t234 * t848);
             let t862 = t246 * t861 + (t228 * t860 + t165 * t859)
-                - (t214 * t858 - (t198 * t855 - t172 * t852));
+                - (t214 * t858 - (t198 * t855 + t172 * t852));
             let t863 = t859 + t166 * (t833 - t862);
             let t864 = t160 * t861 - (t159 * t860 - t158 * t863)
-                + (t212 * t858 - (t196 * t855 - t170 * t852));
+                + (t212 * t858 - (t196 * t855 + t170 * t852));
             let t865 = t161 * (t831 - t864);
             let t866 = t860 - t148 * t865;
             let t867 = t861 + t156 * t865;
-            let t868 = t852 + (t149 * t867 + t133 * t866);
+            let t868 = t852 - (t149 * t867 + t133 * t866);
             let t869 = t855 - (t150 * t867 - t137 * t866);
             let t870 = t858 + (t151 * t867 - t140 * t866);
             let t871 = t863 + t129 * t865;
             let t872 = t460 * t867 + (t456 * t866 + t446 * t871)
-                - (t440 * t870 + (t437 * t869 + t434 * t868));
-            let t873 = t793 - (t440 * t548 - (t437 * t546 + t434 * t544));
+                - (t440 * t870 - (t437 * t869 + t434 * t868));
+            let t873 = t793 - (t440 * t548 + (t437 * t546 - t434 * t544));
             let t874 = k(50.0) * t873;
             let t875 = k(0.4) * t873
-                - (t800 - (t440 * t558 - (t437 * t557 + t434 * t556)));
+                - (t800 - (t440 * t558 + (t437 * t557 - t434 * t556)));
             let t876 = k(263.1578947368421) * t875;
-            let t877 = t804 + (t440 * t510 - (t437 * t522 - t434 * t503));
+            let t877 = t804 + (t440 * t510 + (t437 * t522 + t434 * t503));
             let t878 = k(40.0) * t877;
             let t879 = t878 * t505 - (t876 * t500 + (t434 - t874 * t498));
-            let t880 = t878 * t523 + (t876 * t520 + (t437 - t874 * t519));
+            let t880 = t878 * t523 + (t876 * t520 - (t437 + t874 * t519));
             let t881 = t878 * t511 + (t876 * t508 - (t440 + t874 * t507));
             let t882 = t601 * t881 + (t597 * t880 + t593 * t879)
                 - (t602 * t881 + (t598 * t880 - t594 * t879));
@@ -12386,7 +12383,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t919 = t905 + (t522 * t917 - (t557 * t912 - t546 * t914));
             let t920 = t908 - (t510 * t917 - (t558 * t912 - t548 * t914));
             let t921 = t804 * t917 + (t800 * t912 - t793 * t914)
-                - (t440 * t920 + (t437 * t919 - t434 * t918));
+                - (t440 * t920 - (t437 * t919 + t434 * t918));
             let t922 = k(1.0) / (t921 - t872);
             let t923 = k(1.2792042981336627) * t37
                 - (k(1.2792042981336627) * t12 + k(0.8528028654224418) * t71);
@@ -12395,7 +12392,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t925 = k(1.2792042981336627) * t41
                 + (k(1.2792042981336627) * t32 - k(0.8528028654224418) * t45);
             let t926 = t82 * (k(1.2792042981336627) * t433) + t923 * t444
-                + (t69 * (k(1.2792042981336627) * -t436) + t924 * t443);
+                - (t69 * (k(1.2792042981336627) * t436) + t924 * t443);
             let t927 = t926 + (t56 * (k(1.2792042981336627) * t439) - t925 * t442);
             let t928 = k(1.2792042981336627) * t45;
             let t929 = k(1.2792042981336627) * t58;
@@ -12408,11 +12405,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t934 = t933 - (t56 * (t928 + k(0.8528028654224418) * t32) + t925 * t457);
             let t935 = t934 * t431 - (t932 * t430 + t927 * t441)
                 - (t925 * t438 + (t924 * t435 + t923 * t432));
-            let t936 = t923 * t792 + t924 * t791 - t925 * t790;
+            let t936 = t923 * t792 - t924 * t791 - t925 * t790;
             let t937 = t923 * t799 + t924 * t797 + t925 * t795;
             let t938 = t923 * t803 - t924 * t802 + t925 * t801;
             let t939 = t938 * t786 + (t937 * t778 - t936 * t780)
-                - (t925 * t789 + (t924 * t788 + t923 * t787));
+                + (t925 * t789 + (t924 * t788 + t923 * t787));
             let t940 = t81
                 * (k(0.4264014327112209) * t79 + k(0.6396021490668313) * t80
                     + k(0.6396021490668313) * t78);
@@ -12436,12 +12433,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                     * (k(0.6396021490668313) * t823
                         + (k(0.6396021490668313) * t822 - k(0.4264014327112209) * t223));
             let t947 = t934 * t867 - (t932 * t866 + t927 * t871)
-                - (t925 * t870 - (t924 * t869 + t923 * t868));
+                - (t925 * t870 - (t924 * t869 - t923 * t868));
             let t948 = t938 * t917 + (t937 * t912 - t936 * t914)
                 + (t925 * t920 - (t924 * t919 - t923 * t918));
             let t949 = t948 + t947;
             let t950 = t922 * t949;
-            let t951 = t950 * t828 + (t925 * t826 + t945 + t946 + t944 - (t939 + t935));
+            let t951 = t950 * t828 + (t925 * t826 + t945 + t946 + t944 + (t939 - t935));
             let t952 = t932 - (t925 * t140 + (t924 * t137 + t923 * t133));
             let t953 = t934 - (t925 * t151 + (t924 * t150 - t923 * t149));
             let t954 = t156 * t953 + (t148 * t952 - t129 * t927);
@@ -12454,12 +12451,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t961 = t172 * t957 - (t923 - t170 * t955);
             let t962 = t198 * t957 + (t924 + t196 * t955);
             let t963 = t214 * t957 + (t925 + t212 * t955);
-            let t964 = t273 * t963 - (t268 * t962 - t262 * t961)
+            let t964 = t273 * t963 + (t268 * t962 + t262 * t961)
                 - (t234 * t960 + (t233 * t959 - t227 * t958));
             let t965 = t278 * t963 + (t276 * t962 - t275 * t961);
-            let t966 = t285 * t963 - (t283 * t962 - t281 * t961)
+            let t966 = t285 * t963 - (t283 * t962 + t281 * t961)
                 + (t97 * t960 + (t98 * t959 - t127 * t958));
-            let t967 = t289 * t963 - (t293 * t962 - t291 * t961);
+            let t967 = t289 * t963 - (t293 * t962 + t291 * t961);
             let t968 = t967 + (t967 + (t109 * t960 + (t108 * t959 - t128 * t958)));
             let t969 = k(0.6666666666666666) * t968
                 - (k(0.6666666666666666) * (t965 + t966)
@@ -12468,11 +12465,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t971 = k(0.3333333333333333) * t970;
             let t972 = k(0.6666666666666666) * t970;
             let t973 = t291 * t972;
-            let t974 = t973 + (t275 * t972 - t275 * t971);
-            let t975 = t281 * t972 - t262 * t971 - t973 - t974;
+            let t974 = t973 - (t275 * t972 - t275 * t971);
+            let t975 = t281 * t972 + t262 * t971 - t973 - t974;
             let t976 = t293 * t972;
             let t977 = t976 + (t276 * t972 - t276 * t971);
-            let t978 = t283 * t972 - t268 * t971 - t976 - t977;
+            let t978 = t283 * t972 + t268 * t971 - t976 - t977;
             let t979 = t289 * t972;
             let t980 = t979 - (t278 * t972 - t278 * t971);
             let t981 = t285 * t972 - t273 * t971 - t979 - t980;
@@ -12480,19 +12477,19 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t983 = t108 * t972 - (t98 * t972 + t233 * t971);
             let t984 = t109 * t972 - (t97 * t972 + t234 * t971);
             let t985 = t246 * t984 + (t228 * t983 + t165 * t982)
-                - (t214 * t981 - (t198 * t978 - t172 * t975));
+                - (t214 * t981 - (t198 * t978 + t172 * t975));
             let t986 = t982 + t166 * (t956 - t985);
             let t987 = t160 * t984 - (t159 * t983 - t158 * t986)
-                + (t212 * t981 - (t196 * t978 - t170 * t975));
+                + (t212 * t981 - (t196 * t978 + t170 * t975));
             let t988 = t161 * (t954 + t987);
             let t989 = t983 + t148 * t988;
             let t990 = t984 - t156 * t988;
-            let t991 = t975 + (t149 * t990 + t133 * t989);
+            let t991 = t975 - (t149 * t990 + t133 * t989);
             let t992 = t978 - (t150 * t990 - t137 * t989);
             let t993 = t981 + (t151 * t990 - t140 * t989);
             let t994 = t986 - t129 * t988;
             let t995 = t934 * t990 - (t932 * t989 + t927 * t994)
-                - (t925 * t993 - (t924 * t992 + t923 * t991));
+                - (t925 * t993 - (t924 * t992 - t923 * t991));
             let t996 = t936 + (t925 * t548 + (t924 * t546 + t923 * t544));
             let t997 = k(50.0) * t996;
             let t998 = k(0.4) * t996
@@ -12718,7 +12715,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t1071 = t1070 - t1069;
             let t1072 = k(0.7071067811865476) * t1071;
             let t1073 = t1072 * t786 + (t1068 * t778 + t1063 * t780)
-                + (t1059 * t431 + (t1059 * t430 - t1054 * t441));
+                - (t1059 * t431 + (t1059 * t430 - t1054 * t441));
             let t1074 = sleeve_wy * t1057 + sleeve_wz * t1056;
             let t1075 = sleeve_wy * t1052 + sleeve_wz * t1051;
             let t1076 = t562 * t1048 - (t567 * t1047 - t576 * t1046)
@@ -12760,7 +12757,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t1100 = t949 * t1098 - t1099;
             let t1101 = t1045 * t1100;
             let t1102 = t1101 * t951
-                - (t1098 * t828 - (k(0.7071067811865476) * (t1096 - t1086) + t1073));
+                - (t1098 * t828 - (k(0.7071067811865476) * (t1096 - t1086) - t1073));
             let t1103 = t156 * t1059 - (t148 * t1059 + t129 * t1054);
             let t1104 = t161 * t1103;
             let t1105 = t1054 + t158 * t1104;
@@ -12771,12 +12768,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t1110 = t172 * t1106 + t170 * t1104;
             let t1111 = t198 * t1106 + t196 * t1104;
             let t1112 = t214 * t1106 + t212 * t1104;
-            let t1113 = t273 * t1112 - (t268 * t1111 - t262 * t1110)
+            let t1113 = t273 * t1112 + (t268 * t1111 + t262 * t1110)
                 - (t234 * t1109 + (t233 * t1108 - t227 * t1107));
             let t1114 = t278 * t1112 + (t276 * t1111 - t275 * t1110);
-            let t1115 = t285 * t1112 - (t283 * t1111 - t281 * t1110)
+            let t1115 = t285 * t1112 - (t283 * t1111 + t281 * t1110)
                 + (t97 * t1109 + (t98 * t1108 - t127 * t1107));
-            let t1116 = t289 * t1112 - (t293 * t1111 - t291 * t1110);
+            let t1116 = t289 * t1112 - (t293 * t1111 + t291 * t1110);
             let t1117 = t1116 + (t1116 + (t109 * t1109 + (t108 * t1108 - t128 * t1107)));
             let t1118 = k(0.6666666666666666) * t1117
                 - (k(0.6666666666666666) * (t1114 + t1115)
@@ -12785,11 +12782,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t1120 = k(0.3333333333333333) * t1119;
             let t1121 = k(0.6666666666666666) * t1119;
             let t1122 = t291 * t1121;
-            let t1123 = t1122 + (t275 * t1121 - t275 * t1120);
-            let t1124 = t281 * t1121 - t262 * t1120 - t1122 - t1123;
+            let t1123 = t1122 - (t275 * t1121 - t275 * t1120);
+            let t1124 = t281 * t1121 + t262 * t1120 - t1122 - t1123;
             let t1125 = t293 * t1121;
             let t1126 = t1125 + (t276 * t1121 - t276 * t1120);
-            let t1127 = t283 * t1121 - t268 * t1120 - t1125 - t1126;
+            let t1127 = t283 * t1121 + t268 * t1120 - t1125 - t1126;
             let t1128 = t289 * t1121;
             let t1129 = t1128 - (t278 * t1121 - t278 * t1120);
             let t1130 = t285 * t1121 - t273 * t1120 - t1128 - t1129;
@@ -12797,10 +12794,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t1132 = t108 * t1121 - (t98 * t1121 + t233 * t1120);
             let t1133 = t109 * t1121 - (t97 * t1121 + t234 * t1120);
             let t1134 = t246 * t1133 + (t228 * t1132 + t165 * t1131)
-                - (t214 * t1130 - (t198 * t1127 - t172 * t1124));
+                - (t214 * t1130 - (t198 * t1127 + t172 * t1124));
             let t1135 = t1131 + t166 * (t1105 - t1134);
             let t1136 = t160 * t1133 - (t159 * t1132 - t158 * t1135)
-                + (t212 * t1130 - (t196 * t1127 - t170 * t1124));
+                + (t212 * t1130 - (t196 * t1127 + t170 * t1124));
             let t1137 = t161 * (t1103 + t1136);
             let t1138 = t1135 - t129 * t1137;
             let t1139 = t1132 + t148 * t1137;
@@ -12873,7 +12870,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t1194 = k(0.4264014327112209) * (t1192 - k(0.9045340337332909) * t1056)
                 - k(0.6396021490668313) * t1070 - k(0.6396021490668313) * t1069;
             let t1195 = t1194 * t786 + (t1193 * t778 - t1191 * t780)
-                - (t1189 * t431 - (t1188 * t430 + t1186 * t441));
+                + (t1189 * t431 - (t1188 * t430 + t1186 * t441));
             let t1196 = t562 * t1057 - (t567 * t1056 - t576 * t1055)
                 - k(2.0) * (shaft_wy * t1075 + shaft_wz * t1087);
             let t1197 = k(0.9045340337332909)
@@ -13079,7 +13076,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t1206 = t949 * t1204 - t1205;
             let t1207 = t1045 * t1206;
             let t1208 = t1207 * t951
-                - (t1204 * t828 - (k(0.6396021490668313) * t1096 + t1202 + t1195));
+                - (t1204 * t828 - (k(0.6396021490668313) * t1096 + t1202 - t1195));
             let t1209 = t1194 * t1183 + (t1193 * t1178 - t1191 * t1180)
                 - (t1189 * t1140 - (t1188 * t1139 + t1186 * t1138));
             let t1210 = t1100 * t1207 - (t1097 * t1204 - t1209);
@@ -13095,12 +13092,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t1220 = t172 * t1216 + t170 * t1214;
             let t1221 = t198 * t1216 + t196 * t1214;
             let t1222 = t214 * t1216 + t212 * t1214;
-            let t1223 = t273 * t1222 - (t268 * t1221 - t262 * t1220)
+            let t1223 = t273 * t1222 + (t268 * t1221 + t262 * t1220)
                 - (t234 * t1219 + (t233 * t1218 - t227 * t1217));
             let t1224 = t278 * t1222 + (t276 * t1221 - t275 * t1220);
-            let t1225 = t285 * t1222 - (t283 * t1221 - t281 * t1220)
+            let t1225 = t285 * t1222 - (t283 * t1221 + t281 * t1220)
                 + (t97 * t1219 + (t98 * t1218 - t127 * t1217));
-            let t1226 = t289 * t1222 - (t293 * t1221 - t291 * t1220);
+            let t1226 = t289 * t1222 - (t293 * t1221 + t291 * t1220);
             let t1227 = t1226 + (t1226 + (t109 * t1219 + (t108 * t1218 - t128 * t1217)));
             let t1228 = k(0.6666666666666666) * t1227
                 - (k(0.6666666666666666) * (t1224 + t1225)
@@ -13109,11 +13106,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t1230 = k(0.3333333333333333) * t1229;
             let t1231 = k(0.6666666666666666) * t1229;
             let t1232 = t291 * t1231;
-            let t1233 = t1232 + (t275 * t1231 - t275 * t1230);
-            let t1234 = t281 * t1231 - t262 * t1230 - t1232 - t1233;
+            let t1233 = t1232 - (t275 * t1231 - t275 * t1230);
+            let t1234 = t281 * t1231 + t262 * t1230 - t1232 - t1233;
             let t1235 = t293 * t1231;
             let t1236 = t1235 + (t276 * t1231 - t276 * t1230);
-            let t1237 = t283 * t1231 - t268 * t1230 - t1235 - t1236;
+            let t1237 = t283 * t1231 + t268 * t1230 - t1235 - t1236;
             let t1238 = t289 * t1231;
             let t1239 = t1238 - (t278 * t1231 - t278 * t1230);
             let t1240 = t285 * t1231 - t273 * t1230 - t1238 - t1239;
@@ -13121,10 +13118,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t1242 = t108 * t1231 - (t98 * t1231 + t233 * t1230);
             let t1243 = t109 * t1231 - (t97 * t1231 + t234 * t1230);
             let t1244 = t246 * t1243 + (t228 * t1242 + t165 * t1241)
-                - (t214 * t1240 - (t198 * t1237 - t172 * t1234));
+                - (t214 * t1240 - (t198 * t1237 + t172 * t1234));
             let t1245 = t1241 + t166 * (t1215 - t1244);
             let t1246 = t160 * t1243 - (t159 * t1242 - t158 * t1245)
-                + (t212 * t1240 - (t196 * t1237 - t170 * t1234));
+                + (t212 * t1240 - (t196 * t1237 + t170 * t1234));
             let t1247 = t161 * (t1213 + t1246);
             let t1248 = t1245 - t129 * t1247;
             let t1249 = t1242 + t148 * t1247;
@@ -13637,12 +13634,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t1505 = t1504 * t1483 + (t1503 * t1465 - t1502 * t1399)
                 - (t1372 * t1494 + (t1362 * t1491 + t1350 * t1489));
             let t1506 = t1298 + t1310;
-            let t1507 = k(0.2) * -t1506;
+            let t1507 = k(0.2) * t1506;
             let t1508 = t1351 - t1373;
             let t1509 = k(0.2) * t1508;
             let t1510 = t1353 + t1375;
             let t1511 = k(0.2) * t1510;
-            let t1512 = t1511 * t1484 - (t1509 * t1465 - t1507 * t1399)
+            let t1512 = t1511 * t1484 - (t1509 * t1465 + t1507 * t1399)
                 + (k(0.3333333333333333) * self.motor - k(0.001) * t1296 + t1505);
             let t1513 = k(0.3333333333333333) * t1512
                 + k(0.6666666666666666) * (t1501 + (t1500 - k(0.0005) * t1300 + t1499));
@@ -13659,7 +13656,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t1521 = t1514 + t1520;
             let t1522 = t1372 * t1398 + (t1362 * t1391 + t1350 * t1387);
             let t1523 = k(0.2) * t1502 + t1522;
-            let t1524 = t1523 - k(0.1) * -t1506;
+            let t1524 = t1523 + k(0.1) * t1506;
             let t1525 = t1377 * t1398 + (t1379 * t1391 + t1378 * t1387);
             let t1526 = t1525 + k(0.02) * t1303;
             let t1527 = t1514 + t1526;
@@ -13699,7 +13696,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t1554 = t1504 * t1539 + (t1503 * t1529 - t1502 * t1519)
                 - (t1495 * t1542 + (t1497 * t1532 + t1496 * t1522));
             let t1555 = t1495 * t1543 + (t1497 * t1533 - t1496 * t1523);
-            let t1556 = t1555 + (t1511 * t1540 - (t1509 * t1530 - t1507 * t1520))
+            let t1556 = t1555 + (t1511 * t1540 - (t1509 * t1530 + t1507 * t1520))
                 + (t1554 - (t1372 * t1552 + (t1362 * t1551 + t1350 * t1550)));
             let t1557 = k(0.3333333333333333) * t1556
                 + k(0.6666666666666666)
@@ -13718,10 +13715,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t1566 = k(0.0025) + (t1372 * t1565 + (t1362 * t1564 + t1350 * t1563))
                 - k(2.0) * (t1504 * t1542 + (t1503 * t1532 - t1502 * t1522));
             let t1567 = k(0.01) + (k(0.0025) + t1566)
-                + k(2.0) * (t1511 * t1543 - (t1509 * t1533 + t1507 * t1523));
+                + k(2.0) * (t1511 * t1543 - (t1509 * t1533 - t1507 * t1523));
             let t1568 = t1516 * t1542 + (t1515 * t1532 + t1514 * t1522)
                 - (t1504 * t1545 + (t1503 * t1535 - t1502 * t1525));
-            let t1569 = t1511 * t1546 - (t1509 * t1536 - t1507 * t1526) + t1555
+            let t1569 = t1511 * t1546 - (t1509 * t1536 + t1507 * t1526) + t1555
                 - (t1568 + (t1377 * t1565 + (t1379 * t1564 + t1378 * t1563)));
             let t1570 = k(0.6666666666666666) * t1569
                 - (k(0.3333333333333333) * t1567 + k(0.6666666666666666) * t1556)
@@ -14012,7 +14009,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t1650 = t1426 * t1625 - (t1406 * t1624 + t1413 * t1608);
             let t1651 = t1426 * t1636 - (t1406 * t1625 - t1413 * t1609);
             let t1652 = t1412 - t1405;
-            let t1653 = nut_rx - k(0.2) * (t1310 - t1298);
+            let t1653 = nut_rx + k(0.2) * (t1298 - t1310);
             let t1654 = t1653 - (slide_rx + k(0.2) * (t1425 - t1652));
             let t1655 = t1406 * slide_wx + t1413 * slide_wy;
             let t1656 = t1426 * slide_wx + t1413 * slide_wz;
@@ -14058,7 +14055,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t1680 = t1422 * t1636 + (t1410 * t1625 + t1419 * t1609);
             let t1681 = t1418 + t1409;
             let t1682 = nut_rz - k(0.2) * (t1353 - t1375);
-            let t1683 = t1682 - (slide_rz + k(0.2) * (t1681 - t1421));
+            let t1683 = t1682 - (slide_rz - k(0.2) * (t1421 - t1681));
             let t1684 = t1410 * slide_wx - t1419 * slide_wy;
             let t1685 = t1422 * slide_wx + t1419 * slide_wz;
             let t1686 = t1422 * slide_wy + t1410 * slide_wz;
@@ -14254,8 +14251,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 - k(0.26) * t1409;
             let t1793 = t1792
                 - (t1791 + (t1420 * t1760 - (t1429 * t1759 - t1428 * t1758)));
-            let t1794 = k(0.31426968052735443) * -(t1666 + t1652)
-                - k(0.15713484026367722) * t1681;
+            let t1794 = k(0.31426968052735443) * (t1666 + t1652)
+                + k(0.15713484026367722) * t1681;
             let t1795 = k(0.4714045207910317) * t1423;
             let t1796 = t1795 - k(1.8856180831641267) * t1414;
             let t1797 = k(0.4714045207910317) * t1425;
@@ -14422,20 +14419,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 + k(0.3333333333333333) * (t1800 + k(1.8856180831641267) * t1418);
             let t1802 = t1666 - t1652;
             let t1803 = k(0.3333333333333333) * t1802;
-            let t1804 = t1803 * t1801 - t1799 * t1794;
+            let t1804 = t1803 * t1801 + t1799 * t1794;
             let t1805 = k(0.7071067811865476) * (t1451 - t1450 + (t1467 + t1466));
             let t1806 = t1795 - k(1.8856180831641267) * t1401;
             let t1807 = t1797 + k(1.8856180831641267) * t1405;
             let t1808 = k(0.6666666666666666) * (t1807 - t1806)
                 + k(0.3333333333333333) * (t1800 - k(1.8856180831641267) * t1409);
             let t1809 = k(0.7071067811865476) * (t1807 + t1806);
-            let t1810 = t1809 * t1794 - t1803 * t1808;
+            let t1810 = t1809 * t1794 + t1803 * t1808;
             let t1811 = k(0.7071067811865476)
                 * (t1451 - k(0.6666666666666666) * t1412
                     + (t1467 + k(0.6666666666666666) * t1414));
             let t1812 = t1799 * t1808 - t1809 * t1801;
             let t1813 = k(0.9428090415820634) * t1802;
-            let t1814 = k(1.0) / (t1813 * t1812 + (t1811 * t1810 + t1805 * t1804));
+            let t1814 = k(1.0) / (t1813 * t1812 - (t1811 * t1810 - t1805 * t1804));
             let t1815 = t1649 - t1650;
             let t1816 = t1663 - t1664;
             let t1817 = k(0.3333333333333333) * t1665 + k(0.6666666666666666) * t1816
@@ -14449,7 +14446,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                     - k(0.23570226039551584) * (t1678 - t1679))
                 - k(0.6666666666666666) * (t1820 - t1819);
             let t1823 = t1822 * (t1814 * (t1799 * t1813 - t1803 * t1811))
-                + t1821 * (t1814 * (t1794 * t1811 - t1801 * t1813));
+                - t1821 * (t1814 * (t1794 * t1811 + t1801 * t1813));
             let t1824 = t1823 - t1818 * (t1804 * t1814);
             let t1825 = t1419 * t1776 + (t1415 * t1775 - t1413 * t1774);
             let t1826 = t1426 * t1825 - t1413 * t1777;
@@ -14457,28 +14454,28 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t1828 = t1422 * t1825 - t1419 * t1777;
             let t1829 = t1735 * t1828 + (t1732 * t1827 - t1729 * t1826) + k(0.5) * t1826;
             let t1830 = t1412 + t1425;
-            let t1831 = k(0.2) * -t1830;
+            let t1831 = k(0.2) * t1830;
             let t1832 = t1414 - t1423;
             let t1833 = k(0.2) * t1832;
             let t1834 = t1418 + t1421;
             let t1835 = k(0.2) * t1834;
-            let t1836 = t1835 * t1735 - (t1833 * t1732 - t1831 * t1729)
-                - k(0.26) * -t1830;
+            let t1836 = t1835 * t1735 - (t1833 * t1732 + t1831 * t1729)
+                + k(0.26) * t1830;
             let t1837 = t1836
                 - (t1829 - (t1411 * t1741 + (t1432 * t1739 + t1431 * t1737)));
             let t1838 = t1749 * t1828 + (t1748 * t1827 - t1732 * t1826) - k(0.5) * t1827;
-            let t1839 = t1835 * t1749 - (t1833 * t1748 - t1831 * t1732)
+            let t1839 = t1835 * t1749 - (t1833 * t1748 + t1831 * t1732)
                 + k(0.26) * t1832;
             let t1840 = t1839
                 - (t1838 - (t1411 * t1753 - (t1432 * t1752 - t1431 * t1751)));
             let t1841 = t1756 * t1828 + (t1749 * t1827 - t1735 * t1826) - k(0.5) * t1828;
-            let t1842 = t1835 * t1756 - (t1833 * t1749 - t1831 * t1735)
+            let t1842 = t1835 * t1756 - (t1833 * t1749 + t1831 * t1735)
                 - k(0.26) * t1834;
             let t1843 = t1842
                 - (t1841 - (t1411 * t1760 - (t1432 * t1759 - t1431 * t1758)));
             let t1844 = t1822 * (t1814 * (t1803 * t1805 - t1809 * t1813))
-                + t1821 * (t1814 * (t1808 * t1813 - t1794 * t1805));
-            let t1845 = t1844 - t1818 * (t1810 * t1814);
+                + t1821 * (t1814 * (t1808 * t1813 + t1794 * t1805));
+            let t1845 = t1844 + t1818 * (t1810 * t1814);
             let t1846 = t1845
                 * (k(0.9428090415820634) * t1843
                     + k(0.23570226039551584) * (t1840 + t1837))
@@ -14509,7 +14506,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                     + k(0.23570226039551584) * (t1771 + t1769));
             let t1860 = t1859 * (t1858 - t1762);
             let t1861 = k(0.23570226039551584) * t1860;
-            let t1862 = t1783 * t1857 - (t1831 * t1845 - t1783 * t1824)
+            let t1862 = t1783 * t1857 + (t1831 * t1845 + t1783 * t1824)
                 - (t1768 - t1861);
             let t1863 = t1727
                 + (t1857 * t1847 + (t1845 * t1826 - t1824 * t1779) - t1862);
@@ -14532,7 +14529,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t1875 = t1868 + t1874;
             let t1876 = t1496 * t1875;
             let t1877 = t1870 - t1874;
-            let t1878 = t1496 * t1877 + (t1876 - t1507 * t1873)
+            let t1878 = t1496 * t1877 + (t1876 + t1507 * t1873)
                 - (t1863 + t1453 * t1872);
             let t1879 = t1386 + (t1378 * t1877 + (t1350 * t1873 + t1355 * t1875));
             let t1880 = k(0.2) * t1326;
@@ -14593,7 +14590,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t1918 = t1917 * t1885 - t1916 * t1891 - t1915 * t1895;
             let t1919 = t1885 * t593 + t1891 * t597 + t1895 * t601;
             let t1920 = t1919 * t752 + t1918 * t751
-                + (t1895 * t767 - (t1891 * t764 + t1885 * t761));
+                + (t1895 * t767 + (t1891 * t764 - t1885 * t761));
             let t1921 = t1332 * t1334 - (t1327 * t1393 + t1322 * t1323);
             let t1922 = t1332 * lid_wx + t1322 * lid_wz;
             let t1923 = t1332 * lid_wy - t1327 * lid_wz;
@@ -14644,7 +14641,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t1948 = t949 * t1946 - t1947;
             let t1949 = t1045 * t1948;
             let t1950 = t1949 * t951
-                - (t1946 * t828 - (t1944 + (t1936 - t1928) + (t1920 + t1914)));
+                - (t1946 * t828 - (t1944 + (t1936 - t1928) - (t1920 - t1914)));
             let t1951 = t1919 * t1159 - t1918 * t1158
                 - (t1895 * t1173 - (t1891 * t1170 + t1885 * t1167));
             let t1952 = t1100 * t1949 - (t1097 * t1946 - t1951);
@@ -14663,7 +14660,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t1963 = t1895 * t1504 + (t1891 * t1503 - t1885 * t1502)
                 + (t1372 * t1960 + (t1362 * t1959 - t1350 * t1958));
             let t1964 = k(0.3333333333333333)
-                * (t1895 * t1511 - (t1891 * t1509 - t1885 * t1507) + t1963);
+                * (t1895 * t1511 - (t1891 * t1509 + t1885 * t1507) + t1963);
             let t1965 = t1895 * t1516 + (t1891 * t1515 + t1885 * t1514)
                 - (t1377 * t1960 + (t1379 * t1959 - t1378 * t1958));
             let t1966 = k(0.6666666666666666) * (t1965 + t1961)
@@ -14681,7 +14678,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t1973 = k(0.3333333333333333) * t1972;
             let t1974 = k(0.6666666666666666) * t1972;
             let t1975 = t1496 * t1974;
-            let t1976 = t1975 - (t1975 + t1507 * t1973) + (t1970 + t1453 * t1972);
+            let t1976 = t1975 - (t1975 - t1507 * t1973) + (t1970 + t1453 * t1972);
             let t1977 = t1378 * t1974 + (t1350 * t1973 - t1355 * t1974);
             let t1978 = t1379 * t1974 + (t1362 * t1973 - t1364 * t1974);
             let t1979 = t1377 * t1974 + (t1372 * t1973 - t1371 * t1974);
@@ -14943,7 +14940,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t2027 = t1917 * t2014 + t1916 * t2015 + t1915 * t2016;
             let t2028 = t2014 * t593 - t2015 * t597 - t2016 * t601;
             let t2029 = t2028 * t752 + t2027 * t751
-                - (t2016 * t767 - (t2015 * t764 - t2014 * t761));
+                - (t2016 * t767 + (t2015 * t764 + t2014 * t761));
             let t2030 = t1925
                 * (k(0.5962847939999439) * t1923 + k(0.29814239699997197) * t1922
                     + k(0.7453559924999299) * t1924);
@@ -14973,7 +14970,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 + (t2016 * t907 - (t2015 * t904 - t2014 * t901));
             let t2038 = t922 * t2037;
             let t2039 = t2038 * t828
-                + (t2016 * t1943 + t2035 + t2036 + t2034 - (t2029 + t2026));
+                + (t2016 * t1943 + t2035 + t2036 + t2034 + (t2029 - t2026));
             let t2040 = t2028 * t1016 - t2027 * t1015
                 + (t2016 * t1030 - (t2015 * t1027 - t2014 * t1024));
             let t2041 = t949 * t2038 - t2040;
@@ -15005,7 +15002,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t2060 = t2016 * t1504 + (t2015 * t1503 + t2014 * t1502)
                 - (t1372 * t2057 + (t1362 * t2056 + t1350 * t2055));
             let t2061 = k(0.3333333333333333)
-                * (t2016 * t1511 - (t2015 * t1509 + t2014 * t1507) + t2060);
+                * (t2016 * t1511 - (t2015 * t1509 - t2014 * t1507) + t2060);
             let t2062 = t2016 * t1516 + (t2015 * t1515 - t2014 * t1514)
                 + (t1377 * t2057 + (t1379 * t2056 + t1378 * t2055));
             let t2063 = k(0.6666666666666666) * (t2062 + t2058)
@@ -15023,7 +15020,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t2070 = k(0.3333333333333333) * t2069;
             let t2071 = k(0.6666666666666666) * t2069;
             let t2072 = t1496 * t2071;
-            let t2073 = t2072 - (t2072 + t1507 * t2070) + (t2067 + t1453 * t2069);
+            let t2073 = t2072 - (t2072 - t1507 * t2070) + (t2067 + t1453 * t2069);
             let t2074 = t1378 * t2071 + (t1350 * t2070 - t1355 * t2071);
             let t2075 = t1379 * t2071 + (t1362 * t2070 - t1364 * t2071);
             let t2076 = t1377 * t2071 + (t1372 * t2070 - t1371 * t2071);
@@ -15127,20 +15124,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t2149 = k(0.5)
                 * (t2112 * (k(2.0) * (t2118 * t2148 + t2147 * t2147 - t2143)));
             let t2150 = t2127 * t849 - (t2124 * t849 - t2122 * t848)
-                - (t2120 * t857 + (t2117 * t854 + t2114 * t851));
+                - (t2120 * t857 + (t2117 * t854 - t2114 * t851));
             let t2151 = t922 * t2150;
             let t2152 = t2127 * t972 - (t2124 * t972 - t2122 * t971)
-                - (t2120 * t980 + (t2117 * t977 + t2114 * t974));
+                - (t2120 * t980 + (t2117 * t977 - t2114 * t974));
             let t2153 = t949 * t2151 - t2152;
             let t2154 = t1045 * t2153;
             let t2155 = t2127 * t1121 - (t2124 * t1121 - t2122 * t1120)
-                - (t2120 * t1129 + (t2117 * t1126 + t2114 * t1123));
+                - (t2120 * t1129 + (t2117 * t1126 - t2114 * t1123));
             let t2156 = t1100 * t2154 - (t1097 * t2151 - t2155);
             let t2157 = t1185 * t2156;
             let t2158 = t2157 * t1102
                 - (t2154 * t951 - (t2151 * t828 + (t2149 + t2132)));
             let t2159 = t2127 * t1231 - (t2124 * t1231 - t2122 * t1230)
-                - (t2120 * t1239 + (t2117 * t1236 + t2114 * t1233));
+                - (t2120 * t1239 + (t2117 * t1236 - t2114 * t1233));
             let t2160 = t1210 * t2157 - (t1206 * t2154 - (t1203 * t2151 + t2159));
             let t2161 = t1295 * t2160;
             let t2162 = t1945 * t2151
@@ -15155,7 +15152,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t2168 = t2167 * t2054 - (t2164 * t1957 - (t2161 * t1212 - t2158));
             let t2169 = t2120 * t278 - (t2117 * t276 + t2114 * t275);
             let t2170 = k(0.6666666666666666)
-                * (t2127 - (t2120 * t289 + (t2117 * t293 + t2114 * t291)));
+                * (t2127 - (t2120 * t289 + (t2117 * t293 - t2114 * t291)));
             let t2171 = t408
                 * (t2170
                     - (k(0.6666666666666666) * (t2124 - t2169)
@@ -15163,13 +15160,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t2172 = k(0.3333333333333333) * t2171;
             let t2173 = k(0.6666666666666666) * t2171;
             let t2174 = t291 * t2173;
-            let t2175 = t2174 + (t275 * t2173 - t275 * t2172);
+            let t2175 = t2174 - (t275 * t2173 - t275 * t2172);
             let t2176 = t293 * t2173;
             let t2177 = t2176 + (t276 * t2173 - t276 * t2172);
             let t2178 = t289 * t2173;
             let t2179 = t2178 - (t278 * t2173 - t278 * t2172);
             let t2180 = t2127 * t2173 - (t2124 * t2173 - t2122 * t2172)
-                - (t2120 * t2179 + (t2117 * t2177 + t2114 * t2175));
+                - (t2120 * t2179 + (t2117 * t2177 - t2114 * t2175));
             let t2181 = t1859
                 * (k(0.4714045207910317) * t2119
                     + k(0.11785113019775792) * (t2113 - t2116));
@@ -15363,7 +15360,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
         ) = {
             let t2200 = t2189 * t2199;
             let t2201 = t2200 * t786 + (t2200 * t778 + t2198 * t780)
-                + (t2194 * t431 + (t2193 * t430 - t2190 * t441));
+                - (t2194 * t431 + (t2193 * t430 - t2190 * t441));
             let t2202 = t1438 * (k(0.8944271909999159) * t1437)
                 + t1434
                     * (k(0.29814239699997197) * t1437 + k(0.7453559924999299) * t1433);
@@ -15380,7 +15377,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t2207 = self.gear_ratio * t1444;
             let t2208 = self.gear_ratio * t1448;
             let t2209 = t2208 * t1877 - (t2207 * t1873 - t2206 * t1875)
-                + (self.gear_ratio * (t1440 * t2205) * t1857 - t2204 - t2201);
+                + (self.gear_ratio * (t1440 * t2205) * t1857 - t2204 + t2201);
             let t2210 = t1083 + (shaft_wx * t1048 - shaft_wy * t1057)
                 + (t1079 - (shaft_wx * t1047 - shaft_wy * t1056));
             let t2211 = t1093 - (shaft_wx * t1052 + shaft_wz * t1057)
@@ -15461,17 +15458,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t2263 = t2110 * t2262;
             let t2264 = t2263 * t2054
                 - (t2247 * t1957 - (t2232 * t1212 - (t2229 * t1102 - t2226)));
-            let t2265 = t2175 + (t2174 - (t281 * t2173 - t262 * t2172));
-            let t2266 = t2177 + (t2176 - (t283 * t2173 - t268 * t2172));
+            let t2265 = t2175 + (t2174 - (t281 * t2173 + t262 * t2172));
+            let t2266 = t2177 + (t2176 - (t283 * t2173 + t268 * t2172));
             let t2267 = t2179 + (t2178 - (t285 * t2173 - t273 * t2172));
             let t2268 = t128 * t2173 - (t127 * t2173 + t227 * t2172);
             let t2269 = t108 * t2173 - (t98 * t2173 + t233 * t2172);
             let t2270 = t109 * t2173 - (t97 * t2173 + t234 * t2172);
             let t2271 = t246 * t2270 + (t228 * t2269 + t165 * t2268)
-                + (t214 * t2267 - (t198 * t2266 - t172 * t2265));
+                + (t214 * t2267 - (t198 * t2266 + t172 * t2265));
             let t2272 = t2268 - t166 * t2271;
             let t2273 = t160 * t2270 - (t159 * t2269 - t158 * t2272)
-                - (t212 * t2267 - (t196 * t2266 - t170 * t2265));
+                - (t212 * t2267 - (t196 * t2266 + t170 * t2265));
             let t2274 = t161 * t2273;
             let t2275 = t2272 - t129 * t2274;
             let t2276 = t2269 + t148 * t2274;
@@ -15496,12 +15493,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t2293 = t172 * t2289 + t170 * t2287;
             let t2294 = t198 * t2289 + t196 * t2287;
             let t2295 = t214 * t2289 + t212 * t2287;
-            let t2296 = t273 * t2295 - (t268 * t2294 - t262 * t2293)
+            let t2296 = t273 * t2295 + (t268 * t2294 + t262 * t2293)
                 - (t234 * t2292 + (t233 * t2291 - t227 * t2290));
             let t2297 = t278 * t2295 + (t276 * t2294 - t275 * t2293);
-            let t2298 = t285 * t2295 - (t283 * t2294 - t281 * t2293)
+            let t2298 = t285 * t2295 - (t283 * t2294 + t281 * t2293)
                 + (t97 * t2292 + (t98 * t2291 - t127 * t2290));
-            let t2299 = t289 * t2295 - (t293 * t2294 - t291 * t2293);
+            let t2299 = t289 * t2295 - (t293 * t2294 + t291 * t2293);
             let t2300 = t2299 + (t2299 + (t109 * t2292 + (t108 * t2291 - t128 * t2290)));
             let t2301 = k(0.6666666666666666) * t2300
                 - (k(0.6666666666666666) * (t2297 + t2298)
@@ -15510,11 +15507,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t2303 = k(0.3333333333333333) * t2302;
             let t2304 = k(0.6666666666666666) * t2302;
             let t2305 = t291 * t2304;
-            let t2306 = t2305 + (t275 * t2304 - t275 * t2303);
-            let t2307 = t281 * t2304 - t262 * t2303 - t2305 - t2306;
+            let t2306 = t2305 - (t275 * t2304 - t275 * t2303);
+            let t2307 = t281 * t2304 + t262 * t2303 - t2305 - t2306;
             let t2308 = t293 * t2304;
             let t2309 = t2308 + (t276 * t2304 - t276 * t2303);
-            let t2310 = t283 * t2304 - t268 * t2303 - t2308 - t2309;
+            let t2310 = t283 * t2304 + t268 * t2303 - t2308 - t2309;
             let t2311 = t289 * t2304;
             let t2312 = t2311 - (t278 * t2304 - t278 * t2303);
             let t2313 = t285 * t2304 - t273 * t2303 - t2311 - t2312;
@@ -15522,10 +15519,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t2315 = t108 * t2304 - (t98 * t2304 + t233 * t2303);
             let t2316 = t109 * t2304 - (t97 * t2304 + t234 * t2303);
             let t2317 = t246 * t2316 + (t228 * t2315 + t165 * t2314)
-                - (t214 * t2313 - (t198 * t2310 - t172 * t2307));
+                - (t214 * t2313 - (t198 * t2310 + t172 * t2307));
             let t2318 = t2314 + t166 * (t2288 - t2317);
             let t2319 = t160 * t2316 - (t159 * t2315 - t158 * t2318)
-                + (t212 * t2313 - (t196 * t2310 - t170 * t2307));
+                + (t212 * t2313 - (t196 * t2310 + t170 * t2307));
             let t2320 = t161 * (t2286 + t2319);
             let t2321 = t2318 - t129 * t2320;
             let t2322 = t2315 + t148 * t2320;
@@ -15626,9 +15623,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t2395 = t201 + t100;
             let t2396 = t176 - t104;
             let t2397 = t2390
-                * (k(0.8888888888888888) * -t2396 + k(0.4444444444444444) * t2395
-                    - k(0.8888888888888888) * t2394)
-                - t2389
+                * (k(0.8888888888888888) * t2396 - k(0.4444444444444444) * t2395
+                    + k(0.8888888888888888) * t2394)
+                + t2389
                     * (k(0.8888888888888888) * (t2396 + t2395)
                         - k(0.4444444444444444) * t2394);
             let t2398 = t2392 * t2397;
@@ -15812,17 +15809,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                     + k(0.6666666666666666) * (t2411 - t2410)) + t2413 - t2414;
             let t2416 = k(8.882643960980422) * (k(9.42477796076938) * t).sin()
                 - (t2392 * t2415 - t2409)
-                - (t2403 * t413 - (t2398 * t412 + t2393 * t410));
-            let t2417 = t2403 * t849 - (t2398 * t849 - t2393 * t848);
+                - (t2403 * t413 + (t2398 * t412 - t2393 * t410));
+            let t2417 = t2403 * t849 + (t2398 * t849 + t2393 * t848);
             let t2418 = t922 * t2417;
-            let t2419 = t949 * t2418 - (t2403 * t972 - (t2398 * t972 - t2393 * t971));
+            let t2419 = t949 * t2418 - (t2403 * t972 + (t2398 * t972 + t2393 * t971));
             let t2420 = t1045 * t2419;
             let t2421 = t1097 * t2418
-                - (t2403 * t1121 - (t2398 * t1121 - t2393 * t1120));
+                - (t2403 * t1121 + (t2398 * t1121 + t2393 * t1120));
             let t2422 = t1100 * t2420 - t2421;
             let t2423 = t1185 * t2422;
             let t2424 = t1203 * t2418
-                + (t2403 * t1231 - (t2398 * t1231 - t2393 * t1230));
+                + (t2403 * t1231 + (t2398 * t1231 + t2393 * t1230));
             let t2425 = t1210 * t2423 - (t1206 * t2420 - t2424);
             let t2426 = t1295 * t2425;
             let t2427 = t2426 * t1212
@@ -15835,13 +15832,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t2431 = t2052 * t2429 - t2430;
             let t2432 = t2110 * t2431;
             let t2433 = t2150 * t2418
-                - (t2403 * t2173 - (t2398 * t2173 - t2393 * t2172));
+                - (t2403 * t2173 + (t2398 * t2173 + t2393 * t2172));
             let t2434 = t2163 * t2429
                 - (t2160 * t2426 - (t2156 * t2423 - (t2153 * t2420 - t2433)));
             let t2435 = t2166 * t2432 - t2434;
             let t2436 = t2186 * t2435;
             let t2437 = t2221 * t2418
-                - (t2403 * t2304 - (t2398 * t2304 - t2393 * t2303));
+                - (t2403 * t2304 + (t2398 * t2304 + t2393 * t2303));
             let t2438 = t2246 * t2429
                 - (t2231 * t2426 - (t2228 * t2423 - (t2224 * t2420 - t2437)));
             let t2439 = t2283 * t2436 - (t2262 * t2432 - t2438);
@@ -15850,11 +15847,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 - (t2436 * t2168 - (t2432 * t2054 - (t2429 * t1957 - t2427)));
             let t2442 = t408
                 * (k(0.6666666666666666) * t2403
-                    - (k(0.6666666666666666) * t2398 - k(0.3333333333333333) * t2393));
+                    + (k(0.6666666666666666) * t2398 + k(0.3333333333333333) * t2393));
             let t2443 = k(0.3333333333333333) * t2442;
             let t2444 = k(0.6666666666666666) * t2442;
             let t2445 = t2417 * t2418
-                - (t2403 * t2444 - (t2398 * t2444 - t2393 * t2443));
+                - (t2403 * t2444 + (t2398 * t2444 + t2393 * t2443));
             let t2446 = t2428 * t2429
                 - (t2425 * t2426 - (t2422 * t2423 - (t2419 * t2420 - t2445)));
             let t2447 = t2441
@@ -15880,9 +15877,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 + (t2151 * t2449 + (t2038 * t2450 + (t1946 * t2452 + t2459)));
             let t2461 = t2418 * t2447 - t2460;
             let t2462 = t1233 * t2454
-                - (t1123 * t2456 + (t974 * t2458 + (t415 + t851 * t2461)));
+                - (t1123 * t2456 + (t974 * t2458 - (t415 - t851 * t2461)));
             let t2463 = t291 * t2444;
-            let t2464 = t2463 + (t275 * t2444 - t275 * t2443);
+            let t2464 = t2463 - (t275 * t2444 - t275 * t2443);
             let t2465 = t1236 * t2454
                 - (t1126 * t2456 + (t977 * t2458 + (t418 + t854 * t2461)));
             let t2466 = t293 * t2444;
@@ -15904,26 +15901,26 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 - (t2477 + (t2476 - (t2475 - (t2474 + (t2473 + (t412 + t2472))))));
             let t2480 = t2478
                 - (t2477 + (t2476 - (t2475 - (t2474 + (t2473 + (t413 + t2472))))));
-            let t2481 = t2456 * (t1124 + (t149 * t1140 + t133 * t1139))
-                + (t991 * t2458 - (t432 - t868 * t2461));
-            let t2482 = t2449 * (t2265 - (t149 * t2277 + t133 * t2276))
-                + (t2454 * (t1234 + (t149 * t1250 + t133 * t1249)) - t2481);
-            let t2483 = t2464 + (t2463 - (t281 * t2444 - t262 * t2443));
-            let t2484 = t2467 + (t2466 - (t283 * t2444 - t268 * t2443));
+            let t2481 = t2456 * (t1124 - (t149 * t1140 + t133 * t1139))
+                + (t991 * t2458 + (t432 + t868 * t2461));
+            let t2482 = t2449 * (t2265 + (t149 * t2277 + t133 * t2276))
+                + (t2454 * (t1234 - (t149 * t1250 + t133 * t1249)) - t2481);
+            let t2483 = t2464 + (t2463 - (t281 * t2444 + t262 * t2443));
+            let t2484 = t2467 + (t2466 - (t283 * t2444 + t268 * t2443));
             let t2485 = t2470 + (t2469 - (t285 * t2444 - t273 * t2443));
             let t2486 = t128 * t2444 - (t127 * t2444 + t227 * t2443);
             let t2487 = t108 * t2444 - (t98 * t2444 + t233 * t2443);
             let t2488 = t109 * t2444 - (t97 * t2444 + t234 * t2443);
             let t2489 = t246 * t2488 + (t228 * t2487 + t165 * t2486)
-                + (t214 * t2485 - (t198 * t2484 - t172 * t2483));
+                + (t214 * t2485 - (t198 * t2484 + t172 * t2483));
             let t2490 = t2486 - t166 * t2489;
             let t2491 = t160 * t2488 - (t159 * t2487 - t158 * t2490)
-                - (t212 * t2485 - (t196 * t2484 - t170 * t2483));
+                - (t212 * t2485 - (t196 * t2484 + t170 * t2483));
             let t2492 = t161 * t2491;
             let t2493 = t2487 + t148 * t2492;
             let t2494 = t2488 - t156 * t2492;
-            let t2495 = t2447 * (t2483 - (t149 * t2494 + t133 * t2493))
-                + (t2448 * (t2307 + (t149 * t2323 + t133 * t2322)) - t2482);
+            let t2495 = t2447 * (t2483 + (t149 * t2494 + t133 * t2493))
+                + (t2448 * (t2307 - (t149 * t2323 + t133 * t2322)) - t2482);
             let t2496 = t2456 * (t1127 - (t150 * t1140 - t137 * t1139))
                 + (t992 * t2458 - (t435 - t869 * t2461));
             let t2497 = t2449 * (t2266 + (t150 * t2277 - t137 * t2276))
@@ -15966,11 +15963,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t2522 = t2450 * (t2250 - (t510 * t2259 - (t558 * t2254 - t548 * t2256)));
             let t2523 = t2448 * (t2357 - (t510 * t2366 - (t558 * t2361 - t548 * t2363)));
             let t2524 = t1290 * t2454
-                + (t1180 * t2456 + (t1037 * t2458 + (t780 + t914 * t2461)));
+                + (t1180 * t2456 + (t1037 * t2458 - (t780 - t914 * t2461)));
             let t2525 = t1288 * t2454
-                + (t1178 * t2456 + (t1035 * t2458 + (t778 + t912 * t2461)));
+                + (t1178 * t2456 + (t1035 * t2458 - (t778 - t912 * t2461)));
             let t2526 = t1293 * t2454
-                + (t1183 * t2456 + (t1040 * t2458 + (t786 + t917 * t2461)));
+                + (t1183 * t2456 + (t1040 * t2458 - (t786 - t917 * t2461)));
             let t2527 = t1970 * t2452;
             let t2528 = t2067 * t2450;
             let t2529 = t2182 * t2449;
@@ -15978,9 +15975,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t2531 = t2373 * t2448
                 + (t2183 * t2449 + (t2068 * t2450 - (t1866 + t1971 * t2452)));
             let t2532 = t1496 * t2279;
-            let t2533 = t2532 - (t1507 * t2280 + t2532) - (t2182 - t1453 * t2278);
+            let t2533 = t2532 + (t1507 * t2280 - t2532) - (t2182 - t1453 * t2278);
             let t2534 = t1496 * t2375;
-            let t2535 = t2534 - (t1507 * t2376 + t2534) - (t2372 - t1453 * t2374);
+            let t2535 = t2534 + (t1507 * t2376 - t2534) - (t2372 - t1453 * t2374);
             let t2536 = t2448 * t2535
                 + (t2449 * t2533 - (t2073 * t2450 - (t1878 + t1976 * t2452)));
             let t2537 = t1497 * t2279;
@@ -16032,11 +16029,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t2569 = t2448 * t2558
                 + (t2449 * t2554 - (t2076 * t2450 - (t1882 + t1979 * t2452)));
             let t2570 = t1277 * t2454
-                + (t1167 * t2456 + (t1024 * t2458 - (t761 - t901 * t2461)));
+                + (t1167 * t2456 + (t1024 * t2458 + (t761 + t901 * t2461)));
             let t2571 = t1280 * t2454
                 + (t1170 * t2456 + (t1027 * t2458 - (t764 - t904 * t2461)));
             let t2572 = t1283 * t2454
-                + (t1173 * t2456 + (t1030 * t2458 - (t767 - t907 * t2461)));
+                + (t1173 * t2456 + (t1030 * t2458 + (t767 + t907 * t2461)));
             let t2573 = t892 * t2461;
             let t2574 = t1015 * t2458;
             let t2575 = t1158 * t2456;
@@ -16047,9 +16044,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t2580 = t2579
                 + (t2578 - (t2577 - (t2576 + (t2575 + (t2574 + (t750 + t2573))))));
             let t2581 = t2579
-                + (t2578 - (t2577 - (t2576 + (t2575 + (t2574 - (t751 - t2573))))));
+                + (t2578 - (t2577 - (t2576 + (t2575 + (t2574 + (t751 + t2573))))));
             let t2582 = t1269 * t2454
-                + (t1159 * t2456 + (t1016 * t2458 + (t752 + t893 * t2461)));
+                + (t1159 * t2456 + (t1016 * t2458 - (t752 - t893 * t2461)));
             (
                 t2443,
                 t2447,
@@ -16118,13 +16115,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             )
         };
         *out = [
-            t2306 * t2448 + (t2175 * t2449 - t2462) - t2447 * t2464,
+            t2447 * t2464 - (t2306 * t2448 + (t2175 * t2449 - t2462)),
             t2309 * t2448 + (t2177 * t2449 - t2465) - t2447 * t2467,
             t2312 * t2448 + (t2179 * t2449 - t2468) - t2447 * t2470,
             t2443 * t2447 - (t2303 * t2448 + (t2172 * t2449 - t2471)),
             t2479,
             t2480,
-            -t2495,
+            t2495,
             -t2498,
             -t2501,
             -t2503,
@@ -16585,12 +16582,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t107 = t36 * t79;
             let t108 = t36 * t83;
             let t109 = t34 - t35;
-            let t110 = k(1.4142135623730951) * -t109;
+            let t110 = k(1.4142135623730951) * t109;
             let t111 = closing0 * t110;
             let t112 = k(1.2792042981336627) * t35
                 + (k(1.2792042981336627) * t34 + k(0.8528028654224418) * t33);
             let t113 = closing1 * t112;
-            let t114 = t113 + (t111 - (k(0.5) * shaft_dsy - (t108 + t107)));
+            let t114 = t113 - (t111 + (k(0.5) * shaft_dsy - (t108 + t107)));
             let t115 = slide_e0 * slide_e0;
             let t116 = k(0.5) - (t115 + slide_e2 * slide_e2);
             let t117 = k(0.2) * t116;
@@ -16919,17 +16916,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t202 = k(0.0003) * (t201 - t200) + shaft_wx * (t199 + t198)
                 + (t83 * t197 + (t162 + t79 * t197));
             let t203 = k(0.1) * t127;
-            let t204 = k(0.1) * -t109;
+            let t204 = k(0.1) * t109;
             let t205 = k(0.1) * t85;
             let t206 = t76 * (k(1.4142135623730951) * (t58 - t59)) + t86 * t205
-                + (t55 * (k(1.4142135623730951) * -(t34 + t35)) + t110 * t204);
+                - (t55 * (k(1.4142135623730951) * (t34 + t35)) - t110 * t204);
             let t207 = closing0
                 * (t206 + (t29 * (k(1.4142135623730951) * (t5 + t7)) + t128 * t203));
             let t208 = t207
                 - (k(0.001) * shaft_dwx + k(0.0002) * shaft_dwy - k(0.0001) * shaft_dwz
                     - t202);
             let t209 = t76 * (k(1.2792042981336627) * t85) + t88 * t205
-                + (t55 * (k(1.2792042981336627) * -t109) + t112 * t204);
+                - (t55 * (k(1.2792042981336627) * t109) + t112 * t204);
             let t210 = closing1
                 * (t209 + (t29 * (k(1.2792042981336627) * t127) - t130 * t203)) + t208;
             let t211 = t22 * t12 - (t47 * t40 + t69 * t62);
@@ -16978,7 +16975,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t246 = k(0.4) * t59;
             let t247 = t246 - t245;
             let t248 = t76 * (k(1.4142135623730951) * t57);
-            let t249 = t248 - t86 * t247 - (t244 + t110 * t243) - (t240 - t128 * t239);
+            let t249 = t248 - t86 * t247 - (t244 - t110 * t243) - (t240 - t128 * t239);
             let t250 = k(1.2792042981336627) * t2;
             let t251 = k(1.2792042981336627) * t33;
             let t252 = k(1.2792042981336627) * t57;
@@ -17010,7 +17007,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t271 = t270 + t241;
             let t272 = k(0.4) * t58;
             let t273 = t272 + t245;
-            let t274 = t248 - t86 * t273 - (t244 - t110 * t271) - (t240 + t128 * t269);
+            let t274 = t248 - t86 * t273 - (t244 + t110 * t271) - (t240 + t128 * t269);
             let t275 = t76 * (t252 - k(0.8528028654224418) * t58) + t88 * t273
                 - (t55 * (t251 - k(0.8528028654224418) * t34) + t112 * t271);
             let t276 = closing1
@@ -17025,7 +17022,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t282 = t119 + t122;
             let t283 = t138 + t139;
             let t284 = k(0.2) * t283 * t132
-                - (k(0.2) * -t282 * t114 + k(0.2) * t281 * t90);
+                + (k(0.2) * t282 * t114 - k(0.2) * t281 * t90);
             let t285 = k(0.2) * t102;
             let t286 = k(0.2) * t122;
             let t287 = k(0.2) * t139;
@@ -17042,18 +17039,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t297 = k(0.6666666666666666) * (t296 + t295)
                 - k(0.3333333333333333) * t294;
             let t298 = k(0.6666666666666666) * (t297 + t293);
-            let t299 = k(0.8888888888888888) * t281 + k(0.4444444444444444) * -t282
+            let t299 = k(0.8888888888888888) * t281 - k(0.4444444444444444) * t282
                 - k(0.8888888888888888) * t283;
             let t300 = k(0.6666666666666666)
-                * (k(0.8888888888888888) * -(t281 + t282)
-                    - k(0.4444444444444444) * t283);
-            let t301 = t300 - k(0.3333333333333333) * t293;
+                * (k(0.8888888888888888) * (t281 + t282) + k(0.4444444444444444) * t283);
+            let t301 = t300 + k(0.3333333333333333) * t293;
             let t302 = k(0.6666666666666666) * t296 - k(0.3333333333333333) * t295
                 + k(0.6666666666666666) * t294;
-            let t303 = k(0.3333333333333333) * t297 + t300;
+            let t303 = k(0.3333333333333333) * t297 - t300;
             let t304 = k(0.6666666666666666) * t292 - k(0.3333333333333333) * t291
                 + k(0.6666666666666666) * t290;
-            let t305 = k(1.0) / (t304 * t303 + (t302 * t301 + t299 * t298));
+            let t305 = k(1.0) / (t304 * t303 - (t302 * t301 - t299 * t298));
             let t306 = t145 * t21 - (t143 * t46 + t144 * t68);
             let t307 = t103 * (t285 + k(0.8) * t96) + t123 * (t286 - k(0.8) * t118);
             let t308 = k(0.5)
@@ -17065,15 +17061,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t311 = t118 + t122;
             let t312 = t96 - t102;
             let t313 = t189
-                * (k(0.8888888888888888) * -t312 + k(0.4444444444444444) * t311
-                    - k(0.8888888888888888) * t310)
-                - t188
+                * (k(0.8888888888888888) * t312 - k(0.4444444444444444) * t311
+                    + k(0.8888888888888888) * t310)
+                + t188
                     * (k(0.8888888888888888) * (t312 + t311)
                         - k(0.4444444444444444) * t310);
-            let t314 = k(0.2) * (t118 - t122) * t114 + k(0.2) * -(t96 + t102) * t90;
+            let t314 = k(0.2) * (t118 - t122) * t114 - k(0.2) * (t96 + t102) * t90;
             let t315 = k(0.2) * (t137 + t139) * t132 - t314
                 - (t146 * t279 - (t147 * t263 - t306 * t230));
-            let t316 = t288 + (t315 - (closing8 * (t191 * t313) + t309));
+            let t316 = t288 + (t315 + (closing8 * (t191 * t313) - t309));
             let t317 = t151 * t21 - (t149 * t46 - t150 * t68);
             let t318 = t103 * (k(0.4) * t96 + k(0.2) * t99)
                 - t123 * (k(0.4) * t118 + k(0.2) * t119);
@@ -17090,14 +17086,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 + t188
                     * (k(0.6666666666666666) * (t323 + t322)
                         + k(0.3333333333333333) * t321);
-            let t325 = k(0.2) * -(t96 + t99);
+            let t325 = k(0.2) * (t96 + t99);
             let t326 = k(0.2) * (t118 + t119);
             let t327 = k(0.2) * (t137 - t138);
-            let t328 = t327 * t132 - (t326 * t114 + t325 * t90)
+            let t328 = t327 * t132 - (t326 * t114 - t325 * t90)
                 - (t153 * t279 - (t152 * t263 - t317 * t230));
-            let t329 = t327 * t142 + (t326 * t125 + t325 * t106)
+            let t329 = t327 * t142 + (t326 * t125 - t325 * t106)
                 + (t328 - (closing8 * (t191 * t324) + t320));
-            let t330 = t303 * t305 * t329 + (t301 * t305 * t316 - t298 * t305 * t289);
+            let t330 = t303 * t305 * t329 - (t301 * t305 * t316 + t298 * t305 * t289);
             let t331 = k(0.6666666666666666) * t299;
             let t332 = t305 * (t331 + k(0.3333333333333333) * t304) * t316
                 + t305 * (k(0.6666666666666666) * (t302 + t304)) * t289;
@@ -17480,7 +17476,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t515 = (k(0.1) * t433 - k(0.2) * t406) * t382
                 + (k(0.1) * t435 + k(0.2) * t402) * t370;
             let t516 = (k(0.1) * t437 + k(0.2) * t410) * t392 + t515 - t514 + t511;
-            let t517 = k(0.2) * (t406 - t433) * t383 + k(0.2) * -(t402 + t435) * t371;
+            let t517 = k(0.2) * (t406 - t433) * t383 - k(0.2) * (t402 + t435) * t371;
             let t518 = k(0.2) * (t410 + t437) * t393 + t517 + t516;
             let t519 = k(0.4472135954999579) * t421 - k(0.8944271909999159) * t412;
             let t520 = k(0.4472135954999579) * t427 - k(0.8944271909999159) * t426;
@@ -17498,7 +17494,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t526 = k(0.1) * t419 * t392
                 + (k(0.1) * t413 * t382 - k(0.1) * t415 * t370);
             let t527 = t505 + (t526 + t525 - t523);
-            let t528 = slide_rx - (nut_rx - k(0.2) * (t435 - t402));
+            let t528 = slide_rx - (nut_rx + k(0.2) * (t402 - t435));
             let t529 = slide_ry - (nut_ry - k(0.2) * (t406 + t433));
             let t530 = slide_rz - (nut_rz - k(0.2) * (t410 - t437));
             let t531 = t342 * t530 - (t348 * t529 + t354 * t528);
@@ -17527,11 +17523,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t550 = k(0.7071067811865476)
                 * (t549 - k(0.6666666666666666) * t350
                     + (t548 + k(0.6666666666666666) * t344));
-            let t551 = k(0.31426968052735443) * -(t538 + t537)
-                - k(0.15713484026367722) * (t338 + t135);
+            let t551 = k(0.31426968052735443) * (t538 + t537)
+                + k(0.15713484026367722) * (t338 + t135);
             let t552 = k(0.7071067811865476) * (t546 + t544);
             let t553 = k(0.3333333333333333) * t539;
-            let t554 = t553 * t547 - t552 * t551;
+            let t554 = t553 * t547 + t552 * t551;
             let t555 = k(0.6666666666666666) * t116;
             let t556 = k(0.6666666666666666) * t93;
             let t557 = k(0.7071067811865476) * (t549 - t556 + (t548 + t555));
@@ -17540,12 +17536,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t560 = k(0.6666666666666666) * (t559 - t558)
                 + k(0.3333333333333333) * (t542 - t396);
             let t561 = k(0.7071067811865476) * (t559 + t558);
-            let t562 = t561 * t551 - t553 * t560;
+            let t562 = t561 * t551 + t553 * t560;
             let t563 = t552 * t560 - t561 * t547;
-            let t564 = k(1.0) / (t540 * t563 + (t550 * t562 + t557 * t554));
+            let t564 = k(1.0) / (t540 * t563 - (t550 * t562 - t557 * t554));
             let t565 = k(1.8856180831641267) * t341
                 - k(0.4714045207910317) * (t353 - t347)
-                + (t541 + k(0.4714045207910317) * -(t350 + t344));
+                + (t541 - k(0.4714045207910317) * (t350 + t344));
             let t566 = k(0.005) * slide_dwy
                 - (k(0.001) * (slide_wx * slide_wz) + (t510 + t395 * (k(0.1) * t565)));
             let t567 = t430 * (k(0.4472135954999579) * t425)
@@ -17555,11 +17551,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 + (t354 * t568 - t351 * t531) * t371;
             let t570 = (t342 * t568 - t339 * t531) * t393 - t569
                 + (t439 * t527 - (t421 * t518 - t412 * t506));
-            let t571 = k(0.2) * (t344 - t347) * t384 + k(0.2) * -(t350 + t353) * t372;
+            let t571 = k(0.2) * (t344 - t347) * t384 - k(0.2) * (t350 + t353) * t372;
             let t572 = k(0.2) * (t338 + t341) * t394 + t571
                 - (t570 + (closing7 * (self.gear_ratio * (t432 * t567)) - t566));
-            let t573 = t564 * (t560 * t540 - t551 * t557) * t572
-                - t564 * (t551 * t550 - t547 * t540) * t536;
+            let t573 = t564 * (t560 * t540 + t551 * t557) * t572
+                + t564 * (t551 * t550 + t547 * t540) * t536;
             let t574 = t103 * (k(0.2) * t350) - t123 * (k(0.2) * t344)
                 - t140 * (k(0.2) * t338);
             let t575 = closing6 * (k(0.5) * (t104 * (k(2.0) * t574)))
@@ -17576,7 +17572,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 - (t578 + (closing7 * (self.gear_ratio * (t432 * t576)) - t575));
             let t580 = t564 * (t553 * t557 - t561 * t540) * t572
                 - t564 * (t552 * t540 - t553 * t550) * t536;
-            let t581 = t563 * t564 * t579 - (t562 * t564 * t572 - t554 * t564 * t536);
+            let t581 = t563 * t564 * t579 + (t562 * t564 * t572 + t554 * t564 * t536);
             let t582 = (k(1.7888543819998317) * t116 - k(0.8944271909999159) * t344)
                 * t383
                 - (k(1.7888543819998317) * t93 - k(0.8944271909999159) * t350) * t371;
@@ -17729,7 +17725,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t636 = puck_e2 * puck_e3;
             let t637 = t636 - t635;
             let t638 = k(0.5) - (t458 + puck_e2 * puck_e2);
-            let t639 = k(1.0) - (puck_ry + k(0.2) * (t637 - t638));
+            let t639 = k(1.0) - (puck_ry - k(0.2) * (t638 - t637));
             let t640 = k(0.5) - (t458 + puck_e3 * puck_e3);
             let t641 = t636 + t635;
             let t642 = k(1.0) - (puck_rz + k(0.2) * (t641 - t640));
@@ -17750,7 +17746,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t657 = k(30.0) * (k(0.6) - t643) + (t656 + (t651 + t646));
             let t658 = t645 * t657;
             let t659 = t369 + (t364 + (self.puck_mass * puck_dsx + t658)) + t626;
-            let t660 = t113 + (t111 + (k(0.4) * sleeve_dsy + (t108 + (k(0.1) + t107))));
+            let t660 = t113 - (t111 - (k(0.4) * sleeve_dsy + (t108 + (k(0.1) + t107))));
             let t661 = t650 * t657;
             let t662 = t381 - (t376 - (self.puck_mass * puck_dsy + t661)) + t660;
             let t663 = t131
@@ -17777,10 +17773,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t675 = k(0.004) * sleeve_dwx
                 + (k(0.002) * (sleeve_wy * sleeve_wz) - (t83 * t673 + t674));
             let t676 = k(0.1) * (t15 - t18);
-            let t677 = k(0.1) * (t43 - t41);
+            let t677 = k(0.1) * (t41 - t43);
             let t678 = k(0.1) * (t63 + t65);
             let t679 = closing0 * (t86 * t678 + t110 * t677 + t128 * t676) - t675;
-            let t680 = closing1 * (t88 * t678 + t112 * t677 - t130 * t676) + t679;
+            let t680 = closing1 * (t88 * t678 - t112 * t677 - t130 * t676) + t679;
             let t681 = closing3
                 * (k(0.128564869306645) * t226 - k(0.19284730395996752) * t220
                     - k(0.19284730395996752) * t221)
@@ -17808,7 +17804,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t698 = k(0.1) * t61;
             let t699 = k(0.2) * t65;
             let t700 = t699 - t698;
-            let t701 = closing0 * (t86 * t700 + t110 * t697 - t128 * t694)
+            let t701 = closing0 * (t86 * t700 - t110 * t697 - t128 * t694)
                 + (k(0.003) * sleeve_dwy - (k(0.001) * (sleeve_wx * sleeve_wz) - t691));
             let t702 = closing1 * (t88 * t700 + t112 * t697 + t130 * t694) + t701;
             let t703 = k(0.30151134457776363) * t215;
@@ -17837,7 +17833,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t718 = t695 + t670;
             let t719 = k(0.2) * t63;
             let t720 = t698 + t719;
-            let t721 = closing0 * (t86 * t720 - t110 * t718 - t128 * t717)
+            let t721 = closing0 * (t86 * t720 + t110 * t718 - t128 * t717)
                 - (k(0.005) * sleeve_dwz - t715);
             let t722 = closing1 * (t88 * t720 - t112 * t718 + t130 * t717) + t721;
             let t723 = t703 - k(0.9045340337332909) * t216;
@@ -17868,21 +17864,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t741 = t448 - t641;
             let t742 = t459 + t630;
             let t743 = k(0.19245008972987526)
-                * (k(0.014527121121346966) * -t742
-                    - k(0.3777051491550211) * (t454 + t638)
-                    + k(0.07263560560673482) * t741);
-            let t744 = t743 - k(0.9622504486493763) * t740;
+                * (k(0.014527121121346966) * t742 + k(0.3777051491550211) * (t454 + t638)
+                    - k(0.07263560560673482) * t741);
+            let t744 = t743 + k(0.9622504486493763) * t740;
             let t745 = t735 + k(1.9245008972987525) * t641;
             let t746 = t738 - k(1.9245008972987525) * t630;
             let t747 = k(0.9805806756909201) * t746 + k(0.19611613513818404) * t745;
             let t748 = k(0.03774256780481986) * t746
                 - k(0.9813067629253163) * (t737 + k(1.9245008972987525) * t638)
                 - k(0.1887128390240993) * t745;
-            let t749 = k(0.9622504486493763) * t748 + t743;
+            let t749 = k(0.9622504486493763) * t748 - t743;
             let t750 = k(0.9805806756909201) * t739 + k(0.19611613513818404) * t736;
             let t751 = k(0.19245008972987526) * (t748 + t740);
-            let t752 = k(0.3774256780481986) * -t742 - k(0.07548513560963972) * t741;
-            let t753 = k(1.0) / (t752 * t751 - (t750 * t749 + t747 * t744));
+            let t752 = k(0.3774256780481986) * t742 + k(0.07548513560963972) * t741;
+            let t753 = k(1.0) / (t752 * t751 + (t750 * t749 - t747 * t744));
             let t754 = k(0.1) * (t652 * t664 + (t647 * t661 - t628 * t658));
             let t755 = k(0.2) * t640;
             let t756 = k(0.2) * t637;
@@ -17907,10 +17902,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t769 = k(0.4) * t448 * t663
                 - (k(0.4) * t454 * t660 - k(0.4) * t459 * t626);
             let t770 = t769 - t768 + t766;
-            let t771 = t751 * t753 * t770 - (t749 * t753 * t763 + t744 * t753 * t734);
+            let t771 = t751 * t753 * t770 - (t749 * t753 * t763 - t744 * t753 * t734);
             let t772 = k(0.19245008972987526) * t752;
-            let t773 = t753 * (k(0.9622504486493763) * t747 + t772) * t763
-                + t753 * (t772 - k(0.9622504486493763) * t750) * t734;
+            let t773 = t753 * (k(0.9622504486493763) * t747 - t772) * t763
+                - t753 * (t772 + k(0.9622504486493763) * t750) * t734;
             (
                 t607,
                 t609,
@@ -17969,8 +17964,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t623 * (t500 * t470) * t496 - t625,
             t622 * t623 * t496,
             k(0.9622504486493763) * t665 - k(0.19245008972987526) * (t662 + t659),
-            -t771,
-            t773 - t753 * (k(0.19245008972987526) * (t747 + t750)) * t770,
+            t771,
+            t753 * (k(0.19245008972987526) * (t747 + t750)) * t770 - t773,
             t626,
             t660,
             -t663,
@@ -18387,12 +18382,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for AllJoints<T> {
             let t133 = k(1.5) * carrier_dsx
                 + closing6 * (k(0.5) * (t132 * (k(2.0) * t131))) - t119;
             let t134 = t44 - t48;
-            let t135 = k(1.4142135623730951) * -t134;
+            let t135 = k(1.4142135623730951) * t134;
             let t136 = closing0 * t135
-                - (k(0.5) * shaft_dsy - (t78 * t114 + t78 * t111));
+                + (k(0.5) * shaft_dsy - (t78 * t114 + t78 * t111));
             let t137 = k(1.2792042981336627) * t48
                 + (k(1.2792042981336627) * t44 + k(0.8528028654224418) * t42);
-            let t138 = closing1 * t137 + t136;
+            let t138 = closing1 * t137 - t136;
             let t139 = slide_e0 * slide_e0;
             let t140 = k(0.5) - (t139 + slide_e2 * slide_e2);
             let t141 = t126 + t125;
@@ -18624,17 +18619,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for AllJoints<T> {
             let t220 = k(0.0003) * (t219 - t218) + shaft_wx * (t217 + t216)
                 + (t114 * t215 + (t180 + t111 * t215));
             let t221 = k(0.1) * t149;
-            let t222 = k(0.1) * -t134;
+            let t222 = k(0.1) * t134;
             let t223 = k(0.1) * t115;
             let t224 = t108 * (k(1.4142135623730951) * (t34 - t39)) + t116 * t223
-                + (t93 * (k(1.4142135623730951) * -(t44 + t48)) + t135 * t222);
+                - (t93 * (k(1.4142135623730951) * (t44 + t48)) - t135 * t222);
             let t225 = closing0
                 * (t224 + (t76 * (k(1.4142135623730951) * (t53 + t55)) + t150 * t221));
             let t226 = t225
                 - (k(0.001) * shaft_dwx + k(0.0002) * shaft_dwy - k(0.0001) * shaft_dwz
                     - t220);
             let t227 = t108 * (k(1.2792042981336627) * t115) + t118 * t223
-                + (t93 * (k(1.2792042981336627) * -t134) + t137 * t222);
+                - (t93 * (k(1.2792042981336627) * t134) + t137 * t222);
             let t228 = closing1
                 * (t227 + (t76 * (k(1.2792042981336627) * t149) - t152 * t221)) + t226;
             let t229 = t54 * t66 + (t35 * t99 + t45 * t84);
@@ -18683,7 +18678,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for AllJoints<T> {
             let t264 = k(0.4) * t39;
             let t265 = t264 - t263;
             let t266 = t108 * (k(1.4142135623730951) * t28);
-            let t267 = t266 - t116 * t265 - (t262 + t135 * t261) - (t258 - t150 * t257);
+            let t267 = t266 - t116 * t265 - (t262 - t135 * t261) - (t258 - t150 * t257);
             let t268 = k(1.2792042981336627) * t51;
             let t269 = k(1.2792042981336627) * t42;
             let t270 = k(1.2792042981336627) * t28;
@@ -18715,7 +18710,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for AllJoints<T> {
             let t289 = t288 + t259;
             let t290 = k(0.4) * t34;
             let t291 = t290 + t263;
-            let t292 = t266 - t116 * t291 - (t262 - t135 * t289) - (t258 + t150 * t287);
+            let t292 = t266 - t116 * t291 - (t262 + t135 * t289) - (t258 + t150 * t287);
             let t293 = t108 * (t270 - k(0.8528028654224418) * t34) + t118 * t291
                 - (t93 * (t269 - k(0.8528028654224418) * t44) + t137 * t289);
             let t294 = closing1
@@ -18730,7 +18725,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for AllJoints<T> {
             let t300 = t142 + t145;
             let t301 = t158 + t159;
             let t302 = k(0.2) * t301 * t153
-                - (k(0.2) * -t300 * t138 + k(0.2) * t299 * t119);
+                + (k(0.2) * t300 * t138 - k(0.2) * t299 * t119);
             let t303 = k(0.2) * t130;
             let t304 = k(0.2) * t145;
             let t305 = k(0.2) * t159;
@@ -18747,18 +18742,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for AllJoints<T> {
             let t315 = k(0.6666666666666666) * (t314 + t313)
                 - k(0.3333333333333333) * t312;
             let t316 = k(0.6666666666666666) * (t315 + t311);
-            let t317 = k(0.8888888888888888) * t299 + k(0.4444444444444444) * -t300
+            let t317 = k(0.8888888888888888) * t299 - k(0.4444444444444444) * t300
                 - k(0.8888888888888888) * t301;
-            let t318 = k(0.8888888888888888) * -(t299 + t300)
-                - k(0.4444444444444444) * t301;
+            let t318 = k(0.8888888888888888) * (t299 + t300)
+                + k(0.4444444444444444) * t301;
             let t319 = k(0.6666666666666666) * t318;
-            let t320 = t319 - k(0.3333333333333333) * t311;
+            let t320 = t319 + k(0.3333333333333333) * t311;
             let t321 = k(0.6666666666666666) * t314 - k(0.3333333333333333) * t313
                 + k(0.6666666666666666) * t312;
-            let t322 = k(0.3333333333333333) * t315 + t319;
+            let t322 = k(0.3333333333333333) * t315 - t319;
             let t323 = k(0.6666666666666666) * t310 - k(0.3333333333333333) * t309
                 + k(0.6666666666666666) * t308;
-            let t324 = k(1.0) / (t323 * t322 + (t321 * t320 + t317 * t316));
+            let t324 = k(1.0) / (t323 * t322 - (t321 * t320 - t317 * t316));
             let t325 = t166 * t52 - (t164 * t43 + t165 * t29);
             let t326 = t131 * (t303 + k(0.8) * t124) + t146 * (t304 - k(0.8) * t141);
             let t327 = k(0.5)
@@ -18770,15 +18765,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for AllJoints<T> {
             let t330 = t141 + t145;
             let t331 = t124 - t130;
             let t332 = t207
-                * (k(0.8888888888888888) * -t331 + k(0.4444444444444444) * t330
-                    - k(0.8888888888888888) * t329)
-                - t206
+                * (k(0.8888888888888888) * t331 - k(0.4444444444444444) * t330
+                    + k(0.8888888888888888) * t329)
+                + t206
                     * (k(0.8888888888888888) * (t331 + t330)
                         - k(0.4444444444444444) * t329);
-            let t333 = k(0.2) * (t141 - t145) * t138 + k(0.2) * -(t124 + t130) * t119;
+            let t333 = k(0.2) * (t141 - t145) * t138 - k(0.2) * (t124 + t130) * t119;
             let t334 = k(0.2) * (t157 + t159) * t153 - t333
                 - (t167 * t297 - (t168 * t281 - t325 * t248));
-            let t335 = t306 + (t334 - (closing8 * (t209 * t332) + t328));
+            let t335 = t306 + (t334 + (closing8 * (t209 * t332) - t328));
             let t336 = t171 * t52 - (t169 * t43 - t170 * t29);
             let t337 = t131 * (k(0.4) * t124 + k(0.2) * t127)
                 - t146 * (k(0.4) * t141 + k(0.2) * t142);
@@ -18795,30 +18790,30 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for AllJoints<T> {
                 + t206
                     * (k(0.6666666666666666) * (t342 + t341)
                         + k(0.3333333333333333) * t340);
-            let t344 = k(0.2) * -(t124 + t127);
+            let t344 = k(0.2) * (t124 + t127);
             let t345 = k(0.2) * (t141 + t142);
             let t346 = k(0.2) * (t157 - t158);
-            let t347 = t346 * t153 - (t345 * t138 + t344 * t119)
+            let t347 = t346 * t153 - (t345 * t138 - t344 * t119)
                 - (t173 * t297 - (t172 * t281 - t336 * t248));
-            let t348 = t346 * t162 + (t345 * t147 + t344 * t133);
+            let t348 = t346 * t162 + (t345 * t147 - t344 * t133);
             let t349 = t348 + (t347 - (closing8 * (t209 * t343) + t339));
-            let t350 = t322 * t324 * t349 + (t320 * t324 * t335 - t316 * t324 * t307);
+            let t350 = t322 * t324 * t349 - (t320 * t324 * t335 + t316 * t324 * t307);
             let t351 = k(0.6666666666666666) * t317;
             let t352 = t324 * (t351 + k(0.3333333333333333) * t323) * t335
                 + t324 * (k(0.6666666666666666) * (t321 + t323)) * t307;
             let t353 = t324 * (k(0.3333333333333333) * t321 - t351) * t349 - t352;
-            let t354 = t318 * t353 + (t306 + t317 * t350);
+            let t354 = t318 * t353 - (t306 + t317 * t350);
             let t355 = t315 * t353 + (t306 - t321 * t350);
             let t356 = t311 * t353 + (t348 - t323 * t350);
             let t357 = carrier_ry - (carrier_ry - k(0.2) * (t141 - t142));
             let t358 = carrier_rz - (carrier_rz - k(0.2) * (t157 + t158));
             let t359 = t147 * t358 - t162 * t357
-                - (t170 * t356 - (t165 * t355 + t181 * t354));
-            let t360 = carrier_rx - (carrier_rx - k(0.2) * (t127 - t124));
+                - (t170 * t356 - (t165 * t355 - t181 * t354));
+            let t360 = carrier_rx - (carrier_rx + k(0.2) * (t124 - t127));
             let t361 = t162 * t360 - t133 * t358
-                - (t169 * t356 + (t164 * t355 + t182 * t354));
+                - (t169 * t356 + (t164 * t355 - t182 * t354));
             let t362 = t133 * t357 - t147 * t360
-                + (t171 * t356 + (t166 * t355 - t183 * t354));
+                + (t171 * t356 + (t166 * t355 + t183 * t354));
             let t363 = k(0.6666666666666666) * t362;
             let t364 = puck_wx * (k(0.004) * puck_wx) + puck_wy * (k(0.005) * puck_wy)
                 + puck_wz * (k(0.003) * puck_wz);
@@ -18870,7 +18865,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for AllJoints<T> {
             let t382 = t381 - t380;
             let t383 = k(1.2) - (puck_rx + k(0.2) * (t382 + t2));
             let t384 = k(0.5) - (t6 + puck_e2 * puck_e2);
-            let t385 = k(1.0) - (puck_ry + k(0.2) * (t5 - t384));
+            let t385 = k(1.0) - (puck_ry - k(0.2) * (t384 - t5));
             let t386 = t4 + t3;
             let t387 = k(1.0) - (puck_rz + k(0.2) * (t386 - t7));
             let t388 = (t387 * t387 + (t385 * t385 + t383 * t383)).sqrt();

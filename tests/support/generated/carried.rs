@@ -2569,7 +2569,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Carried<T> {
             let t150 = t10 + (t3 + t11);
             let t151 = t9 + t3;
             let t152 = k(0.2) * (arm_e0 - arm_e1);
-            let t153 = t139 * t136 - t101 * t152 - (t145 * t126 + t151 * t104);
+            let t153 = t139 * t136 - t152 * t101 - (t145 * t126 + t151 * t104);
             let t154 = k(0.1) * slider_e1;
             let t155 = k(0.4) * slider_e0 - t154;
             let t156 = k(0.2) * (slider_e0 + slider_e1);
@@ -2597,7 +2597,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Carried<T> {
             let t175 = k(1.4907119849998598) * arm_e2;
             let t176 = (t175 - (t174 + k(2.3851391759997758) * arm_e0)) * t136
                 - t128 * t168
-                - (t126 * (t173 - k(1.1925695879998879) * t6) - t122 * t169);
+                - ((t173 - k(1.1925695879998879) * t6) * t126 - t122 * t169);
             let t177 = t176
                 + ((k(2.9814239699997196) * arm_e0 + (t172 + t171)) * t119
                     + t112 * t170);
@@ -2612,7 +2612,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Carried<T> {
                 + ((t181 - k(1.1925695879998879) * t8) * t126 - t146 * t169);
             let t185 = (k(2.9814239699997196) * arm_e3
                 + (t180 - k(1.1925695879998879) * arm_e1)) * t119 + t150 * t170;
-            let t186 = (t173 - t178) * t136 + t168 * t152
+            let t186 = (t173 - t178) * t136 + t152 * t168
                 - ((t183 - t175) * t126 + t151 * t169);
             let t187 = k(2.0) * t118;
             let t188 = t187 * t16;
@@ -3245,7 +3245,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Carried<T> {
         let t82 = k(0.5) - (t81 + slider_e3 * slider_e3);
         let t83 = slider_rz + (k(0.2) * t82 + k(0.1) * t80)
             - (arm_rz - (t22 - (k(0.2) * t26 + k(0.4) * t24)));
-        let t84 = k(0.2) * -(t19 + t14);
+        let t84 = k(0.2) * (t19 + t14);
         let t85 = k(0.5) - (t81 + slider_e2 * slider_e2);
         let t86 = t79 - t78;
         let t87 = slider_ry - (k(0.2) * t86 + k(0.1) * t85)
@@ -3260,7 +3260,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Carried<T> {
         let t95 = slider_rx - (k(0.2) * t94 - k(0.1) * t91)
             - (arm_rx + (t3 + (k(0.2) * t10 - k(0.4) * t6)));
         let t96 = t95 * (k(1.7888543819998317) * t2) + t74 * t88
-            + (t87 * (k(1.7888543819998317) * t14) - t75 * t84);
+            + (t87 * (k(1.7888543819998317) * t14) + t75 * t84);
         let t97 = t25 + t23;
         let t98 = t18 - t16;
         let t99 = t7 + t4;
@@ -3297,7 +3297,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Carried<T> {
         let t121 = t95 * (k(0.5962847939999439) * t2 - k(1.4907119849998598) * t10)
             + t118 * t88
             + (t87 * (k(0.5962847939999439) * t14 + k(1.4907119849998598) * t19)
-                + t119 * t84);
+                - t119 * t84);
         let t122 = t121
             - (t83 * (k(0.5962847939999439) * t21 + k(1.4907119849998598) * t26)
                 + t120 * t77);
@@ -9384,10 +9384,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Carried<T> {
                 - t122;
             let t126 = k(0.5962847939999439) * t94;
             let t127 = t97 + t126 + k(0.14907119849998599) * t94;
-            let t128 = k(0.3333333333333333) * t109
-                + k(0.6666666666666666) * (t116 - t113);
-            let t129 = k(0.3333333333333333) * t121
-                + k(0.6666666666666666) * (t124 - t123);
+            let t128 = k(0.6666666666666666) * (t116 - t113)
+                + k(0.3333333333333333) * t109;
+            let t129 = k(0.6666666666666666) * (t124 - t123)
+                + k(0.3333333333333333) * t121;
             let t130 = t95 - (t126 - k(0.3333333333333333) * t96);
             let t131 = t110
                 + (k(0.6666666666666666) * t113 + k(0.3333333333333333) * t116);
@@ -9858,7 +9858,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Carried<T> {
         };
         *out = [
             t125 * t120 + (t117 * t101 - t98 * t91),
-            -(t120 * t129 + (t101 * t128 + t127 * t91)),
+            -(t129 * t120 + (t128 * t101 + t127 * t91)),
             t132 * t120 + (t131 * t101 + t130 * t91),
             -(t125 * t269 + (t117 * t268 - t98 * t266)),
             t129 * t269 + (t128 * t268 + t127 * t266),

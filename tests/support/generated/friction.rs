@@ -1398,14 +1398,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Friction<T> {
         let t0 = k(2.0) * disc_e3;
         let t1 = disc_e0 * t0;
         let t2 = k(0.01) * (disc_wy * disc_wz + disc_dwx);
-        let t3 = k(0.01) * (disc_wx * disc_wz - disc_dwy);
-        let t4 = k(1.0) - disc_e3 * t0;
+        let t3 = k(1.0) - disc_e3 * t0;
+        let t4 = k(0.01) * (disc_wx * disc_wz - disc_dwy);
         *lambda = [
             -(k(4.0) * disc_dsx),
             -(k(4.0) * disc_dsy),
             -(k(4.0) * disc_dsz),
             t4 * t3 - t2 * t1,
-            t1 * t3 + t2 * t4,
+            t4 * t1 + t2 * t3,
             -ball_dsx,
             -ball_dsy,
             -ball_dsz,

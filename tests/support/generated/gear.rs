@@ -954,7 +954,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gear<T> {
         let t9 = k(2.0) * (pinion_e1 * pinion_e3 + pinion_e0 * pinion_e2) * t5
             + t2 * (k(2.0) * (pinion_e2 * pinion_e3 - pinion_e0 * pinion_e1));
         let t10 = closing0 * (k(2.5) * (t9 / (t5 * t5 + t2 * t2)));
-        let t11 = t10 - k(0.01) * (pinion_wx * pinion_wz - pinion_dwy);
+        let t11 = k(0.01) * (pinion_wx * pinion_wz - pinion_dwy) - t10;
         let t12 = wheel_e0 * wheel_e0;
         let t13 = k(2.0) * (k(0.5) - (t12 + wheel_e3 * wheel_e3));
         let t14 = k(2.0) * (k(0.5) - (t12 + wheel_e2 * wheel_e2));
@@ -966,19 +966,19 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gear<T> {
         let t20 = k(0.025) * (wheel_wx * wheel_wz + wheel_dwy);
         let t21 = k(2.0) * (wheel_e1 * wheel_e2 + wheel_e0 * wheel_e3) * t17
             + t14 * (k(2.0) * (wheel_e1 * wheel_e3 - wheel_e0 * wheel_e2));
-        let t22 = closing0 * (t21 / (t17 * t17 + t14 * t14))
-            - k(0.025) * (wheel_wx * wheel_wy - wheel_dwz);
+        let t22 = k(0.025) * (wheel_wx * wheel_wy - wheel_dwz)
+            - closing0 * (t21 / (t17 * t17 + t14 * t14));
         *lambda = [
             -(k(2.0) * pinion_dsx),
             -(k(2.0) * pinion_dsy),
             -(k(2.0) * pinion_dsz),
-            t8 * (t5 * t7) - t1 * t7 * t11,
-            t8 * (t2 * t7) - t6 * t7 * t11,
+            t1 * t7 * t11 + t8 * (t5 * t7),
+            t6 * t7 * t11 + t8 * (t2 * t7),
             -(k(4.0) * wheel_dsx),
             -(k(4.0) * wheel_dsy),
             -(k(4.0) * wheel_dsz),
-            t20 * (t17 * t19) - t13 * t19 * t22,
-            t20 * (t14 * t19) - t18 * t19 * t22,
+            t13 * t19 * t22 + t20 * (t17 * t19),
+            t18 * t19 * t22 + t20 * (t14 * t19),
             closing0,
         ];
     }

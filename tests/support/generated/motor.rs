@@ -634,8 +634,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Motor<T> {
             -(k(4.0) * disc_dsx),
             -(k(4.0) * disc_dsy),
             -(k(4.0) * disc_dsz),
-            -(t5 * t7 * t9 + t8 * (t2 * t7)),
-            -(t3 * t7 * t9 + t8 * (t6 * t7)),
+            -(t9 * (t5 * t7) + t8 * (t2 * t7)),
+            -(t9 * (t3 * t7) + t8 * (t6 * t7)),
         ];
     }
 }
@@ -754,14 +754,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Motor<T> {
         let t0 = k(2.0) * disc_e3;
         let t1 = disc_e0 * t0;
         let t2 = k(0.01) * (disc_wy * disc_wz + disc_dwx);
-        let t3 = k(0.01) * (disc_wx * disc_wz - disc_dwy);
-        let t4 = k(1.0) - disc_e3 * t0;
+        let t3 = k(1.0) - disc_e3 * t0;
+        let t4 = k(0.01) * (disc_wx * disc_wz - disc_dwy);
         *lambda = [
             -(k(4.0) * disc_dsx),
             -(k(4.0) * disc_dsy),
             -(k(4.0) * disc_dsz),
             t4 * t3 - t2 * t1,
-            t1 * t3 + t2 * t4,
+            t4 * t1 + t2 * t3,
         ];
     }
 }

@@ -220,7 +220,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for PitchingBearings<T> {
         let t45 = k(2.0) * t44;
         let t46 = t22 * (t45 * t21 + (t39 * t17 + t41 * t18))
             + t16 * (t45 * t12 - (t41 * t6 + t39 * t1));
-        let t47 = (t45 * t26 - (t39 * t24 - t41 * t25)) * t27 + t46;
+        let t47 = t27 * (t45 * t26 - (t39 * t24 - t41 * t25)) + t46;
         let t48 = t14 + t13;
         let t49 = k(0.08) * rotor_dsx;
         let t50 = t43 - t42;
@@ -237,7 +237,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for PitchingBearings<T> {
         let t59 = k(2.0) * t52;
         let t60 = t22 * (t59 * t21 - (t57 * t17 - t58 * t18))
             + t16 * (t59 * t12 - (t58 * t6 - t57 * t1));
-        let t61 = (t57 * t24 + t58 * t25 + t59 * t26) * t27 + t60;
+        let t61 = t27 * (t57 * t24 + t58 * t25 + t59 * t26) + t60;
         let t62 = t53 * (k(0.00025) * t44)
             - (t51 * (k(0.00025) * t40) - t49 * (k(0.00025) * t38));
         let t63 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz)
@@ -1317,7 +1317,7 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for PitchingBearings<T> {
         let t45 = k(2.0) * t44;
         let t46 = t22 * (t45 * t21 + (t39 * t17 + t41 * t18))
             + t16 * (t45 * t12 - (t41 * t6 + t39 * t1));
-        let t47 = (t45 * t26 - (t39 * t24 - t41 * t25)) * t27 + t46;
+        let t47 = t27 * (t45 * t26 - (t39 * t24 - t41 * t25)) + t46;
         let t48 = t14 + t13;
         let t49 = k(0.08) * rotor_dsx;
         let t50 = t43 - t42;
@@ -1334,7 +1334,7 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for PitchingBearings<T> {
         let t59 = k(2.0) * t52;
         let t60 = t22 * (t59 * t21 - (t57 * t17 - t58 * t18))
             + t16 * (t59 * t12 - (t58 * t6 - t57 * t1));
-        let t61 = (t57 * t24 + t58 * t25 + t59 * t26) * t27 + t60;
+        let t61 = t27 * (t57 * t24 + t58 * t25 + t59 * t26) + t60;
         let t62 = t53 * (k(0.00025) * t44)
             - (t51 * (k(0.00025) * t40) - t49 * (k(0.00025) * t38));
         let t63 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz)
@@ -2495,7 +2495,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for PitchingBearings<T> {
         let t58 = k(0.5) - (t8 + inner_ring_e3 * inner_ring_e3);
         let t59 = t4 * (k(0.00025) * t58)
             - (t2 * (k(0.00025) * t57) + t0 * (k(0.00025) * t56));
-        let t60 = k(2e-6) * inner_ring_dwy + (t59 + (t55 * t33 + t54));
+        let t60 = k(2e-6) * inner_ring_dwy + (t59 + (t33 * t55 + t54));
         let t61 = t43 * t52 - (t40 * t48 + t37 * t46);
         let t62 = k(2.0) * t56;
         let t63 = k(2.0) * t57;
@@ -2506,7 +2506,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for PitchingBearings<T> {
         let t68 = t4 * (k(0.00025) * t51)
             - (t2 * (k(0.00025) * t47) - t0 * (k(0.00025) * t45));
         let t69 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz)
-            + (t68 - (t67 * t33 + t66));
+            + (t68 - (t33 * t67 + t66));
         let t70 = (t43 * t64 - (t40 * t63 - t37 * t62)) * t69 - (t61 * t60 - t44 * t35);
         let t71 = k(2e-6) * outer_ring_dwx - t70;
         let t72 = k(0.05) * (k(18.84955592153876) * t).sin();
@@ -2552,8 +2552,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for PitchingBearings<T> {
             -t0,
             -t2,
             -t4,
-            t67 * t99 * t33 + t28 * (t65 * t99),
-            t55 * t99 * t33 + t28 * (t53 * t99),
+            t33 * (t67 * t99) + t28 * (t65 * t99),
+            t33 * (t55 * t99) + t28 * (t53 * t99),
         ];
     }
 }
@@ -3389,8 +3389,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
         let t3 = k(0.1) + k(0.01) * inner_ring_dsy + t2;
         let t4 = k(0.08) * rotor_dsz;
         let t5 = k(0.01) * inner_ring_dsz + t4;
-        let t6 = k(1e-5) * rotor_dwx
-            - k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx);
+        let t6 = k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx)
+            - k(1e-5) * rotor_dwx;
         let t7 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
             + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
         let t8 = k(2.0) * t7;
@@ -3407,11 +3407,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
         let t15 = k(2.0) * t14;
         let t16 = k(1.0) - t14 * t15;
         let t17 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
-        let t18 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
-        let t19 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+        let t18 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
             + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
-        let t20 = t19 * t15;
-        let t21 = t20 * t18 - t17 * t16;
+        let t19 = t18 * t15;
+        let t20 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
+        let t21 = t20 * t19 - t17 * t16;
         let t22 = t21
             - (t4 * (k(0.00025) * (k(0.5) - (t13 + inner_ring_e3 * inner_ring_e3)))
                 - t12);
@@ -3419,7 +3419,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
         let t24 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
             + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
         let t25 = t24 * t8;
-        let t26 = t25 * t23 + t9 * t6;
+        let t26 = t25 * t23 - t9 * t6;
         let t27 = k(2e-6) * outer_ring_dwx + t26;
         let t28 = k(0.025) * (k(18.84955592153876) * t).sin();
         let t29 = t28.cos();
@@ -3439,10 +3439,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
             - t0
                 * (k(0.00025)
                     * (inner_ring_e1 * inner_ring_e2 - inner_ring_e0 * inner_ring_e3));
-        let t42 = t16 * t18 + t17 * t20;
+        let t42 = t20 * t16 + t17 * t19;
         let t43 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz)
             - (t42 - (t4 * (k(0.00025) * (t11 + t10)) - t41));
-        let t44 = t43 - k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz);
+        let t44 = k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz) - t43;
         let t45 = t34 * outer_ring_e0 + t32 * outer_ring_e1 - t37 * outer_ring_e2
             + t36 * outer_ring_e3;
         let t46 = t45 * t39;
@@ -3450,12 +3450,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
             -(k(0.01) * outer_ring_dsx + t1),
             -(k(0.1) + k(0.01) * outer_ring_dsy + t3),
             -(k(0.01) * outer_ring_dsz + t5),
-            -(t46 * t44 + t40 * t27),
-            t40 * t44 - t46 * t27,
+            t46 * t44 - t40 * t27,
+            -(t40 * t44 + t46 * t27),
             -t1,
             -t3,
             -t5,
-            t25 * t6 - t9 * t23,
+            -(t9 * t23 + t25 * t6),
             t26,
             -t0,
             -t2,
@@ -3589,7 +3589,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for PitchingBearings<T> {
         let t73 = k(0.5) - (t23 + inner_ring_e3 * inner_ring_e3);
         let t74 = t0 * (k(0.00025) * t73)
             - (t6 * (k(0.00025) * t72) + t15 * (k(0.00025) * t71));
-        let t75 = k(2e-6) * inner_ring_dwy + (t74 + (t70 * t48 + t69));
+        let t75 = k(2e-6) * inner_ring_dwy + (t74 + (t48 * t70 + t69));
         let t76 = t58 * t67 - (t55 * t63 + t52 * t61);
         let t77 = k(2.0) * t71;
         let t78 = k(2.0) * t72;
@@ -3600,7 +3600,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for PitchingBearings<T> {
         let t83 = t0 * (k(0.00025) * t66)
             - (t6 * (k(0.00025) * t62) - t15 * (k(0.00025) * t60));
         let t84 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz)
-            + (t83 - (t82 * t48 + t81));
+            + (t83 - (t48 * t82 + t81));
         let t85 = (t58 * t79 - (t55 * t78 - t52 * t77)) * t84 - (t76 * t75 - t59 * t50);
         let t86 = k(2e-6) * outer_ring_dwx - t85;
         let t87 = t13 * t58 + (t14 * t55 - t18 * t52);
@@ -3638,8 +3638,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for PitchingBearings<T> {
         let t118 = t63 * t116 + t30 * t115;
         let t119 = t67 * t116 - t36 * t115;
         let t120 = k(1.0) / (t68 * t82 - t70 * t80);
-        let t121 = t82 * t120 * t48 + t43 * (t80 * t120);
-        let t122 = t70 * t120 * t48 + t43 * (t68 * t120);
+        let t121 = t48 * (t82 * t120) + t43 * (t80 * t120);
+        let t122 = t48 * (t70 * t120) + t43 * (t68 * t120);
         let t123 = t82 * t122 - t70 * t121;
         let t124 = t80 * t122 - t68 * t121;
         let t125 = t45 * t124 + t38 * t123;

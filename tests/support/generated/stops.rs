@@ -1206,8 +1206,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Stops<T> {
         let t0 = k(2.0) * disc_e3;
         let t1 = disc_e0 * t0;
         let t2 = k(0.01) * (disc_wy * disc_wz + disc_dwx);
-        let t3 = k(0.01) * (disc_wx * disc_wz - disc_dwy);
-        let t4 = k(1.0) - disc_e3 * t0;
+        let t3 = k(1.0) - disc_e3 * t0;
+        let t4 = k(0.01) * (disc_wx * disc_wz - disc_dwy);
         *lambda = [
             -(k(0.5) * hammer_dsx),
             -(k(0.5) * hammer_dsy),
@@ -1218,7 +1218,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Stops<T> {
             -(k(4.0) * disc_dsy),
             -(k(39.24) + k(4.0) * disc_dsz),
             t4 * t3 - t2 * t1,
-            t1 * t3 + t2 * t4,
+            t4 * t1 + t2 * t3,
         ];
     }
 }
