@@ -115,13 +115,8 @@ const ACCELERATIONS: Before = Before {
 };
 
 /// Functions that are made for states that satisfy the constraints.
-const ON_CONSTRAINTS: [&str; 5] = [
-    "to_joints",
-    "joint_accelerations_at",
-    "corrected_accelerations",
-    "corrected_derivative",
-    "corrected_multipliers",
-];
+const ON_CONSTRAINTS: [&str; 4] =
+    ["joint_accelerations_at", "corrected_accelerations", "corrected_derivative", "corrected_multipliers"];
 
 /// Whether a function is made for states that satisfy the constraints.
 pub fn is_on_constraints(function: &str) -> bool {

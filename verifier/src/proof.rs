@@ -2,6 +2,7 @@
 
 mod case;
 mod claim;
+mod compare;
 mod decide;
 mod joints;
 mod partition;
@@ -10,4 +11,5 @@ mod point;
 pub(crate) use case::point as point_of_terms;
 
 pub use claim::Claim;
-pub use decide::{Decider, Needless, Statements, Verdict, prime};
+pub use compare::Needless;
+pub use decide::{Decider, Statements, Verdict, prime};

@@ -25,7 +25,7 @@ Made by `cargo xtask verify --rounding > docs/rounding.md`. A proof says nothing
 Each function runs in `f64` and `f32`, and in `f64` as both forms of the assembled twin, at the same states, and is compared with 384-bit
 floats. A cell has the worst error and in parentheses the median, in units in the last place (of the precision in question) of the largest result, at
 states *near the start* / *random* / *extreme* (speeds and distances from 1e-6 to 1e6). None of these states satisfies the constraints exactly,
-but for functions in joint coordinates, and those of corrected states (`to_joints`, `joint_accelerations_at` and all that begin with `corrected`), which
+but for functions in joint coordinates, and those of corrected states (`joint_accelerations_at` and all that begin with `corrected`), which
 run at the maximal states of joint states that are drawn in the same way.
 
 How to read it:

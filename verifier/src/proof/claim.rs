@@ -144,7 +144,7 @@ impl Claim {
             Self::NewtonStep => "linearised rows vanish, the special parameter is kept",
             Self::SolveVelocities => "velocity rows vanish, independent rates are kept",
             Self::ToMaximal => "all rows vanish, its joint coordinates are x and u",
-            Self::ToJoints => "the way back, and so its derivative",
+            Self::ToJoints => "x and u of any state, angles by their derivative",
             Self::JointAccelerations => "with B = ∂v/∂u: Bᵀ(M v̇ − f) = 0, Φ_π' v̇ = γ",
             Self::JointDerivative => "along it the state moves by eqs. (14), (16); power",
             Self::JointAccelerationsAt => "the proved u̇ at the state of (x, u)",

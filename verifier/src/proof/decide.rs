@@ -13,8 +13,8 @@ use super::claim::Claim;
 use super::point::{self, Draw};
 use crate::atoms::{Drawn, Elementary, Formal};
 use crate::field::{Degree, Field, Modular, Precision, Prime, Real, sum_log2};
-use crate::interpreter::{self, DivisionByZero, Given};
-use crate::module::{Module, is_on_constraints, source_of_accelerations};
+use crate::interpreter::DivisionByZero;
+use crate::module::Module;
 use crate::program::{Function, Id, Node};
 use crate::tape::{Formulas, Tape, Term};
 use crate::textbook::Textbook;
@@ -24,7 +24,6 @@ use num_integer::Integer;
 use num_traits::ToPrimitive;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use std::collections::HashMap;
 use std::f64::consts::LOG10_2;
 
 /// How a claim was decided.
@@ -51,19 +50,10 @@ pub enum Verdict {
     Undecided,
 }
 
-/// An operation whose result is known without it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Needless {
-    /// Its line.
-    pub line: usize,
-    /// Line of the value that it has, up to its sign; `None` of zero.
-    pub same_as: Option<usize>,
-}
-
 /// Decides the claims about modules of one model.
 #[derive(Debug)]
 pub struct Decider<'a, const L: usize> {
-    model: &'a Model,
+    pub(super) model: &'a Model,
     prime: Prime<L>,
 }
 
@@ -336,104 +326,8 @@ impl<'a, const L: usize> Decider<'a, L> {
         }
     }
 
-    /// Whether a function of one module gives the same numbers as that of another one at a random point; `None` if one of them exists at
-    /// no point. Functions that read accelerations are given those of the first module.
-    pub fn agree(&self, modules: [&Module; 2], function: &str, seed: u64) -> Option<bool> {
-        let same_places = modules[0].programs[function].places == modules[1].programs[function].places;
-        let agree = self.at_point(modules[0], seed, |draw, atoms| {
-            let (draw, accelerations) = self.suited(modules[0], function, draw, atoms)?;
-            let run = |module| self.run(module, function, &draw, &accelerations, atoms);
-            Ok(run(modules[0])? == run(modules[1])?)
-        });
-        agree.map(|agree| agree && same_places)
-    }
-
-    /// Operations whose value, up to its sign, is zero or one that is known before, wherever |p| = 1: what a cleverer generator could
-    /// leave out. They are no fault. `None` if the function exists at no point.
-    pub fn needless(&self, module: &Module, function: &str, seed: u64) -> Option<Vec<Needless>> {
-        self.at_point(module, seed, |draw, atoms| {
-            let (draw, accelerations) = self.suited(module, function, draw, atoms)?;
-            let given = Given {
-                point: &draw.point,
-                accelerations: &accelerations,
-                charts: &draw.charts,
-                joints: &draw.joints[0],
-            };
-            let constants = interpreter::constants(&self.prime, module);
-            let program = &module.programs[function];
-            let values = interpreter::values(module, program, &constants, atoms, &given)?;
-            let (mut known, mut needless) = (HashMap::new(), Vec::new());
-            for ((node, value), &line) in program.nodes.iter().zip(&values).zip(&program.lines) {
-                let is_operation =
-                    matches!(node, Node::Add(..) | Node::Sub(..) | Node::Mul(..) | Node::Div(..));
-                let keys = [value.key(), value.neg().key()];
-                let same_as = keys.iter().find_map(|key| known.get(key).copied());
-                if is_operation && (value.is_zero() || same_as.is_some()) {
-                    needless.push(Needless { line, same_as: same_as.filter(|_| !value.is_zero()) });
-                }
-                known.entry(keys[0]).or_insert(line);
-            }
-            Ok(needless)
-        })
-    }
-
-    /// What is wrong with the patterns: zeros that are stored, places out of order. (That no place is missing is part of the claims.)
-    ///
-    /// A number that is zero at a random point is zero identically, with the probability of its claim.
-    ///
-    /// # Errors
-    /// [`Verdict::Undecided`] if no point has all roots.
-    pub fn sparsity(&self, module: &Module, seed: u64) -> Result<Vec<String>, Verdict> {
-        let patterns = [("phi_q", &module.phi_q_pattern), ("phi_pi", &module.phi_pi_pattern)];
-        let mut problems = Vec::new();
-        for (matrix, pattern) in patterns {
-            let is_zero = self.at_point(module, seed, |draw, atoms| {
-                let values = self.run(module, matrix, draw, &[], atoms)?;
-                Ok(values.iter().map(Field::is_zero).collect::<Vec<_>>())
-            });
-            let is_zero = is_zero.ok_or(Verdict::Undecided)?;
-            let zeros = pattern.iter().zip(is_zero).filter(|(_, zero)| *zero);
-            problems.extend(zeros.map(|(place, _)| format!("`{matrix}` stores the zero at {place:?}")));
-            let unsorted = pattern.windows(2).find(|pair| pair[0] >= pair[1]);
-            problems.extend(unsorted.map(|pair| format!("`{matrix}` has {:?} after {:?}", pair[1], pair[0])));
-        }
-        Ok(problems)
-    }
-
-    /// A point that a function is made for, with the accelerations that it reads.
-    fn suited<'p>(
-        &'p self,
-        module: &Module,
-        function: &str,
-        draw: &Draw<Modular<'p, L>>,
-        atoms: &Drawn<'p, L>,
-    ) -> Result<(Draw<Modular<'p, L>>, Vec<Modular<'p, L>>), DivisionByZero> {
-        let mut draw = draw.clone();
-        if is_on_constraints(function) {
-            draw.point.state = self.run(module, "to_maximal", &draw, &[], atoms)?;
-            // The buffer of `to_joints` holds any other state.
-            draw.joints.swap(0, 1);
-        }
-        let accelerations = self.run(module, source_of_accelerations(function), &draw, &[], atoms)?;
-        Ok((draw, accelerations))
-    }
-
-    fn run<'p>(
-        &'p self,
-        module: &Module,
-        function: &str,
-        draw: &Draw<Modular<'p, L>>,
-        accelerations: &[Modular<'p, L>],
-        atoms: &Drawn<'p, L>,
-    ) -> Result<Vec<Modular<'p, L>>, DivisionByZero> {
-        let given =
-            Given { point: &draw.point, accelerations, charts: &draw.charts, joints: &draw.joints[0] };
-        let constants = interpreter::constants(&self.prime, module);
-        interpreter::run(module, &module.programs[function], &constants, atoms, &given)
-    }
-
     /// Evaluates something at a random point at which it exists with all its roots.
-    fn at_point<'p, R>(
+    pub(super) fn at_point<'p, R>(
         &'p self,
         module: &Module,
         seed: u64,
@@ -459,7 +353,7 @@ impl<'a, const L: usize> Decider<'a, L> {
 }
 
 /// A residual in 384 bits that is larger than this part of the largest number on the way to it is not zero: rounding makes 1e-115 of it.
-const FAR_FROM_ZERO: f64 = 1e-60;
+pub(super) const FAR_FROM_ZERO: f64 = 1e-60;
 
 /// More than all roundings of the logarithms of degrees can make.
 const ROUNDING_LOG2: f64 = 1e-3;

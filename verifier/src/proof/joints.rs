@@ -117,27 +117,48 @@ pub fn to_maximal<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     Some(residuals)
 }
 
-/// Of the state of (x, u) it makes (x, u) again, if its buffer holds x; and whatever that holds, and however it changes, what it makes
-/// changes as (x, u) does. So the buffer does nothing but choose among the turns.
+/// At any state all but angles are what the textbook reads off it. Angles change as the textbook's do, however the buffer changes, and of the
+/// state of (x, u) they are x if the buffer holds x: so the buffer does nothing but choose among the turns.
 pub fn to_joints<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
-    let motion = Motion::new(case)?;
-    let none = |_| None;
-    let [found, _] = case.run_along("to_joints", &motion.maximal, &case.joints, &none)?;
-    let mut residuals = differences(&found, &case.joints);
-    // The rates of the buffer's coordinates are its own next elements: as good as any others.
+    let layout = case.module.joints.as_ref()?;
+    let maximal = Point { state: case.run("to_maximal", &case.point), ..case.point.clone() };
+    let mut residuals = differences(&case.run("to_joints", &maximal), &case.joints);
+    let textbook = case.textbook(&case.point)?;
+    let (rates, one) = (textbook.position_rates(), Term::one(case.point.context));
+    // The buffer changes by its own next elements: as good as any other numbers.
     let next = |k: usize| case.before[(k + 1) % case.before.len()];
-    let [_, rates] = case.run_along("to_joints", &motion.maximal, &case.before, &|source| match source {
-        Source::State(k) => Some(motion.maximal_rates[k]),
-        Source::Joint(k) => Some(next(k)),
-        Source::Time => Some(Term::one(case.point.context)),
-        _ => None,
-    })?;
-    let mut expected = motion.derivative.clone();
-    // The work goes through.
-    if let (true, Some(last)) = (motion.layout.has_work, expected.last_mut()) {
-        *last = motion.maximal_rates[13 * case.n_bodies()];
+    let [found, found_rates] =
+        case.run_along("to_joints", &case.point, &case.before, &|source| match source {
+            Source::State(k) => rates.get(k).copied(),
+            Source::Joint(k) => Some(next(k)),
+            Source::Time => Some(one),
+            _ => None,
+        })?;
+    for place in &layout.places {
+        let (coordinates, rates) = place.of.sizes();
+        let u = &found[layout.n_coordinates + place.u..][..rates];
+        let all = [&found[place.x..place.x + coordinates], u].concat();
+        let expected = match place.of {
+            Freedom::Scalar(on) => match textbook.reading(on)? {
+                Reading::Angle { rate, .. } => {
+                    residuals.push(found_rates[place.x].sub(&textbook.angle_rate(on)?));
+                    vec![all[0], rate]
+                }
+                Reading::Length(numbers) => numbers.to_vec(),
+                Reading::Orientation(numbers) => numbers.to_vec(),
+            },
+            Freedom::Orientation { joint } => match textbook.orientation(joint) {
+                Reading::Orientation(numbers) => numbers.to_vec(),
+                _ => return None,
+            },
+            Freedom::Body { slot } => {
+                [case.point.position(slot), case.point.velocity(case.model, slot)].concat()
+            }
+        };
+        residuals.extend(differences(&all, &expected));
     }
-    residuals.extend(differences(&rates, &expected));
+    let work = &case.point.state[13 * case.n_bodies()..][..usize::from(layout.has_work)];
+    residuals.extend(differences(&found[layout.n_motion()..], work));
     Some(residuals)
 }
 

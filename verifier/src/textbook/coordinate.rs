@@ -5,7 +5,7 @@ use super::jet::Jet;
 use super::joint::Placed;
 use super::linear::Vector;
 use super::load::Load;
-use super::pose::{Moving, Pose};
+use super::pose::{Moving, Path, Pose};
 use crate::field::Field;
 use gyro_model::{CoordinateKind, JointCoordinate};
 
@@ -45,6 +45,16 @@ impl<F: Field> Evaluation<'_, F> {
         let (s, c) = placed.sine_and_cosine(kind);
         let rest = self.scope.atan2(&(&s * &cos - &c * &sin), &(&c * &cos + &s * &sin))?;
         Some(reference + rest)
+    }
+
+    /// How fast the angle of `(C, S)` changes along the motion, `(C S' − S C') / (S² + C²)`: off the constraints not the rate of the
+    /// coordinate.
+    pub fn angle_rate(&self, on: JointCoordinate) -> Option<F> {
+        let placed = self.joints[on.joint].placed(&self.poses(Path::Motion));
+        let (s, c) = placed.sine_and_cosine(self.textbook.model.coordinate_kind(on));
+        let zero = &self.scope.zero.value;
+        let turned = &c * s.derivative(zero) - &s * c.derivative(zero);
+        Some((turned * (&s * &s + &c * &c).reciprocal()?).value)
     }
 
     /// The rate of a coordinate: of an angle from the bodies' own axes, of a displacement along u
