@@ -96,8 +96,8 @@ fn reversed(model: &Model) -> Model {
 
 /// The worst difference of s̈, ẇ' and λ.
 fn compare(model: &Model, what: &str) -> f64 {
-    let (recursive, dense) =
-        (Recursive::<f64>::new(model).expect("a tree"), Dense::<f64>::new(model).expect("a model"));
+    let recursive = Recursive::<f64>::new(model).expect("it is supported");
+    let dense = Dense::<f64>::new(model).expect("it does every model");
     let (mut random, mut worst) = (Random::new(7), 0.0_f64);
     for _ in 0..STATES {
         let y = consistent(model, &mut random);
