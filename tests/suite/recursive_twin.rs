@@ -141,7 +141,7 @@ fn scales(twin: &Dense<f64>, y: &[f64], solution: &[Vec<f64>; 5]) -> [f64; 5] {
 #[test]
 fn corrections_meet_the_constraints_and_keep_what_meets_them() {
     for (page, model) in supported() {
-        let (twin, mut random) = (Recursive::<f64>::new(&model).unwrap(), Random::new(11));
+        let (twin, mut random) = (Recursive::<f64>::new(&model).expect("it is supported"), Random::new(11));
         for _ in 0..STATES {
             let y = consistent(&model, &mut random);
             assert!(violation(&twin, &y) <= CORRECTED, "{page}: {:e}", violation(&twin, &y));
