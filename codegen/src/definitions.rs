@@ -55,11 +55,9 @@ impl<'a> Expansion<'a> {
     }
 
     pub fn of(&mut self, graph: &mut Graph, root: ExprId) -> ExprId {
-        for id in graph.reachable(&[root]) {
-            if !self.memo.contains_key(&id) {
-                let expanded = self.node(graph, id);
-                self.memo.insert(id, expanded);
-            }
+        for id in graph.reachable_beyond(&[root], |id| self.memo.contains_key(&id)) {
+            let expanded = self.node(graph, id);
+            self.memo.insert(id, expanded);
         }
         self.memo[&root]
     }

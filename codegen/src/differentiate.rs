@@ -22,11 +22,9 @@ impl<'a> Derivative<'a> {
 
     /// The derivative of one expression.
     pub fn of(&mut self, graph: &mut Graph, root: ExprId) -> ExprId {
-        for id in graph.reachable(&[root]) {
-            if !self.memo.contains_key(&id) {
-                let derivative = self.node(graph, id);
-                self.memo.insert(id, derivative);
-            }
+        for id in graph.reachable_beyond(&[root], |id| self.memo.contains_key(&id)) {
+            let derivative = self.node(graph, id);
+            self.memo.insert(id, derivative);
         }
         self.memo[&root]
     }

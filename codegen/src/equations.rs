@@ -7,8 +7,10 @@ use crate::dynamics::Dynamics;
 use crate::graph::{ExprId, Graph};
 use crate::joint_space::JointSpace;
 use crate::kinematics::{Kinematics, Matrix, non_zeros};
+use crate::normal_form::vanishes;
 use crate::outputs::{self, Sources};
 use crate::partition::Partition;
+use crate::symbol::Symbol;
 use crate::system::System;
 use crate::{coordinate, null_space, readings, saddle};
 use gyro_model::{Model, Spline, Start};
@@ -88,13 +90,17 @@ impl<'m> Equations<'m> {
 
         let definitions = std::mem::take(&mut system.definitions);
         let mut expansion = Expansion::new(&definitions);
+        let euler = euler_parameters(&mut system.graph, system.slots.len());
         let graph = &mut system.graph;
+        let mut phi_pi = non_zeros(&expand_matrix(&mut expansion, graph, &kinematics.phi_pi));
+        // A product of two vectors of one body does not change as the body turns.
+        phi_pi.retain(|&(.., entry)| !vanishes(graph, &euler, entry));
         let all_phi: Vec<_> = kinematics.phi.iter().chain(&kinematics.normalisations).copied().collect();
         Self {
             model,
             phi: expansion.all(graph, &all_phi),
             phi_q: non_zeros(&expand_matrix(&mut expansion, graph, &kinematics.phi_q)),
-            phi_pi: non_zeros(&expand_matrix(&mut expansion, graph, &kinematics.phi_pi)),
+            phi_pi,
             nu: expansion.all(graph, &kinematics.nu),
             gamma: expansion.all(graph, &kinematics.gamma),
             velocity_residual: expansion.all(graph, &kinematics.velocity_residual),
@@ -138,6 +144,11 @@ impl Charts {
             solved_velocities: expansion.all(graph, &partition.velocities),
         }
     }
+}
+
+/// p of each slot: unit vectors.
+fn euler_parameters(graph: &mut Graph, n_slots: usize) -> Vec<Vec<ExprId>> {
+    (0..n_slots).map(|slot| (0..4).map(|k| graph.symbol(Symbol::Euler { slot, k })).collect()).collect()
 }
 
 /// (ṙ, ṗ) of each slot by eqs. (16) and (14).

@@ -7,7 +7,7 @@
 use crate::constant::Constant;
 use crate::symbol::Symbol;
 use gyro_model::Rational;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// Handle of an expression in its [`Graph`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -76,14 +76,19 @@ impl Graph {
     /// Every node that the roots depend on, operands before their users, in the order in which a depth-first walk from the
     /// roots completes them: what an expression needs comes shortly before it.
     pub fn reachable(&self, roots: &[ExprId]) -> Vec<ExprId> {
-        let mut seen = vec![false; self.nodes.len()];
+        self.reachable_beyond(roots, |_| false)
+    }
+
+    /// The same, but for what is known and what only that depends on.
+    pub fn reachable_beyond(&self, roots: &[ExprId], is_known: impl Fn(ExprId) -> bool) -> Vec<ExprId> {
+        let mut seen = HashSet::new();
         let mut order = Vec::new();
         // A node is pushed a second time, as complete, beneath its operands.
         let mut stack: Vec<_> = roots.iter().rev().map(|&root| (root, false)).collect();
         while let Some((id, complete)) = stack.pop() {
             if complete {
                 order.push(id);
-            } else if !std::mem::replace(&mut seen[id.0 as usize], true) {
+            } else if !is_known(id) && seen.insert(id) {
                 stack.push((id, true));
                 stack.extend(self.node(id).operands().map(|operand| (operand, false)));
             }

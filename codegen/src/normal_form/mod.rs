@@ -44,6 +44,14 @@ pub fn normal_form(graph: &mut Graph, unit: &[Vec<ExprId>], roots: &[ExprId]) ->
     }
 }
 
+/// Whether an expression is zero wherever the identities hold; not, if it is too large to be sure.
+pub fn vanishes(graph: &mut Graph, unit: &[Vec<ExprId>], root: ExprId) -> bool {
+    let relations = relations(graph, unit, &[root]);
+    let (first, mut terms) = (vec![0; relations.len()], MAX_TERMS);
+    let expanded = expand(graph, &relations, &first, &[root], &mut terms);
+    expanded.is_some_and(|(system, _)| system.sums.iter().all(Vec::is_empty))
+}
+
 /// The given points that the roots depend on, and the sines and cosines among what they depend on. No two have an atom in
 /// common, or they could replace each other's squares without end.
 fn relations(graph: &mut Graph, unit: &[Vec<ExprId>], roots: &[ExprId]) -> Vec<Vec<ExprId>> {

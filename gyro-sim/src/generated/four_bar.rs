@@ -1583,7 +1583,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
             let t69 = t59 * t68;
             let t70 = k(0.5) * t50;
             let t71 = k(0.5) * t36;
-            let t72 = t71 * t52 + t42 * t70;
+            let t72 = t71 * t52 + t70 * t42;
             let t73 = t61 * t72;
             let t74 = t70 - t59 * t73;
             let t75 = t66 * t74;
@@ -1597,7 +1597,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
             let t83 = t82 + t79;
             let t84 = k(0.5) * t28;
             let t85 = k(0.5) * t32;
-            let t86 = t85 * t52 - t42 * t84;
+            let t86 = t85 * t52 - t84 * t42;
             let t87 = t61 * t86;
             let t88 = t84 + t59 * t87;
             let t89 = t66 * t88;
@@ -1607,7 +1607,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
             let t93 = t92 + t91;
             let t94 = k(0.5) * t45;
             let t95 = k(0.5) * t38;
-            let t96 = t95 * t52 - t42 * t94;
+            let t96 = t95 * t52 - t94 * t42;
             let t97 = t61 * t96;
             let t98 = t94 + t59 * t97;
             let t99 = t66 * t98;

@@ -1122,7 +1122,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
             t12,
             -t15,
             t14,
-            -((t37 * t24 + t36 * t7) * t38),
+            -(t38 * (t37 * t24 + t36 * t7)),
             -(t38 * (t37 * (k(4.0) * crank_e1) + t36 * t6)),
             -(t38 * (t36 * t9)),
             -(t38 * (t36 * t8)),
@@ -1288,7 +1288,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
             k(1.0),
             t34,
             t35,
-            t64 * (t61 * t22 + t20 * t60),
+            (t61 * t22 + t20 * t60) * t64,
             -(t64 * (t19 * t22 - t20 * t21)),
         ];
     }
@@ -1649,7 +1649,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
             let t70 = t60 * t69;
             let t71 = k(0.5) * t51;
             let t72 = k(0.5) * t37;
-            let t73 = t72 * t53 + t43 * t71;
+            let t73 = t72 * t53 + t71 * t43;
             let t74 = t62 * t73;
             let t75 = t71 - t60 * t74;
             let t76 = t67 * t75;
@@ -1664,7 +1664,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
             let t85 = t84 + t80;
             let t86 = k(0.5) * t29;
             let t87 = k(0.5) * t33;
-            let t88 = t87 * t53 - t43 * t86;
+            let t88 = t87 * t53 - t86 * t43;
             let t89 = t62 * t88;
             let t90 = t86 + t60 * t89;
             let t91 = t67 * t90;
@@ -1675,7 +1675,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
             let t96 = t95 + t93;
             let t97 = k(0.5) * t46;
             let t98 = k(0.5) * t39;
-            let t99 = t98 * t53 - t43 * t97;
+            let t99 = t98 * t53 - t97 * t43;
             let t100 = t62 * t99;
             let t101 = t97 + t60 * t100;
             let t102 = t67 * t101;
@@ -2105,7 +2105,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
             let t365 = k(1.0) / t364;
             let t366 = k(1.0) / (t6 * t6 + t3 * t3);
             let t367 = t366 * t9;
-            let t368 = t367 * t190 + t366 * (t18 * t6 + t3 * t23) * t25;
+            let t368 = t367 * t190 + (t18 * t6 + t3 * t23) * t366 * t25;
             let t369 = t23 * crank_wy + t2 * crank_wz;
             let t370 = t18 * crank_wy - t8 * crank_wz;
             let t371 = t366 * t366 * (k(2.0) * (t3 * t370 - t6 * t369))

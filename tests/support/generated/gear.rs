@@ -609,11 +609,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gear<T> {
             t4,
             -t7,
             t6,
-            -(k(2.5) * ((t9 * (k(4.0) * pinion_e0) + t8 * t1) * t10)),
+            -(k(2.5) * (t10 * (t9 * (k(4.0) * pinion_e0) + t8 * t1))),
             -(k(2.5) * (t10 * (t9 * (k(4.0) * pinion_e1) + t8 * t0))),
             -(k(2.5) * (t10 * (t8 * t3))),
             -(k(2.5) * (t10 * (t8 * t2))),
-            -((t12 * (k(4.0) * wheel_e0) + t11 * t6) * t13),
+            -(t13 * (t12 * (k(4.0) * wheel_e0) + t11 * t6)),
             -(t13 * (t11 * t7)),
             -(t13 * (t12 * (k(4.0) * wheel_e2) + t11 * t4)),
             -(t13 * (t11 * t5)),
@@ -652,9 +652,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gear<T> {
         let t11 = k(2.0) * (k(0.5) - (t10 + wheel_e2 * wheel_e2));
         let t12 = k(2.0) * (k(0.5) - (t10 + wheel_e3 * wheel_e3));
         let t13 = k(2.0) * (t8 + t7);
-        let t14 = k(2.0) * (pinion_e1 * pinion_e3 + pinion_e0 * pinion_e2) * t6
+        let t14 = k(1.0) / (t6 * t6 + t4 * t4);
+        let t15 = k(2.0) * (pinion_e1 * pinion_e3 + pinion_e0 * pinion_e2) * t6
             + t4 * (k(2.0) * (pinion_e2 * pinion_e3 - pinion_e0 * pinion_e1));
-        let t15 = k(1.0) / (t6 * t6 + t4 * t4);
         let t16 = k(1.0) / (t13 * t13 + t11 * t11);
         let t17 = k(2.0) * (wheel_e1 * wheel_e2 + wheel_e0 * wheel_e3) * t13
             + t11 * (k(2.0) * (wheel_e1 * wheel_e3 - wheel_e0 * wheel_e2));
@@ -674,8 +674,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gear<T> {
             t12,
             t13,
             k(2.5) * (t15 * t14),
-            -(k(2.5) * (t15 * (t2 * t6 - t4 * t5))),
-            -(t16 * (t9 * t13 - t11 * t12)),
+            -(k(2.5) * (t14 * (t2 * t6 - t4 * t5))),
+            -((t9 * t13 - t11 * t12) * t16),
             t16 * t17,
         ];
     }
@@ -845,7 +845,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gear<T> {
         let t17 = t16 * (t6 * t8) + t14 * (t1 * t8);
         let t18 = k(1.0) / (t5 * t5 + t2 * t2);
         let t19 = t18 * t7;
-        let t20 = k(87.5) * t19 - k(2.5) * (t18 * (t13 * t5 + t2 * t15)) * t17;
+        let t20 = k(87.5) * t19 - k(2.5) * ((t13 * t5 + t2 * t15) * t18) * t17;
         let t21 = turn1.cos();
         let t22 = wheel_e0 * wheel_e0;
         let t23 = k(2.0) * (k(0.5) - (t22 + wheel_e2 * wheel_e2));
@@ -855,31 +855,31 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gear<T> {
         let t27 = k(2.0) * (t26 + t25);
         let t28 = (t27 * t21 + t23 * t24).atan2(t27 * t24 - t23 * t21);
         let t29 = k(8.0) * (k(0.2) + (turn1 + t28));
-        let t30 = k(2.0) * (k(0.5) - (t22 + wheel_e3 * wheel_e3));
-        let t31 = k(2.0) * (t26 - t25);
-        let t32 = t31 * t27 - t23 * t30;
-        let t33 = k(1.0) / (t27 * t27 + t23 * t23);
-        let t34 = t33 * t32;
-        let t35 = k(1.0) / t32;
+        let t30 = k(1.0) / (t27 * t27 + t23 * t23);
+        let t31 = k(2.0) * (k(0.5) - (t22 + wheel_e3 * wheel_e3));
+        let t32 = k(2.0) * (t26 - t25);
+        let t33 = t32 * t27 - t23 * t31;
+        let t34 = t33 * t30;
+        let t35 = k(1.0) / t33;
         let t36 = wheel_wz * wheel_wz;
         let t37 = t36 + wheel_wy * wheel_wy;
         let t38 = k(2.0) * (wheel_e1 * wheel_e2 + wheel_e0 * wheel_e3);
         let t39 = wheel_wx * wheel_wy;
         let t40 = wheel_wx * wheel_wz;
-        let t41 = t31 * t40 - (t23 * t39 + t38 * t37);
+        let t41 = t32 * t40 - (t23 * t39 + t38 * t37);
         let t42 = k(2.0) * (wheel_e1 * wheel_e3 - wheel_e0 * wheel_e2);
-        let t43 = t30 * t40 - (t27 * t39 - t42 * t37);
-        let t44 = t43 * (t31 * t35) - t41 * (t30 * t35);
-        let t45 = t33 * (t38 * t27 + t23 * t42) * t44 + t34 * t29;
-        let t46 = t30 * wheel_wx + t42 * wheel_wz;
-        let t47 = t31 * wheel_wx - t38 * wheel_wz;
-        let t48 = t33 * t33 * (k(2.0) * (t23 * t47 + t27 * t46))
+        let t43 = t31 * t40 - (t27 * t39 - t42 * t37);
+        let t44 = t43 * (t32 * t35) - t41 * (t31 * t35);
+        let t45 = t30 * (t38 * t27 + t23 * t42) * t44 + t34 * t29;
+        let t46 = t31 * wheel_wx + t42 * wheel_wz;
+        let t47 = t32 * wheel_wx - t38 * wheel_wz;
+        let t48 = t30 * t30 * (k(2.0) * (t23 * t47 + t27 * t46))
             * (t27 * t47 - t23 * t46);
         let t49 = t36 + wheel_wx * wheel_wx;
         let t50 = wheel_wy * wheel_wz;
         let t51 = t46 * t47;
-        let t52 = t51 - t27 * (t31 * t50 + (t23 * t49 + t38 * t39));
-        let t53 = t23 * (t30 * t50 + (t27 * t49 - t42 * t39)) - t51;
+        let t52 = t51 - t27 * (t32 * t50 + (t23 * t49 + t38 * t39));
+        let t53 = t23 * (t31 * t50 + (t27 * t49 - t42 * t39)) - t51;
         let t54 = t15 * pinion_wy + t1 * pinion_wz;
         let t55 = t13 * pinion_wy - t6 * pinion_wz;
         let t56 = t18 * t18 * (k(2.0) * (t2 * t55 - t5 * t54)) * (t5 * t55 + t2 * t54);
@@ -888,7 +888,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gear<T> {
         let t59 = t54 * t55;
         let t60 = t59 + t5 * (t13 * t9 + (t6 * t58 + t2 * t57));
         let t61 = t2 * (t15 * t9 - (t1 * t58 + t5 * t57)) - t59;
-        let t62 = k(2.5) * (t18 * (t61 + t60) + t56) - (t33 * (t53 + t52) - t48);
+        let t62 = k(2.5) * (t18 * (t61 + t60) + t56) - (t30 * (t53 + t52) - t48);
         let t63 = k(125.0) * t19;
         let t64 = k(20.0) * t34;
         let t65 = (t62 - (t45 - t20)) / (t34 * t64 + k(2.5) * t19 * t63);
