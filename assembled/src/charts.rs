@@ -208,7 +208,7 @@ fn solve<T: Number>(matrix: &Matrix4<T>, right: &Vector4<T>) -> Result<Vector4<T
 }
 
 /// Puts a constrained body back, with the sign of its Euler parameters as it is.
-fn restore<T: Number>(body: &Constrained<T>, y: &mut [T]) {
+pub(crate) fn restore<T: Number>(body: &Constrained<T>, y: &mut [T]) {
     let at = 7 * body.slot;
     let p = Vector4::from_column_slice(&y[at + 3..at + 7]);
     let sign = if p.dot(&body.p0) < T::zero() { -T::one() } else { T::one() };
@@ -216,6 +216,6 @@ fn restore<T: Number>(body: &Constrained<T>, y: &mut [T]) {
     set_p(y, body.slot, &(body.p0 * sign));
 }
 
-fn set_p<T: Number>(y: &mut [T], slot: usize, p: &Vector4<T>) {
+pub(crate) fn set_p<T: Number>(y: &mut [T], slot: usize, p: &Vector4<T>) {
     y[7 * slot + 3..7 * slot + 7].copy_from_slice(p.as_slice());
 }

@@ -1,7 +1,7 @@
 //! Motions prescribed in time, in numbers: evaluated in `f64`, whatever the scalar, as the joint frames are.
 
 use crate::motion::Motion as Moving;
-use crate::textbook::{g_matrix, rotation};
+use crate::textbook::{product, rotation};
 use gyro_model::{Model, Motion, Spline};
 use nalgebra::{Vector3, Vector4};
 
@@ -142,14 +142,10 @@ fn turned(motion: &Moving<f64>, u: &Vector3<f64>, [angle, rate, second]: &[f64; 
     }
 }
 
-/// The product of Euler parameters with `A(p q) = A(p) A(q)`: `p q₀ + G(p)ᵀ (q₁, q₂, q₃)`.
-fn product(p: &Vector4<f64>, q: &Vector4<f64>) -> Vector4<f64> {
-    p * q[0] + g_matrix(p).tr_mul(&q.fixed_rows::<3>(1))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::textbook::g_matrix;
 
     /// A central difference at this step is good to about 1e-10 of the third derivative, which is of order ten here.
     const STEP: f64 = 1e-5;

@@ -12,7 +12,8 @@ pub enum BuildError {
     Unsupported(Unsupported),
 }
 
-/// What keeps a model from the careful form, which does trees of revolute, spherical and fixed joints.
+/// What keeps a model from the careful form, which does trees of revolute, spherical and fixed joints, or from the recursive one,
+/// which does trees of all joints.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Unsupported {
     /// A joint of another kind, by its name.
@@ -40,7 +41,9 @@ impl fmt::Display for BuildError {
 
 impl fmt::Display for Unsupported {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "elimination along trees of revolute, spherical and fixed joints cannot do ")?;
+        let kinds =
+            if matches!(self, Self::JointKind(_)) { " of revolute, spherical and fixed joints" } else { "" };
+        write!(f, "elimination along trees{kinds} cannot do ")?;
         match self {
             Self::JointKind(name) => write!(f, "joint `{name}`"),
             Self::Loop(name) => write!(f, "joint `{name}`, which closes a loop"),

@@ -139,6 +139,11 @@ impl<T: Number> Lowered<T> {
             out[..3].copy_from_slice((self.gravity * body.mass).as_slice());
             out[3..].copy_from_slice((-w.cross(&(body.inertia * w))).as_slice());
         }
+        self.add_page_force(at, out);
+    }
+
+    /// Adds what friction and the page's forces exert: `(f, n')`, body after body.
+    pub(crate) fn add_page_force(&self, at: Moment<'_, T>, out: &mut [T]) {
         for element in &self.elements {
             element.exert(self, at, |place, _, wrench| {
                 if let Place::Slot(slot) = place {

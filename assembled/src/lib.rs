@@ -3,14 +3,17 @@
 //! The twin reads the same [`Model`](gyro_model::Model) as the code generator and keeps the same contract
 //! ([`gyro_sim::Partition`], [`gyro_sim::Equations`]), but shares no derivation with it: Φ, Φ_q, ν and γ are typed from
 //! the paper and from Haug (1989). So it is the oracle of the tests, the honest opponent of the benchmarks and the quick
-//! look of `simulate --engine assembled`, all at once. It comes in two forms:
+//! look of `simulate --engine assembled`, all at once. It comes in three forms:
 //! * [`Dense`], the paper's: eq. (17) whole, one dense matrix solved by LU, and a partition by full pivoting of the dense
 //!   Jacobian. It does every model.
 //! * [`Careful`], what a careful engineer would make of it: no allocation, the ground folded, eq. (17) eliminated body by
 //!   body from the leaves to the root in the null space of each joint, and a partition by charts from the root to the
-//!   leaves. It does the models that [`Careful::supports`]; [`Form::for_model`] picks the form that suits a model.
+//!   leaves. It does the models that [`Careful::supports`]; [`Form::for_model`] picks this form or the first, as suits a model.
+//! * [`Recursive`], what an expert in rigid-body dynamics would make of it: articulated bodies in joint coordinates, and a partition in
+//!   closed form, both linear in the number of bodies. It takes the constraints for granted, and does the models that
+//!   [`Recursive::supports`]: trees of any joints.
 //!
-//! Both share the formulas. A row is a linear combination of the textbook's primitives and of angles between joint frames, less a
+//! All share the formulas. A row is a linear combination of the textbook's primitives and of angles between joint frames, less a
 //! function of time; a kind of joint is a short list of primitives:
 //!
 //! ```text
@@ -46,6 +49,7 @@
 
 mod articulated;
 mod assembled;
+mod balance;
 mod careful;
 mod charts;
 mod course;
@@ -69,8 +73,12 @@ mod primitives;
 mod quick_look;
 mod reactions;
 mod readings;
+mod rebuild;
+mod recursion;
 mod rows;
+mod screws;
 mod spatial;
+mod sweeps;
 mod textbook;
 mod turns;
 
@@ -81,9 +89,13 @@ pub use error::{BuildError, Unsupported};
 pub use lowered::Lowered;
 pub use number::Number;
 pub use quick_look::{Form, Precision, QuickLookError, quick_look};
+pub use recursion::Recursion;
 
 /// The paper's plain form. See [`Saddle`].
 pub type Dense<T> = Assembled<T, Saddle>;
 
 /// The careful form. See [`Elimination`].
 pub type Careful<T> = Assembled<T, Elimination<T>>;
+
+/// The recursive form. See [`Recursion`].
+pub type Recursive<T> = Assembled<T, Recursion<T>>;

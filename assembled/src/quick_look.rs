@@ -1,6 +1,6 @@
 //! A whole run of the twin, for a command line: compiled here once, so that its caller need not be optimised.
 
-use crate::{BuildError, Careful, Dense};
+use crate::{BuildError, Careful, Dense, Recursive};
 use gyro_model::Model;
 use gyro_runner::{Event, Failure, Settings, Start, Summary, run};
 use gyro_sim::{Partition, Ports};
@@ -13,10 +13,13 @@ pub enum Form {
     Careful,
     /// [`Dense`].
     Dense,
+    /// [`Recursive`].
+    Recursive,
 }
 
 impl Form {
-    /// The better form for a model: the careful one where it [applies](Careful::supports), the dense one otherwise.
+    /// The better form for a model, on the constraints or off them: the careful one where it [applies](Careful::supports), the dense one
+    /// otherwise.
     pub fn for_model(model: &Model) -> Self {
         if Careful::<f64>::supports(model).is_ok() { Self::Careful } else { Self::Dense }
     }
@@ -66,6 +69,8 @@ pub fn quick_look(
     match (form, precision) {
         (Form::Careful, Precision::Single) => simulate(Careful::<f32>::new(model), settings, start, tell),
         (Form::Careful, Precision::Double) => simulate(Careful::<f64>::new(model), settings, start, tell),
+        (Form::Recursive, Precision::Single) => simulate(Recursive::<f32>::new(model), settings, start, tell),
+        (Form::Recursive, Precision::Double) => simulate(Recursive::<f64>::new(model), settings, start, tell),
         (Form::Dense, Precision::Single) => simulate(Dense::<f32>::new(model), settings, start, tell),
         (Form::Dense, Precision::Double) => simulate(Dense::<f64>::new(model), settings, start, tell),
     }

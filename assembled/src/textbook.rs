@@ -101,3 +101,13 @@ pub(crate) fn relative_matrix<T: RealField + Copy>(p0: &Vector4<T>) -> Matrix4<T
     matrix.fixed_rows_mut::<3>(1).copy_from(&g_matrix(p0));
     matrix
 }
+
+/// The product of Euler parameters with `A(p q) = A(p) A(q)`: `p q₀ + G(p)ᵀ (q₁, q₂, q₃)`.
+pub(crate) fn product<T: RealField + Copy>(p: &Vector4<T>, q: &Vector4<T>) -> Vector4<T> {
+    p * q[0] + g_matrix(p).tr_mul(&q.fixed_rows::<3>(1))
+}
+
+/// p̄, the Euler parameters of the inverse rotation.
+pub(crate) fn conjugate<T: RealField + Copy>(p: &Vector4<T>) -> Vector4<T> {
+    Vector4::new(p[0], -p[1], -p[2], -p[3])
+}

@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 const AGREEMENT: f64 = 1e-9;
 
 /// A chain long enough that no function of it could be one block: rustc fails on those.
-const LINKS: usize = 12;
+const LINKS: usize = 6;
 
 fn fixture(name: &str) -> String {
     let path = root().join("tests/probes/outside").join(name);

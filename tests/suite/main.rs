@@ -17,6 +17,7 @@ mod moving_base;
 mod no_std_probe;
 mod paper_scenes;
 mod reactions;
+mod recursive_twin;
 mod robustness;
 mod scalars;
 mod terms;

@@ -18,6 +18,7 @@ pub(crate) enum Command {
     Simulate(SimulateArgs),
     Import(ImportArgs),
     Verify(VerifyArgs),
+    Performance(PerformanceArgs),
 }
 
 /// Write the Rust modules of models
@@ -132,6 +133,8 @@ pub(crate) enum Engine {
     Assembled,
     /// The twin in the paper's plain dense form
     Dense,
+    /// The twin as a recursion in joint coordinates: for trees of any joints, and the quickest without compiling
+    Recursive,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -153,6 +156,7 @@ impl Engine {
             Self::Generated => "generated",
             Self::Assembled => "assembled",
             Self::Dense => "dense",
+            Self::Recursive => "recursive",
         }
     }
 }
@@ -194,6 +198,21 @@ pub(crate) struct ImportArgs {
     /// Replace a page that is there already
     #[arg(long)]
     pub(crate) force: bool,
+}
+
+/// Measure generated code and write the tables of docs/performance.md
+///
+/// Times every kernel of the paper's scene beside a floor derived by hand and the forms of the twin, in turns in one process; counts
+/// instructions where valgrind is installed; generates, compiles and runs chains of more and more bodies. All of it optimised. Takes
+/// several minutes; leave the machine alone meanwhile.
+#[derive(Debug, Args)]
+pub(crate) struct PerformanceArgs {
+    /// The page whose tables are to be replaced [default: docs/performance.md]
+    #[arg(long, value_name = "FILE.md")]
+    pub(crate) out: Option<PathBuf>,
+    /// Bodies of the longest chain; 0 leaves the chains and their table alone
+    #[arg(long, value_name = "N", default_value_t = 64)]
+    pub(crate) bodies: usize,
 }
 
 /// What is fed into an input.
@@ -300,7 +319,7 @@ mod tests {
             (&["--input", "motor"], "NAME=FILE.csv or NAME=NUMBER was expected"),
             (&["--input", "motor="], "nothing stands after `motor=`"),
             (&["--input", "motor=nan"], "`nan` is not a finite number"),
-            (&["--engine", "steam"], "possible values: generated, assembled, dense"),
+            (&["--engine", "steam"], "possible values: generated, assembled, dense, recursive"),
             (&["--methd", "direct"], "--method"),
         ] {
             let found = simulate(args).unwrap_err();

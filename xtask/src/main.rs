@@ -11,10 +11,12 @@ mod inputs;
 mod json;
 mod linear;
 mod nested;
+mod performance;
 mod plot;
 mod progress;
 mod remarks;
 mod rounding;
+mod scaling;
 mod scene;
 mod simulate;
 mod spectrum;
@@ -32,6 +34,7 @@ fn main() -> ExitCode {
         Command::Generate(args) => generate::generate(&args),
         Command::Simulate(args) => simulate::simulate(&args),
         Command::Import(args) => urdf::import(&args),
+        Command::Performance(args) => performance::performance(&args),
         Command::Verify(args) => verify::verify_models(&args),
     };
     match outcome {

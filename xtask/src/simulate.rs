@@ -55,6 +55,7 @@ fn run(scene: &Scene, samples: &mut Vec<Sample>) -> Result<Summary, Failure> {
         Engine::Generated => nested::simulate(scene, &mut tell),
         Engine::Assembled => twin(scene, Form::for_model(&scene.model), &mut tell),
         Engine::Dense => twin(scene, Form::Dense, &mut tell),
+        Engine::Recursive => twin(scene, Form::Recursive, &mut tell),
     };
     progress.finish();
     outcome

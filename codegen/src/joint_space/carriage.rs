@@ -112,8 +112,8 @@ impl Carriage {
             carriage.slide(system, joint, reversed, scalar.kind, scalar.place.x);
         }
         if let Some(place) = coordinates.orientation {
-            for k in 0..3 {
-                carriage.add(&mut system.graph, ZERO3, Turn::AboutSecond(UNIT3[k]), reversed, place.u + k);
+            for (k, &axis) in UNIT3.iter().enumerate() {
+                carriage.add(&mut system.graph, ZERO3, Turn::AboutSecond(axis), reversed, place.u + k);
             }
         }
         carriage

@@ -46,8 +46,8 @@ pub fn of_bodies(system: &mut System, layout: &Layout, carriages: &[Carriage]) -
             values.insert(Symbol::Position { slot, k }, r[k]);
             values.insert(Symbol::Velocity { slot, k }, s[k]);
             values.insert(Symbol::Spin { slot, k }, own[k]);
-            for column in 0..3 {
-                values.insert(Symbol::Rotation { slot, row: k, column }, a[k][column]);
+            for (column, &entry) in a[k].iter().enumerate() {
+                values.insert(Symbol::Rotation { slot, row: k, column }, entry);
             }
         }
         for (k, &e) in p.iter().enumerate() {

@@ -1,0 +1,232 @@
+//! `cargo xtask performance`: measures generated code, the floor and the twins, and writes the tables of docs/performance.md.
+
+use crate::args::PerformanceArgs;
+use crate::failure::Failure;
+use crate::files;
+use crate::progress::Spinner;
+use crate::scaling;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// Calls of a kernel that `--count` makes: see benches/performance.rs.
+const CALLS: u64 = 100;
+
+/// Measures and writes the page.
+pub(crate) fn performance(args: &PerformanceArgs) -> Result<(), Failure> {
+    let path = args.out.clone().unwrap_or_else(|| files::root().join("docs").join("performance.md"));
+    let page = files::read_page(&path)?;
+    fs::create_dir_all(folder()).map_err(|e| said(&folder(), &e))?;
+    let program = program()?;
+    let rows = measure(&program)?;
+    let counts = count(&program)?;
+    let (kernels, runs): (Vec<_>, Vec<_>) = rows.iter().partition(|row| row.what != SECOND);
+    let mut page = replaced(&page, "machine", &machine()?)?;
+    page = replaced(&page, "kernels", &kernel_table(&kernels, counts.as_deref()))?;
+    page = replaced(&page, "runs", &run_table(&runs))?;
+    if args.bodies > 0 {
+        page = replaced(&page, "scaling", &scaling::table(&program, args.bodies)?)?;
+    }
+    let is_new = files::write(&path, &page)?;
+    eprintln!("{} {}", if is_new { "wrote" } else { "nothing new in" }, path.display());
+    Ok(())
+}
+
+/// As benches/src/kernels.rs names whole runs.
+const SECOND: &str = "the paper's second";
+
+/// Scratch: what is built and measured on the way.
+pub(crate) fn folder() -> PathBuf {
+    files::root().join("target").join("performance")
+}
+
+pub(crate) fn said(path: &Path, error: &std::io::Error) -> Failure {
+    Failure::Run(format!("{} cannot be used: {error}", path.display()))
+}
+
+/// A line of benches/performance.rs.
+struct Row {
+    what: String,
+    side: String,
+    flops: String,
+    ns: f64,
+    ratio: f64,
+}
+
+/// Builds the program that measures; returns where it is.
+fn program() -> Result<PathBuf, Failure> {
+    let _spinner = Spinner::new("building the benches".to_owned());
+    let options =
+        ["bench", "--no-run", "--package", "gyro-benches", "--bench", "performance", "--message-format=json"];
+    let messages = output(Command::new(cargo()).args(options).current_dir(files::root()))?;
+    let executable = |line: &str| {
+        let message: serde_json::Value = serde_json::from_str(line).ok()?;
+        let is_ours = message["target"]["name"] == "performance";
+        is_ours.then(|| message["executable"].as_str().map(PathBuf::from)).flatten()
+    };
+    messages
+        .lines()
+        .find_map(executable)
+        .ok_or_else(|| Failure::Run("cargo does not say where the bench is".to_owned()))
+}
+
+pub(crate) fn cargo() -> std::ffi::OsString {
+    std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into())
+}
+
+/// What a command prints; its failure is this command's.
+pub(crate) fn output(command: &mut Command) -> Result<String, Failure> {
+    let name = command.get_program().to_string_lossy().into_owned();
+    let output = command
+        .stdin(Stdio::null())
+        .output()
+        .map_err(|e| Failure::Run(format!("{name} cannot be started: {e}")))?;
+    if output.status.success() {
+        return Ok(String::from_utf8_lossy(&output.stdout).into_owned());
+    }
+    Err(Failure::Run(format!("{name}: {}\n{}", output.status, String::from_utf8_lossy(&output.stderr))))
+}
+
+fn measure(program: &Path) -> Result<Vec<Row>, Failure> {
+    let _spinner = Spinner::new("measuring kernels and runs in turns".to_owned());
+    rows(&output(&mut Command::new(program))?)
+}
+
+fn rows(text: &str) -> Result<Vec<Row>, Failure> {
+    let row = |line: &str| {
+        let [what, side, flops, ns, ratio] = line.split('\t').collect::<Vec<_>>().try_into().ok()?;
+        let [ns, ratio] = [ns, ratio].map(str::parse);
+        Some(Row {
+            what: what.into(),
+            side: side.into(),
+            flops: flops.into(),
+            ns: ns.ok()?,
+            ratio: ratio.ok()?,
+        })
+    };
+    let bad = |line: &str| Failure::Run(format!("the bench printed what this command does not know: {line}"));
+    text.lines().map(|line| row(line).ok_or_else(|| bad(line))).collect()
+}
+
+/// Instructions of one call of each kernel, in the order of the rows; none without valgrind.
+fn count(program: &Path) -> Result<Option<Vec<f64>>, Failure> {
+    if Command::new("valgrind").arg("--version").stdout(Stdio::null()).status().is_err() {
+        return Ok(None);
+    }
+    let _spinner = Spinner::new("counting instructions".to_owned());
+    let dumps = folder().join("callgrind");
+    // Those of an earlier run must not be taken for this one's.
+    let _ = fs::remove_dir_all(&dumps);
+    fs::create_dir_all(&dumps).map_err(|e| said(&dumps, &e))?;
+    let mut command = Command::new("valgrind");
+    command
+        .arg("--tool=callgrind")
+        .arg("--toggle-collect=gyro_benches::round::counted")
+        .arg("--dump-after=gyro_benches::round::counted");
+    command.arg(format!("--callgrind-out-file={}", dumps.join("out").display())).arg(program).arg("--count");
+    output(&mut command)?;
+    let dump = |index: usize| fs::read_to_string(dumps.join(format!("out.{index}"))).ok();
+    Ok(Some((1..).map_while(dump).filter_map(|text| total(&text)).map(|n| n as f64 / CALLS as f64).collect()))
+}
+
+/// The instructions of one of callgrind's dumps.
+fn total(dump: &str) -> Option<u64> {
+    let line = dump.lines().find_map(|line| line.strip_prefix("totals: "))?;
+    line.split_whitespace().next()?.parse().ok()
+}
+
+fn kernel_table(rows: &[&Row], counts: Option<&[f64]>) -> String {
+    let counts = counts.filter(|counts| counts.len() == rows.len());
+    let mut text =
+        "| kernel | | flops | instructions | ns | ÷ floor |\n|---|---|---|---|---|---|\n".to_owned();
+    let mut last = "";
+    for (index, row) in rows.iter().enumerate() {
+        let Row { what, side, flops, ns, ratio } = row;
+        let what = if what == last { "" } else { what };
+        let instructions = counts.map_or(String::new(), |counts| format!("{:.0}", counts[index]));
+        let _ = writeln!(
+            text,
+            "| {what} | {side} | {flops} | {instructions} | {} | {} |",
+            three(*ns),
+            three(*ratio)
+        );
+        last = &row.what;
+    }
+    if counts.is_none() {
+        text += "\nInstructions are counted where valgrind is installed; here they were not.\n";
+    }
+    text
+}
+
+fn run_table(rows: &[&Row]) -> String {
+    let mut text = "| the paper's second | ms | ÷ floor |\n|---|---|---|\n".to_owned();
+    for Row { side, ns, ratio, .. } in rows {
+        let _ = writeln!(text, "| {side} | {} | {} |", three(ns / 1e6), three(*ratio));
+    }
+    text
+}
+
+/// Three digits, whole where there are more.
+pub(crate) fn three(value: f64) -> String {
+    let decimals = match value {
+        v if v >= 100.0 => 0,
+        v if v >= 10.0 => 1,
+        _ => 2,
+    };
+    format!("{value:.decimals$}")
+}
+
+/// What the figures depend on besides the code.
+fn machine() -> Result<String, Failure> {
+    let info = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let model =
+        info.lines().find_map(|line| line.strip_prefix("model name")).and_then(|l| l.split_once(": "));
+    let cpu = model.map_or("a processor of unknown name", |(_, name)| name);
+    let cores = std::thread::available_parallelism().map_or(0, std::num::NonZero::get);
+    let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
+    let version = output(Command::new(rustc).arg("--version"))?;
+    let flags = std::env::var("RUSTFLAGS").unwrap_or_default();
+    let flags = if flags.is_empty() { "no further flags".to_owned() } else { format!("flags `{flags}`") };
+    Ok(format!(
+        "{cpu}, {cores} cores, {} {}; {}; profile `bench` (optimised, thin LTO, one codegen unit), {flags}.\n",
+        std::env::consts::ARCH,
+        std::env::consts::OS,
+        version.trim()
+    ))
+}
+
+/// The page with what stands between the marks of this name replaced.
+fn replaced(page: &str, name: &str, text: &str) -> Result<String, Failure> {
+    let (begin, end) = (format!("<!-- begin {name} -->\n"), format!("<!-- end {name} -->"));
+    let missing = |mark: &str| Failure::Usage(format!("the page has no line `{}`", mark.trim()));
+    let (before, rest) = page.split_once(&begin).ok_or_else(|| missing(&begin))?;
+    let (_, after) = rest.split_once(&end).ok_or_else(|| missing(&end))?;
+    Ok(format!("{before}{begin}{text}{end}{after}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_is_between_the_marks_is_replaced() {
+        let page = "a\n<!-- begin x -->\nold\n<!-- end x -->\nb\n";
+        assert_eq!(replaced(page, "x", "new\n").unwrap(), "a\n<!-- begin x -->\nnew\n<!-- end x -->\nb\n");
+        assert!(replaced(page, "y", "new\n").is_err());
+    }
+
+    #[test]
+    fn rows_are_read_whole_or_not_at_all() {
+        let read = rows("phi\tcareful twin\t\t12.5\t2.0\n").unwrap();
+        assert_eq!((read[0].what.as_str(), read[0].flops.as_str(), read[0].ns), ("phi", "", 12.5));
+        assert!(rows("phi\tcareful twin\t12.5\n").is_err());
+        assert_eq!(total("events: Ir\ntotals: 4200\n"), Some(4200));
+        assert_eq!(total("nothing"), None);
+    }
+
+    #[test]
+    fn figures_have_three_digits() {
+        assert_eq!([1.234_5, 12.345, 123.45, 12345.6].map(three), ["1.23", "12.3", "123", "12346"]);
+    }
+}

@@ -1,0 +1,356 @@
+//! Chains of more and more bodies: what they cost to generate, to compile and to run.
+
+use crate::failure::Failure;
+use crate::files;
+use crate::performance::{cargo, folder, output, said, three};
+use crate::progress::Spinner;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// Numbers of bodies.
+const SIZES: [usize; 7] = [1, 2, 4, 8, 16, 32, 64];
+
+/// Axes of the joints and directions across them, in turn: none parallel or at right angles to the next.
+const AXES: [([i32; 3], [i32; 3]); 3] =
+    [([1, 2, 2], [2, 1, -2]), ([2, -1, 2], [2, 2, -1]), ([-2, 1, 2], [2, 2, 1])];
+
+/// What one chain takes.
+struct Chain {
+    bodies: usize,
+    flops: String,
+    generation_s: f64,
+    /// None where rustc fails, or is ended.
+    release_s: Option<f64>,
+    debug_s: Option<f64>,
+    bytes: Option<u64>,
+    /// Accelerations: generated, recursive, careful; not of what rustc has not compiled.
+    ns: Option<[f64; 3]>,
+}
+
+/// Measures chains of up to so many bodies; a table in Markdown.
+pub(crate) fn table(generator: &Path, most: usize) -> Result<String, Failure> {
+    let sizes: Vec<usize> = SIZES.into_iter().filter(|&bodies| bodies <= most).collect();
+    let place = Place { folder: folder().join("scaling") };
+    let mut chains = place.generate(generator, &sizes)?;
+    place.compile(&mut chains)?;
+    place.run(&mut chains)?;
+    let mut text = "| bodies | flops | flops a body | generated, ns | recursive twin, ns | careful twin, ns | generation, s | rustc \
+                    release, s | rustc debug, s | machine code, bytes |\n"
+        .to_owned();
+    text += "|---|---|---|---|---|---|---|---|---|---|\n";
+    for chain in &chains {
+        text += &chain.row();
+    }
+    Ok(text)
+}
+
+impl Chain {
+    fn row(&self) -> String {
+        let Self { bodies, flops, generation_s, release_s, debug_s, bytes, ns } = self;
+        let a_body = flops.parse::<f64>().map_or(String::new(), |flops| three(flops / *bodies as f64));
+        let bytes = bytes.map_or(String::new(), |bytes| bytes.to_string());
+        let seconds =
+            |taken: &Option<f64>| taken.map_or("not compiled".to_owned(), |taken| format!("{taken:.1}"));
+        let (release_s, debug_s) = (seconds(release_s), seconds(debug_s));
+        let [generated, recursive, careful] = ns.map_or([(); 3].map(|()| String::new()), |ns| ns.map(three));
+        format!(
+            "| {bodies} | {flops} | {a_body} | {generated} | {recursive} | {careful} | {generation_s:.2} | {release_s} | \
+             {debug_s} | {bytes} |\n"
+        )
+    }
+}
+
+/// The page of a chain that hangs from the ground, its joints askew, at angles and rates.
+fn page(bodies: usize) -> String {
+    let mut text = format!(
+        "format = 1\nname = \"chain_{bodies}\"\ngravity = [0, 0, -9.81]\n\n[[body]]\nname = \"base\"\nfixed = true\n"
+    );
+    for link in 1..=bodies {
+        let _ =
+            write!(text, "\n[[body]]\nname = \"link_{link}\"\nmass = 0.5\ninertia = [2e-3, 3e-3, 4e-3]\n");
+    }
+    for link in 1..=bodies {
+        let before = if link == 1 { "base".to_owned() } else { format!("link_{}", link - 1) };
+        let (axis, zero) = AXES[link % AXES.len()];
+        let (angle, rate) = (0.1 * ((link % 5) as f64 + 1.0), 0.3 * ((link % 7) as f64 - 2.5));
+        let _ = write!(
+            text,
+            "\n[[joint]]\nname = \"hinge_{link}\"\nkind = \"revolute\"\naxis = {axis:?}\nzero = {zero:?}\nfirst = {{ body = \
+             \"{before}\", point = [0.02, -0.01, -0.1] }}\nsecond = {{ body = \"link_{link}\", point = [-0.01, 0.02, 0.1] }}\nangle = \
+             {angle:.1}\nrate = {rate:.2}\n"
+        );
+    }
+    text
+}
+
+/// A workspace of its own for the chains' crates and the program that runs them.
+struct Place {
+    folder: PathBuf,
+}
+
+impl Place {
+    fn write(&self, path: &str, text: &str) -> Result<(), Failure> {
+        let path = self.folder.join(path);
+        let parent = path.parent().unwrap_or(&self.folder);
+        fs::create_dir_all(parent).map_err(|e| said(parent, &e))?;
+        files::write(&path, text).map(|_| ())
+    }
+
+    /// Writes pages, modules and crates.
+    fn generate(&self, generator: &Path, sizes: &[usize]) -> Result<Vec<Chain>, Failure> {
+        let mut chains = Vec::new();
+        for &bodies in sizes {
+            let _spinner = Spinner::new(format!("generating a chain of {bodies}"));
+            let name = format!("chain_{bodies}");
+            self.write(&format!("{name}/page.toml"), &page(bodies))?;
+            let page = self.folder.join(&name).join("page.toml");
+            let file = fs::File::open(&page).map_err(|e| said(&page, &e))?;
+            let before = children_cpu_s();
+            let module = Command::new(generator)
+                .arg("--generate")
+                .stdin(file)
+                .stderr(Stdio::inherit())
+                .output()
+                .map_err(|e| said(generator, &e))?;
+            let generation_s = children_cpu_s() - before;
+            if !module.status.success() {
+                return Err(Failure::Run(format!("a chain of {bodies} cannot be generated")));
+            }
+            let module = String::from_utf8_lossy(&module.stdout).into_owned();
+            self.write(&format!("{name}/src/mechanism.rs"), &module)?;
+            self.write(&format!("{name}/src/lib.rs"), &library(bodies))?;
+            self.write(&format!("{name}/Cargo.toml"), &manifest(&name, &[("gyro-sim", "gyro-sim")], &[]))?;
+            let flops = flops(&module);
+            chains.push(Chain {
+                bodies,
+                flops,
+                generation_s,
+                release_s: None,
+                debug_s: None,
+                bytes: None,
+                ns: None,
+            });
+        }
+        self.write_program(sizes)?;
+        Ok(chains)
+    }
+
+    fn write_program(&self, sizes: &[usize]) -> Result<(), Failure> {
+        let names: Vec<String> = sizes.iter().map(|bodies| format!("chain_{bodies}")).collect();
+        let ours = [
+            ("gyro-sim", "gyro-sim"),
+            ("gyro-model", "model"),
+            ("gyro-assembled", "assembled"),
+            ("gyro-benches", "benches"),
+        ];
+        self.write("run/Cargo.toml", &manifest("run", &ours, &names))?;
+        self.write("run/src/main.rs", &program(sizes))?;
+        let members: Vec<&str> = names.iter().map(String::as_str).chain(["run"]).collect();
+        let workspace = format!(
+            "[workspace]\nresolver = \"3\"\nmembers = {members:?}\n\n[profile.release]\ndebug = false\n"
+        );
+        self.write("Cargo.toml", &workspace)?;
+        let lock = files::root().join("Cargo.lock");
+        let text = fs::read_to_string(&lock).map_err(|e| said(&lock, &e))?;
+        self.write("Cargo.lock", &text)
+    }
+
+    /// Compiles every chain by itself, after what it depends on.
+    fn compile(&self, chains: &mut [Chain]) -> Result<(), Failure> {
+        // What an earlier run has compiled would take no time.
+        let built = self.folder.join("target");
+        if built.exists() {
+            fs::remove_dir_all(&built).map_err(|e| said(&built, &e))?;
+        }
+        for profile in ["release", "dev"] {
+            self.cargo(&["build", "--profile", profile, "--package", "gyro-sim"])?;
+            for chain in &mut *chains {
+                let name = format!("chain_{}", chain.bodies);
+                let _spinner = Spinner::new(format!("compiling {name}, profile {profile}"));
+                let before = children_cpu_s();
+                let outcome = self.cargo(&["build", "--profile", profile, "--package", &name]);
+                let taken = outcome.is_ok().then(|| children_cpu_s() - before);
+                if let Err(failure) = outcome {
+                    failure.report();
+                }
+                if profile == "release" {
+                    chain.release_s = taken;
+                } else {
+                    chain.debug_s = taken;
+                }
+            }
+        }
+        for chain in chains {
+            chain.bytes = bytes(&built.join("release").join(format!("libchain_{}.rlib", chain.bodies)));
+        }
+        Ok(())
+    }
+
+    /// Times the accelerations of all chains in turns.
+    fn run(&self, chains: &mut [Chain]) -> Result<(), Failure> {
+        let _spinner = Spinner::new("running chains".to_owned());
+        let compiled = || chains.iter().filter(|chain| chain.release_s.is_some());
+        self.write_program(&compiled().map(|chain| chain.bodies).collect::<Vec<_>>())?;
+        let said = self.cargo(&["run", "--release", "--package", "run"])?;
+        let numbers: Vec<f64> = said.split_whitespace().filter_map(|word| word.parse().ok()).collect();
+        let figures = numbers.as_chunks::<3>().0;
+        if figures.len() != compiled().count() {
+            return Err(Failure::Run(format!("the chains ran and said {said}")));
+        }
+        let compiled = chains.iter_mut().filter(|chain| chain.release_s.is_some());
+        compiled.zip(figures).for_each(|(chain, ns)| chain.ns = Some(*ns));
+        Ok(())
+    }
+
+    fn cargo(&self, options: &[&str]) -> Result<String, Failure> {
+        let mut command = Command::new(cargo());
+        command.args(options).args(["--offline", "--quiet"]).current_dir(&self.folder);
+        command.env("CARGO_TARGET_DIR", self.folder.join("target")).env_remove("CARGO_BUILD_TARGET");
+        output(&mut command)
+    }
+}
+
+fn manifest(name: &str, ours: &[(&str, &str)], beside: &[String]) -> String {
+    let mut text = format!(
+        "[package]\nname = \"{name}\"\nversion = \"0.0.0\"\nedition = \"2024\"\npublish = false\n\n[dependencies]\n"
+    );
+    for (package, folder) in ours {
+        let path = files::root().join(folder);
+        let _ = writeln!(text, "{package} = {{ path = {:?} }}", path.to_string_lossy());
+    }
+    for package in beside {
+        let _ = writeln!(text, "{package} = {{ path = \"../{package}\" }}");
+    }
+    text
+}
+
+/// The functions of the module for `f64`: without these nothing would be compiled.
+fn library(bodies: usize) -> String {
+    format!(
+        "#[allow(warnings, clippy::all)]
+mod mechanism;
+
+use gyro_sim::{{Energy, Equations, Error, Mechanism, Ode, Partition}};
+
+pub type Chain = mechanism::Chain{bodies}<f64>;
+type State = <Chain as Ode>::State;
+type Rows = <Chain as Mechanism>::Rows;
+type Accelerations = <Chain as Equations>::Accelerations;
+
+pub fn start() -> State {{ Chain::default().start() }}
+pub fn buffer() -> Accelerations {{ Chain::default().accelerations_buffer() }}
+#[inline(never)]
+pub fn accelerations(y: &State, out: &mut Accelerations) {{ Chain::default().accelerations(0.0, y, out) }}
+pub fn multipliers(y: &State, a: &Accelerations, out: &mut Rows) {{ Chain::default().multipliers(0.0, y, a, out) }}
+pub fn derivative(y: &State, dy: &mut State) {{ Chain::default().derivative(0.0, y, dy) }}
+pub fn phi(y: &State, out: &mut <Chain as Mechanism>::Constraints) {{ Chain::default().phi(0.0, y, out) }}
+pub fn phi_q(y: &State, out: &mut <Chain as Equations>::PhiQ) {{ Chain::default().phi_q(0.0, y, out) }}
+pub fn gamma(y: &State, out: &mut Rows) {{ Chain::default().gamma(0.0, y, out) }}
+pub fn velocity_residual(y: &State, out: &mut Rows) {{ Chain::default().velocity_residual(0.0, y, out) }}
+pub fn energy(y: &State) -> Energy<f64> {{ Chain::default().energy(0.0, y) }}
+pub fn read_joints(y: &State, out: &mut <Chain as Mechanism>::Readings) {{ Chain::default().read_joints(0.0, y, out) }}
+pub fn independent(y: &State) -> <Chain as Partition>::Independent {{ Chain::default().independent(0.0, y) }}
+pub fn newton_step(i: &<Chain as Partition>::Independent, y: &mut State) -> Result<(), Error> {{
+    Chain::default().newton_step(0.0, i, y)
+}}
+pub fn solve_velocities(i: &<Chain as Partition>::Independent, y: &mut State) -> Result<(), Error> {{
+    Chain::default().solve_velocities(0.0, i, y)
+}}
+"
+    )
+}
+
+/// Prints three times a chain, ns: accelerations generated, recursive, careful. All agree, or it panics.
+fn program(sizes: &[usize]) -> String {
+    let mut text = "use gyro_assembled::{Careful, Recursive};
+use gyro_benches::{Clock, Kernel, interleaved};
+use gyro_sim::{Equations, Ode};
+use std::hint::black_box;
+use std::time::Duration;
+
+fn main() {
+    let mut kernels = Vec::new();
+"
+    .to_owned();
+    for bodies in sizes {
+        let _ = write!(
+            text,
+            "    let model = gyro_model::read(\"page.toml\", include_str!(\"../../chain_{bodies}/page.toml\")).expect(\"a page\");
+    let y = chain_{bodies}::start();
+    let mut out = chain_{bodies}::buffer();
+    chain_{bodies}::accelerations(&y, &mut out);
+    let expected = out.as_ref()[..{n_v}].to_vec();
+    kernels.push(Kernel::new(\"\", \"\", None, move || chain_{bodies}::accelerations(black_box(&y), black_box(&mut out))));
+    kernels.push(twin(Recursive::<f64>::new(&model).expect(\"a tree\"), &expected));
+    kernels.push(twin(Careful::<f64>::new(&model).expect(\"a tree\"), &expected));
+",
+            n_v = 6 * bodies
+        );
+    }
+    text += "    for figure in interleaved(&mut kernels, 51, (Duration::from_millis(1), Clock::Wall), |_| ()) {
+        println!(\"{}\", figure.ns);
+    }
+}
+
+fn twin<M: Equations<Scalar = f64> + Ode<State = Vec<f64>> + 'static>(twin: M, expected: &[f64]) -> Kernel<'static> {
+    let (y, mut out) = (twin.start(), twin.accelerations_buffer());
+    twin.accelerations(0.0, &y, &mut out);
+    let largest = expected.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
+    for (a, b) in out.as_ref().iter().zip(expected) {
+        assert!((a - b).abs() < 1e-8 * largest, \"{a} {b} {largest}\");
+    }
+    Kernel::new(\"\", \"\", None, move || twin.accelerations(0.0, black_box(&y), black_box(&mut out)))
+}
+";
+    text
+}
+
+/// The total of the accelerations in a module's data sheet.
+fn flops(module: &str) -> String {
+    let row = module.lines().find(|line| line.starts_with("//! | accelerations |")).unwrap_or_default();
+    row.split('|').nth(6).unwrap_or_default().trim().to_owned()
+}
+
+/// Machine code of what is named accelerations; none without `nm`.
+fn bytes(library: &Path) -> Option<u64> {
+    let symbols = output(Command::new("nm").args(["--print-size", "--demangle"]).arg(library)).ok()?;
+    let size = |line: &str| {
+        let [_, size, kind, name] = line.splitn(4, ' ').collect::<Vec<_>>().try_into().ok()?;
+        let is_code = matches!(kind, "t" | "T") && name.contains("::accelerations");
+        is_code.then(|| u64::from_str_radix(size, 16).ok()).flatten()
+    };
+    Some(symbols.lines().filter_map(size).sum())
+}
+
+/// CPU time of all children that have ended, s: on a shared machine the time of day says little. Zero where the system does not
+/// tell.
+fn children_cpu_s() -> f64 {
+    /// Of the kernel's clock in user space, whatever its own is.
+    const TICKS_A_SECOND: f64 = 100.0;
+    let text = fs::read_to_string("/proc/self/stat").unwrap_or_default();
+    // The name in brackets may contain spaces; user and system time of children are the 14th and 15th after it.
+    let after = text.rsplit(')').next().unwrap_or_default();
+    let ticks = after.split_whitespace().skip(13).take(2).filter_map(|word| word.parse::<f64>().ok());
+    ticks.sum::<f64>() / TICKS_A_SECOND
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_pages_are_chains() {
+        for bodies in [1, 2, 8] {
+            let model = gyro_model::read("chain.toml", &page(bodies)).unwrap();
+            assert_eq!((model.degrees_of_freedom(), model.joints.len()), (bodies, bodies));
+        }
+    }
+
+    #[test]
+    fn the_total_is_the_sixth_column() {
+        let sheet = "//! | function | computes | + − | × | ÷ | total | zeros |\n//! | accelerations | (s̈, ẇ'), eq. (17) | 216 | 339 | 5 | 560 | 7 of 18 |\n";
+        assert_eq!(flops(sheet), "560");
+    }
+}
