@@ -43,27 +43,57 @@ fn report(model: &Model, fault: usize) -> Option<Report> {
     Some(verify(model, &module.code, &module.constants, Depth::Quick))
 }
 
-#[test]
-fn no_fault_of_the_derivation_survives() {
-    assert!(STALE.is_empty(), "the generator's text has changed, `faults.rs` must follow: {STALE:#?}");
-    let (mut models, mut survivors) = (HashMap::new(), Vec::new());
-    let (mut refuted, mut unwritten) = (0, 0);
-    for (index, (what, name, harmless)) in faults::all().enumerate() {
+/// What became of a fault.
+enum Fate {
+    Refuted,
+    /// Nothing readable was written.
+    Unwritten,
+    Harmless(&'static str),
+    Survived,
+}
+
+fn fate(model: &Model, fault: usize, harmless: Option<&'static str>) -> Fate {
+    // The formulas must be refuted: that a fault shows in the structure of the text does not count.
+    match (report(model, fault), harmless) {
+        (Some(report), None) if report.findings.iter().any(Finding::is_refuted) => Fate::Refuted,
+        (Some(report), None) if report.findings.is_empty() => Fate::Unwritten,
+        (None, None) => Fate::Unwritten,
+        (Some(report), Some(why)) if report.findings.iter().all(Finding::is_proved) => Fate::Harmless(why),
+        _ => Fate::Survived,
+    }
+}
+
+/// Every `n`th fault from the `k`th on, with what became of it. A fault is switched on for its thread alone.
+fn fates(k: usize, n: usize) -> Vec<(String, Fate)> {
+    let mut models = HashMap::new();
+    let faults = faults::all().enumerate().skip(k).step_by(n);
+    let fates = faults.map(|(index, (what, name, harmless))| {
         let model = models.entry(name).or_insert_with(|| {
             let model = page(name);
             let report = report(&model, 0).expect("a module without faults");
             assert!(report.is_proved(), "{report}");
             model
         });
-        // The formulas must be refuted: that a fault shows in the structure of the text does not count.
-        match (report(model, index + 1), harmless) {
-            (Some(report), None) if report.findings.iter().any(Finding::is_refuted) => refuted += 1,
-            (Some(report), None) if report.findings.is_empty() => unwritten += 1,
-            (None, None) => unwritten += 1,
-            (Some(report), Some(why)) if report.findings.iter().all(Finding::is_proved) => {
-                println!("{what} is proved: {why}")
-            }
-            _ => survivors.push(format!("{name}: {what}")),
+        (format!("{name}: {what}"), fate(model, index + 1, harmless))
+    });
+    fates.collect()
+}
+
+#[test]
+fn no_fault_of_the_derivation_survives() {
+    assert!(STALE.is_empty(), "the generator's text has changed, `faults.rs` must follow: {STALE:#?}");
+    let n = std::thread::available_parallelism().map_or(1, usize::from);
+    let fates: Vec<_> = std::thread::scope(|scope| {
+        let threads: Vec<_> = (0..n).map(|k| scope.spawn(move || fates(k, n))).collect();
+        threads.into_iter().flat_map(|thread| thread.join().expect("no panic but of the generator")).collect()
+    });
+    let (mut refuted, mut unwritten, mut survivors) = (0, 0, Vec::new());
+    for (what, fate) in fates {
+        match fate {
+            Fate::Refuted => refuted += 1,
+            Fate::Unwritten => unwritten += 1,
+            Fate::Harmless(why) => println!("{what} is proved: {why}"),
+            Fate::Survived => survivors.push(what),
         }
     }
     println!("{refuted} faults refuted, {unwritten} after which nothing readable is written");
