@@ -35,6 +35,9 @@ How to read it:
 * The dense twin solves eq. (17) by LU with pivoting: what it loses is about what the state's conditioning costs. The generated solve
   does not pivot; it may be better or worse. Where a kernel is more than ten times worse than the dense twin, it is listed here first.
 * The twin has no u̇: beside `joint_accelerations_at` stands what it loses in v̇, at the same states.
+* The worst rows of corrected states are those of bodies that are free along their joint. `planar` and `cylindrical` fall freely and spin about a joint
+  point beside the mass centre: their λ, and the s̈ of a fast spin, are small rests of large terms (weight less inertia, centripetal less tangential
+  acceleration) that `corrected_multipliers` and `corrected_accelerations` compute one by one. The dense twin solves for the mass centre's acceleration itself.
 * Empty cells: the twin has no such function (it chooses coordinates by pivoting and reads angles with another factor), or no careful
   form for the mechanism; or all results are zero.
 
