@@ -3,6 +3,7 @@
 use gyro_model::Model;
 use gyro_verifier::field::Prime;
 use gyro_verifier::module::Module;
+use gyro_verifier::program::{Node, Program};
 use gyro_verifier::proof::{Claim, Decider, Verdict, prime};
 use gyro_verifier::{Depth, verify};
 use std::fmt::Write;
@@ -81,4 +82,51 @@ fn the_data_sheet_says_what_was_proved() {
     let page = crate::support::page("four-bar");
     let report = verify(&page.model, &page.code, &page.constants, Depth::Quick);
     assert!(report.sheet().join("\n").contains("Not proved: the choice of coordinates"));
+}
+
+/// The program with both arguments of each angle negated: half a turn away.
+fn turned(program: &Program) -> Program {
+    let (mut turned, mut places) =
+        (Program { places: program.places.clone(), ..Program::default() }, Vec::new());
+    for (node, &line) in program.nodes.iter().zip(&program.lines) {
+        let node = node.with_operands(|id| places[id]);
+        let node = match node {
+            Node::Atan2(y, x) => {
+                Node::Atan2(turned.push(Node::Neg(y), line), turned.push(Node::Neg(x), line))
+            }
+            node => node,
+        };
+        places.push(turned.push(node, line));
+    }
+    turned.results = program.results.iter().map(|&id| places[id]).collect();
+    turned
+}
+
+/// Half a turn changes neither an angle's derivative nor, modulo a prime, that it is the angle of a point on a line.
+#[test]
+fn half_a_turn_is_refuted() {
+    let page = crate::support::page("torsion");
+    let mut module = Module::read(&page.model, &page.code, &page.constants).expect("the emitted subset");
+    let prime: Prime<9> = prime(&page.model, &module, 1).expect("room for all roots");
+    let decider = Decider::new(&page.model, prime);
+    assert!(matches!(decider.decide(&module, Claim::ToJoints, 1, 1), Verdict::Proved { .. }));
+    let program = module.programs.get_mut("to_joints").expect("a tree has joint coordinates");
+    *program = turned(program);
+    assert!(matches!(decider.decide(&module, Claim::ToJoints, 1, 1), Verdict::Refuted { .. }));
+}
+
+/// A start in joint coordinates that is not the assembled one is a mistake.
+#[test]
+fn a_wrong_start_in_joint_coordinates_is_refuted() {
+    let page = crate::support::page("torsion");
+    let (head, joints) = page.code.split_once("fn joint_start").expect("a tree has joint coordinates");
+    let (_, rest) = joints.split_once("k(").expect("a number");
+    let (number, _) = rest.split_once(')').expect("its end");
+    let number: f64 = number.parse().expect("a number");
+    for other in [number + 1e-9, number + std::f64::consts::TAU] {
+        let wrong = joints.replacen(&format!("k({number:?})"), &format!("k({other:?})"), 1);
+        let report =
+            verify(&page.model, &format!("{head}fn joint_start{wrong}"), &page.constants, Depth::Quick);
+        assert!(report.is_refuted() && report.problems.len() == 1, "{report}");
+    }
 }
