@@ -31,7 +31,8 @@ use gyro_model::{JointCoordinate, Start};
 use maps::Values;
 use std::array::from_fn;
 
-/// Beyond this many rates the polynomials of a reduced mass matrix are longer than the recursion.
+/// Beyond this many rates the polynomials of a reduced mass matrix are seldom shorter than the recursion, and take long to work
+/// out: they are not tried.
 const MAX_FACTORED: usize = 4;
 
 /// What `gyro_sim::JointSpace` asks of a generated tree, as final expressions.
@@ -395,7 +396,7 @@ mod tests {
         names.iter().map(of).sum()
     }
 
-    /// The paper's scene costs no more than an analyst's pencil reaches: 24 operations for the joint accelerations.
+    /// The paper's scene costs about what an analyst's pencil reaches: 17 operations for the joint accelerations, in benches/.
     #[test]
     fn nothing_is_computed_that_the_paper_s_scene_does_not_need() {
         let page = include_str!("../../../models/gyroscope.toml");
