@@ -29,6 +29,8 @@ pub struct Equations<'m> {
     pub phi: Vec<ExprId>,
     pub phi_q: Sparse,
     pub phi_pi: Sparse,
+    /// Entries of Φ_π' that are zero for unit Euler parameters and were left out.
+    pub n_vanishing: usize,
     pub nu: Vec<ExprId>,
     pub gamma: Vec<ExprId>,
     pub velocity_residual: Vec<ExprId>,
@@ -94,12 +96,14 @@ impl<'m> Equations<'m> {
         let graph = &mut system.graph;
         let mut phi_pi = non_zeros(&expand_matrix(&mut expansion, graph, &kinematics.phi_pi));
         // A product of two vectors of one body does not change as the body turns.
+        let n_derived = phi_pi.len();
         phi_pi.retain(|&(.., entry)| !vanishes(graph, &euler, entry));
         let all_phi: Vec<_> = kinematics.phi.iter().chain(&kinematics.normalisations).copied().collect();
         Self {
             model,
             phi: expansion.all(graph, &all_phi),
             phi_q: non_zeros(&expand_matrix(&mut expansion, graph, &kinematics.phi_q)),
+            n_vanishing: n_derived - phi_pi.len(),
             phi_pi,
             nu: expansion.all(graph, &kinematics.nu),
             gamma: expansion.all(graph, &kinematics.gamma),

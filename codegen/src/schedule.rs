@@ -7,15 +7,19 @@ use std::fmt;
 /// Arithmetic operations of a program. A negation is free; a product with a reciprocal that nobody else uses is one division.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Operations {
+    /// Sums and differences.
     pub additions: usize,
+    /// Products.
     pub multiplications: usize,
+    /// Quotients.
     pub divisions: usize,
+    /// Square roots, sines and the like.
     pub functions: usize,
 }
 
 impl Operations {
     /// Counts each shared expression once.
-    pub fn count(graph: &Graph, roots: &[ExprId]) -> Self {
+    pub(crate) fn count(graph: &Graph, roots: &[ExprId]) -> Self {
         let uses = Uses::count(graph, roots);
         let mut operations = Self::default();
         for &id in &uses.order {
@@ -47,6 +51,36 @@ impl fmt::Display for Operations {
             write!(f, " and {functions} functions")?;
         }
         Ok(())
+    }
+}
+
+/// Operations on the way to a program, + − × ÷ together. Constants are folded and zeros and ones vanish as expressions are built:
+/// there is no pass before that.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Passes {
+    /// Every expression written out wherever it is used; the largest number if there are more.
+    pub written_out: u64,
+    /// Equal expressions computed once.
+    pub shared: usize,
+    /// Products with reciprocals that nobody else uses written as quotients: what is emitted.
+    pub emitted: usize,
+}
+
+impl Passes {
+    pub(crate) fn count(graph: &Graph, roots: &[ExprId]) -> Self {
+        let is_operation =
+            |id: ExprId| matches!(graph.node(id), Node::Add(..) | Node::Mul(..) | Node::Recip(_));
+        let order = graph.reachable(roots);
+        let mut sizes: HashMap<ExprId, u64> = HashMap::new();
+        for &id in &order {
+            let operands = graph.node(id).operands().map(|operand| sizes[&operand]);
+            sizes.insert(id, operands.fold(u64::from(is_operation(id)), u64::saturating_add));
+        }
+        Self {
+            written_out: roots.iter().fold(0, |sum, root| sizes[root].saturating_add(sum)),
+            shared: order.iter().filter(|&&id| is_operation(id)).count(),
+            emitted: Operations::count(graph, roots).total(),
+        }
     }
 }
 

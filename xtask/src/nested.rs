@@ -239,6 +239,7 @@ mod tests {
             type_name: "Top".to_owned(),
             code: code.to_owned(),
             constants: String::new(),
+            sheet: Sheet::default(),
         };
         let name = |code, precision| Package::new(&module(code), precision).name;
         assert_eq!(name("a", Precision::F64), name("a", Precision::F64));

@@ -23,6 +23,7 @@ use crate::kinematics::Kinematics;
 use crate::linear::{UNIT3, Vec3, ZERO3, transposed};
 use crate::null_space::Arm;
 use crate::schedule::Operations;
+use crate::sheet::{Form, Reduction};
 use crate::symbol::Symbol;
 use crate::system::System;
 use carriage::Carriage;
@@ -34,6 +35,9 @@ use std::array::from_fn;
 /// Beyond this many rates the polynomials of a reduced mass matrix are seldom shorter than the recursion, and take long to work
 /// out: they are not tried.
 const MAX_FACTORED: usize = 4;
+
+/// As the data sheet calls it.
+const NORMAL_FORM: &str = "normal form";
 
 /// What `gyro_sim::JointSpace` asks of a generated tree, as final expressions.
 #[derive(Debug)]
@@ -55,12 +59,29 @@ pub struct JointSpace {
     pub reduced: Vec<ExprId>,
     /// The joint state at the start.
     pub start: Vec<f64>,
+    /// Bodies that are described in a frame that does not turn with them.
+    pub invariant: Vec<usize>,
+    /// What was compared for accelerations, accelerations_at and corrected.
+    forms: [Vec<Form>; 3],
+    /// What the normal form made of the accelerations' parts.
+    reductions: Vec<Reduction>,
 }
 
 impl JointSpace {
     /// Whether joint coordinates describe the mechanism.
     pub fn covers(system: &System) -> bool {
         system.tree.is_open() && closing_rows(system).is_empty()
+    }
+
+    /// The forms of a function that were compared, and what the normal form did for it.
+    pub fn choice(&self, function: &str) -> (Vec<Form>, Vec<Reduction>) {
+        let [accelerations, at, corrected] = &self.forms;
+        match function {
+            "joint_accelerations" => (accelerations.clone(), self.reductions.clone()),
+            "joint_accelerations_at" => (at.clone(), Vec::new()),
+            "corrected_accelerations" => (corrected.clone(), Vec::new()),
+            _ => Default::default(),
+        }
     }
 
     /// `power` is that of the maximal form.
@@ -86,21 +107,30 @@ impl JointSpace {
         };
         let spins = dynamics::spins(system, &carriages_of_dynamics);
         let from_rates = reduced(system, &spins);
-        let mut candidates = vec![from_rates.recursion(system)];
+        let mut candidates = vec![("recursion", from_rates.recursion(system))];
+        let mut reductions = Vec::new();
         let unit = unit_atoms(system, &layout);
         if layout.n_rates <= MAX_FACTORED {
-            candidates.push(from_rates.factored(system, &unit));
+            candidates.push((NORMAL_FORM, from_rates.factored(system, &unit, &mut reductions)));
         }
-        let of_rates = candidates.iter().map(|roots| expanded(system, &in_joints, roots)).collect();
-        let accelerations = cheapest(&system.graph, of_rates);
+        let of_rates = (candidates.iter())
+            .map(|(name, roots)| ((*name).to_owned(), expanded(system, &in_joints, roots)))
+            .collect();
+        let (accelerations, forms) = cheapest(&system.graph, of_rates);
 
         // A maximal state has the angular velocities at hand.
         let spins = spins_at_hand(system, &layout, &carriages_of_dynamics, &invariant);
-        candidates.push(reduced(system, &spins).recursion(system));
-        let at: Vec<_> = candidates.iter().map(|roots| expanded(system, &of_joints, roots)).collect();
-        let accelerations_at = cheapest(&system.graph, at.clone());
-        let corrected = at.iter().flat_map(|rates| outward(system, &carriages, &of_joints, rates)).collect();
-        let corrected = cheapest(&system.graph, corrected);
+        candidates.push(("recursion on the bodies' spins", reduced(system, &spins).recursion(system)));
+        let at: Vec<_> = (candidates.iter())
+            .map(|(name, roots)| ((*name).to_owned(), expanded(system, &of_joints, roots)))
+            .collect();
+        let (accelerations_at, forms_at) = cheapest(&system.graph, at.clone());
+        let corrected = at.iter().flat_map(|(name, rates)| {
+            let frames = ["the bodies' frames", "the global frame"].map(|frame| format!("{name} in {frame}"));
+            frames.into_iter().zip(outward(system, &carriages, &of_joints, rates))
+        });
+        let corrected = corrected.collect();
+        let (corrected, forms_corrected) = cheapest(&system.graph, corrected);
 
         let tree = (&layout, &carriages[..]);
         let multipliers = multipliers::of(system, kinematics, dynamics, tree, &unit);
@@ -111,7 +141,13 @@ impl JointSpace {
         derivative.extend(power.map(of_power));
         let reduced = maps::reduced(system, &layout);
         let reduced = Expansion::new(&system.definitions).all(&mut system.graph, &reduced);
+        let is_invariant = |link: &&layout::LinkCoordinates| {
+            link.scalars.iter().any(|scalar| invariant.contains(&scalar.place.x))
+        };
         Self {
+            invariant: layout.links.iter().filter(is_invariant).map(|link| link.link.body).collect(),
+            forms: [forms, forms_at, forms_corrected],
+            reductions,
             accelerations,
             multipliers,
             derivative,
@@ -233,13 +269,18 @@ fn expanded(system: &mut System, values: &Values, roots: &[ExprId]) -> Vec<ExprI
     Expansion::with_values(&system.definitions, values.clone()).all(&mut system.graph, roots)
 }
 
-/// The set of roots that takes the fewest operations.
-fn cheapest(graph: &Graph, candidates: Vec<Vec<ExprId>>) -> Vec<ExprId> {
-    let cost = |roots: &Vec<ExprId>| {
-        let operations = Operations::count(graph, roots);
-        (operations.functions, operations.total())
+/// The set of roots that takes the fewest operations, and what each would have taken.
+fn cheapest(graph: &Graph, candidates: Vec<(String, Vec<ExprId>)>) -> (Vec<ExprId>, Vec<Form>) {
+    let costs: Vec<_> = candidates.iter().map(|(_, roots)| Operations::count(graph, roots)).collect();
+    let cost = |&k: &usize| (costs[k].functions, costs[k].total());
+    let taken = (0..candidates.len()).min_by_key(cost).expect("there is a recursion");
+    let form = |(k, (name, _)): (usize, &(String, _))| Form {
+        name: name.clone(),
+        operations: costs[k],
+        is_taken: k == taken,
     };
-    candidates.into_iter().min_by_key(cost).expect("there is a recursion")
+    let forms = candidates.iter().enumerate().map(form).collect();
+    (candidates.into_iter().nth(taken).expect("it is one of them").1, forms)
 }
 
 /// (s̈, ẇ') of each slot from the rates' rates: translations in each body's own frame, or in the global one.
