@@ -85,7 +85,8 @@ impl<'m> Equations<'m> {
         let partition = Partition::covers(&system).then(|| Partition::derive(&mut system, &kinematics));
         let position_rates = position_rates(&mut system);
         let joint_space = JointSpace::covers(&system).then(|| {
-            JointSpace::derive(&mut system, &kinematics, &dynamics, model.has_work().then_some(power), start)
+            let power = model.has_work().then_some(power);
+            JointSpace::derive(&mut system, &kinematics, &dynamics, &solution.accelerations, power, start)
         });
 
         let definitions = std::mem::take(&mut system.definitions);

@@ -11,8 +11,9 @@ use crate::dynamics::Dynamics;
 use crate::freedom::{Freedom, Parent, Twist};
 use crate::graph::{ExprId, Graph};
 use crate::kinematics::Kinematics;
-use crate::linear::{Mat3, Vec3, ZERO3, transposed};
+use crate::linear::{Mat3, UNIT3, Vec3, ZERO3, transposed};
 use crate::multipliers;
+use crate::schedule::Operations;
 use crate::system::System;
 
 /// Accelerations and what follows from them.
@@ -29,13 +30,33 @@ pub struct Solution {
 /// Solves eq. (17); the result is expressed in symbols that are yet to be expanded.
 pub fn solve(system: &mut System, kinematics: &Kinematics, dynamics: &Dynamics) -> Solution {
     let links = system.tree.links.clone();
-    let freedoms = links.iter().map(|&link| Freedom::of(system, kinematics, link)).collect();
-    let tree = EliminatedTree::new(system, freedoms);
-    let free = tree.accelerations(system, kinematics, dynamics);
-    let (motions, closing) = closing::close(system, kinematics, &tree, free);
-    let accelerations = motions.iter().flat_map(|motion| motion.t.into_iter().chain(motion.rho)).collect();
-    let lambda = multipliers::of(system, kinematics, dynamics, &tree);
+    let freedoms: Vec<_> = links.iter().map(|&link| Freedom::of(system, kinematics, link)).collect();
+    let in_global_frame = freedoms.iter().map(|freedom| freedom.in_global_frame(system)).collect();
+    let trees = [
+        EliminatedTree::new(system, freedoms.clone(), Rotations::Body),
+        EliminatedTree::new(system, in_global_frame, Rotations::Global),
+    ];
+    let solved = trees.map(|tree| {
+        let free = tree.accelerations(system, dynamics);
+        let (motions, closing) = closing::close(system, kinematics, &tree, free);
+        let accelerations = motions.iter().flat_map(|motion| motion.t.into_iter().chain(motion.rho));
+        (accelerations.collect::<Vec<_>>(), closing)
+    });
+    let cost = |(accelerations, closing): &(Vec<_>, Vec<_>)| {
+        Operations::count(&system.graph, &[&accelerations[..], closing].concat()).total()
+    };
+    let (accelerations, closing) = solved.into_iter().min_by_key(cost).expect("two of them");
+    let lambda = multipliers::of(system, kinematics, dynamics, &freedoms);
     Solution { accelerations, closing, lambda }
+}
+
+/// The frame in which rotations of the bodies are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rotations {
+    /// Each body's own: axes and inertias are constants there.
+    Body,
+    /// One for all: nothing is turned on its way from body to body.
+    Global,
 }
 
 /// The trees with the free twists of all joints eliminated.
@@ -43,6 +64,8 @@ pub fn solve(system: &mut System, kinematics: &Kinematics, dynamics: &Dynamics) 
 pub struct EliminatedTree {
     /// Root first.
     pub joints: Vec<EliminatedJoint>,
+    /// From each slot's frame to that of its rotations.
+    frames: Vec<Mat3>,
 }
 
 /// What sets a tree in motion.
@@ -67,9 +90,14 @@ pub struct Response {
 
 impl EliminatedTree {
     /// The links come root first.
-    pub fn new(system: &mut System, freedoms: Vec<Freedom>) -> Self {
-        let n_slots = system.slots.len();
-        let mut bodies: Vec<_> = (0..n_slots).map(|slot| Inertia::rigid(system, slot)).collect();
+    pub fn new(system: &mut System, freedoms: Vec<Freedom>, rotations: Rotations) -> Self {
+        let frame = |&body: &usize| match rotations {
+            Rotations::Body => UNIT3,
+            Rotations::Global => system.poses[body].a,
+        };
+        let frames: Vec<_> = system.slots.iter().map(frame).collect();
+        let rigid = |(slot, frame)| Inertia::rigid(system, slot).turned(&mut system.graph, frame);
+        let mut bodies: Vec<_> = frames.iter().enumerate().map(rigid).collect();
         let mut joints = Vec::new();
         for freedom in freedoms.into_iter().rev() {
             let parent = freedom.parent;
@@ -84,22 +112,12 @@ impl EliminatedTree {
             joints.push(joint);
         }
         joints.reverse();
-        Self { joints }
+        Self { joints, frames }
     }
 
     /// The accelerations that the applied forces and the rows of the tree's own joints bring about.
-    fn accelerations(&self, system: &mut System, kinematics: &Kinematics, dynamics: &Dynamics) -> Vec<Twist> {
-        let forced = self
-            .joints
-            .iter()
-            .map(|joint| {
-                let gamma = &kinematics.gamma[joint.freedom.rows.clone()];
-                let parts: Vec<_> = (gamma.iter().zip(&joint.freedom.forced))
-                    .map(|(&gamma, twist)| twist.scaled(&mut system.graph, gamma))
-                    .collect();
-                parts.iter().fold(Twist::ZERO, |sum, part| sum.plus(&mut system.graph, part))
-            })
-            .collect();
+    fn accelerations(&self, system: &mut System, dynamics: &Dynamics) -> Vec<Twist> {
+        let forced = self.joints.iter().map(|joint| joint.freedom.bias).collect();
         let n_slots = system.slots.len();
         let bias = (0..n_slots).map(|slot| minus_applied_force(system, dynamics, slot)).collect();
         let along = vec![Vec::new(); self.joints.len()];
@@ -108,6 +126,9 @@ impl EliminatedTree {
 
     pub fn respond(&self, graph: &mut Graph, excitation: Excitation) -> Response {
         let Excitation { mut bias, forced, along } = excitation;
+        for (bias, frame) in bias.iter_mut().zip(&self.frames) {
+            bias.rho = graph.mat_vec(frame, &bias.rho);
+        }
         let mut loads = Vec::new();
         for ((joint, forced), along) in self.joints.iter().zip(&forced).zip(&along).rev() {
             let (own, on_parent) = joint.yield_to(graph, &bias[joint.freedom.slot], forced, along);
@@ -121,6 +142,9 @@ impl EliminatedTree {
             let (motion, rates) = joint.motion(graph, forced, loads, &response.motions);
             response.motions[joint.freedom.slot] = motion;
             response.rates.push(rates);
+        }
+        for (motion, frame) in response.motions.iter_mut().zip(&self.frames) {
+            motion.rho = graph.transposed_vec(frame, &motion.rho);
         }
         response
     }
@@ -234,6 +258,20 @@ impl Inertia {
     pub fn rigid(system: &mut System, slot: usize) -> Self {
         let (mass, angular) = (system.mass(slot), system.inertia(slot));
         Self { mass, linear: [ZERO3; 3], coupling: [ZERO3; 3], angular }
+    }
+
+    /// A rigid body in a frame that this one leads to.
+    fn turned(self, graph: &mut Graph, frame: &Mat3) -> Self {
+        if *frame == UNIT3 {
+            return self;
+        }
+        // What is the same in all directions need not be turned.
+        let even = self.angular[0][0];
+        let evenly = UNIT3.map(|row| graph.scale_vec(even, &row));
+        let rest = graph.sub_mat(&self.angular, &evenly);
+        let turned = graph.mat_mul(frame, &rest);
+        let turned = symmetric(&graph.mat_mul(&turned, &transposed(frame)));
+        Self { angular: sum(graph, &evenly, &turned), ..self }
     }
 
     pub fn add(&mut self, graph: &mut Graph, other: &Self) {

@@ -18,7 +18,7 @@
 //! | gamma | γ | 135 | 216 | 0 | 351 | 6 of 15 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 94 | 139 | 0 | 233 | 0 of 15 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 231 | 366 | 5 | 602 | 7 of 18 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 211 | 310 | 5 | 526 | 7 of 18 |
 //! | multipliers | λ, the accelerations being known | 116 | 193 | 3 | 312 | 0 of 15 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 121 | 210 | 1 | 332 | 0 of 22 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
@@ -31,8 +31,9 @@
 //! | to_maximal | (q, v) of a joint state | 32 | 72 | 0 | 104 | 12 of 39 |
 //! | to_joints | (x, u) of a maximal state | 65 | 77 | 0 | 142 | 0 of 6 |
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 34 | 71 | 1 | 106 | 0 of 3 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 73 | 130 | 1 | 204 | 7 of 18 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 211 | 310 | 5 | 526 | 7 of 18 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 56 | 86 | 0 | 142 | 0 of 15 |
+//! | corrected_solution | both | 252 | 369 | 5 | 626 | 7 of 33 |
 //!
 //! # Proof
 //!
@@ -49,7 +50,7 @@
 //! * joint_derivative: eqs. (14) and (16) on the constraints
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
-//! * corrected_multipliers: eq. (17) on the constraints
+//! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //!
 //! All of it holds but with a probability below 1e-144.
 //! Not proved: the size of rounding errors.
@@ -1994,7 +1995,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenGyroscope<T> {
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 602 operations (231 ±, 366 ×, 5 ÷) and 4 functions.
+    /// Solves eq. (17): 526 operations (211 ±, 310 ×, 5 ÷) and 4 functions.
     fn accelerations(&self, t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2018,213 +2019,191 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenGyroscope<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = outer_ring_wx * outer_ring_wy;
-        let t1 = outer_ring_e0 * outer_ring_e3;
-        let t2 = outer_ring_e1 * outer_ring_e2;
-        let t3 = k(2.0) * (t2 + t1);
-        let t4 = outer_ring_wz * outer_ring_wz;
-        let t5 = t4 + outer_ring_wx * outer_ring_wx;
-        let t6 = outer_ring_e0 * outer_ring_e0;
-        let t7 = k(2.0) * (k(0.5) - (t6 + outer_ring_e2 * outer_ring_e2));
-        let t8 = outer_ring_wy * outer_ring_wz;
-        let t9 = outer_ring_e0 * outer_ring_e1;
-        let t10 = outer_ring_e2 * outer_ring_e3;
-        let t11 = k(2.0) * (t10 - t9);
-        let t12 = k(12.566370614359172) * t;
-        let t13 = t12.sin();
-        let t14 = k(0.1) * t13;
-        let t15 = t14.sin();
-        let t16 = t14.cos();
-        let t17 = k(1.2566370614359172) * t12.cos();
-        let t18 = t17 * t16;
-        let t19 = t18 * (t11 * outer_ring_wx - t3 * outer_ring_wz);
-        let t20 = t19 + t15 * (t11 * t8 + (t7 * t5 + t3 * t0));
-        let t21 = t17 * t15;
-        let t22 = k(15.791367041742975) * t13;
-        let t23 = outer_ring_e0 * outer_ring_e2;
-        let t24 = outer_ring_e1 * outer_ring_e3;
-        let t25 = k(2.0) * (t24 - t23);
-        let t26 = k(2.0) * (t10 + t9);
-        let t27 = k(2.0) * (k(0.5) - (t6 + outer_ring_e3 * outer_ring_e3));
-        let t28 = t21 * (t27 * outer_ring_wx + t25 * outer_ring_wz);
-        let t29 = t28 - t16 * (t27 * t8 + (t26 * t5 - t25 * t0));
-        let t30 = t26 * (t15 * t22 - t17 * t18) + t28 + t29
-            - (t7 * (t16 * t22 + t17 * t21) + t19 + t20);
-        let t31 = t15 * t11 + t16 * t27;
-        let t32 = k(2.0) * (k(0.5) - (t6 + outer_ring_e1 * outer_ring_e1));
-        let t33 = t15 * t3 - t16 * t25;
-        let t34 = k(2.0) * (t24 + t23);
-        let t35 = k(1.0) / (t34 * t33 + t32 * t31);
-        let t36 = k(2.0) * (t2 - t1);
-        let t37 = t34 * t8 - (t36 * t5 + t32 * t0);
-        let t38 = t33 * t35 * t37 - t32 * t35 * t30;
-        let t39 = rotor_e0 * rotor_e3;
-        let t40 = rotor_e1 * rotor_e2;
-        let t41 = k(2.0) * (t40 - t39);
-        let t42 = inner_ring_e0 * inner_ring_e0;
-        let t43 = k(2.0) * (k(0.5) - (t42 + inner_ring_e1 * inner_ring_e1));
-        let t44 = rotor_e0 * rotor_e0;
-        let t45 = k(2.0) * (k(0.5) - (t44 + rotor_e2 * rotor_e2));
-        let t46 = inner_ring_e0 * inner_ring_e3;
-        let t47 = inner_ring_e1 * inner_ring_e2;
-        let t48 = k(2.0) * (t47 + t46);
-        let t49 = rotor_e0 * rotor_e1;
-        let t50 = rotor_e2 * rotor_e3;
-        let t51 = k(2.0) * (t50 + t49);
-        let t52 = inner_ring_e0 * inner_ring_e2;
-        let t53 = inner_ring_e1 * inner_ring_e3;
-        let t54 = k(2.0) * (t53 - t52);
-        let t55 = t54 * t51 - (t48 * t45 + t43 * t41);
-        let t56 = k(5e-6) * t55;
-        let t57 = rotor_e0 * rotor_e2;
-        let t58 = rotor_e1 * rotor_e3;
-        let t59 = k(2.0) * (t58 + t57);
-        let t60 = k(2.0) * (t50 - t49);
-        let t61 = k(2.0) * (k(0.5) - (t44 + rotor_e3 * rotor_e3));
-        let t62 = t54 * t61 - (t48 * t60 - t43 * t59);
-        let t63 = k(5e-6) * t62;
-        let t64 = inner_ring_e0 * inner_ring_e1;
-        let t65 = inner_ring_e2 * inner_ring_e3;
-        let t66 = t65 - t64;
-        let t67 = k(2.0) * t66;
-        let t68 = t53 + t52;
-        let t69 = k(2.0) * t68;
-        let t70 = k(0.5) - (t42 + inner_ring_e3 * inner_ring_e3);
+        let t0 = outer_ring_e0 * outer_ring_e3;
+        let t1 = outer_ring_e1 * outer_ring_e2;
+        let t2 = k(2.0) * (t1 - t0);
+        let t3 = k(12.566370614359172) * t;
+        let t4 = k(1.2566370614359172) * t3.cos();
+        let t5 = t4 * t2;
+        let t6 = outer_ring_wy - t5;
+        let t7 = outer_ring_e0 * outer_ring_e2;
+        let t8 = outer_ring_e1 * outer_ring_e3;
+        let t9 = k(2.0) * (t8 + t7);
+        let t10 = t4 * t9;
+        let t11 = outer_ring_wz - t10;
+        let t12 = outer_ring_e0 * outer_ring_e0;
+        let t13 = k(2.0) * (k(0.5) - (t12 + outer_ring_e3 * outer_ring_e3));
+        let t14 = t3.sin();
+        let t15 = k(0.1) * t14;
+        let t16 = t15.sin();
+        let t17 = outer_ring_e0 * outer_ring_e1;
+        let t18 = outer_ring_e2 * outer_ring_e3;
+        let t19 = k(2.0) * (t18 - t17);
+        let t20 = t15.cos();
+        let t21 = k(2.0) * (k(0.5) - (t12 + outer_ring_e1 * outer_ring_e1));
+        let t22 = t4 * t21;
+        let t23 = outer_ring_wx + t22;
+        let t24 = k(2.0) * (k(0.5) - (t12 + outer_ring_e2 * outer_ring_e2));
+        let t25 = k(2.0) * (t18 + t17);
+        let t26 = (t23 * t23 + t11 * t11) / (t16 * t25 - t20 * t24);
+        let t27 = k(15.791367041742975) * t14;
+        let t28 = outer_ring_wy * t10 - outer_ring_wz * t5 - t21 * t27
+            + (t26 * (t20 * t19 - t16 * t13) + t11 * t6);
+        let t29 = rotor_e0 * rotor_e3;
+        let t30 = rotor_e1 * rotor_e2;
+        let t31 = k(2.0) * (t30 - t29);
+        let t32 = inner_ring_e0 * inner_ring_e0;
+        let t33 = k(2.0) * (k(0.5) - (t32 + inner_ring_e1 * inner_ring_e1));
+        let t34 = rotor_e0 * rotor_e0;
+        let t35 = k(2.0) * (k(0.5) - (t34 + rotor_e2 * rotor_e2));
+        let t36 = inner_ring_e0 * inner_ring_e3;
+        let t37 = inner_ring_e1 * inner_ring_e2;
+        let t38 = k(2.0) * (t37 + t36);
+        let t39 = rotor_e0 * rotor_e1;
+        let t40 = rotor_e2 * rotor_e3;
+        let t41 = k(2.0) * (t40 + t39);
+        let t42 = inner_ring_e0 * inner_ring_e2;
+        let t43 = inner_ring_e1 * inner_ring_e3;
+        let t44 = k(2.0) * (t43 - t42);
+        let t45 = t44 * t41 - (t38 * t35 + t33 * t31);
+        let t46 = k(5e-6) * t45;
+        let t47 = rotor_e0 * rotor_e2;
+        let t48 = rotor_e1 * rotor_e3;
+        let t49 = k(2.0) * (t48 + t47);
+        let t50 = k(2.0) * (t40 - t39);
+        let t51 = k(2.0) * (k(0.5) - (t34 + rotor_e3 * rotor_e3));
+        let t52 = t44 * t51 - (t38 * t50 - t33 * t49);
+        let t53 = k(5e-6) * t52;
+        let t54 = inner_ring_e0 * inner_ring_e1;
+        let t55 = inner_ring_e2 * inner_ring_e3;
+        let t56 = t55 - t54;
+        let t57 = k(2.0) * t56;
+        let t58 = t43 + t42;
+        let t59 = k(2.0) * t58;
+        let t60 = k(0.5) - (t32 + inner_ring_e3 * inner_ring_e3);
+        let t61 = k(2.0) * t60;
+        let t62 = t61 * t41 - (t59 * t31 - t57 * t35);
+        let t63 = t59 * t49 + t57 * t50 + t61 * t51;
+        let t64 = t63 * t53 + t62 * t46;
+        let t65 = k(1e-6)
+            + (k(1.25e-9) + (t63 * (k(5e-6) * t63) + t62 * (k(5e-6) * t62)));
+        let t66 = k(1.0) / t65;
+        let t67 = t66 * t64;
+        let t68 = t64 * t67 - (k(1e-6) + (t52 * t53 + t45 * t46));
+        let t69 = t25 * t44 - (t24 * t38 + t2 * t33);
+        let t70 = k(0.5) - (t32 + inner_ring_e2 * inner_ring_e2);
         let t71 = k(2.0) * t70;
-        let t72 = t71 * t51 - (t69 * t41 - t67 * t45);
-        let t73 = t69 * t59 + t67 * t60 + t71 * t61;
-        let t74 = t73 * t63 + t72 * t56;
-        let t75 = k(1e-6)
-            + (k(1.25e-9) + (t73 * (k(5e-6) * t73) + t72 * (k(5e-6) * t72)));
-        let t76 = k(1.0) / t75;
-        let t77 = t76 * t74;
-        let t78 = t74 * t77 - (k(1e-6) + (t62 * t63 + t55 * t56));
-        let t79 = t26 * t54 - (t7 * t48 + t36 * t43);
-        let t80 = k(0.5) - (t42 + inner_ring_e2 * inner_ring_e2);
-        let t81 = k(2.0) * t80;
-        let t82 = t47 - t46;
-        let t83 = k(2.0) * t82;
-        let t84 = t65 + t64;
-        let t85 = k(2.0) * t84;
-        let t86 = t85 * t51 + (t83 * t41 + t81 * t45);
-        let t87 = t85 * t61 - (t83 * t59 - t81 * t60);
-        let t88 = k(5e-6) * t86;
-        let t89 = k(5e-6) * t87;
-        let t90 = t73 * t89 + t72 * t88;
-        let t91 = t90 * t77 - (t87 * t63 + t86 * t56);
-        let t92 = t26 * t85 + (t36 * t83 + t7 * t81);
-        let t93 = t74 - t75 * t77;
-        let t94 = t26 * t71 - (t36 * t69 - t7 * t67);
-        let t95 = t94 * t93 - (t92 * t91 + t79 * t78);
-        let t96 = t76 * t90;
-        let t97 = t90 * t96 - (k(2e-6) + (k(1.25e-9) + (t87 * t89 + t86 * t88)));
-        let t98 = t90 - t75 * t96;
-        let t99 = t94 * t98 - (t92 * t97 + t79 * t91);
-        let t100 = t92 * t98 + t79 * t93;
-        let t101 = k(2.0) * (k(0.5) - (t44 + rotor_e1 * rotor_e1));
-        let t102 = k(2.0) * (t40 + t39);
-        let t103 = k(2.0) * (t58 - t57);
-        let t104 = t54 * t103 + (t48 * t102 + t43 * t101);
-        let t105 = inner_ring_wx * inner_ring_wy;
-        let t106 = t85 * t103 - (t81 * t102 + t83 * t101);
-        let t107 = inner_ring_wx * inner_ring_wx;
-        let t108 = inner_ring_wz * inner_ring_wz;
-        let t109 = t71 * t103 - (t67 * t102 - t69 * t101);
-        let t110 = inner_ring_wy * inner_ring_wz;
-        let t111 = rotor_wy * t62 + rotor_wz * t55;
-        let t112 = k(2.0)
-            * (inner_ring_wx * (rotor_wy * t73 + rotor_wz * t72) + inner_ring_wz * t111);
-        let t113 = rotor_wz * rotor_wz + rotor_wy * rotor_wy;
-        let t114 = rotor_wx * rotor_wy;
-        let t115 = rotor_wx * rotor_wz;
-        let t116 = t115 * t87 - (t114 * t86 - t113 * t106) + t112
-            + (t110 * t109 + ((t108 + t107) * t106 - t105 * t104));
-        let t117 = k(1.0) / (t86 * t73 - t87 * t72);
-        let t118 = inner_ring_wx * inner_ring_wz;
-        let t119 = inner_ring_wy * inner_ring_wy;
-        let t120 = t119 + t107;
-        let t121 = k(2.0)
-            * (inner_ring_wx * (rotor_wy * t87 + rotor_wz * t86) - inner_ring_wy * t111);
-        let t122 = t115 * t73 - (t114 * t72 - t113 * t109) - t121
-            + (t120 * t109 + (t110 * t106 + t118 * t104));
-        let t123 = t86 * t117 * t122 - t72 * t117 * t116;
-        let t124 = k(5e-6) * (t115 + t123);
-        let t125 = t87 * t117 * t122 - t73 * t117 * t116;
-        let t126 = k(5e-6) * (t114 + t125);
-        let t127 = t108 + t119;
-        let t128 = t69 * t118 + (t83 * t105 + t43 * t127);
-        let t129 = k(1e-5) * t128;
-        let t130 = k(0.00025) * t82;
-        let t131 = t67 * t118 - (t81 * t105 + t48 * t127);
-        let t132 = k(0.8) + k(1e-5) * t131;
-        let t133 = k(0.00025) * t80;
-        let t134 = t71 * t118 - (t85 * t105 - t54 * t127);
-        let t135 = k(1e-5) * t134;
-        let t136 = k(0.00025) * t84;
-        let t137 = t136 * t135 + (t133 * t132 - t130 * t129) + (t73 * t126 + t72 * t124);
-        let t138 = k(1e-6) * t105 - t137;
-        let t139 = t76 * t138;
-        let t140 = t74 * t139 - (k(1e-6) * t110 - (t62 * t126 + t55 * t124));
-        let t141 = t25 * t71 - (t3 * t67 - t32 * t69);
-        let t142 = t34 * t69 + t11 * t67 + t27 * t71;
-        let t143 = outer_ring_wx * outer_ring_wz;
-        let t144 = t143 * t142
-            - (t0 * t94 - (t4 + outer_ring_wy * outer_ring_wy) * t141);
-        let t145 = t27 * t54 - (t11 * t48 - t34 * t43);
-        let t146 = t27 * t85 - (t34 * t83 - t11 * t81);
-        let t147 = inner_ring_wx * t146 - inner_ring_wy * t145;
-        let t148 = k(2.0)
-            * (outer_ring_wy * t147
-                + outer_ring_wz * (inner_ring_wx * t92 - inner_ring_wy * t79));
-        let t149 = t25 * t54 + (t3 * t48 + t32 * t43);
-        let t150 = t25 * t85 - (t3 * t81 + t32 * t83);
-        let t151 = t120 * t141 + (t110 * t150 + t118 * t149) - t148 + t144;
-        let t152 = k(1.0) / (t149 * t92 - t150 * t79);
-        let t153 = k(2.0)
-            * (outer_ring_wx * t147
-                + outer_ring_wz * (inner_ring_wx * t150 - inner_ring_wy * t149));
-        let t154 = t120 * t94 + (t110 * t92 + t118 * t79) + t153
-            + (t8 * t142 + (t5 * t94 - t0 * t141));
-        let t155 = t149 * t152 * t154 - t79 * t152 * t151;
-        let t156 = t150 * t152 * t154 - t92 * t152 * t151;
-        let t157 = k(0.00025) * t68;
-        let t158 = k(0.00025) * t66;
-        let t159 = k(0.00025) * t70;
-        let t160 = t159 * t135 + (t158 * t132 + t157 * t129) - (t87 * t126 + t86 * t124);
-        let t161 = t92 * (t97 * t156 + t91 * t155 - (t90 * t139 - t160));
-        let t162 = t94 * (t98 * t156 + t93 * t155 - (t138 - t75 * t139));
-        let t163 = t162 - (t161 + t79 * (t91 * t156 + t78 * t155 - t140));
-        let t164 = t92 * (t141 * t98 - (t150 * t97 + t149 * t91))
-            + t79 * (t141 * t93 - (t150 * t91 + t149 * t78));
-        let t165 = t31 * t35 * t37 + t34 * t35 * t30;
-        let t166 = t165 * (t142 * t100 + (t146 * t99 + t145 * t95))
-            - t38 * (t94 * (t150 * t98 + t149 * t93) + t164);
-        let t167 = (t166 + (k(1e-6) * t143 + t163))
-            / (k(1e-6) + (t94 * t100 + (t92 * t99 + t79 * t95)));
-        let t168 = t155 + (t145 * t165 - (t79 * t167 + t149 * t38));
-        let t169 = t156 + (t146 * t165 - (t92 * t167 + t150 * t38));
-        let t170 = t142 * t165 - (t94 * t167 + t141 * t38);
-        let t171 = t76 * (t138 - (t75 * t170 + (t90 * t169 + t74 * t168)));
-        let t172 = t170 + t171;
+        let t72 = t37 - t36;
+        let t73 = k(2.0) * t72;
+        let t74 = t55 + t54;
+        let t75 = k(2.0) * t74;
+        let t76 = t75 * t41 + (t73 * t31 + t71 * t35);
+        let t77 = t75 * t51 - (t73 * t49 - t71 * t50);
+        let t78 = k(5e-6) * t76;
+        let t79 = k(5e-6) * t77;
+        let t80 = t63 * t79 + t62 * t78;
+        let t81 = t80 * t67 - (t77 * t53 + t76 * t46);
+        let t82 = t25 * t75 + (t2 * t73 + t24 * t71);
+        let t83 = t64 - t65 * t67;
+        let t84 = t25 * t61 - (t2 * t59 - t24 * t57);
+        let t85 = t84 * t83 - (t82 * t81 + t69 * t68);
+        let t86 = t66 * t80;
+        let t87 = t80 * t86 - (k(2e-6) + (k(1.25e-9) + (t77 * t79 + t76 * t78)));
+        let t88 = t80 - t65 * t86;
+        let t89 = t84 * t88 - (t82 * t87 + t69 * t81);
+        let t90 = t82 * t88 + t69 * t83;
+        let t91 = k(2.0) * (k(0.5) - (t34 + rotor_e1 * rotor_e1));
+        let t92 = k(2.0) * (t30 + t29);
+        let t93 = k(2.0) * (t48 - t47);
+        let t94 = t44 * t93 + (t38 * t92 + t33 * t91);
+        let t95 = inner_ring_wy * (t75 * t93 - (t71 * t92 + t73 * t91))
+            + inner_ring_wx * t94;
+        let t96 = inner_ring_wz * (t61 * t93 - (t57 * t92 - t59 * t91)) - t95;
+        let t97 = rotor_wx + t96;
+        let t98 = inner_ring_wz * t63 - (inner_ring_wy * t77 + inner_ring_wx * t52);
+        let t99 = rotor_wz - t98;
+        let t100 = inner_ring_wz * t62 - (inner_ring_wy * t76 + inner_ring_wx * t45);
+        let t101 = rotor_wy + t100;
+        let t102 = (t101 * t101 + t99 * t99) / t94;
+        let t103 = rotor_wz * t96 + rotor_wx * t98 - (t52 * t102 - t99 * t97);
+        let t104 = k(5e-6) * (rotor_wx * rotor_wz + t103);
+        let t105 = rotor_wx * t100 - rotor_wy * t96 - (t45 * t102 + t101 * t97);
+        let t106 = k(5e-6) * (rotor_wx * rotor_wy - t105);
+        let t107 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
+        let t108 = inner_ring_wx * inner_ring_wy;
+        let t109 = inner_ring_wx * inner_ring_wz;
+        let t110 = t59 * t109 + (t73 * t108 + t33 * t107);
+        let t111 = k(1e-5) * t110;
+        let t112 = k(0.00025) * t72;
+        let t113 = t57 * t109 - (t71 * t108 + t38 * t107);
+        let t114 = k(0.8) + k(1e-5) * t113;
+        let t115 = k(0.00025) * t70;
+        let t116 = t61 * t109 - (t75 * t108 - t44 * t107);
+        let t117 = k(1e-5) * t116;
+        let t118 = k(0.00025) * t74;
+        let t119 = t118 * t117 + (t115 * t114 - t112 * t111) + (t63 * t106 + t62 * t104);
+        let t120 = k(1e-6) * t108 - t119;
+        let t121 = t66 * t120;
+        let t122 = t64 * t121
+            - (k(1e-6) * (inner_ring_wy * inner_ring_wz) - (t52 * t106 + t45 * t104));
+        let t123 = k(2.0) * (t1 + t0);
+        let t124 = k(2.0) * (t8 - t7);
+        let t125 = t124 * t61 - (t123 * t57 - t21 * t59);
+        let t126 = t9 * t59 + t19 * t57 + t13 * t61;
+        let t127 = outer_ring_wz * t126 - (outer_ring_wy * t84 + outer_ring_wx * t125);
+        let t128 = inner_ring_wz - t127;
+        let t129 = t124 * t75 - (t123 * t71 + t21 * t73);
+        let t130 = t13 * t75 - (t9 * t73 - t19 * t71);
+        let t131 = outer_ring_wz * t130 - (outer_ring_wy * t82 + outer_ring_wx * t129);
+        let t132 = inner_ring_wy + t131;
+        let t133 = t124 * t44 + (t123 * t38 + t21 * t33);
+        let t134 = t13 * t44 - (t19 * t38 - t9 * t33);
+        let t135 = outer_ring_wz * t134 - (outer_ring_wy * t69 + outer_ring_wx * t133);
+        let t136 = inner_ring_wx + t135;
+        let t137 = (t136 * t136 + t132 * t132) / t126;
+        let t138 = inner_ring_wy * t127 + inner_ring_wz * t131
+            + (t130 * t137 - t132 * t128);
+        let t139 = inner_ring_wz * t135 + inner_ring_wx * t127
+            + (t134 * t137 - t136 * t128);
+        let t140 = k(0.00025) * t58;
+        let t141 = k(0.00025) * t56;
+        let t142 = k(0.00025) * t60;
+        let t143 = t142 * t117 + (t141 * t114 + t140 * t111) - (t77 * t106 + t76 * t104);
+        let t144 = t82 * (t87 * t139 - t81 * t138 - (t80 * t121 - t143));
+        let t145 = t84 * (t88 * t139 - t83 * t138 - (t120 - t65 * t121));
+        let t146 = t145 - (t144 + t69 * (t81 * t139 - t68 * t138 - t122));
+        let t147 = t82 * (t125 * t88 - (t129 * t87 + t133 * t81))
+            + t69 * (t125 * t83 - (t129 * t81 + t133 * t68));
+        let t148 = outer_ring_wx * t5 + outer_ring_wy * t22 + t9 * t27
+            - ((t20 * t123 + t16 * t124) * t26 + t23 * t6);
+        let t149 = (t126 * t90 + (t89 * t130 + t85 * t134)) * t148
+            - t28 * (t84 * (t129 * t88 + t133 * t83) + t147);
+        let t150 = (t149 + (k(1e-6) * (outer_ring_wx * outer_ring_wz) + t146))
+            / (k(1e-6) + (t84 * t90 + (t82 * t89 + t69 * t85)));
+        let t151 = t138 - (t134 * t148 - (t69 * t150 + t133 * t28));
+        let t152 = t139 + (t130 * t148 - (t82 * t150 + t129 * t28));
+        let t153 = t126 * t148 - (t84 * t150 + t125 * t28);
+        let t154 = t66 * (t120 - (t65 * t153 + (t80 * t152 - t64 * t151)));
+        let t155 = t153 + t154;
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -t38,
-            -t167,
-            -t165,
+            -t28,
+            -t150,
+            -t148,
             k(0.0),
             k(0.0),
             k(0.0),
-            t168,
-            t169,
-            -t172,
-            k(0.000125) * t128 - (t130 * t172 + t157 * t169),
-            k(0.000125) * t131 + (t133 * t172 - t158 * t169),
-            -(k(0.000125) * t134 + (t136 * t172 - t159 * t169)),
+            -t151,
+            t152,
+            -t155,
+            k(0.000125) * t110 - (t112 * t155 + t140 * t152),
+            t115 * t155 - t141 * t152 + k(0.000125) * t113,
+            -(t118 * t155 - t142 * t152 + k(0.000125) * t116),
             k(0.0),
-            t123 + (t72 * t172 + (t86 * t169 + t55 * t168)),
-            -(t125 + (t73 * t172 + (t87 * t169 + t62 * t168))),
+            t103 + (t62 * t155 + (t76 * t152 - t45 * t151)),
+            t105 - (t63 * t155 + (t77 * t152 - t52 * t151)),
         ];
     }
     /// Writes λ: 312 operations (116 ±, 193 ×, 3 ÷) and 3 functions.
@@ -2393,12 +2372,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenGyroscope<T> {
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for DrivenGyroscope<T> {
     type Joints = [T; 7];
     type Rates = [T; 3];
+    type Solution = [T; 33];
     fn joint_start(&self) -> Self::Joints {
         let k = T::constant;
         [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(100.0), k(0.0)]
     }
     fn rates(&self) -> Self::Rates {
         [T::constant(0.0); 3]
+    }
+    fn solution(&self) -> Self::Solution {
+        [T::constant(0.0); 33]
     }
     /// Writes u̇: 70 operations (21 ±, 48 ×, 1 ÷) and 8 functions.
     fn joint_accelerations(&self, t: T, x: &Self::Joints, out: &mut Self::Rates) {
@@ -2876,7 +2859,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for DrivenGyroscope<T> {
             + (k(1e-6) * (inner_ring_wx * inner_ring_wy) + t24);
         *out = [-t23, -(k(166631.95167673402) * t27), t1 - (t5 * t23 - t9 * t19)];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 204 operations (73 ±, 130 ×, 1 ÷) and 5 functions.
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 526 operations (211 ±, 310 ×, 5 ÷) and 4 functions.
     fn corrected_accelerations(
         &self,
         t: T,
@@ -2905,91 +2888,191 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for DrivenGyroscope<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = (k(12.566370614359172) * t).sin();
-        let t1 = k(0.05) * t0;
-        let t2 = t1.sin();
-        let t3 = t1.cos();
-        let t4 = t3 * outer_ring_e2 + t2 * outer_ring_e3;
-        let t5 = k(2.0) * t4;
-        let t6 = k(1.0) - t4 * t5;
-        let t7 = k(15.791367041742975) * t0;
-        let t8 = outer_ring_wy * outer_ring_wz + t7 * t6;
-        let t9 = outer_ring_wz - inner_ring_wz;
-        let t10 = inner_ring_wy * t9;
-        let t11 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
-            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
-        let t12 = k(2.0) * t11;
-        let t13 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
-            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
-        let t14 = t13 * t12;
-        let t15 = inner_ring_wx - rotor_wx;
-        let t16 = inner_ring_wx - t15;
-        let t17 = k(0.000125) * inner_ring_wz;
-        let t18 = inner_ring_wx * t17;
-        let t19 = inner_ring_wx * t9;
-        let t20 = k(7.00125e-6) * t19
-            - (k(1e-5) * t18 - k(5e-6) * (inner_ring_wz * t16 - inner_ring_wz * t15));
-        let t21 = k(1.0) - t11 * t12;
-        let t22 = k(1e-6) * (outer_ring_wx * outer_ring_wz)
-            + (t21 * t20 + t14 * (k(1e-6) * (inner_ring_wy * inner_ring_wz + t10)));
-        let t23 = k(0.1) * t0;
-        let t24 = k(10.0) * t23.sin();
-        let t25 = k(1e-5) * t21 * (t6 * t24)
-            - (t21 * (k(7.00125e-6) * t14) - t14 * (k(1e-6) * t21)) * t8;
-        let t26 = (t25 + t22)
-            / (k(1e-6) + (t21 * (k(7.00125e-6) * t21) + t14 * (k(1e-6) * t14)));
-        let t27 = (t3 * outer_ring_e0 + t2 * outer_ring_e1) * t5;
-        let t28 = outer_ring_wx * outer_ring_wy - t7 * t27;
-        let t29 = t19 - (t14 * t8 + t21 * t26);
-        let t30 = k(0.000125) * inner_ring_wy;
-        let t31 = inner_ring_wx * t30;
-        let t32 = k(1e-6) * (inner_ring_wx * inner_ring_wy)
-            + (k(1e-5) * t31 - k(5e-6) * (inner_ring_wy * t16 - inner_ring_wy * t15));
-        let t33 = k(1e-5) * (t21 * (k(10.0) * t23.cos()) + t14 * (t27 * t24));
-        let t34 = t28 - k(166631.95167673402) * (t33 + k(6.00125e-6) * t28 + t32);
-        let t35 = k(0.000125) * t34;
-        let t36 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
-            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
-        let t37 = k(2.0) * t36;
-        let t38 = k(1.0) - t36 * t37;
-        let t39 = k(0.000125) * t29;
-        let t40 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
-            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
-        let t41 = t40 * t37;
-        let t42 = t41 * t18 - t38 * t31 - (t41 * t39 + t38 * t35);
-        let t43 = rotor_e0 * rotor_e3;
-        let t44 = rotor_e1 * rotor_e2;
-        let t45 = inner_ring_wy * t30 + inner_ring_wz * t17;
-        let t46 = rotor_e0 * rotor_e0;
-        let t47 = k(2.0) * (k(0.5) - (t46 + rotor_e1 * rotor_e1)) * t45
-            - k(2.0) * (t44 - t43) * t42;
-        let t48 = t38 * t18 + t41 * t31 - (t38 * t39 - t41 * t35);
-        let t49 = rotor_e0 * rotor_e2;
-        let t50 = rotor_e1 * rotor_e3;
-        let t51 = k(2.0) * (t44 + t43) * t45
-            - k(2.0) * (k(0.5) - (t46 + rotor_e2 * rotor_e2)) * t42;
-        let t52 = rotor_e0 * rotor_e1;
-        let t53 = rotor_e2 * rotor_e3;
-        let t54 = k(2.0) * (t50 - t49) * t45 + k(2.0) * (t53 + t52) * t42;
+        let t0 = outer_ring_e0 * outer_ring_e3;
+        let t1 = outer_ring_e1 * outer_ring_e2;
+        let t2 = k(2.0) * (t1 - t0);
+        let t3 = k(12.566370614359172) * t;
+        let t4 = k(1.2566370614359172) * t3.cos();
+        let t5 = t4 * t2;
+        let t6 = outer_ring_wy - t5;
+        let t7 = outer_ring_e0 * outer_ring_e2;
+        let t8 = outer_ring_e1 * outer_ring_e3;
+        let t9 = k(2.0) * (t8 + t7);
+        let t10 = t4 * t9;
+        let t11 = outer_ring_wz - t10;
+        let t12 = outer_ring_e0 * outer_ring_e0;
+        let t13 = k(2.0) * (k(0.5) - (t12 + outer_ring_e3 * outer_ring_e3));
+        let t14 = t3.sin();
+        let t15 = k(0.1) * t14;
+        let t16 = t15.sin();
+        let t17 = outer_ring_e0 * outer_ring_e1;
+        let t18 = outer_ring_e2 * outer_ring_e3;
+        let t19 = k(2.0) * (t18 - t17);
+        let t20 = t15.cos();
+        let t21 = k(2.0) * (k(0.5) - (t12 + outer_ring_e1 * outer_ring_e1));
+        let t22 = t4 * t21;
+        let t23 = outer_ring_wx + t22;
+        let t24 = k(2.0) * (k(0.5) - (t12 + outer_ring_e2 * outer_ring_e2));
+        let t25 = k(2.0) * (t18 + t17);
+        let t26 = (t23 * t23 + t11 * t11) / (t16 * t25 - t20 * t24);
+        let t27 = k(15.791367041742975) * t14;
+        let t28 = outer_ring_wy * t10 - outer_ring_wz * t5 - t21 * t27
+            + (t26 * (t20 * t19 - t16 * t13) + t11 * t6);
+        let t29 = rotor_e0 * rotor_e3;
+        let t30 = rotor_e1 * rotor_e2;
+        let t31 = k(2.0) * (t30 - t29);
+        let t32 = inner_ring_e0 * inner_ring_e0;
+        let t33 = k(2.0) * (k(0.5) - (t32 + inner_ring_e1 * inner_ring_e1));
+        let t34 = rotor_e0 * rotor_e0;
+        let t35 = k(2.0) * (k(0.5) - (t34 + rotor_e2 * rotor_e2));
+        let t36 = inner_ring_e0 * inner_ring_e3;
+        let t37 = inner_ring_e1 * inner_ring_e2;
+        let t38 = k(2.0) * (t37 + t36);
+        let t39 = rotor_e0 * rotor_e1;
+        let t40 = rotor_e2 * rotor_e3;
+        let t41 = k(2.0) * (t40 + t39);
+        let t42 = inner_ring_e0 * inner_ring_e2;
+        let t43 = inner_ring_e1 * inner_ring_e3;
+        let t44 = k(2.0) * (t43 - t42);
+        let t45 = t44 * t41 - (t38 * t35 + t33 * t31);
+        let t46 = k(5e-6) * t45;
+        let t47 = rotor_e0 * rotor_e2;
+        let t48 = rotor_e1 * rotor_e3;
+        let t49 = k(2.0) * (t48 + t47);
+        let t50 = k(2.0) * (t40 - t39);
+        let t51 = k(2.0) * (k(0.5) - (t34 + rotor_e3 * rotor_e3));
+        let t52 = t44 * t51 - (t38 * t50 - t33 * t49);
+        let t53 = k(5e-6) * t52;
+        let t54 = inner_ring_e0 * inner_ring_e1;
+        let t55 = inner_ring_e2 * inner_ring_e3;
+        let t56 = t55 - t54;
+        let t57 = k(2.0) * t56;
+        let t58 = t43 + t42;
+        let t59 = k(2.0) * t58;
+        let t60 = k(0.5) - (t32 + inner_ring_e3 * inner_ring_e3);
+        let t61 = k(2.0) * t60;
+        let t62 = t61 * t41 - (t59 * t31 - t57 * t35);
+        let t63 = t59 * t49 + t57 * t50 + t61 * t51;
+        let t64 = t63 * t53 + t62 * t46;
+        let t65 = k(1e-6)
+            + (k(1.25e-9) + (t63 * (k(5e-6) * t63) + t62 * (k(5e-6) * t62)));
+        let t66 = k(1.0) / t65;
+        let t67 = t66 * t64;
+        let t68 = t64 * t67 - (k(1e-6) + (t52 * t53 + t45 * t46));
+        let t69 = t25 * t44 - (t24 * t38 + t2 * t33);
+        let t70 = k(0.5) - (t32 + inner_ring_e2 * inner_ring_e2);
+        let t71 = k(2.0) * t70;
+        let t72 = t37 - t36;
+        let t73 = k(2.0) * t72;
+        let t74 = t55 + t54;
+        let t75 = k(2.0) * t74;
+        let t76 = t75 * t41 + (t73 * t31 + t71 * t35);
+        let t77 = t75 * t51 - (t73 * t49 - t71 * t50);
+        let t78 = k(5e-6) * t76;
+        let t79 = k(5e-6) * t77;
+        let t80 = t63 * t79 + t62 * t78;
+        let t81 = t80 * t67 - (t77 * t53 + t76 * t46);
+        let t82 = t25 * t75 + (t2 * t73 + t24 * t71);
+        let t83 = t64 - t65 * t67;
+        let t84 = t25 * t61 - (t2 * t59 - t24 * t57);
+        let t85 = t84 * t83 - (t82 * t81 + t69 * t68);
+        let t86 = t66 * t80;
+        let t87 = t80 * t86 - (k(2e-6) + (k(1.25e-9) + (t77 * t79 + t76 * t78)));
+        let t88 = t80 - t65 * t86;
+        let t89 = t84 * t88 - (t82 * t87 + t69 * t81);
+        let t90 = t82 * t88 + t69 * t83;
+        let t91 = k(2.0) * (k(0.5) - (t34 + rotor_e1 * rotor_e1));
+        let t92 = k(2.0) * (t30 + t29);
+        let t93 = k(2.0) * (t48 - t47);
+        let t94 = t44 * t93 + (t38 * t92 + t33 * t91);
+        let t95 = inner_ring_wy * (t75 * t93 - (t71 * t92 + t73 * t91))
+            + inner_ring_wx * t94;
+        let t96 = inner_ring_wz * (t61 * t93 - (t57 * t92 - t59 * t91)) - t95;
+        let t97 = rotor_wx + t96;
+        let t98 = inner_ring_wz * t63 - (inner_ring_wy * t77 + inner_ring_wx * t52);
+        let t99 = rotor_wz - t98;
+        let t100 = inner_ring_wz * t62 - (inner_ring_wy * t76 + inner_ring_wx * t45);
+        let t101 = rotor_wy + t100;
+        let t102 = (t101 * t101 + t99 * t99) / t94;
+        let t103 = rotor_wz * t96 + rotor_wx * t98 - (t52 * t102 - t99 * t97);
+        let t104 = k(5e-6) * (rotor_wx * rotor_wz + t103);
+        let t105 = rotor_wx * t100 - rotor_wy * t96 - (t45 * t102 + t101 * t97);
+        let t106 = k(5e-6) * (rotor_wx * rotor_wy - t105);
+        let t107 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
+        let t108 = inner_ring_wx * inner_ring_wy;
+        let t109 = inner_ring_wx * inner_ring_wz;
+        let t110 = t59 * t109 + (t73 * t108 + t33 * t107);
+        let t111 = k(1e-5) * t110;
+        let t112 = k(0.00025) * t72;
+        let t113 = t57 * t109 - (t71 * t108 + t38 * t107);
+        let t114 = k(0.8) + k(1e-5) * t113;
+        let t115 = k(0.00025) * t70;
+        let t116 = t61 * t109 - (t75 * t108 - t44 * t107);
+        let t117 = k(1e-5) * t116;
+        let t118 = k(0.00025) * t74;
+        let t119 = t118 * t117 + (t115 * t114 - t112 * t111) + (t63 * t106 + t62 * t104);
+        let t120 = k(1e-6) * t108 - t119;
+        let t121 = t66 * t120;
+        let t122 = t64 * t121
+            - (k(1e-6) * (inner_ring_wy * inner_ring_wz) - (t52 * t106 + t45 * t104));
+        let t123 = k(2.0) * (t1 + t0);
+        let t124 = k(2.0) * (t8 - t7);
+        let t125 = t124 * t61 - (t123 * t57 - t21 * t59);
+        let t126 = t9 * t59 + t19 * t57 + t13 * t61;
+        let t127 = outer_ring_wz * t126 - (outer_ring_wy * t84 + outer_ring_wx * t125);
+        let t128 = inner_ring_wz - t127;
+        let t129 = t124 * t75 - (t123 * t71 + t21 * t73);
+        let t130 = t13 * t75 - (t9 * t73 - t19 * t71);
+        let t131 = outer_ring_wz * t130 - (outer_ring_wy * t82 + outer_ring_wx * t129);
+        let t132 = inner_ring_wy + t131;
+        let t133 = t124 * t44 + (t123 * t38 + t21 * t33);
+        let t134 = t13 * t44 - (t19 * t38 - t9 * t33);
+        let t135 = outer_ring_wz * t134 - (outer_ring_wy * t69 + outer_ring_wx * t133);
+        let t136 = inner_ring_wx + t135;
+        let t137 = (t136 * t136 + t132 * t132) / t126;
+        let t138 = inner_ring_wy * t127 + inner_ring_wz * t131
+            + (t130 * t137 - t132 * t128);
+        let t139 = inner_ring_wz * t135 + inner_ring_wx * t127
+            + (t134 * t137 - t136 * t128);
+        let t140 = k(0.00025) * t58;
+        let t141 = k(0.00025) * t56;
+        let t142 = k(0.00025) * t60;
+        let t143 = t142 * t117 + (t141 * t114 + t140 * t111) - (t77 * t106 + t76 * t104);
+        let t144 = t82 * (t87 * t139 - t81 * t138 - (t80 * t121 - t143));
+        let t145 = t84 * (t88 * t139 - t83 * t138 - (t120 - t65 * t121));
+        let t146 = t145 - (t144 + t69 * (t81 * t139 - t68 * t138 - t122));
+        let t147 = t82 * (t125 * t88 - (t129 * t87 + t133 * t81))
+            + t69 * (t125 * t83 - (t129 * t81 + t133 * t68));
+        let t148 = outer_ring_wx * t5 + outer_ring_wy * t22 + t9 * t27
+            - ((t20 * t123 + t16 * t124) * t26 + t23 * t6);
+        let t149 = (t126 * t90 + (t89 * t130 + t85 * t134)) * t148
+            - t28 * (t84 * (t129 * t88 + t133 * t83) + t147);
+        let t150 = (t149 + (k(1e-6) * (outer_ring_wx * outer_ring_wz) + t146))
+            / (k(1e-6) + (t84 * t90 + (t82 * t89 + t69 * t85)));
+        let t151 = t138 - (t134 * t148 - (t69 * t150 + t133 * t28));
+        let t152 = t139 + (t130 * t148 - (t82 * t150 + t129 * t28));
+        let t153 = t126 * t148 - (t84 * t150 + t125 * t28);
+        let t154 = t66 * (t120 - (t65 * t153 + (t80 * t152 - t64 * t151)));
+        let t155 = t153 + t154;
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -t8,
-            -t26,
-            t28,
+            -t28,
+            -t150,
+            -t148,
             k(0.0),
             k(0.0),
             k(0.0),
-            t14 * t26 - t21 * t8 - t10,
-            t29,
-            t34,
-            k(2.0) * (t50 + t49) * t48 + t47,
-            k(2.0) * (t53 - t52) * t48 - t51,
-            -(k(2.0) * (k(0.5) - (t46 + rotor_e3 * rotor_e3)) * t48 + t54),
+            -t151,
+            t152,
+            -t155,
+            k(0.000125) * t110 - (t112 * t155 + t140 * t152),
+            t115 * t155 - t141 * t152 + k(0.000125) * t113,
+            -(t118 * t155 - t142 * t152 + k(0.000125) * t116),
             k(0.0),
-            -(rotor_wz * t15 + (t41 * t34 - t38 * t29)),
-            rotor_wy * t15 + (t38 * t34 + t41 * t29),
+            t103 + (t62 * t155 + (t76 * t152 - t45 * t151)),
+            t105 - (t63 * t155 + (t77 * t152 - t52 * t151)),
         ];
     }
     /// Writes λ: 142 operations (56 ±, 86 ×, 0 ÷) and 3 functions.
@@ -3107,6 +3190,275 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for DrivenGyroscope<T> {
             -t4,
             t35,
             -t21,
+        ];
+    }
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 626 operations (252 ±, 369 ×, 5 ÷) and 6 functions.
+    fn corrected_solution(&self, t: T, y: &Self::State, out: &mut Self::Solution) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        let t0 = outer_ring_e0 * outer_ring_e3;
+        let t1 = outer_ring_e1 * outer_ring_e2;
+        let t2 = k(2.0) * (t1 - t0);
+        let t3 = k(12.566370614359172) * t;
+        let t4 = k(1.2566370614359172) * t3.cos();
+        let t5 = t4 * t2;
+        let t6 = outer_ring_wy - t5;
+        let t7 = outer_ring_e0 * outer_ring_e2;
+        let t8 = outer_ring_e1 * outer_ring_e3;
+        let t9 = k(2.0) * (t8 + t7);
+        let t10 = t4 * t9;
+        let t11 = outer_ring_wz - t10;
+        let t12 = outer_ring_e0 * outer_ring_e0;
+        let t13 = k(2.0) * (k(0.5) - (t12 + outer_ring_e3 * outer_ring_e3));
+        let t14 = t3.sin();
+        let t15 = k(0.1) * t14;
+        let t16 = t15.sin();
+        let t17 = outer_ring_e0 * outer_ring_e1;
+        let t18 = outer_ring_e2 * outer_ring_e3;
+        let t19 = k(2.0) * (t18 - t17);
+        let t20 = t15.cos();
+        let t21 = k(2.0) * (k(0.5) - (t12 + outer_ring_e1 * outer_ring_e1));
+        let t22 = t4 * t21;
+        let t23 = outer_ring_wx + t22;
+        let t24 = k(2.0) * (k(0.5) - (t12 + outer_ring_e2 * outer_ring_e2));
+        let t25 = k(2.0) * (t18 + t17);
+        let t26 = (t23 * t23 + t11 * t11) / (t16 * t25 - t20 * t24);
+        let t27 = k(15.791367041742975) * t14;
+        let t28 = outer_ring_wy * t10 - outer_ring_wz * t5 - t21 * t27
+            + (t26 * (t20 * t19 - t16 * t13) + t11 * t6);
+        let t29 = rotor_e0 * rotor_e3;
+        let t30 = rotor_e1 * rotor_e2;
+        let t31 = k(2.0) * (t30 - t29);
+        let t32 = inner_ring_e0 * inner_ring_e0;
+        let t33 = k(2.0) * (k(0.5) - (t32 + inner_ring_e1 * inner_ring_e1));
+        let t34 = rotor_e0 * rotor_e0;
+        let t35 = k(2.0) * (k(0.5) - (t34 + rotor_e2 * rotor_e2));
+        let t36 = inner_ring_e0 * inner_ring_e3;
+        let t37 = inner_ring_e1 * inner_ring_e2;
+        let t38 = k(2.0) * (t37 + t36);
+        let t39 = rotor_e0 * rotor_e1;
+        let t40 = rotor_e2 * rotor_e3;
+        let t41 = k(2.0) * (t40 + t39);
+        let t42 = inner_ring_e0 * inner_ring_e2;
+        let t43 = inner_ring_e1 * inner_ring_e3;
+        let t44 = k(2.0) * (t43 - t42);
+        let t45 = t44 * t41 - (t38 * t35 + t33 * t31);
+        let t46 = k(5e-6) * t45;
+        let t47 = rotor_e0 * rotor_e2;
+        let t48 = rotor_e1 * rotor_e3;
+        let t49 = k(2.0) * (t48 + t47);
+        let t50 = k(2.0) * (t40 - t39);
+        let t51 = k(2.0) * (k(0.5) - (t34 + rotor_e3 * rotor_e3));
+        let t52 = t44 * t51 - (t38 * t50 - t33 * t49);
+        let t53 = k(5e-6) * t52;
+        let t54 = inner_ring_e0 * inner_ring_e1;
+        let t55 = inner_ring_e2 * inner_ring_e3;
+        let t56 = t55 - t54;
+        let t57 = k(2.0) * t56;
+        let t58 = t43 + t42;
+        let t59 = k(2.0) * t58;
+        let t60 = k(0.5) - (t32 + inner_ring_e3 * inner_ring_e3);
+        let t61 = k(2.0) * t60;
+        let t62 = t61 * t41 - (t59 * t31 - t57 * t35);
+        let t63 = t59 * t49 + t57 * t50 + t61 * t51;
+        let t64 = t63 * t53 + t62 * t46;
+        let t65 = k(1e-6)
+            + (k(1.25e-9) + (t63 * (k(5e-6) * t63) + t62 * (k(5e-6) * t62)));
+        let t66 = k(1.0) / t65;
+        let t67 = t66 * t64;
+        let t68 = t64 * t67 - (k(1e-6) + (t52 * t53 + t45 * t46));
+        let t69 = t25 * t44 - (t24 * t38 + t2 * t33);
+        let t70 = k(0.5) - (t32 + inner_ring_e2 * inner_ring_e2);
+        let t71 = k(2.0) * t70;
+        let t72 = t37 - t36;
+        let t73 = k(2.0) * t72;
+        let t74 = t55 + t54;
+        let t75 = k(2.0) * t74;
+        let t76 = t75 * t41 + (t73 * t31 + t71 * t35);
+        let t77 = t75 * t51 - (t73 * t49 - t71 * t50);
+        let t78 = k(5e-6) * t76;
+        let t79 = k(5e-6) * t77;
+        let t80 = t63 * t79 + t62 * t78;
+        let t81 = t80 * t67 - (t77 * t53 + t76 * t46);
+        let t82 = t25 * t75 + (t2 * t73 + t24 * t71);
+        let t83 = t64 - t65 * t67;
+        let t84 = t25 * t61 - (t2 * t59 - t24 * t57);
+        let t85 = t84 * t83 - (t82 * t81 + t69 * t68);
+        let t86 = t66 * t80;
+        let t87 = t80 * t86 - (k(2e-6) + (k(1.25e-9) + (t77 * t79 + t76 * t78)));
+        let t88 = t80 - t65 * t86;
+        let t89 = t84 * t88 - (t82 * t87 + t69 * t81);
+        let t90 = t82 * t88 + t69 * t83;
+        let t91 = k(2.0) * (k(0.5) - (t34 + rotor_e1 * rotor_e1));
+        let t92 = k(2.0) * (t30 + t29);
+        let t93 = k(2.0) * (t48 - t47);
+        let t94 = t44 * t93 + (t38 * t92 + t33 * t91);
+        let t95 = inner_ring_wy * (t75 * t93 - (t71 * t92 + t73 * t91))
+            + inner_ring_wx * t94;
+        let t96 = inner_ring_wz * (t61 * t93 - (t57 * t92 - t59 * t91)) - t95;
+        let t97 = rotor_wx + t96;
+        let t98 = inner_ring_wz * t63 - (inner_ring_wy * t77 + inner_ring_wx * t52);
+        let t99 = rotor_wz - t98;
+        let t100 = inner_ring_wz * t62 - (inner_ring_wy * t76 + inner_ring_wx * t45);
+        let t101 = rotor_wy + t100;
+        let t102 = (t101 * t101 + t99 * t99) / t94;
+        let t103 = rotor_wz * t96 + rotor_wx * t98 - (t52 * t102 - t99 * t97);
+        let t104 = rotor_wx * rotor_wz;
+        let t105 = k(5e-6) * (t104 + t103);
+        let t106 = rotor_wx * t100 - rotor_wy * t96 - (t45 * t102 + t101 * t97);
+        let t107 = rotor_wx * rotor_wy;
+        let t108 = k(5e-6) * (t107 - t106);
+        let t109 = inner_ring_wy * inner_ring_wz;
+        let t110 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
+        let t111 = inner_ring_wx * inner_ring_wy;
+        let t112 = inner_ring_wx * inner_ring_wz;
+        let t113 = t59 * t112 + (t73 * t111 + t33 * t110);
+        let t114 = k(1e-5) * t113;
+        let t115 = k(0.00025) * t72;
+        let t116 = t57 * t112 - (t71 * t111 + t38 * t110);
+        let t117 = k(0.8) + k(1e-5) * t116;
+        let t118 = k(0.00025) * t70;
+        let t119 = t61 * t112 - (t75 * t111 - t44 * t110);
+        let t120 = k(1e-5) * t119;
+        let t121 = k(0.00025) * t74;
+        let t122 = t121 * t120 + (t118 * t117 - t115 * t114) + (t63 * t108 + t62 * t105);
+        let t123 = k(1e-6) * t111 - t122;
+        let t124 = t66 * t123;
+        let t125 = t64 * t124 - (k(1e-6) * t109 - (t52 * t108 + t45 * t105));
+        let t126 = k(2.0) * (t1 + t0);
+        let t127 = k(2.0) * (t8 - t7);
+        let t128 = t127 * t61 - (t126 * t57 - t21 * t59);
+        let t129 = t9 * t59 + t19 * t57 + t13 * t61;
+        let t130 = outer_ring_wz * t129 - (outer_ring_wy * t84 + outer_ring_wx * t128);
+        let t131 = inner_ring_wz - t130;
+        let t132 = t127 * t75 - (t126 * t71 + t21 * t73);
+        let t133 = t13 * t75 - (t9 * t73 - t19 * t71);
+        let t134 = outer_ring_wz * t133 - (outer_ring_wy * t82 + outer_ring_wx * t132);
+        let t135 = inner_ring_wy + t134;
+        let t136 = t127 * t44 + (t126 * t38 + t21 * t33);
+        let t137 = t13 * t44 - (t19 * t38 - t9 * t33);
+        let t138 = outer_ring_wz * t137 - (outer_ring_wy * t69 + outer_ring_wx * t136);
+        let t139 = inner_ring_wx + t138;
+        let t140 = (t139 * t139 + t135 * t135) / t129;
+        let t141 = inner_ring_wy * t130 + inner_ring_wz * t134
+            + (t133 * t140 - t135 * t131);
+        let t142 = inner_ring_wz * t138 + inner_ring_wx * t130
+            + (t137 * t140 - t139 * t131);
+        let t143 = k(0.00025) * t58;
+        let t144 = k(0.00025) * t56;
+        let t145 = k(0.00025) * t60;
+        let t146 = t145 * t120 + (t144 * t117 + t143 * t114) - (t77 * t108 + t76 * t105);
+        let t147 = t82 * (t87 * t142 - t81 * t141 - (t80 * t124 - t146));
+        let t148 = t84 * (t88 * t142 - t83 * t141 - (t123 - t65 * t124));
+        let t149 = t148 - (t147 + t69 * (t81 * t142 - t68 * t141 - t125));
+        let t150 = t82 * (t128 * t88 - (t132 * t87 + t136 * t81))
+            + t69 * (t128 * t83 - (t132 * t81 + t136 * t68));
+        let t151 = outer_ring_wx * t5 + outer_ring_wy * t22 + t9 * t27
+            - ((t20 * t126 + t16 * t127) * t26 + t23 * t6);
+        let t152 = (t129 * t90 + (t89 * t133 + t85 * t137)) * t151
+            - t28 * (t84 * (t132 * t88 + t136 * t83) + t150);
+        let t153 = (t152 + (k(1e-6) * (outer_ring_wx * outer_ring_wz) + t149))
+            / (k(1e-6) + (t84 * t90 + (t82 * t89 + t69 * t85)));
+        let t154 = t141 - (t137 * t151 - (t69 * t153 + t136 * t28));
+        let t155 = t142 + (t133 * t151 - (t82 * t153 + t132 * t28));
+        let t156 = t129 * t151 - (t84 * t153 + t128 * t28);
+        let t157 = t66 * (t123 - (t65 * t156 + (t80 * t155 - t64 * t154)));
+        let t158 = t156 + t157;
+        let t159 = t115 * t158 + t143 * t155 - k(0.000125) * t113;
+        let t160 = t118 * t158 - t144 * t155 + k(0.000125) * t116;
+        let t161 = t121 * t158 - t145 * t155 + k(0.000125) * t119;
+        let t162 = t103 + (t62 * t158 + (t76 * t155 - t45 * t154));
+        let t163 = t106 - (t63 * t158 + (t77 * t155 - t52 * t154));
+        let t164 = k(0.08) * t159;
+        let t165 = k(0.8) + k(0.08) * t160;
+        let t166 = k(0.1) + t165;
+        let t167 = k(0.08) * t161;
+        let t168 = k(5e-6) * (t107 - t163);
+        let t169 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t170 = k(2.0) * t169;
+        let t171 = k(1.0) - t169 * t170;
+        let t172 = k(5e-6) * (t104 + t162);
+        let t173 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t174 = t173 * t170;
+        let t175 = t174 * t172 + t171 * t168;
+        let t176 = t115 * t164 + t118 * t165 + t121 * t167 + t175
+            - k(1e-6) * (t111 - t158);
+        let t177 = t176 + k(1e-6) * (outer_ring_wx * outer_ring_wy + t151);
+        let t178 = k(0.05) * t14;
+        let t179 = t178.sin();
+        let t180 = t178.cos();
+        let t181 = t180 * outer_ring_e2 + t179 * outer_ring_e3;
+        let t182 = k(2.0) * t181;
+        let t183 = (t180 * outer_ring_e0 + t179 * outer_ring_e1) * t182;
+        let t184 = t171 * t172 - t174 * t168;
+        let t185 = t143 * t164 - t144 * t165 - t145 * t167 + t184 + k(2e-6) * t155;
+        let t186 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t187 = k(2.0) * t186;
+        let t188 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t189 = t188 * t187;
+        let t190 = k(1e-6) * (t109 + t154);
+        let t191 = k(1.0) - t186 * t187;
+        let t192 = t191 * t190 - t189 * t185;
+        let t193 = t192 + k(2e-6) * t28;
+        let t194 = k(1.0) - t181 * t182;
+        *out = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t28,
+            -t153,
+            -t151,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t154,
+            t155,
+            -t158,
+            -t159,
+            t160,
+            -t161,
+            k(0.0),
+            t162,
+            t163,
+            t164,
+            -(k(0.1) + t166),
+            t167,
+            t194 * t193 + t183 * t177,
+            t183 * t193 - t194 * t177,
+            t164,
+            -t166,
+            t167,
+            -(t189 * t190 + t191 * t185),
+            -t192,
+            t164,
+            -t165,
+            t167,
+            t175,
+            t184,
         ];
     }
 }

@@ -19,7 +19,7 @@
 //! | gamma | γ | 101 | 163 | 0 | 264 | 0 of 17 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 83 | 107 | 0 | 190 | 0 of 17 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 538 | 730 | 9 | 1277 | 0 of 21 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 528 | 704 | 9 | 1241 | 0 of 21 |
 //! | multipliers | λ, the accelerations being known | 104 | 165 | 3 | 272 | 0 of 17 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
@@ -1435,7 +1435,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
             -(k(0.01076) * (rocker_wx * rocker_wy)),
         ];
     }
-    /// Solves eq. (17): 1277 operations (538 ±, 730 ×, 9 ÷).
+    /// Solves eq. (17): 1241 operations (528 ±, 704 ×, 9 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let crank_e0 = y[3];
@@ -1460,638 +1460,622 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
         let rocker_wy = y[37];
         let rocker_wz = y[38];
         let (
-            t24,
-            t28,
+            t9,
+            t14,
+            t18,
+            t26,
+            t29,
             t32,
-            t36,
-            t38,
+            t35,
+            t40,
             t42,
-            t45,
+            t43,
+            t47,
+            t48,
+            t49,
             t50,
-            t52,
-            t53,
-            t57,
-            t58,
+            t51,
+            t55,
+            t56,
             t59,
             t60,
             t61,
-            t63,
-            t65,
-            t66,
+            t62,
+            t64,
             t69,
-            t70,
-            t71,
-            t72,
-            t74,
             t79,
-            t84,
-            t85,
+            t80,
+            t81,
+            t83,
             t86,
-            t88,
-            t91,
+            t92,
+            t93,
             t94,
-            t95,
             t96,
-            t98,
-            t101,
-            t121,
-            t141,
-            t145,
-            t149,
-            t166,
-            t186,
+            t99,
+            t119,
+            t139,
+            t143,
+            t147,
+            t160,
+            t184,
+            t185,
             t187,
-            t189,
+            t188,
             t190,
-            t192,
+            t191,
             t193,
+            t194,
             t195,
-            t196,
             t197,
-            t198,
             t199,
         ) = {
-            let t0 = crank_e0 * crank_e3;
-            let t1 = crank_e1 * crank_e2;
-            let t2 = k(2.0) * (t1 + t0);
-            let t3 = t1 - t0;
-            let t4 = k(2.0) * t3;
-            let t5 = crank_e0 * crank_e0;
-            let t6 = k(0.5) - (t5 + crank_e2 * crank_e2);
-            let t7 = k(2.0) * t6;
-            let t8 = k(2.0) * (k(0.5) - (t5 + crank_e1 * crank_e1));
-            let t9 = k(1.0) / (t8 * t7 - t4 * t2);
-            let t10 = crank_wx * crank_wz;
-            let t11 = crank_wy * crank_wz;
-            let t12 = crank_wy * crank_wy;
-            let t13 = t12 + crank_wx * crank_wx;
-            let t14 = crank_e0 * crank_e2;
-            let t15 = crank_e1 * crank_e3;
-            let t16 = t15 + t14;
-            let t17 = k(2.0) * t16;
-            let t18 = t17 * t13 - (t4 * t11 - t8 * t10);
-            let t19 = crank_e0 * crank_e1;
-            let t20 = crank_e2 * crank_e3;
-            let t21 = t20 - t19;
-            let t22 = k(2.0) * t21;
-            let t23 = t22 * t13 + (t7 * t11 - t2 * t10);
-            let t24 = t23 * (t4 * t9) + t18 * (t7 * t9);
-            let t25 = k(0.2) * t16;
-            let t26 = coupler_e0 * coupler_e1;
-            let t27 = coupler_e2 * coupler_e3;
-            let t28 = t27 - t26;
-            let t29 = coupler_wx * coupler_wz;
-            let t30 = k(0.02095) * t29 + k(4.905) * t28;
-            let t31 = coupler_e0 * coupler_e0;
-            let t32 = k(0.5) - (t31 + coupler_e2 * coupler_e2);
-            let t33 = k(2.0) * t32;
-            let t34 = coupler_e0 * coupler_e3;
-            let t35 = coupler_e1 * coupler_e2;
-            let t36 = t35 - t34;
-            let t37 = k(2.0) * t36;
-            let t38 = t27 + t26;
-            let t39 = k(2.0) * t38;
-            let t40 = k(0.5) - (t5 + crank_e3 * crank_e3);
+            let t0 = crank_e0 * crank_e0;
+            let t1 = k(0.5) - (t0 + crank_e3 * crank_e3);
+            let t2 = crank_wy * crank_wy;
+            let t3 = t2 + crank_wx * crank_wx;
+            let t4 = t3 * (k(0.5) / t1);
+            let t5 = crank_e0 * crank_e2;
+            let t6 = crank_e1 * crank_e3;
+            let t7 = k(2.0) * (t6 - t5);
+            let t8 = crank_wx * crank_wz;
+            let t9 = t8 - t7 * t4;
+            let t10 = t6 + t5;
+            let t11 = k(0.2) * t10;
+            let t12 = coupler_e0 * coupler_e1;
+            let t13 = coupler_e2 * coupler_e3;
+            let t14 = t13 - t12;
+            let t15 = coupler_wx * coupler_wz;
+            let t16 = k(0.02095) * t15 + k(4.905) * t14;
+            let t17 = coupler_e0 * coupler_e0;
+            let t18 = k(0.5) - (t17 + coupler_e2 * coupler_e2);
+            let t19 = k(2.0) * t18;
+            let t20 = crank_e0 * crank_e1;
+            let t21 = crank_e2 * crank_e3;
+            let t22 = t21 - t20;
+            let t23 = k(2.0) * t22;
+            let t24 = coupler_e0 * coupler_e3;
+            let t25 = coupler_e1 * coupler_e2;
+            let t26 = t25 - t24;
+            let t27 = k(2.0) * t26;
+            let t28 = k(2.0) * t10;
+            let t29 = t13 + t12;
+            let t30 = k(2.0) * t29;
+            let t31 = k(2.0) * t1;
+            let t32 = t31 * t30 - (t28 * t27 - t23 * t19);
+            let t33 = coupler_wx * coupler_wy;
+            let t34 = k(0.02095) * t33 - k(4.905) * t18;
+            let t35 = k(0.5) - (t17 + coupler_e3 * coupler_e3);
+            let t36 = k(2.0) * t35;
+            let t37 = k(2.0) * t14;
+            let t38 = coupler_e0 * coupler_e2;
+            let t39 = coupler_e1 * coupler_e3;
+            let t40 = t39 + t38;
             let t41 = k(2.0) * t40;
-            let t42 = t41 * t39 - (t17 * t37 - t22 * t33);
-            let t43 = coupler_wx * coupler_wy;
-            let t44 = k(0.02095) * t43 - k(4.905) * t32;
-            let t45 = k(0.5) - (t31 + coupler_e3 * coupler_e3);
-            let t46 = k(2.0) * t45;
-            let t47 = k(2.0) * t28;
-            let t48 = coupler_e0 * coupler_e2;
-            let t49 = coupler_e1 * coupler_e3;
-            let t50 = t49 + t48;
-            let t51 = k(2.0) * t50;
-            let t52 = t17 * t51 + t22 * t47 + t41 * t46;
-            let t53 = t52 * t44 + t42 * t30;
-            let t54 = k(2.0) * (k(0.5) - (t31 + coupler_e1 * coupler_e1));
-            let t55 = k(2.0) * (t35 + t34);
-            let t56 = k(2.0) * (t49 - t48);
-            let t57 = t41 * t56 - (t22 * t55 - t17 * t54);
-            let t58 = k(5e-5) * t57;
-            let t59 = k(0.0835) * t42;
-            let t60 = k(0.0835) * t52;
-            let t61 = k(1.0) / (t52 * t60 + (t42 * t59 + t57 * t58));
-            let t62 = t61 * t53;
-            let t63 = t30 - t59 * t62;
-            let t64 = t59 * t61;
-            let t65 = k(0.0835) - t59 * t64;
-            let t66 = k(1.0) / t65;
-            let t67 = t66 * t63;
-            let t68 = t58 * t61;
-            let t69 = t59 * t68;
-            let t70 = k(0.5) * t50;
-            let t71 = k(0.5) * t36;
-            let t72 = t71 * t52 + t70 * t42;
-            let t73 = t61 * t72;
-            let t74 = t70 - t59 * t73;
-            let t75 = t66 * t74;
-            let t76 = t69 * t75 - t58 * t73;
-            let t77 = coupler_wz * coupler_wz;
-            let t78 = t77 + coupler_wy * coupler_wy;
-            let t79 = k(0.25) * (t51 * t29 + (t37 * t43 + t54 * t78));
-            let t80 = crank_wz * crank_wz + t12;
-            let t81 = crank_wx * crank_wy;
-            let t82 = k(0.1) * (t17 * t10 + (t4 * t81 + t8 * t80));
-            let t83 = t82 + t79;
-            let t84 = k(0.5) * t28;
-            let t85 = k(0.5) * t32;
-            let t86 = t85 * t52 - t84 * t42;
-            let t87 = t61 * t86;
-            let t88 = t84 + t59 * t87;
-            let t89 = t66 * t88;
-            let t90 = t69 * t89 + t58 * t87;
-            let t91 = k(0.25) * (t47 * t29 - (t33 * t43 + t55 * t78));
-            let t92 = k(0.1) * (t22 * t10 - (t7 * t81 + t2 * t80));
-            let t93 = t92 + t91;
-            let t94 = k(0.5) * t45;
-            let t95 = k(0.5) * t38;
-            let t96 = t95 * t52 - t94 * t42;
-            let t97 = t61 * t96;
-            let t98 = t94 + t59 * t97;
-            let t99 = t66 * t98;
-            let t100 = t69 * t99 + t58 * t97;
-            let t101 = k(0.25) * (t46 * t29 - (t39 * t43 - t56 * t78));
-            let t102 = k(2.0) * (t15 - t14);
-            let t103 = t20 + t19;
-            let t104 = k(2.0) * t103;
-            let t105 = k(0.1) * (t41 * t10 - (t104 * t81 - t102 * t80));
-            let t106 = t105 + t101;
-            let t107 = k(1.0) / (t57 * t57 + t52 * t52);
-            let t108 = t102 * t39 - (t2 * t33 + t8 * t37);
-            let t109 = t104 * t39 + (t4 * t37 + t7 * t33);
-            let t110 = t102 * t56 + (t2 * t55 + t8 * t54);
-            let t111 = t102 * t46 - (t2 * t47 - t8 * t51);
-            let t112 = t104 * t56 - (t7 * t55 + t4 * t54);
-            let t113 = t104 * t46 - (t4 * t51 - t7 * t47);
-            let t114 = crank_wx * (coupler_wx * t113 + coupler_wz * t112)
-                - crank_wy * (coupler_wx * t111 + coupler_wz * t110);
-            let t115 = coupler_wy * coupler_wz * t52
-                + ((t77 + coupler_wx * coupler_wx) * t42 - t43 * t57);
-            let t116 = t115 + k(2.0) * t114 + (t13 * t42 + (t11 * t109 + t10 * t108));
-            let t117 = t116 * (t52 * t107);
-            let t118 = t66 * t69;
-            let t119 = t69 * t118 - (k(5e-5) - t58 * t68);
-            let t120 = t116 * (t57 * t107);
-            let t121 = t60 * t64;
-            let t122 = t121 * t118 + t60 * t68;
-            let t123 = t122 * t120 - t119 * t117
-                + (t106 * t100 + (t93 * t90 + t83 * t76));
-            let t124 = t74 - t65 * t75;
-            let t125 = t88 - t65 * t89;
-            let t126 = t98 - t65 * t99;
-            let t127 = t69 - t65 * t118;
-            let t128 = t127 * t117 - (t106 * t126 + (t93 * t125 + t83 * t124));
-            let t129 = t42 * (t128 - (t63 - t65 * t67))
-                - t57 * (t123 + (t69 * t67 - t58 * t62));
-            let t130 = t121 * t75 + (t71 - t60 * t73);
-            let t131 = t121 * t89 - (t85 - t60 * t87);
-            let t132 = t121 * t99 - (t95 - t60 * t97);
-            let t133 = t121 * (t66 * t121) - (k(0.0835) - t60 * (t60 * t61));
-            let t134 = t133 * t120 - t122 * t117
-                + (t106 * t132 + (t93 * t131 + t83 * t130));
-            let t135 = t52 * (t134 + (t121 * t67 + (t44 - t60 * t62))) - t129;
-            let t136 = t88 * t75 - t86 * t73;
-            let t137 = t88 * t89 + t86 * t87;
-            let t138 = t98 * t89 + t96 * t87;
-            let t139 = t131 * t120 - t90 * t117
-                - (t93 - (t106 * t138 + (t93 * t137 + t83 * t136)));
-            let t140 = t139 + (t88 * t67 - (k(9.81) + t86 * t62));
-            let t141 = k(0.2) * t6;
-            let t142 = t74 * t75 + t72 * t73;
-            let t143 = t98 * t75 - t96 * t73;
-            let t144 = t130 * t120 - t76 * t117
-                - (t83 - (t106 * t143 + (t93 * t136 + t83 * t142)));
-            let t145 = k(0.2) * t3;
-            let t146 = t145 * (t144 + (t74 * t67 + t72 * t62));
-            let t147 = t98 * t99 + t96 * t97;
-            let t148 = t132 * t120 - t100 * t117
-                - (t106 - (t106 * t147 + (t93 * t138 + t83 * t143)));
-            let t149 = k(0.2) * t103;
-            let t150 = t149 * (t148 + (t98 * t67 - t96 * t62));
-            let t151 = t141 * (k(3.924) - t140) + t146 - t150
-                - (k(0.00133) * t81 + (t150 - (t146 - t141 * t140) + t135));
-            let t152 = t149 * t143 + (t141 * t136 - t145 * t142);
-            let t153 = t52 * t130 + (t42 * t124 + t57 * t76);
-            let t154 = t145 + t152 + t153;
-            let t155 = t149 * t138 + (t141 * t137 - t145 * t136);
-            let t156 = t52 * t131 + (t42 * t125 + t57 * t90);
-            let t157 = t141 - t155 - t156;
-            let t158 = t92 * (t157 - (t155 - k(0.28) * t6))
-                - t82 * (t154 + (t152 + k(0.28) * t3));
-            let t159 = t149 * t147 + (t141 * t138 - t145 * t143);
-            let t160 = t52 * t132 + (t42 * t126 + t57 * t100);
-            let t161 = t149 - t159 - t160;
-            let t162 = t42 * (t110 * t127)
-                + t57 * (t111 * t122 + (t108 * t127 + t110 * t119));
-            let t163 = t141 * (t111 * t131 + (t108 * t125 + t110 * t90))
-                - t145 * (t111 * t130 + (t108 * t124 + t110 * t76));
-            let t164 = t149 * (t111 * t132 + (t108 * t126 + t110 * t100)) + t163;
-            let t165 = t164 + (t164 + (t52 * (t111 * t133 + t110 * t122) + t162));
-            let t166 = t23 * (t8 * t9) + t18 * (t2 * t9);
-            let t167 = t42 * (t112 * t127)
-                + t57 * (t113 * t122 + (t109 * t127 + t112 * t119));
-            let t168 = k(0.2) * t21;
-            let t169 = k(0.2) * t40;
-            let t170 = t113 * t130 + (t109 * t124 + t112 * t76);
-            let t171 = t113 * t131 + (t109 * t125 + t112 * t90);
-            let t172 = t113 * t132 + (t109 * t126 + t112 * t100);
-            let t173 = t149 * t172 + (t141 * t171 - t145 * t170)
-                - (t169 * t160 + (t168 * t156 + t25 * t153));
-            let t174 = t169 * t159 + (t168 * t155 + t25 * t152);
-            let t175 = t174 - t173 - (t52 * (t113 * t133 + t112 * t122) + t167);
-            let t176 = t25 - (t169 * t143 + (t168 * t136 + t25 * t142)) + t170;
-            let t177 = t168 - (t169 * t138 + (t168 * t137 + t25 * t136)) + t171;
-            let t178 = t169 - (t169 * t147 + (t168 * t138 + t25 * t143)) + t172;
-            let t179 = t149 * t178 + (t141 * t177 - t145 * t176)
-                + (t169 * t161 + (t168 * t157 - t25 * t154));
-            let t180 = t24 * (t179 - t174 - t175) - t166 * t165
-                + (t105 * (t161 - (t159 - k(0.28) * t103)) + t158);
-            let t181 = t42 * (t57 * t127)
-                + t57 * (t52 * t122 + (t42 * t127 + t57 * t119));
-            let t182 = t149 * t159 + (t141 * t155 - t145 * t152);
-            let t183 = t182 + k(2.0) * (t149 * t160 + (t141 * t156 - t145 * t153));
-            let t184 = t183 - (k(0.01) - (t52 * (t52 * t133 + t57 * t122) + t181));
-            let t185 = k(2.0) * (t149 * t161 + (t141 * t157 + t145 * t154)) - t182;
-            let t186 = k(1.0) / (t185 + (k(0.014) + (k(0.00135) - t184)));
-            let t187 = t186 * (t180 + t151);
-            let t188 = t145 * t187 + t25 * t24;
-            let t189 = t82 + t188;
-            let t190 = t83 + (t188 + t189);
-            let t191 = t141 * t187 - t168 * t24;
-            let t192 = t92 - t191;
-            let t193 = t93 - (t191 - t192);
-            let t194 = t149 * t187 - t169 * t24;
-            let t195 = t105 - t194;
-            let t196 = t106 - (t194 - t195);
-            let t197 = t117 + (t57 * t187 + (t112 * t24 - t110 * t166));
-            let t198 = t42 * t187 + (t109 * t24 - t108 * t166);
-            let t199 = t120 - (t52 * t187 + (t113 * t24 - t111 * t166));
+            let t42 = t28 * t41 + t23 * t37 + t31 * t36;
+            let t43 = t42 * t34 + t32 * t16;
+            let t44 = k(2.0) * (k(0.5) - (t17 + coupler_e1 * coupler_e1));
+            let t45 = k(2.0) * (t25 + t24);
+            let t46 = k(2.0) * (t39 - t38);
+            let t47 = t31 * t46 - (t23 * t45 - t28 * t44);
+            let t48 = k(5e-5) * t47;
+            let t49 = k(0.0835) * t32;
+            let t50 = k(0.0835) * t42;
+            let t51 = k(1.0) / (t42 * t50 + (t32 * t49 + t47 * t48));
+            let t52 = t51 * t43;
+            let t53 = t16 - t49 * t52;
+            let t54 = t49 * t51;
+            let t55 = k(0.0835) - t49 * t54;
+            let t56 = k(1.0) / t55;
+            let t57 = t56 * t53;
+            let t58 = t48 * t51;
+            let t59 = t49 * t58;
+            let t60 = k(0.5) * t40;
+            let t61 = k(0.5) * t26;
+            let t62 = t61 * t42 + t60 * t32;
+            let t63 = t51 * t62;
+            let t64 = t60 - t49 * t63;
+            let t65 = t56 * t64;
+            let t66 = t59 * t65 - t48 * t63;
+            let t67 = coupler_wz * coupler_wz;
+            let t68 = t67 + coupler_wy * coupler_wy;
+            let t69 = k(0.25) * (t41 * t15 + (t27 * t33 + t44 * t68));
+            let t70 = crank_wz * crank_wz + t2;
+            let t71 = k(2.0) * (k(0.5) - (t0 + crank_e1 * crank_e1));
+            let t72 = crank_wx * crank_wy;
+            let t73 = crank_e0 * crank_e3;
+            let t74 = crank_e1 * crank_e2;
+            let t75 = t74 - t73;
+            let t76 = k(2.0) * t75;
+            let t77 = k(0.1) * (t28 * t8 + (t76 * t72 + t71 * t70));
+            let t78 = t77 + t69;
+            let t79 = k(0.5) * t14;
+            let t80 = k(0.5) * t18;
+            let t81 = t80 * t42 - t79 * t32;
+            let t82 = t51 * t81;
+            let t83 = t79 + t49 * t82;
+            let t84 = t56 * t83;
+            let t85 = t59 * t84 + t48 * t82;
+            let t86 = k(0.25) * (t37 * t15 - (t19 * t33 + t45 * t68));
+            let t87 = k(2.0) * (t74 + t73);
+            let t88 = k(0.5) - (t0 + crank_e2 * crank_e2);
+            let t89 = k(2.0) * t88;
+            let t90 = k(0.1) * (t23 * t8 - (t89 * t72 + t87 * t70));
+            let t91 = t90 + t86;
+            let t92 = k(0.5) * t35;
+            let t93 = k(0.5) * t29;
+            let t94 = t93 * t42 - t92 * t32;
+            let t95 = t51 * t94;
+            let t96 = t92 + t49 * t95;
+            let t97 = t56 * t96;
+            let t98 = t59 * t97 + t48 * t95;
+            let t99 = k(0.25) * (t36 * t15 - (t30 * t33 - t46 * t68));
+            let t100 = t21 + t20;
+            let t101 = k(2.0) * t100;
+            let t102 = k(0.1) * (t31 * t8 - (t101 * t72 - t7 * t70));
+            let t103 = t102 + t99;
+            let t104 = k(1.0) / (t47 * t47 + t42 * t42);
+            let t105 = t7 * t30 - (t87 * t19 + t71 * t27);
+            let t106 = t101 * t30 + (t76 * t27 + t89 * t19);
+            let t107 = crank_wy * crank_wz;
+            let t108 = t7 * t46 + (t87 * t45 + t71 * t44);
+            let t109 = t7 * t36 - (t87 * t37 - t71 * t41);
+            let t110 = t101 * t46 - (t89 * t45 + t76 * t44);
+            let t111 = t101 * t36 - (t76 * t41 - t89 * t37);
+            let t112 = crank_wx * (coupler_wx * t111 + coupler_wz * t110)
+                - crank_wy * (coupler_wx * t109 + coupler_wz * t108);
+            let t113 = coupler_wy * coupler_wz * t42
+                + ((t67 + coupler_wx * coupler_wx) * t32 - t33 * t47);
+            let t114 = t113 + k(2.0) * t112 + (t3 * t32 + (t107 * t106 + t8 * t105));
+            let t115 = t114 * (t42 * t104);
+            let t116 = t56 * t59;
+            let t117 = t59 * t116 - (k(5e-5) - t48 * t58);
+            let t118 = t114 * (t47 * t104);
+            let t119 = t50 * t54;
+            let t120 = t119 * t116 + t50 * t58;
+            let t121 = t120 * t118 - t117 * t115
+                + (t103 * t98 + (t91 * t85 + t78 * t66));
+            let t122 = t64 - t55 * t65;
+            let t123 = t83 - t55 * t84;
+            let t124 = t96 - t55 * t97;
+            let t125 = t59 - t55 * t116;
+            let t126 = t125 * t115 - (t103 * t124 + (t91 * t123 + t78 * t122));
+            let t127 = t32 * (t126 - (t53 - t55 * t57))
+                - t47 * (t121 + (t59 * t57 - t48 * t52));
+            let t128 = t119 * t65 + (t61 - t50 * t63);
+            let t129 = t119 * t84 - (t80 - t50 * t82);
+            let t130 = t119 * t97 - (t93 - t50 * t95);
+            let t131 = t119 * (t56 * t119) - (k(0.0835) - t50 * (t50 * t51));
+            let t132 = t131 * t118 - t120 * t115
+                + (t103 * t130 + (t91 * t129 + t78 * t128));
+            let t133 = t42 * (t132 + (t119 * t57 + (t34 - t50 * t52))) - t127;
+            let t134 = t83 * t65 - t81 * t63;
+            let t135 = t83 * t84 + t81 * t82;
+            let t136 = t96 * t84 + t94 * t82;
+            let t137 = t129 * t118 - t85 * t115
+                - (t91 - (t103 * t136 + (t91 * t135 + t78 * t134)));
+            let t138 = t137 + (t83 * t57 - (k(9.81) + t81 * t52));
+            let t139 = k(0.2) * t88;
+            let t140 = t64 * t65 + t62 * t63;
+            let t141 = t96 * t65 - t94 * t63;
+            let t142 = t128 * t118 - t66 * t115
+                - (t78 - (t103 * t141 + (t91 * t134 + t78 * t140)));
+            let t143 = k(0.2) * t75;
+            let t144 = t143 * (t142 + (t64 * t57 + t62 * t52));
+            let t145 = t96 * t97 + t94 * t95;
+            let t146 = t130 * t118 - t98 * t115
+                - (t103 - (t103 * t145 + (t91 * t136 + t78 * t141)));
+            let t147 = k(0.2) * t100;
+            let t148 = t147 * (t146 + (t96 * t57 - t94 * t52));
+            let t149 = t139 * (k(3.924) - t138) + t144 - t148
+                - (k(0.00133) * t72 + (t148 - (t144 - t139 * t138) + t133));
+            let t150 = t147 * t141 + (t139 * t134 - t143 * t140);
+            let t151 = t42 * t128 + (t32 * t122 + t47 * t66);
+            let t152 = t143 + t150 + t151;
+            let t153 = t147 * t136 + (t139 * t135 - t143 * t134);
+            let t154 = t42 * t129 + (t32 * t123 + t47 * t85);
+            let t155 = t139 - t153 - t154;
+            let t156 = t90 * (t155 - (t153 - k(0.28) * t88))
+                - t77 * (t152 + (t150 + k(0.28) * t75));
+            let t157 = t147 * t145 + (t139 * t136 - t143 * t141);
+            let t158 = t42 * t130 + (t32 * t124 + t47 * t98);
+            let t159 = t147 - t157 - t158;
+            let t160 = t107 - t101 * t4;
+            let t161 = t32 * (t108 * t125)
+                + t47 * (t109 * t120 + (t105 * t125 + t108 * t117));
+            let t162 = t139 * (t109 * t129 + (t105 * t123 + t108 * t85))
+                - t143 * (t109 * t128 + (t105 * t122 + t108 * t66));
+            let t163 = t147 * (t109 * t130 + (t105 * t124 + t108 * t98)) + t162;
+            let t164 = t163 + (t163 + (t42 * (t109 * t131 + t108 * t120) + t161));
+            let t165 = t32 * (t110 * t125)
+                + t47 * (t111 * t120 + (t106 * t125 + t110 * t117));
+            let t166 = k(0.2) * t22;
+            let t167 = k(0.2) * t1;
+            let t168 = t111 * t128 + (t106 * t122 + t110 * t66);
+            let t169 = t111 * t129 + (t106 * t123 + t110 * t85);
+            let t170 = t111 * t130 + (t106 * t124 + t110 * t98);
+            let t171 = t147 * t170 + (t139 * t169 - t143 * t168)
+                - (t167 * t158 + (t166 * t154 + t11 * t151));
+            let t172 = t167 * t157 + (t166 * t153 + t11 * t150);
+            let t173 = t172 - t171 - (t42 * (t111 * t131 + t110 * t120) + t165);
+            let t174 = t11 - (t167 * t141 + (t166 * t134 + t11 * t140)) + t168;
+            let t175 = t166 - (t167 * t136 + (t166 * t135 + t11 * t134)) + t169;
+            let t176 = t167 - (t167 * t145 + (t166 * t136 + t11 * t141)) + t170;
+            let t177 = t147 * t176 + (t139 * t175 - t143 * t174)
+                + (t167 * t159 + (t166 * t155 - t11 * t152));
+            let t178 = (t177 - t172 - t173) * t9 - t164 * t160
+                + (t102 * (t159 - (t157 - k(0.28) * t100)) + t156);
+            let t179 = t32 * (t47 * t125)
+                + t47 * (t42 * t120 + (t32 * t125 + t47 * t117));
+            let t180 = t147 * t157 + (t139 * t153 - t143 * t150);
+            let t181 = t180 + k(2.0) * (t147 * t158 + (t139 * t154 - t143 * t151));
+            let t182 = t181 - (k(0.01) - (t42 * (t42 * t131 + t47 * t120) + t179));
+            let t183 = k(2.0) * (t147 * t159 + (t139 * t155 + t143 * t152)) - t180;
+            let t184 = k(1.0) / (t183 + (k(0.014) + (k(0.00135) - t182)));
+            let t185 = t184 * (t178 + t149);
+            let t186 = t143 * t185 + t11 * t9;
+            let t187 = t77 + t186;
+            let t188 = t78 + (t186 + t187);
+            let t189 = t139 * t185 - t166 * t9;
+            let t190 = t90 - t189;
+            let t191 = t91 - (t189 - t190);
+            let t192 = t147 * t185 - t167 * t9;
+            let t193 = t102 - t192;
+            let t194 = t103 - (t192 - t193);
+            let t195 = t115 + (t47 * t185 + (t110 * t9 - t108 * t160));
+            let t196 = t32 * t185 + (t106 * t9 - t105 * t160);
+            let t197 = t118 - (t42 * t185 + (t111 * t9 - t109 * t160));
+            let t198 = t119 * t197 + (t55 * t196 - t59 * t195)
+                + (t96 * t194 + (t83 * t191 + t64 * t188));
+            let t199 = t196 - t56 * (t53 + t198);
             (
-                t24,
-                t28,
+                t9,
+                t14,
+                t18,
+                t26,
+                t29,
                 t32,
-                t36,
-                t38,
+                t35,
+                t40,
                 t42,
-                t45,
+                t43,
+                t47,
+                t48,
+                t49,
                 t50,
-                t52,
-                t53,
-                t57,
-                t58,
+                t51,
+                t55,
+                t56,
                 t59,
                 t60,
                 t61,
-                t63,
-                t65,
-                t66,
+                t62,
+                t64,
                 t69,
-                t70,
-                t71,
-                t72,
-                t74,
                 t79,
-                t84,
-                t85,
+                t80,
+                t81,
+                t83,
                 t86,
-                t88,
-                t91,
+                t92,
+                t93,
                 t94,
-                t95,
                 t96,
-                t98,
-                t101,
-                t121,
-                t141,
-                t145,
-                t149,
-                t166,
-                t186,
+                t99,
+                t119,
+                t139,
+                t143,
+                t147,
+                t160,
+                t184,
+                t185,
                 t187,
-                t189,
+                t188,
                 t190,
-                t192,
+                t191,
                 t193,
+                t194,
                 t195,
-                t196,
                 t197,
-                t198,
                 t199,
             )
         };
         let (
-            t204,
-            t205,
-            t210,
-            t216,
-            t217,
-            t226,
-            t231,
-            t232,
-            t242,
-            t255,
-            t256,
-            t258,
+            t202,
+            t203,
+            t209,
+            t214,
+            t230,
+            t233,
+            t246,
+            t247,
+            t249,
+            t251,
             t260,
-            t269,
-            t270,
-            t273,
-            t295,
-            t296,
-            t298,
+            t261,
+            t264,
+            t286,
+            t287,
+            t289,
+            t291,
             t300,
-            t309,
-            t310,
+            t301,
+            t304,
+            t308,
+            t311,
             t313,
-            t317,
+            t314,
+            t319,
             t320,
-            t322,
-            t323,
-            t328,
-            t329,
-            t340,
-            t341,
-            t342,
-            t343,
+            t331,
+            t332,
+            t333,
+            t334,
+            t336,
+            t338,
+            t344,
             t345,
-            t347,
+            t346,
+            t348,
+            t349,
+            t350,
+            t352,
             t353,
             t354,
             t355,
+            t356,
             t357,
             t358,
             t359,
-            t361,
-            t362,
-            t363,
-            t364,
-            t365,
-            t366,
-            t367,
-            t368,
         ) = {
-            let t200 = t121 * t199 + (t65 * t198 - t69 * t197)
-                + (t98 * t196 + (t88 * t193 + t74 * t190));
-            let t201 = t198 - t66 * (t63 + t200);
-            let t202 = t60 * t199 - (t59 * t201 + t58 * t197)
-                + (t96 * t196 + (t86 * t193 - t72 * t190));
-            let t203 = t61 * (t53 - t202);
-            let t204 = t201 - t42 * t203;
-            let t205 = t199 + t52 * t203;
-            let t206 = t71 * t205 - t70 * t204;
-            let t207 = t190 - t206;
-            let t208 = rocker_e0 * rocker_e3;
-            let t209 = rocker_e1 * rocker_e2;
-            let t210 = k(2.0) * (t209 + t208);
-            let t211 = t209 - t208;
-            let t212 = k(2.0) * t211;
-            let t213 = rocker_e0 * rocker_e0;
-            let t214 = k(0.5) - (t213 + rocker_e2 * rocker_e2);
-            let t215 = k(2.0) * t214;
-            let t216 = k(2.0) * (k(0.5) - (t213 + rocker_e1 * rocker_e1));
-            let t217 = k(1.0) / (t216 * t215 - t212 * t210);
-            let t218 = rocker_wx * rocker_wz;
-            let t219 = rocker_wy * rocker_wz;
-            let t220 = rocker_wy * rocker_wy;
-            let t221 = t220 + rocker_wx * rocker_wx;
-            let t222 = rocker_e0 * rocker_e2;
-            let t223 = rocker_e1 * rocker_e3;
-            let t224 = t223 + t222;
-            let t225 = k(2.0) * t224;
-            let t226 = t225 * t221 - (t212 * t219 - t216 * t218);
-            let t227 = rocker_e0 * rocker_e1;
-            let t228 = rocker_e2 * rocker_e3;
-            let t229 = t228 - t227;
+            let t200 = t50 * t197 - (t49 * t199 + t48 * t195)
+                + (t94 * t194 + (t81 * t191 - t62 * t188));
+            let t201 = t51 * (t43 - t200);
+            let t202 = t199 - t32 * t201;
+            let t203 = t197 + t42 * t201;
+            let t204 = t61 * t203 - t60 * t202;
+            let t205 = t188 - t204;
+            let t206 = rocker_e0 * rocker_e0;
+            let t207 = k(0.5) - (t206 + rocker_e3 * rocker_e3);
+            let t208 = rocker_wy * rocker_wy;
+            let t209 = (t208 + rocker_wx * rocker_wx) * (k(0.5) / t207);
+            let t210 = rocker_e0 * rocker_e2;
+            let t211 = rocker_e1 * rocker_e3;
+            let t212 = k(2.0) * (t211 - t210);
+            let t213 = rocker_wx * rocker_wz;
+            let t214 = t213 - t212 * t209;
+            let t215 = t211 + t210;
+            let t216 = k(0.5) - (t206 + rocker_e2 * rocker_e2);
+            let t217 = rocker_wx * rocker_wy;
+            let t218 = rocker_e0 * rocker_e3;
+            let t219 = rocker_e1 * rocker_e2;
+            let t220 = t219 - t218;
+            let t221 = rocker_wz * rocker_wz + t208;
+            let t222 = k(2.0) * t220 * t217
+                + k(2.0) * (k(0.5) - (t206 + rocker_e1 * rocker_e1)) * t221;
+            let t223 = k(0.2) * (k(2.0) * t215 * t213 + t222);
+            let t224 = rocker_e0 * rocker_e1;
+            let t225 = rocker_e2 * rocker_e3;
+            let t226 = t225 - t224;
+            let t227 = k(2.0) * t226 * t213
+                - (k(2.0) * t216 * t217 + k(2.0) * (t219 + t218) * t221);
+            let t228 = k(0.2) * t227;
+            let t229 = t225 + t224;
             let t230 = k(2.0) * t229;
-            let t231 = t230 * t221 + (t215 * t219 - t210 * t218);
-            let t232 = t231 * (t212 * t217) + t226 * (t215 * t217);
-            let t233 = rocker_wx * rocker_wy;
-            let t234 = rocker_wz * rocker_wz + t220;
-            let t235 = k(0.2) * (t225 * t218 + (t212 * t233 + t216 * t234));
-            let t236 = k(0.2) * (t230 * t218 - (t215 * t233 + t210 * t234));
-            let t237 = t228 + t227;
-            let t238 = k(0.5) - (t213 + rocker_e3 * rocker_e3);
-            let t239 = k(2.0) * t238 * t218
-                - (k(2.0) * t237 * t233 - k(2.0) * (t223 - t222) * t234);
-            let t240 = k(0.2) * t239;
-            let t241 = t240 * (k(0.32) * t237)
-                + (t236 * (k(0.32) * t214) - t235 * (k(0.32) * t211));
-            let t242 = k(23.364485981308412)
-                * (t241 - (k(0.01076) * t233 - k(3.1392) * t214));
-            let t243 = k(0.4) * t211;
-            let t244 = t243 * t242 + k(0.4) * t224 * t232;
-            let t245 = t235 + t244;
-            let t246 = t235 - t79 + (t244 + t245 + (t206 - t207));
-            let t247 = t36 * t52 + t50 * t42;
-            let t248 = t247 * t61;
-            let t249 = t50 - t59 * t248;
-            let t250 = t249 * t66;
-            let t251 = t42 * (t249 - t65 * t250) + t57 * (t250 * t69 - t58 * t248);
-            let t252 = t141 * (t250 * t88 - t248 * t86)
-                - t145 * (t250 * t74 - (k(1.0) - t248 * t72));
-            let t253 = t149 * (t250 * t98 - t248 * t96) + t252;
-            let t254 = t253 + (t52 * (t250 * t121 + (t36 - t60 * t248)) + t251);
-            let t255 = (t253 + t254) * t186;
-            let t256 = t145 * t255;
-            let t257 = k(2.0) * t256;
-            let t258 = t141 * t255;
-            let t259 = k(2.0) * t258;
-            let t260 = t149 * t255;
-            let t261 = k(2.0) * t260;
-            let t262 = t57 * t255;
-            let t263 = t42 * t255;
-            let t264 = t52 * t255;
-            let t265 = t121 * t264 - (t65 * t263 - t69 * t262)
-                + (t98 * t261 + (t88 * t259 - t74 * t257));
-            let t266 = t263 + t66 * (t249 + t265);
-            let t267 = t60 * t264 + (t59 * t266 + t58 * t262)
-                + (t96 * t261 + (t86 * t259 + t72 * t257));
-            let t268 = t61 * (t247 - t267);
-            let t269 = t266 + t42 * t268;
-            let t270 = t264 + t52 * t268;
-            let t271 = t71 * t270 + t70 * t269;
-            let t272 = t257 + t271;
-            let t273 = k(18.69158878504673) * t211;
-            let t274 = t243 * t273;
-            let t275 = k(1.0) / (k(2.0) * t274 + (t271 + t272));
-            let t276 = t85 * t205 + t84 * t204;
-            let t277 = t193 + t276;
-            let t278 = k(0.4) * t214;
-            let t279 = t278 * t242 - k(0.4) * t229 * t232;
-            let t280 = t236 - t279;
-            let t281 = t85 * t270 - t84 * t269;
-            let t282 = t259 + t281;
-            let t283 = t278 * t273;
-            let t284 = k(2.0) * t283 + (t281 + t282);
-            let t285 = t275 * t284;
-            let t286 = t285 * t246 + (t236 - t91 - (t279 - t280 + (t276 + t277)));
-            let t287 = t32 * t52 - t28 * t42;
-            let t288 = t61 * t287;
-            let t289 = t28 + t59 * t288;
-            let t290 = t66 * t289;
-            let t291 = t42 * (t289 - t65 * t290) + t57 * (t69 * t290 + t58 * t288);
-            let t292 = t141 * (t88 * t290 - (k(1.0) - t86 * t288))
-                - t145 * (t74 * t290 - t72 * t288);
-            let t293 = t149 * (t98 * t290 + t96 * t288) + t292;
-            let t294 = t293 + (t52 * (t121 * t290 - (t32 - t60 * t288)) + t291);
-            let t295 = t186 * (t293 + t294);
-            let t296 = t145 * t295;
-            let t297 = k(2.0) * t296;
-            let t298 = t141 * t295;
-            let t299 = k(2.0) * t298;
-            let t300 = t149 * t295;
-            let t301 = k(2.0) * t300;
-            let t302 = t57 * t295;
-            let t303 = t42 * t295;
-            let t304 = t52 * t295;
-            let t305 = t121 * t304 - (t65 * t303 - t69 * t302)
-                + (t98 * t301 + (t88 * t299 - t74 * t297));
-            let t306 = t303 + t66 * (t289 + t305);
-            let t307 = t60 * t304 + (t59 * t306 + t58 * t302)
-                + (t96 * t301 + (t86 * t299 + t72 * t297));
-            let t308 = t61 * (t287 + t307);
-            let t309 = t306 - t42 * t308;
-            let t310 = t304 - t52 * t308;
-            let t311 = t85 * t310 - t84 * t309;
-            let t312 = t299 + t311;
-            let t313 = k(18.69158878504673) * t214;
-            let t314 = t278 * t313;
-            let t315 = k(1.0) / (t284 * t285 - (k(2.0) * t314 - (t311 + t312)));
-            let t316 = t95 * t205 + t94 * t204;
-            let t317 = t196 + t316;
-            let t318 = k(0.4) * t237;
-            let t319 = t318 * t242 - k(0.4) * t238 * t232;
-            let t320 = t240 - t319;
-            let t321 = t95 * t270 - t94 * t269;
-            let t322 = t261 + t321;
-            let t323 = t318 * t273;
-            let t324 = k(2.0) * t323 + (t321 + t322);
-            let t325 = t275 * t324;
-            let t326 = t325 * t246 + (t240 - t101 - (t319 - t320 + (t316 + t317)));
-            let t327 = t95 * t310 - t94 * t309;
-            let t328 = t301 + t327;
-            let t329 = t318 * t313;
-            let t330 = t284 * t325 - (k(2.0) * t329 - (t327 + t328));
-            let t331 = t315 * t330;
-            let t332 = t38 * t52 - t45 * t42;
-            let t333 = t61 * t332;
-            let t334 = t45 + t59 * t333;
-            let t335 = t66 * t334;
-            let t336 = t42 * (t334 - t65 * t335) + t57 * (t69 * t335 + t58 * t333);
-            let t337 = t141 * (t88 * t335 + t86 * t333)
-                - t145 * (t74 * t335 - t72 * t333);
-            let t338 = t149 * (t98 * t335 - (k(1.0) - t96 * t333)) + t337;
-            let t339 = t338 + (t52 * (t121 * t335 - (t38 - t60 * t333)) + t336);
-            let t340 = t186 * (t338 + t339);
-            let t341 = t145 * t340;
-            let t342 = k(2.0) * t341;
-            let t343 = t141 * t340;
-            let t344 = k(2.0) * t343;
-            let t345 = t149 * t340;
-            let t346 = k(2.0) * t345;
-            let t347 = t57 * t340;
-            let t348 = t42 * t340;
-            let t349 = t52 * t340;
-            let t350 = t121 * t349 - (t65 * t348 - t69 * t347)
-                + (t98 * t346 + (t88 * t344 - t74 * t342));
-            let t351 = t348 + t66 * (t334 + t350);
-            let t352 = t60 * t349 + (t59 * t351 + t58 * t347)
-                + (t96 * t346 + (t86 * t344 + t72 * t342));
-            let t353 = t61 * (t332 + t352);
-            let t354 = t351 - t42 * t353;
-            let t355 = t349 - t52 * t353;
-            let t356 = t95 * t355 - t94 * t354;
-            let t357 = t346 + t356;
-            let t358 = k(18.69158878504673) * t237;
-            let t359 = t318 * t358;
-            let t360 = t330 * t331 - (t324 * t325 - (k(2.0) * t359 - (t356 + t357)));
-            let t361 = (t331 * t286 - t326) / t360;
-            let t362 = t331 * t361 - t315 * t286;
-            let t363 = t325 * t361 - (t285 * t362 + t275 * t246);
-            let t364 = t362 * (t297 + (t71 * t310 + t70 * t309)) + (t207 - t272 * t363);
-            let t365 = t361 * (t344 + (t85 * t355 - t84 * t354))
-                - (t312 * t362 - (t277 + t282 * t363));
-            let t366 = t362 * (t302 - t57 * t308)
-                - (t363 * (t262 + t57 * t268) - (t197 - t57 * t203));
-            let t367 = t361 * (t243 * t358)
-                - (t362 * (t243 * t313) + (t245 + t274 * t363));
-            let t368 = t361 * (t278 * t358) - (t314 * t362 - (t280 - t283 * t363));
+            let t231 = k(0.2) * (k(2.0) * t207 * t213 - (t230 * t217 - t212 * t221));
+            let t232 = t231 * (k(0.32) * t229)
+                + (t228 * (k(0.32) * t216) - t223 * (k(0.32) * t220));
+            let t233 = k(23.364485981308412)
+                * (t232 - (k(0.01076) * t217 - k(3.1392) * t216));
+            let t234 = k(0.4) * t220;
+            let t235 = t234 * t233 + k(0.4) * t215 * t214;
+            let t236 = t223 + t235;
+            let t237 = t223 - t69 + (t235 + t236 + (t204 - t205));
+            let t238 = t26 * t42 + t40 * t32;
+            let t239 = t238 * t51;
+            let t240 = t40 - t49 * t239;
+            let t241 = t240 * t56;
+            let t242 = t32 * (t240 - t55 * t241) + t47 * (t241 * t59 - t48 * t239);
+            let t243 = t139 * (t241 * t83 - t239 * t81)
+                - t143 * (t241 * t64 - (k(1.0) - t239 * t62));
+            let t244 = t147 * (t241 * t96 - t239 * t94) + t243;
+            let t245 = t244 + (t42 * (t241 * t119 + (t26 - t50 * t239)) + t242);
+            let t246 = (t244 + t245) * t184;
+            let t247 = t143 * t246;
+            let t248 = k(2.0) * t247;
+            let t249 = t139 * t246;
+            let t250 = k(2.0) * t249;
+            let t251 = t147 * t246;
+            let t252 = k(2.0) * t251;
+            let t253 = t47 * t246;
+            let t254 = t32 * t246;
+            let t255 = t42 * t246;
+            let t256 = t119 * t255 - (t55 * t254 - t59 * t253)
+                + (t96 * t252 + (t83 * t250 - t64 * t248));
+            let t257 = t254 + t56 * (t240 + t256);
+            let t258 = t50 * t255 + (t49 * t257 + t48 * t253)
+                + (t94 * t252 + (t81 * t250 + t62 * t248));
+            let t259 = t51 * (t238 - t258);
+            let t260 = t257 + t32 * t259;
+            let t261 = t255 + t42 * t259;
+            let t262 = t61 * t261 + t60 * t260;
+            let t263 = t248 + t262;
+            let t264 = k(18.69158878504673) * t220;
+            let t265 = t234 * t264;
+            let t266 = k(1.0) / (k(2.0) * t265 + (t262 + t263));
+            let t267 = t80 * t203 + t79 * t202;
+            let t268 = t191 + t267;
+            let t269 = k(0.4) * t216;
+            let t270 = t269 * t233 - k(0.4) * t226 * t214;
+            let t271 = t228 - t270;
+            let t272 = t80 * t261 - t79 * t260;
+            let t273 = t250 + t272;
+            let t274 = t269 * t264;
+            let t275 = k(2.0) * t274 + (t272 + t273);
+            let t276 = t266 * t275;
+            let t277 = t276 * t237 + (t228 - t86 - (t270 - t271 + (t267 + t268)));
+            let t278 = t18 * t42 - t14 * t32;
+            let t279 = t51 * t278;
+            let t280 = t14 + t49 * t279;
+            let t281 = t56 * t280;
+            let t282 = t32 * (t280 - t55 * t281) + t47 * (t59 * t281 + t48 * t279);
+            let t283 = t139 * (t83 * t281 - (k(1.0) - t81 * t279))
+                - t143 * (t64 * t281 - t62 * t279);
+            let t284 = t147 * (t96 * t281 + t94 * t279) + t283;
+            let t285 = t284 + (t42 * (t119 * t281 - (t18 - t50 * t279)) + t282);
+            let t286 = t184 * (t284 + t285);
+            let t287 = t143 * t286;
+            let t288 = k(2.0) * t287;
+            let t289 = t139 * t286;
+            let t290 = k(2.0) * t289;
+            let t291 = t147 * t286;
+            let t292 = k(2.0) * t291;
+            let t293 = t47 * t286;
+            let t294 = t32 * t286;
+            let t295 = t42 * t286;
+            let t296 = t119 * t295 - (t55 * t294 - t59 * t293)
+                + (t96 * t292 + (t83 * t290 - t64 * t288));
+            let t297 = t294 + t56 * (t280 + t296);
+            let t298 = t50 * t295 + (t49 * t297 + t48 * t293)
+                + (t94 * t292 + (t81 * t290 + t62 * t288));
+            let t299 = t51 * (t278 + t298);
+            let t300 = t297 - t32 * t299;
+            let t301 = t295 - t42 * t299;
+            let t302 = t80 * t301 - t79 * t300;
+            let t303 = t290 + t302;
+            let t304 = k(18.69158878504673) * t216;
+            let t305 = t269 * t304;
+            let t306 = k(1.0) / (t275 * t276 - (k(2.0) * t305 - (t302 + t303)));
+            let t307 = t93 * t203 + t92 * t202;
+            let t308 = t194 + t307;
+            let t309 = k(0.4) * t229;
+            let t310 = t309 * t233 - k(0.4) * t207 * t214;
+            let t311 = t231 - t310;
+            let t312 = t93 * t261 - t92 * t260;
+            let t313 = t252 + t312;
+            let t314 = t309 * t264;
+            let t315 = k(2.0) * t314 + (t312 + t313);
+            let t316 = t266 * t315;
+            let t317 = t316 * t237 + (t231 - t99 - (t310 - t311 + (t307 + t308)));
+            let t318 = t93 * t301 - t92 * t300;
+            let t319 = t292 + t318;
+            let t320 = t309 * t304;
+            let t321 = t275 * t316 - (k(2.0) * t320 - (t318 + t319));
+            let t322 = t306 * t321;
+            let t323 = t29 * t42 - t35 * t32;
+            let t324 = t51 * t323;
+            let t325 = t35 + t49 * t324;
+            let t326 = t56 * t325;
+            let t327 = t32 * (t325 - t55 * t326) + t47 * (t59 * t326 + t48 * t324);
+            let t328 = t139 * (t83 * t326 + t81 * t324)
+                - t143 * (t64 * t326 - t62 * t324);
+            let t329 = t147 * (t96 * t326 - (k(1.0) - t94 * t324)) + t328;
+            let t330 = t329 + (t42 * (t119 * t326 - (t29 - t50 * t324)) + t327);
+            let t331 = t184 * (t329 + t330);
+            let t332 = t143 * t331;
+            let t333 = k(2.0) * t332;
+            let t334 = t139 * t331;
+            let t335 = k(2.0) * t334;
+            let t336 = t147 * t331;
+            let t337 = k(2.0) * t336;
+            let t338 = t47 * t331;
+            let t339 = t32 * t331;
+            let t340 = t42 * t331;
+            let t341 = t119 * t340 - (t55 * t339 - t59 * t338)
+                + (t96 * t337 + (t83 * t335 - t64 * t333));
+            let t342 = t339 + t56 * (t325 + t341);
+            let t343 = t50 * t340 + (t49 * t342 + t48 * t338)
+                + (t94 * t337 + (t81 * t335 + t62 * t333));
+            let t344 = t51 * (t323 + t343);
+            let t345 = t342 - t32 * t344;
+            let t346 = t340 - t42 * t344;
+            let t347 = t93 * t346 - t92 * t345;
+            let t348 = t337 + t347;
+            let t349 = k(18.69158878504673) * t229;
+            let t350 = t309 * t349;
+            let t351 = t321 * t322 - (t315 * t316 - (k(2.0) * t350 - (t347 + t348)));
+            let t352 = (t322 * t277 - t317) / t351;
+            let t353 = t322 * t352 - t306 * t277;
+            let t354 = t316 * t352 - (t276 * t353 + t266 * t237);
+            let t355 = t353 * (t288 + (t61 * t301 + t60 * t300)) + (t205 - t263 * t354);
+            let t356 = t352 * (t335 + (t80 * t346 - t79 * t345))
+                - (t303 * t353 - (t268 + t273 * t354));
+            let t357 = t353 * (t293 - t47 * t299)
+                - (t354 * (t253 + t47 * t259) - (t195 - t47 * t201));
+            let t358 = t352 * (t234 * t349)
+                - (t353 * (t234 * t304) + (t236 + t265 * t354));
+            let t359 = t352 * (t269 * t349) - (t305 * t353 - (t271 - t274 * t354));
             (
-                t204,
-                t205,
-                t210,
-                t216,
-                t217,
-                t226,
-                t231,
-                t232,
-                t242,
-                t255,
-                t256,
-                t258,
+                t202,
+                t203,
+                t209,
+                t214,
+                t230,
+                t233,
+                t246,
+                t247,
+                t249,
+                t251,
                 t260,
-                t269,
-                t270,
-                t273,
-                t295,
-                t296,
-                t298,
+                t261,
+                t264,
+                t286,
+                t287,
+                t289,
+                t291,
                 t300,
-                t309,
-                t310,
+                t301,
+                t304,
+                t308,
+                t311,
                 t313,
-                t317,
+                t314,
+                t319,
                 t320,
-                t322,
-                t323,
-                t328,
-                t329,
-                t340,
-                t341,
-                t342,
-                t343,
+                t331,
+                t332,
+                t333,
+                t334,
+                t336,
+                t338,
+                t344,
                 t345,
-                t347,
+                t346,
+                t348,
+                t349,
+                t350,
+                t352,
                 t353,
                 t354,
                 t355,
+                t356,
                 t357,
                 t358,
                 t359,
-                t361,
-                t362,
-                t363,
-                t364,
-                t365,
-                t366,
-                t367,
-                t368,
             )
         };
         *out = [
-            t296 * t362 + (t189 - t256 * t363) - t341 * t361,
-            t343 * t361 - (t298 * t362 - (t192 + t258 * t363)),
-            t300 * t362 - (t195 + t260 * t363) - t345 * t361,
-            t166,
-            -t24,
-            t295 * t362 + (t187 - t255 * t363) - t340 * t361,
-            t364 - t361 * (t342 + (t71 * t355 + t70 * t354)),
-            t365,
-            t328 * t362 - (t317 + t322 * t363) - t357 * t361,
-            t361 * (t347 - t57 * t353) - t366,
-            t354 * t361 - (t309 * t362 + (t204 - t269 * t363)),
-            t310 * t362 - (t205 + t270 * t363) - t355 * t361,
-            -t367,
-            t368,
-            t329 * t362 - (t320 - t323 * t363) - t359 * t361,
-            t231 * (t216 * t217) + t226 * (t210 * t217),
-            -t232,
-            t313 * t362 + (t242 + t273 * t363) - t358 * t361,
-            -t363,
-            t362,
-            t361,
+            t287 * t353 + (t187 - t247 * t354) - t332 * t352,
+            t334 * t352 - (t289 * t353 - (t190 + t249 * t354)),
+            t291 * t353 - (t193 + t251 * t354) - t336 * t352,
+            t160,
+            -t9,
+            t286 * t353 + (t185 - t246 * t354) - t331 * t352,
+            t355 - t352 * (t333 + (t61 * t346 + t60 * t345)),
+            t356,
+            t319 * t353 - (t308 + t313 * t354) - t348 * t352,
+            t352 * (t338 - t47 * t344) - t357,
+            t345 * t352 - (t300 * t353 + (t202 - t260 * t354)),
+            t301 * t353 - (t203 + t261 * t354) - t346 * t352,
+            -t358,
+            t359,
+            t320 * t353 - (t311 - t314 * t354) - t350 * t352,
+            rocker_wy * rocker_wz - t230 * t209,
+            -t214,
+            t304 * t353 + (t233 + t264 * t354) - t349 * t352,
+            -t354,
+            t353,
+            t352,
         ];
     }
     /// Writes λ: 272 operations (104 ±, 165 ×, 3 ÷).
@@ -2147,69 +2131,69 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
         let t3 = k(3.924) + k(0.4) * crank_dsy + t2;
         let t4 = coupler_dsz - closing2;
         let t5 = k(0.4) * crank_dsz + t4;
-        let t6 = coupler_e0 * coupler_e0;
-        let t7 = k(2.0) * (k(0.5) - (t6 + coupler_e1 * coupler_e1));
-        let t8 = crank_e0 * crank_e0;
-        let t9 = k(2.0) * (k(0.5) - (t8 + crank_e1 * crank_e1));
-        let t10 = coupler_e0 * coupler_e3;
-        let t11 = coupler_e1 * coupler_e2;
-        let t12 = k(2.0) * (t11 + t10);
-        let t13 = crank_e0 * crank_e3;
-        let t14 = crank_e1 * crank_e2;
-        let t15 = k(2.0) * (t14 + t13);
-        let t16 = coupler_e0 * coupler_e2;
-        let t17 = coupler_e1 * coupler_e3;
-        let t18 = k(2.0) * (t17 - t16);
-        let t19 = crank_e0 * crank_e2;
-        let t20 = crank_e1 * crank_e3;
+        let t6 = crank_e0 * crank_e3;
+        let t7 = crank_e1 * crank_e2;
+        let t8 = k(2.0) * (t7 + t6);
+        let t9 = k(2.0) * (t7 - t6);
+        let t10 = crank_e0 * crank_e0;
+        let t11 = k(2.0) * (k(0.5) - (t10 + crank_e2 * crank_e2));
+        let t12 = k(2.0) * (k(0.5) - (t10 + crank_e1 * crank_e1));
+        let t13 = k(1.0) / (t12 * t11 - t9 * t8);
+        let t14 = coupler_e0 * coupler_e0;
+        let t15 = k(2.0) * (k(0.5) - (t14 + coupler_e1 * coupler_e1));
+        let t16 = coupler_e0 * coupler_e3;
+        let t17 = coupler_e1 * coupler_e2;
+        let t18 = k(2.0) * (t17 + t16);
+        let t19 = coupler_e0 * coupler_e2;
+        let t20 = coupler_e1 * coupler_e3;
         let t21 = k(2.0) * (t20 - t19);
-        let t22 = k(5e-5) * coupler_dwx;
-        let t23 = t17 + t16;
-        let t24 = k(0.5) * t23;
-        let t25 = coupler_e0 * coupler_e1;
-        let t26 = coupler_e2 * coupler_e3;
-        let t27 = t26 - t25;
-        let t28 = k(0.5) * t27;
-        let t29 = closing1 * t28
-            - (k(0.02095) * (coupler_wx * coupler_wz) - k(0.021) * coupler_dwy
-                - closing0 * t24);
-        let t30 = k(0.5) - (t6 + coupler_e3 * coupler_e3);
+        let t22 = crank_e0 * crank_e2;
+        let t23 = crank_e1 * crank_e3;
+        let t24 = k(2.0) * (t23 - t22);
+        let t25 = k(5e-5) * coupler_dwx;
+        let t26 = t20 + t19;
+        let t27 = k(0.5) * t26;
+        let t28 = coupler_e0 * coupler_e1;
+        let t29 = coupler_e2 * coupler_e3;
+        let t30 = t29 - t28;
         let t31 = k(0.5) * t30;
-        let t32 = t4 * t31 - (t2 * t28 + t0 * t24) - (closing2 * t31 - t29);
-        let t33 = t11 - t10;
-        let t34 = k(2.0) * t33;
-        let t35 = k(0.5) - (t6 + coupler_e2 * coupler_e2);
-        let t36 = k(2.0) * t35;
-        let t37 = t26 + t25;
-        let t38 = k(2.0) * t37;
-        let t39 = (t21 * t38 - (t15 * t36 + t9 * t34)) * t32
-            + t22 * (t21 * t18 + (t15 * t12 + t9 * t7));
-        let t40 = k(0.5) * t33;
-        let t41 = k(0.5) * t35;
-        let t42 = closing1 * t41
+        let t32 = closing1 * t31
+            - (k(0.02095) * (coupler_wx * coupler_wz) - k(0.021) * coupler_dwy
+                - closing0 * t27);
+        let t33 = k(0.5) - (t14 + coupler_e3 * coupler_e3);
+        let t34 = k(0.5) * t33;
+        let t35 = t4 * t34 - (t2 * t31 + t0 * t27) - (closing2 * t34 - t32);
+        let t36 = t17 - t16;
+        let t37 = k(2.0) * t36;
+        let t38 = k(0.5) - (t14 + coupler_e2 * coupler_e2);
+        let t39 = k(2.0) * t38;
+        let t40 = t29 + t28;
+        let t41 = k(2.0) * t40;
+        let t42 = (t24 * t41 - (t8 * t39 + t12 * t37)) * t35
+            + t25 * (t24 * t21 + (t8 * t18 + t12 * t15));
+        let t43 = k(0.5) * t36;
+        let t44 = k(0.5) * t38;
+        let t45 = closing1 * t44
             + (k(0.02095) * (coupler_wx * coupler_wy) + k(0.021) * coupler_dwz
-                - closing0 * t40);
-        let t43 = k(0.5) * t37;
-        let t44 = t4 * t43 - (t2 * t41 - t0 * t40) - (closing2 * t43 - t42);
-        let t45 = k(2.0) * t23;
-        let t46 = k(2.0) * t27;
-        let t47 = k(2.0) * t30;
-        let t48 = (t21 * t47 - (t15 * t46 - t9 * t45)) * t44 - t39;
-        let t49 = k(2e-5) * crank_dwx - t48;
-        let t50 = k(2.0) * (t14 - t13);
-        let t51 = k(2.0) * (k(0.5) - (t8 + crank_e2 * crank_e2));
-        let t52 = k(1.0) / (t9 * t51 - t50 * t15);
+                - closing0 * t43);
+        let t46 = k(0.5) * t40;
+        let t47 = t4 * t46 - (t2 * t44 - t0 * t43) - (closing2 * t46 - t45);
+        let t48 = k(2.0) * t26;
+        let t49 = k(2.0) * t30;
+        let t50 = k(2.0) * t33;
+        let t51 = (t24 * t50 - (t8 * t49 - t12 * t48)) * t47 - t42;
+        let t52 = k(2e-5) * crank_dwx - t51;
         let t53 = crank_e0 * crank_e1;
         let t54 = crank_e2 * crank_e3;
         let t55 = k(2.0) * (t54 + t53);
-        let t56 = (t55 * t38 + (t50 * t34 + t51 * t36)) * t32
-            + t22 * (t55 * t18 - (t51 * t12 + t50 * t7));
-        let t57 = (t55 * t47 - (t50 * t45 - t51 * t46)) * t44 - t56;
-        let t58 = t20 + t19;
+        let t56 = (t55 * t41 + (t9 * t37 + t11 * t39)) * t35
+            + t25 * (t55 * t21 - (t11 * t18 + t9 * t15));
+        let t57 = (t55 * t50 - (t9 * t48 - t11 * t49)) * t47 - t56;
+        let t58 = t23 + t22;
         let t59 = k(0.2) * t58;
         let t60 = t54 - t53;
         let t61 = k(0.2) * t60;
-        let t62 = k(0.5) - (t8 + crank_e3 * crank_e3);
+        let t62 = k(0.5) - (t10 + crank_e3 * crank_e3);
         let t63 = k(0.2) * t62;
         let t64 = k(0.00133) * (crank_wx * crank_wz) - k(0.00135) * crank_dwy
             - (t4 * t63 - (t2 * t61 + t0 * t59) - t57);
@@ -2236,24 +2220,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
         let t83 = k(2.0) * t62;
         let t84 = k(2.0) * t60;
         let t85 = k(2.0) * t58;
-        let t86 = t85 * t45 + t84 * t46 + t83 * t47;
-        let t87 = t83 * t18 - (t84 * t12 - t85 * t7);
+        let t86 = t85 * t48 + t84 * t49 + t83 * t50;
+        let t87 = t83 * t21 - (t84 * t18 - t85 * t15);
         let t88 = k(1.0) / (t87 * t87 + t86 * t86);
         *lambda = [
             -t1,
             -t3,
             -t5,
-            t51 * t52 * t65 - t15 * t52 * t49,
-            t50 * t52 * t65 - t9 * t52 * t49,
+            t65 * (t11 * t13) - t52 * (t8 * t13),
+            t65 * (t9 * t13) - t52 * (t12 * t13),
             -t66,
             -t67,
             -t68,
-            t74 * t76 * t82 - t77 * (t71 * t76),
-            t72 * t76 * t82 - t77 * (t75 * t76),
+            t82 * (t74 * t76) - t77 * (t71 * t76),
+            t82 * (t72 * t76) - t77 * (t75 * t76),
             -t0,
             -t2,
             -t4,
-            -(t87 * t88 * t44 + t22 * (t86 * t88)),
+            -(t87 * t88 * t47 + t25 * (t86 * t88)),
             closing0,
             closing1,
             closing2,

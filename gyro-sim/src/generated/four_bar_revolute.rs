@@ -22,7 +22,7 @@
 //! | gamma | γ | 109 | 174 | 0 | 283 | 0 of 17 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 89 | 120 | 0 | 209 | 0 of 17 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 338 | 483 | 6 | 827 | 0 of 20 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 322 | 440 | 6 | 768 | 0 of 20 |
 //! | multipliers | λ, the accelerations being known | 96 | 157 | 3 | 256 | 0 of 17 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
@@ -1389,7 +1389,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
             -(k(0.01076) * (rocker_wx * rocker_wy)),
         ];
     }
-    /// Solves eq. (17): 827 operations (338 ±, 483 ×, 6 ÷).
+    /// Solves eq. (17): 768 operations (322 ±, 440 ×, 6 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let crank_e0 = y[3];
@@ -1414,472 +1414,444 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
         let rocker_wy = y[37];
         let rocker_wz = y[38];
         let (
-            t25,
-            t28,
-            t31,
+            t8,
+            t15,
+            t29,
             t39,
-            t48,
-            t49,
-            t51,
+            t50,
             t53,
-            t64,
+            t59,
+            t60,
+            t61,
             t65,
-            t66,
-            t76,
-            t79,
-            t82,
-            t83,
-            t86,
-            t89,
-            t95,
-            t100,
-            t104,
+            t74,
+            t75,
+            t78,
+            t81,
+            t87,
+            t92,
+            t96,
+            t97,
+            t101,
             t105,
-            t109,
-            t113,
+            t138,
+            t139,
+            t140,
+            t142,
+            t145,
             t146,
-            t147,
             t148,
-            t150,
-            t153,
+            t149,
+            t152,
             t154,
             t156,
-            t157,
-            t160,
-            t161,
-            t162,
+            t158,
+            t163,
             t165,
-            t166,
             t169,
-            t171,
-            t172,
-            t181,
-            t184,
+            t175,
+            t177,
+            t178,
+            t179,
+            t180,
+            t182,
+            t183,
+            t185,
             t186,
-            t187,
+            t189,
             t190,
             t191,
             t192,
             t193,
+            t194,
             t195,
-            t197,
-            t198,
+            t196,
             t199,
         ) = {
-            let t0 = crank_e0 * crank_e3;
-            let t1 = crank_e1 * crank_e2;
-            let t2 = k(2.0) * (t1 + t0);
-            let t3 = t1 - t0;
-            let t4 = k(2.0) * t3;
-            let t5 = crank_e0 * crank_e0;
-            let t6 = k(0.5) - (t5 + crank_e2 * crank_e2);
+            let t0 = crank_e0 * crank_e0;
+            let t1 = k(0.5) - (t0 + crank_e3 * crank_e3);
+            let t2 = crank_wy * crank_wy;
+            let t3 = (t2 + crank_wx * crank_wx) * (k(0.5) / t1);
+            let t4 = crank_e0 * crank_e1;
+            let t5 = crank_e2 * crank_e3;
+            let t6 = t5 + t4;
             let t7 = k(2.0) * t6;
-            let t8 = k(2.0) * (k(0.5) - (t5 + crank_e1 * crank_e1));
-            let t9 = k(1.0) / (t8 * t7 - t4 * t2);
-            let t10 = crank_wx * crank_wz;
-            let t11 = crank_wy * crank_wz;
-            let t12 = crank_wx * crank_wx;
-            let t13 = crank_wy * crank_wy;
-            let t14 = t13 + t12;
-            let t15 = crank_e0 * crank_e2;
-            let t16 = crank_e1 * crank_e3;
-            let t17 = t16 + t15;
-            let t18 = k(2.0) * t17;
-            let t19 = t18 * t14 - (t4 * t11 - t8 * t10);
-            let t20 = crank_e0 * crank_e1;
-            let t21 = crank_e2 * crank_e3;
-            let t22 = t21 - t20;
+            let t8 = crank_wy * crank_wz - t7 * t3;
+            let t9 = coupler_e0 * coupler_e3;
+            let t10 = coupler_e1 * coupler_e2;
+            let t11 = t10 - t9;
+            let t12 = k(2.0) * t11;
+            let t13 = k(2.0) * (k(0.5) - (t0 + crank_e1 * crank_e1));
+            let t14 = coupler_e0 * coupler_e0;
+            let t15 = k(0.5) - (t14 + coupler_e2 * coupler_e2);
+            let t16 = k(2.0) * t15;
+            let t17 = crank_e0 * crank_e3;
+            let t18 = crank_e1 * crank_e2;
+            let t19 = k(2.0) * (t18 + t17);
+            let t20 = coupler_e0 * coupler_e1;
+            let t21 = coupler_e2 * coupler_e3;
+            let t22 = t21 + t20;
             let t23 = k(2.0) * t22;
-            let t24 = t23 * t14 + (t7 * t11 - t2 * t10);
-            let t25 = t24 * (t8 * t9) + t19 * (t2 * t9);
-            let t26 = coupler_e0 * coupler_e3;
-            let t27 = coupler_e1 * coupler_e2;
-            let t28 = t27 - t26;
-            let t29 = k(2.0) * t28;
-            let t30 = coupler_e0 * coupler_e0;
-            let t31 = k(0.5) - (t30 + coupler_e2 * coupler_e2);
-            let t32 = k(2.0) * t31;
-            let t33 = coupler_e0 * coupler_e1;
-            let t34 = coupler_e2 * coupler_e3;
-            let t35 = t34 + t33;
-            let t36 = k(2.0) * t35;
-            let t37 = k(2.0) * (t16 - t15);
-            let t38 = t37 * t36 - (t2 * t32 + t8 * t29);
-            let t39 = t24 * (t4 * t9) + t19 * (t7 * t9);
-            let t40 = t21 + t20;
-            let t41 = k(2.0) * t40;
-            let t42 = t41 * t36 + (t4 * t29 + t7 * t32);
-            let t43 = k(2.0) * (k(0.5) - (t30 + coupler_e1 * coupler_e1));
-            let t44 = k(2.0) * (t27 + t26);
-            let t45 = coupler_e0 * coupler_e2;
-            let t46 = coupler_e1 * coupler_e3;
-            let t47 = k(2.0) * (t46 - t45);
-            let t48 = t41 * t47 - (t7 * t44 + t4 * t43);
-            let t49 = t37 * t47 + (t2 * t44 + t8 * t43);
-            let t50 = k(1.0) / (t49 * t42 - t38 * t48);
-            let t51 = t46 + t45;
-            let t52 = k(2.0) * t51;
-            let t53 = t34 - t33;
-            let t54 = k(2.0) * t53;
-            let t55 = k(0.5) - (t30 + coupler_e3 * coupler_e3);
-            let t56 = k(2.0) * t55;
-            let t57 = t37 * t56 - (t2 * t54 - t8 * t52);
-            let t58 = crank_wz * crank_wz;
-            let t59 = t58 + t13;
-            let t60 = t41 * t56 - (t4 * t52 - t7 * t54);
-            let t61 = crank_wx * crank_wy;
-            let t62 = k(0.5) - (t5 + crank_e3 * crank_e3);
-            let t63 = k(2.0) * t62;
-            let t64 = t18 * t52 + t23 * t54 + t63 * t56;
-            let t65 = t63 * t47 - (t23 * t44 - t18 * t43);
-            let t66 = t63 * t36 - (t18 * t29 - t23 * t32);
-            let t67 = coupler_wx * t66 - coupler_wy * t65;
-            let t68 = k(2.0)
-                * (crank_wy * t67 + crank_wz * (coupler_wx * t42 - coupler_wy * t48));
-            let t69 = coupler_wx * coupler_wz;
-            let t70 = coupler_wy * coupler_wz;
-            let t71 = coupler_wy * coupler_wy;
-            let t72 = t71 + coupler_wx * coupler_wx;
-            let t73 = t72 * t57 + (t70 * t38 + t69 * t49) - t68
-                + (t10 * t64 - (t61 * t60 - t59 * t57));
-            let t74 = k(2.0)
-                * (crank_wx * t67 + crank_wz * (coupler_wx * t38 - coupler_wy * t49));
-            let t75 = t72 * t60 + (t70 * t42 + t69 * t48) + t74
-                + (t11 * t64 + ((t58 + t12) * t60 - t61 * t57));
-            let t76 = t75 * (t49 * t50) - t73 * (t48 * t50);
-            let t77 = coupler_wz * coupler_wz + t71;
-            let t78 = coupler_wx * coupler_wy;
-            let t79 = k(0.25) * (t52 * t69 + (t29 * t78 + t43 * t77));
-            let t80 = k(0.1) * (t18 * t10 + (t4 * t61 + t8 * t59));
-            let t81 = t80 + t79;
-            let t82 = k(0.5) * t51;
-            let t83 = k(0.25) * (t54 * t69 - (t32 * t78 + t44 * t77));
-            let t84 = k(0.1) * (t23 * t10 - (t7 * t61 + t2 * t59));
-            let t85 = t84 + t83;
-            let t86 = k(0.5) * t53;
-            let t87 = k(0.1) * (t63 * t10 - (t41 * t61 - t37 * t59));
-            let t88 = t87 + k(0.25) * (t56 * t69 - (t36 * t78 - t47 * t77));
-            let t89 = k(0.5) * t55;
-            let t90 = t75 * (t38 * t50) - t73 * (t42 * t50);
-            let t91 = k(0.0835) * t90 - (t89 * t88 + (t86 * t85 + t82 * t81));
-            let t92 = t66 * (t91 - (k(0.02095) * t69 + k(4.905) * t53))
-                + t65 * (k(5e-5) * t76);
-            let t93 = k(0.02095) * t78 - k(4.905) * t31;
-            let t94 = k(11.976047904191617) * t93;
-            let t95 = k(0.5) * t31;
-            let t96 = k(5.9880239520958085) * t28;
-            let t97 = t95 * t96;
-            let t98 = k(5.9880239520958085) * t31;
-            let t99 = t95 * t98;
-            let t100 = k(0.5) * t35;
-            let t101 = t100 * t98;
-            let t102 = t86 * t90 - (t85 - (t88 * t101 + (t85 * t99 - t81 * t97)));
-            let t103 = t102 - (k(9.81) + t95 * t94);
-            let t104 = k(0.2) * t6;
-            let t105 = k(0.5) * t28;
-            let t106 = t105 * t96;
-            let t107 = t100 * t96;
-            let t108 = t82 * t90 - (t81 + (t88 * t107 + (t85 * t97 - t81 * t106)));
-            let t109 = k(0.2) * t3;
-            let t110 = t109 * (t108 + t105 * t94);
-            let t111 = t100 * (k(5.9880239520958085) * t35);
-            let t112 = t89 * t90 - (t88 - (t88 * t111 + (t85 * t101 - t81 * t107)));
-            let t113 = k(0.2) * t40;
-            let t114 = t113 * (t112 - t100 * t94);
-            let t115 = t104 * (k(3.924) - t103) + t110 - t114
-                - (k(0.00133) * t61 + (t114 - (t110 - t104 * t103) - t92));
-            let t116 = t113 * t107 + (t104 * t97 + t109 * t106);
-            let t117 = t82 * t66;
-            let t118 = t109 - t116 + t117;
-            let t119 = t113 * t101 + (t104 * t99 + t109 * t97);
-            let t120 = t86 * t66;
-            let t121 = t104 - t119 - t120;
-            let t122 = t84 * (t121 - (t119 - k(0.28) * t6))
-                - t80 * (t118 - (t116 - k(0.28) * t3));
-            let t123 = t113 * t111 + (t104 * t101 + t109 * t107);
-            let t124 = t89 * t66;
-            let t125 = t113 - t123 - t124;
-            let t126 = t113 * (t89 * t38) + (t104 * (t86 * t38) - t109 * (t82 * t38));
-            let t127 = t126 + (t126 - (t66 * (k(0.0835) * t38) + t65 * (k(5e-5) * t49)));
-            let t128 = k(0.2) * t17;
-            let t129 = k(0.2) * t22;
-            let t130 = k(0.2) * t62;
-            let t131 = t82 * t42;
-            let t132 = t86 * t42;
-            let t133 = t89 * t42;
-            let t134 = t113 * t133 + (t104 * t132 - t109 * t131)
-                - (t130 * t124 + (t129 * t120 + t128 * t117));
-            let t135 = t130 * t123 + (t129 * t119 - t128 * t116);
-            let t136 = t135 - t134 + (t66 * (k(0.0835) * t42) + t65 * (k(5e-5) * t48));
-            let t137 = t128 + (t130 * t107 + (t129 * t97 - t128 * t106)) + t131;
-            let t138 = t129 - (t130 * t101 + (t129 * t99 - t128 * t97)) + t132;
-            let t139 = t130 - (t130 * t111 + (t129 * t101 - t128 * t107)) + t133;
-            let t140 = t113 * t139 + (t104 * t138 - t109 * t137)
-                + (t130 * t125 + (t129 * t121 - t128 * t118));
-            let t141 = t39 * (t140 - t135 - t136) - t25 * t127
-                + (t87 * (t125 - (t123 - k(0.28) * t40)) + t122);
-            let t142 = t113 * t123 + (t104 * t119 + t109 * t116);
-            let t143 = t142 + k(2.0) * (t113 * t124 + (t104 * t120 - t109 * t117));
-            let t144 = t143
-                - (k(0.01) + (t66 * (k(0.0835) * t66) + t65 * (k(5e-5) * t65)));
-            let t145 = k(2.0) * (t113 * t125 + (t104 * t121 + t109 * t118)) - t142;
-            let t146 = k(1.0) / (t145 + (k(0.014) + (k(0.00135) - t144)));
-            let t147 = t146 * (t141 + t115);
-            let t148 = t90 - (t66 * t147 + (t42 * t39 - t38 * t25));
-            let t149 = t109 * t147 + t128 * t39;
-            let t150 = t80 + t149;
-            let t151 = t81 + (t149 + t150);
-            let t152 = t104 * t147 - t129 * t39;
-            let t153 = t84 - t152;
-            let t154 = t85 - (t152 - t153);
-            let t155 = t113 * t147 - t130 * t39;
-            let t156 = t87 - t155;
-            let t157 = t88 - (t155 - t156);
-            let t158 = t64 * t147 + (t60 * t39 - t57 * t25);
-            let t159 = k(0.0835) * t158 - (t100 * t157 + (t95 * t154 - t105 * t151));
-            let t160 = t158 - k(11.976047904191617) * (t93 + t159);
-            let t161 = t105 * t160 - t82 * t148;
-            let t162 = t151 + t161;
-            let t163 = rocker_e0 * rocker_e3;
-            let t164 = rocker_e1 * rocker_e2;
-            let t165 = k(2.0) * (t164 + t163);
-            let t166 = t164 - t163;
-            let t167 = k(2.0) * t166;
-            let t168 = rocker_e0 * rocker_e0;
-            let t169 = k(0.5) - (t168 + rocker_e2 * rocker_e2);
-            let t170 = k(2.0) * t169;
-            let t171 = k(2.0) * (k(0.5) - (t168 + rocker_e1 * rocker_e1));
-            let t172 = k(1.0) / (t171 * t170 - t167 * t165);
-            let t173 = rocker_wx * rocker_wz;
-            let t174 = rocker_wy * rocker_wz;
-            let t175 = rocker_wy * rocker_wy;
-            let t176 = t175 + rocker_wx * rocker_wx;
-            let t177 = rocker_e0 * rocker_e2;
-            let t178 = rocker_e1 * rocker_e3;
-            let t179 = t178 + t177;
-            let t180 = k(2.0) * t179;
-            let t181 = t180 * t176 - (t167 * t174 - t171 * t173);
-            let t182 = rocker_e0 * rocker_e1;
-            let t183 = rocker_e2 * rocker_e3;
-            let t184 = t183 - t182;
-            let t185 = k(2.0) * t184;
-            let t186 = t185 * t176 + (t170 * t174 - t165 * t173);
-            let t187 = t186 * (t167 * t172) + t181 * (t170 * t172);
-            let t188 = rocker_wx * rocker_wy;
-            let t189 = rocker_wz * rocker_wz + t175;
-            let t190 = k(0.2) * (t180 * t173 + (t167 * t188 + t171 * t189));
-            let t191 = k(0.2) * (t185 * t173 - (t170 * t188 + t165 * t189));
-            let t192 = t183 + t182;
-            let t193 = k(0.5) - (t168 + rocker_e3 * rocker_e3);
-            let t194 = k(2.0) * t193 * t173
-                - (k(2.0) * t192 * t188 - k(2.0) * (t178 - t177) * t189);
-            let t195 = k(0.2) * t194;
-            let t196 = t195 * (k(0.32) * t192)
-                + (t191 * (k(0.32) * t169) - t190 * (k(0.32) * t166));
-            let t197 = k(23.364485981308412)
-                * (t196 - (k(0.01076) * t188 - k(3.1392) * t169));
-            let t198 = k(0.4) * t166;
-            let t199 = t198 * t197 + k(0.4) * t179 * t187;
+            let t24 = crank_e0 * crank_e2;
+            let t25 = crank_e1 * crank_e3;
+            let t26 = k(2.0) * (t25 - t24);
+            let t27 = t26 * t23 - (t19 * t16 + t13 * t12);
+            let t28 = crank_wx * crank_wz;
+            let t29 = t28 - t26 * t3;
+            let t30 = k(0.5) - (t0 + crank_e2 * crank_e2);
+            let t31 = k(2.0) * t30;
+            let t32 = t18 - t17;
+            let t33 = k(2.0) * t32;
+            let t34 = t7 * t23 + (t33 * t12 + t31 * t16);
+            let t35 = coupler_e0 * coupler_e2;
+            let t36 = coupler_e1 * coupler_e3;
+            let t37 = t36 + t35;
+            let t38 = k(2.0) * t37;
+            let t39 = t21 - t20;
+            let t40 = k(2.0) * t39;
+            let t41 = k(0.5) - (t14 + coupler_e3 * coupler_e3);
+            let t42 = k(2.0) * t41;
+            let t43 = t26 * t42 - (t19 * t40 - t13 * t38);
+            let t44 = t7 * t42 - (t33 * t38 - t31 * t40);
+            let t45 = k(2.0) * t1;
+            let t46 = t5 - t4;
+            let t47 = k(2.0) * t46;
+            let t48 = t25 + t24;
+            let t49 = k(2.0) * t48;
+            let t50 = t49 * t38 + t47 * t40 + t45 * t42;
+            let t51 = crank_wz * t50 - (crank_wy * t44 + crank_wx * t43);
+            let t52 = coupler_wz - t51;
+            let t53 = t45 * t23 - (t49 * t12 - t47 * t16);
+            let t54 = crank_wz * t53 - (crank_wy * t34 + crank_wx * t27);
+            let t55 = coupler_wy + t54;
+            let t56 = k(2.0) * (k(0.5) - (t14 + coupler_e1 * coupler_e1));
+            let t57 = k(2.0) * (t10 + t9);
+            let t58 = k(2.0) * (t36 - t35);
+            let t59 = t26 * t58 + (t19 * t57 + t13 * t56);
+            let t60 = t7 * t58 - (t31 * t57 + t33 * t56);
+            let t61 = t45 * t58 - (t47 * t57 - t49 * t56);
+            let t62 = crank_wz * t61 - (crank_wy * t60 + crank_wx * t59);
+            let t63 = coupler_wx + t62;
+            let t64 = (t63 * t63 + t55 * t55) / t50;
+            let t65 = coupler_wy * t51 + coupler_wz * t54 + (t53 * t64 - t55 * t52);
+            let t66 = coupler_wx * coupler_wz;
+            let t67 = coupler_wz * coupler_wz + coupler_wy * coupler_wy;
+            let t68 = coupler_wx * coupler_wy;
+            let t69 = k(0.25) * (t38 * t66 + (t12 * t68 + t56 * t67));
+            let t70 = crank_wz * crank_wz + t2;
+            let t71 = crank_wx * crank_wy;
+            let t72 = k(0.1) * (t49 * t28 + (t33 * t71 + t13 * t70));
+            let t73 = t72 + t69;
+            let t74 = k(0.5) * t37;
+            let t75 = k(0.25) * (t40 * t66 - (t16 * t68 + t57 * t67));
+            let t76 = k(0.1) * (t47 * t28 - (t31 * t71 + t19 * t70));
+            let t77 = t76 + t75;
+            let t78 = k(0.5) * t39;
+            let t79 = k(0.1) * (t45 * t28 - (t7 * t71 - t26 * t70));
+            let t80 = t79 + k(0.25) * (t42 * t66 - (t23 * t68 - t58 * t67));
+            let t81 = k(0.5) * t41;
+            let t82 = coupler_wz * t62 + coupler_wx * t51 + (t61 * t64 - t63 * t52);
+            let t83 = k(0.0835) * t82 - (t81 * t80 + (t78 * t77 + t74 * t73));
+            let t84 = t53 * (t83 - (k(0.02095) * t66 + k(4.905) * t39))
+                - t61 * (k(5e-5) * t65);
+            let t85 = k(0.02095) * t68 - k(4.905) * t15;
+            let t86 = k(11.976047904191617) * t85;
+            let t87 = k(0.5) * t15;
+            let t88 = k(5.9880239520958085) * t11;
+            let t89 = t87 * t88;
+            let t90 = k(5.9880239520958085) * t15;
+            let t91 = t87 * t90;
+            let t92 = k(0.5) * t22;
+            let t93 = t92 * t90;
+            let t94 = t78 * t82 - (t77 - (t80 * t93 + (t77 * t91 - t73 * t89)));
+            let t95 = t94 - (k(9.81) + t87 * t86);
+            let t96 = k(0.2) * t30;
+            let t97 = k(0.5) * t11;
+            let t98 = t97 * t88;
+            let t99 = t92 * t88;
+            let t100 = t74 * t82 - (t73 + (t80 * t99 + (t77 * t89 - t73 * t98)));
+            let t101 = k(0.2) * t32;
+            let t102 = t101 * (t100 + t97 * t86);
+            let t103 = t92 * (k(5.9880239520958085) * t22);
+            let t104 = t81 * t82 - (t80 - (t80 * t103 + (t77 * t93 - t73 * t99)));
+            let t105 = k(0.2) * t6;
+            let t106 = t105 * (t104 - t92 * t86);
+            let t107 = t96 * (k(3.924) - t95) + t102 - t106
+                - (k(0.00133) * t71 + (t106 - (t102 - t96 * t95) - t84));
+            let t108 = t105 * t99 + (t96 * t89 + t101 * t98);
+            let t109 = t74 * t53;
+            let t110 = t101 - t108 + t109;
+            let t111 = t105 * t93 + (t96 * t91 + t101 * t89);
+            let t112 = t78 * t53;
+            let t113 = t96 - t111 - t112;
+            let t114 = t76 * (t113 - (t111 - k(0.28) * t30))
+                - t72 * (t110 - (t108 - k(0.28) * t32));
+            let t115 = t105 * t103 + (t96 * t93 + t101 * t99);
+            let t116 = t81 * t53;
+            let t117 = t105 - t115 - t116;
+            let t118 = t105 * (t81 * t27) + (t96 * (t78 * t27) - t101 * (t74 * t27));
+            let t119 = t118 + (t118 - (t53 * (k(0.0835) * t27) + t61 * (k(5e-5) * t59)));
+            let t120 = k(0.2) * t48;
+            let t121 = k(0.2) * t46;
+            let t122 = k(0.2) * t1;
+            let t123 = t74 * t34;
+            let t124 = t78 * t34;
+            let t125 = t81 * t34;
+            let t126 = t105 * t125 + (t96 * t124 - t101 * t123)
+                - (t122 * t116 + (t121 * t112 + t120 * t109));
+            let t127 = t122 * t115 + (t121 * t111 - t120 * t108);
+            let t128 = t127 - t126 + (t53 * (k(0.0835) * t34) + t61 * (k(5e-5) * t60));
+            let t129 = t120 + (t122 * t99 + (t121 * t89 - t120 * t98)) + t123;
+            let t130 = t121 - (t122 * t93 + (t121 * t91 - t120 * t89)) + t124;
+            let t131 = t122 - (t122 * t103 + (t121 * t93 - t120 * t99)) + t125;
+            let t132 = t105 * t131 + (t96 * t130 - t101 * t129)
+                + (t122 * t117 + (t121 * t113 - t120 * t110));
+            let t133 = (t132 - t127 - t128) * t29 - t119 * t8
+                + (t79 * (t117 - (t115 - k(0.28) * t6)) + t114);
+            let t134 = t105 * t115 + (t96 * t111 + t101 * t108);
+            let t135 = t134 + k(2.0) * (t105 * t116 + (t96 * t112 - t101 * t109));
+            let t136 = t135
+                - (k(0.01) + (t53 * (k(0.0835) * t53) + t61 * (k(5e-5) * t61)));
+            let t137 = k(2.0) * (t105 * t117 + (t96 * t113 + t101 * t110)) - t134;
+            let t138 = k(1.0) / (t137 + (k(0.014) + (k(0.00135) - t136)));
+            let t139 = t138 * (t133 + t107);
+            let t140 = t82 - (t53 * t139 + (t34 * t29 - t27 * t8));
+            let t141 = t101 * t139 + t120 * t29;
+            let t142 = t72 + t141;
+            let t143 = t73 + (t141 + t142);
+            let t144 = t96 * t139 - t121 * t29;
+            let t145 = t76 - t144;
+            let t146 = t77 - (t144 - t145);
+            let t147 = t105 * t139 - t122 * t29;
+            let t148 = t79 - t147;
+            let t149 = t80 - (t147 - t148);
+            let t150 = t50 * t139 + (t44 * t29 - t43 * t8);
+            let t151 = k(0.0835) * t150 - (t92 * t149 + (t87 * t146 - t97 * t143));
+            let t152 = t150 - k(11.976047904191617) * (t85 + t151);
+            let t153 = t97 * t152 - t74 * t140;
+            let t154 = t143 + t153;
+            let t155 = rocker_e0 * rocker_e0;
+            let t156 = k(0.5) - (t155 + rocker_e3 * rocker_e3);
+            let t157 = rocker_wy * rocker_wy;
+            let t158 = (t157 + rocker_wx * rocker_wx) * (k(0.5) / t156);
+            let t159 = rocker_e0 * rocker_e2;
+            let t160 = rocker_e1 * rocker_e3;
+            let t161 = k(2.0) * (t160 - t159);
+            let t162 = rocker_wx * rocker_wz;
+            let t163 = t162 - t161 * t158;
+            let t164 = t160 + t159;
+            let t165 = k(0.5) - (t155 + rocker_e2 * rocker_e2);
+            let t166 = rocker_wx * rocker_wy;
+            let t167 = rocker_e0 * rocker_e3;
+            let t168 = rocker_e1 * rocker_e2;
+            let t169 = t168 - t167;
+            let t170 = rocker_wz * rocker_wz + t157;
+            let t171 = k(2.0) * t169 * t166
+                + k(2.0) * (k(0.5) - (t155 + rocker_e1 * rocker_e1)) * t170;
+            let t172 = k(0.2) * (k(2.0) * t164 * t162 + t171);
+            let t173 = rocker_e0 * rocker_e1;
+            let t174 = rocker_e2 * rocker_e3;
+            let t175 = t174 - t173;
+            let t176 = k(2.0) * t175 * t162
+                - (k(2.0) * t165 * t166 + k(2.0) * (t168 + t167) * t170);
+            let t177 = k(0.2) * t176;
+            let t178 = t174 + t173;
+            let t179 = k(2.0) * t178;
+            let t180 = k(0.2) * (k(2.0) * t156 * t162 - (t179 * t166 - t161 * t170));
+            let t181 = t180 * (k(0.32) * t178)
+                + (t177 * (k(0.32) * t165) - t172 * (k(0.32) * t169));
+            let t182 = k(23.364485981308412)
+                * (t181 - (k(0.01076) * t166 - k(3.1392) * t165));
+            let t183 = k(0.4) * t169;
+            let t184 = t183 * t182 + k(0.4) * t164 * t163;
+            let t185 = t172 + t184;
+            let t186 = t172 - t69 + (t184 + t185 - (t153 + t154));
+            let t187 = k(11.976047904191617) * t11;
+            let t188 = t105 * (t92 * t187)
+                + (t96 * (t87 * t187) - t101 * (k(1.0) - t97 * t187));
+            let t189 = (t188 + (t188 - t37 * t53)) * t138;
+            let t190 = t53 * t189;
+            let t191 = t101 * t189;
+            let t192 = k(2.0) * t191;
+            let t193 = t96 * t189;
+            let t194 = k(2.0) * t193;
+            let t195 = t105 * t189;
+            let t196 = k(2.0) * t195;
+            let t197 = t50 * t189;
+            let t198 = k(0.0835) * t197 + (t92 * t196 + (t87 * t194 + t97 * t192));
+            let t199 = t197 - k(11.976047904191617) * (t11 + t198);
             (
-                t25,
-                t28,
-                t31,
+                t8,
+                t15,
+                t29,
                 t39,
-                t48,
-                t49,
-                t51,
+                t50,
                 t53,
-                t64,
+                t59,
+                t60,
+                t61,
                 t65,
-                t66,
-                t76,
-                t79,
-                t82,
-                t83,
-                t86,
-                t89,
-                t95,
-                t100,
-                t104,
+                t74,
+                t75,
+                t78,
+                t81,
+                t87,
+                t92,
+                t96,
+                t97,
+                t101,
                 t105,
-                t109,
-                t113,
+                t138,
+                t139,
+                t140,
+                t142,
+                t145,
                 t146,
-                t147,
                 t148,
-                t150,
-                t153,
+                t149,
+                t152,
                 t154,
                 t156,
-                t157,
-                t160,
-                t161,
-                t162,
+                t158,
+                t163,
                 t165,
-                t166,
                 t169,
-                t171,
-                t172,
-                t181,
-                t184,
+                t175,
+                t177,
+                t178,
+                t179,
+                t180,
+                t182,
+                t183,
+                t185,
                 t186,
-                t187,
+                t189,
                 t190,
                 t191,
                 t192,
                 t193,
+                t194,
                 t195,
-                t197,
-                t198,
+                t196,
                 t199,
             )
         };
         let (
-            t200,
-            t204,
-            t205,
+            t202,
+            t203,
             t206,
-            t208,
-            t210,
-            t214,
-            t217,
+            t209,
+            t211,
+            t212,
             t218,
-            t221,
+            t219,
+            t220,
+            t222,
             t224,
-            t226,
-            t227,
+            t225,
+            t228,
+            t230,
+            t231,
+            t232,
             t233,
             t234,
             t235,
+            t236,
             t237,
+            t238,
             t239,
-            t240,
-            t243,
-            t245,
-            t246,
-            t247,
-            t248,
-            t249,
-            t250,
-            t251,
-            t252,
-            t253,
-            t254,
         ) = {
-            let t200 = t190 + t199;
-            let t201 = t190 - t79 + (t199 + t200 - (t161 + t162));
-            let t202 = k(11.976047904191617) * t28;
-            let t203 = t113 * (t100 * t202)
-                + (t104 * (t95 * t202) - t109 * (k(1.0) - t105 * t202));
-            let t204 = (t203 + (t203 - t51 * t66)) * t146;
-            let t205 = t66 * t204;
-            let t206 = t109 * t204;
-            let t207 = k(2.0) * t206;
-            let t208 = t104 * t204;
-            let t209 = k(2.0) * t208;
-            let t210 = t113 * t204;
-            let t211 = k(2.0) * t210;
-            let t212 = t64 * t204;
-            let t213 = k(0.0835) * t212 + (t100 * t211 + (t95 * t209 + t105 * t207));
-            let t214 = t212 - k(11.976047904191617) * (t28 + t213);
-            let t215 = t105 * t214 + t82 * t205;
-            let t216 = t207 + t215;
-            let t217 = k(18.69158878504673) * t166;
-            let t218 = t198 * t217;
-            let t219 = k(1.0) / (k(2.0) * t218 - (t215 + t216));
-            let t220 = t95 * t160 + t86 * t148;
-            let t221 = t154 - t220;
-            let t222 = k(0.4) * t169;
-            let t223 = t222 * t197 - k(0.4) * t184 * t187;
-            let t224 = t191 - t223;
-            let t225 = t95 * t214 - t86 * t205;
-            let t226 = t209 + t225;
-            let t227 = t222 * t217;
-            let t228 = k(2.0) * t227 - (t225 + t226);
-            let t229 = t219 * t228;
-            let t230 = t229 * t201 + (t191 - t83 - (t223 - t224 - (t220 - t221)));
-            let t231 = k(11.976047904191617) * t31;
-            let t232 = t113 * (t100 * t231)
-                - (t104 * (k(1.0) - t95 * t231) - t109 * (t105 * t231));
-            let t233 = t146 * (t232 + (t232 + t53 * t66));
-            let t234 = t66 * t233;
-            let t235 = t109 * t233;
-            let t236 = k(2.0) * t235;
-            let t237 = t104 * t233;
-            let t238 = k(2.0) * t237;
-            let t239 = t113 * t233;
-            let t240 = k(2.0) * t239;
-            let t241 = t64 * t233;
-            let t242 = k(0.0835) * t241 + (t100 * t240 + (t95 * t238 + t105 * t236));
-            let t243 = t241 - k(11.976047904191617) * (t31 + t242);
-            let t244 = t95 * t243 - t86 * t234;
-            let t245 = t238 + t244;
-            let t246 = k(18.69158878504673) * t169;
-            let t247 = t222 * t246;
-            let t248 = t230 / (t228 * t229 - (k(2.0) * t247 - (t244 + t245)));
-            let t249 = t229 * t248 - t219 * t201;
-            let t250 = t248 * (t236 + (t105 * t243 + t82 * t234)) - (t162 + t216 * t249);
-            let t251 = t249 * (t211 + (t100 * t214 - t89 * t205))
-                - (t157 - (t100 * t160 + t89 * t148));
-            let t252 = t249 * (t65 * t204)
-                - (t76 - (t65 * t147 + (t48 * t39 - t49 * t25)));
-            let t253 = k(0.4) * t192;
-            let t254 = t249 * (t253 * t217)
-                - (t195 - (t253 * t197 - k(0.4) * t193 * t187));
+            let t200 = t97 * t199 + t74 * t190;
+            let t201 = t192 + t200;
+            let t202 = k(18.69158878504673) * t169;
+            let t203 = t183 * t202;
+            let t204 = k(1.0) / (k(2.0) * t203 - (t200 + t201));
+            let t205 = t87 * t152 + t78 * t140;
+            let t206 = t146 - t205;
+            let t207 = k(0.4) * t165;
+            let t208 = t207 * t182 - k(0.4) * t175 * t163;
+            let t209 = t177 - t208;
+            let t210 = t87 * t199 - t78 * t190;
+            let t211 = t194 + t210;
+            let t212 = t207 * t202;
+            let t213 = k(2.0) * t212 - (t210 + t211);
+            let t214 = t204 * t213;
+            let t215 = t214 * t186 + (t177 - t75 - (t208 - t209 - (t205 - t206)));
+            let t216 = k(11.976047904191617) * t15;
+            let t217 = t105 * (t92 * t216)
+                - (t96 * (k(1.0) - t87 * t216) - t101 * (t97 * t216));
+            let t218 = t138 * (t217 + (t217 + t39 * t53));
+            let t219 = t53 * t218;
+            let t220 = t101 * t218;
+            let t221 = k(2.0) * t220;
+            let t222 = t96 * t218;
+            let t223 = k(2.0) * t222;
+            let t224 = t105 * t218;
+            let t225 = k(2.0) * t224;
+            let t226 = t50 * t218;
+            let t227 = k(0.0835) * t226 + (t92 * t225 + (t87 * t223 + t97 * t221));
+            let t228 = t226 - k(11.976047904191617) * (t15 + t227);
+            let t229 = t87 * t228 - t78 * t219;
+            let t230 = t223 + t229;
+            let t231 = k(18.69158878504673) * t165;
+            let t232 = t207 * t231;
+            let t233 = t215 / (t213 * t214 - (k(2.0) * t232 - (t229 + t230)));
+            let t234 = t214 * t233 - t204 * t186;
+            let t235 = t233 * (t221 + (t97 * t228 + t74 * t219)) - (t154 + t201 * t234);
+            let t236 = t234 * (t196 + (t92 * t199 - t81 * t190))
+                - (t149 - (t92 * t152 + t81 * t140));
+            let t237 = t234 * (t61 * t189)
+                + (t65 + (t61 * t139 + (t60 * t29 - t59 * t8)));
+            let t238 = k(0.4) * t178;
+            let t239 = t234 * (t238 * t202)
+                - (t180 - (t238 * t182 - k(0.4) * t156 * t163));
             (
-                t200,
-                t204,
-                t205,
+                t202,
+                t203,
                 t206,
-                t208,
-                t210,
-                t214,
-                t217,
+                t209,
+                t211,
+                t212,
                 t218,
-                t221,
+                t219,
+                t220,
+                t222,
                 t224,
-                t226,
-                t227,
+                t225,
+                t228,
+                t230,
+                t231,
+                t232,
                 t233,
                 t234,
                 t235,
+                t236,
                 t237,
+                t238,
                 t239,
-                t240,
-                t243,
-                t245,
-                t246,
-                t247,
-                t248,
-                t249,
-                t250,
-                t251,
-                t252,
-                t253,
-                t254,
             )
         };
         *out = [
-            t150 + t206 * t249 - t235 * t248,
-            t237 * t248 + (t153 - t208 * t249),
-            -(t239 * t248 + (t156 - t210 * t249)),
-            t25,
-            -t39,
-            t147 + t204 * t249 - t233 * t248,
-            -t250,
-            t245 * t248 + (t221 - t226 * t249),
-            t251 - t248 * (t240 + (t100 * t243 - t89 * t234)),
-            t248 * (t65 * t233) - t252,
-            t234 * t248 + (t148 - t205 * t249),
-            t160 + t214 * t249 - t243 * t248,
-            t200 + t218 * t249 - t248 * (t198 * t246),
-            t247 * t248 + (t224 - t227 * t249),
-            t254 - t248 * (t253 * t246),
-            t186 * (t171 * t172) + t181 * (t165 * t172),
-            -t187,
-            t197 + t217 * t249 - t246 * t248,
-            -t249,
-            -t248,
+            t142 + t191 * t234 - t220 * t233,
+            t222 * t233 + (t145 - t193 * t234),
+            -(t224 * t233 + (t148 - t195 * t234)),
+            t8,
+            -t29,
+            t139 + t189 * t234 - t218 * t233,
+            -t235,
+            t230 * t233 + (t206 - t211 * t234),
+            t236 - t233 * (t225 + (t92 * t228 - t81 * t219)),
+            t233 * (t61 * t218) - t237,
+            t219 * t233 + (t140 - t190 * t234),
+            t152 + t199 * t234 - t228 * t233,
+            t185 + t203 * t234 - t233 * (t183 * t231),
+            t232 * t233 + (t209 - t212 * t234),
+            t239 - t233 * (t238 * t231),
+            rocker_wy * rocker_wz - t179 * t158,
+            -t163,
+            t182 + t202 * t234 - t231 * t233,
+            -t234,
+            -t233,
         ];
     }
     /// Writes λ: 256 operations (96 ±, 157 ×, 3 ÷).
@@ -1933,65 +1905,65 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
         let t2 = k(9.81) + coupler_dsy - closing1;
         let t3 = k(3.924) + k(0.4) * crank_dsy + t2;
         let t4 = k(0.4) * crank_dsz + coupler_dsz;
-        let t5 = coupler_e0 * coupler_e0;
-        let t6 = k(2.0) * (k(0.5) - (t5 + coupler_e1 * coupler_e1));
-        let t7 = crank_e0 * crank_e0;
-        let t8 = k(2.0) * (k(0.5) - (t7 + crank_e1 * crank_e1));
-        let t9 = coupler_e0 * coupler_e3;
-        let t10 = coupler_e1 * coupler_e2;
-        let t11 = k(2.0) * (t10 + t9);
-        let t12 = crank_e0 * crank_e3;
-        let t13 = crank_e1 * crank_e2;
-        let t14 = k(2.0) * (t13 + t12);
-        let t15 = coupler_e0 * coupler_e2;
-        let t16 = coupler_e1 * coupler_e3;
-        let t17 = k(2.0) * (t16 - t15);
-        let t18 = crank_e0 * crank_e2;
-        let t19 = crank_e1 * crank_e3;
+        let t5 = crank_e0 * crank_e3;
+        let t6 = crank_e1 * crank_e2;
+        let t7 = k(2.0) * (t6 + t5);
+        let t8 = k(2.0) * (t6 - t5);
+        let t9 = crank_e0 * crank_e0;
+        let t10 = k(2.0) * (k(0.5) - (t9 + crank_e2 * crank_e2));
+        let t11 = k(2.0) * (k(0.5) - (t9 + crank_e1 * crank_e1));
+        let t12 = k(1.0) / (t11 * t10 - t8 * t7);
+        let t13 = coupler_e0 * coupler_e0;
+        let t14 = k(2.0) * (k(0.5) - (t13 + coupler_e1 * coupler_e1));
+        let t15 = coupler_e0 * coupler_e3;
+        let t16 = coupler_e1 * coupler_e2;
+        let t17 = k(2.0) * (t16 + t15);
+        let t18 = coupler_e0 * coupler_e2;
+        let t19 = coupler_e1 * coupler_e3;
         let t20 = k(2.0) * (t19 - t18);
-        let t21 = t20 * t17 + (t14 * t11 + t8 * t6);
-        let t22 = k(5e-5) * coupler_dwx;
-        let t23 = t16 + t15;
-        let t24 = k(0.5) * t23;
-        let t25 = coupler_e0 * coupler_e1;
-        let t26 = coupler_e2 * coupler_e3;
-        let t27 = t26 - t25;
-        let t28 = k(0.5) * t27;
-        let t29 = closing1 * t28
+        let t21 = crank_e0 * crank_e2;
+        let t22 = crank_e1 * crank_e3;
+        let t23 = k(2.0) * (t22 - t21);
+        let t24 = t23 * t20 + (t7 * t17 + t11 * t14);
+        let t25 = k(5e-5) * coupler_dwx;
+        let t26 = t19 + t18;
+        let t27 = k(0.5) * t26;
+        let t28 = coupler_e0 * coupler_e1;
+        let t29 = coupler_e2 * coupler_e3;
+        let t30 = t29 - t28;
+        let t31 = k(0.5) * t30;
+        let t32 = closing1 * t31
             - (k(0.02095) * (coupler_wx * coupler_wz) - k(0.021) * coupler_dwy
-                - closing0 * t24);
-        let t30 = k(0.5) - (t5 + coupler_e3 * coupler_e3);
-        let t31 = coupler_dsz * (k(0.5) * t30) - (t2 * t28 + t0 * t24) + t29;
-        let t32 = t10 - t9;
-        let t33 = k(2.0) * t32;
-        let t34 = k(0.5) - (t5 + coupler_e2 * coupler_e2);
-        let t35 = k(2.0) * t34;
-        let t36 = t26 + t25;
-        let t37 = k(2.0) * t36;
-        let t38 = t20 * t37 - (t14 * t35 + t8 * t33);
-        let t39 = k(0.5) * t32;
-        let t40 = k(0.5) * t34;
-        let t41 = closing1 * t40
+                - closing0 * t27);
+        let t33 = k(0.5) - (t13 + coupler_e3 * coupler_e3);
+        let t34 = coupler_dsz * (k(0.5) * t33) - (t2 * t31 + t0 * t27) + t32;
+        let t35 = t16 - t15;
+        let t36 = k(2.0) * t35;
+        let t37 = k(0.5) - (t13 + coupler_e2 * coupler_e2);
+        let t38 = k(2.0) * t37;
+        let t39 = t29 + t28;
+        let t40 = k(2.0) * t39;
+        let t41 = t23 * t40 - (t7 * t38 + t11 * t36);
+        let t42 = k(0.5) * t35;
+        let t43 = k(0.5) * t37;
+        let t44 = closing1 * t43
             + (k(0.02095) * (coupler_wx * coupler_wy) + k(0.021) * coupler_dwz
-                - closing0 * t39);
-        let t42 = coupler_dsz * (k(0.5) * t36) - (t2 * t40 - t0 * t39) + t41;
-        let t43 = k(2.0) * t23;
-        let t44 = k(2.0) * t27;
-        let t45 = k(2.0) * t30;
-        let t46 = (t20 * t45 - (t14 * t44 - t8 * t43)) * t42 - (t38 * t31 + t22 * t21);
-        let t47 = k(2e-5) * crank_dwx - t46;
-        let t48 = k(2.0) * (t13 - t12);
-        let t49 = k(2.0) * (k(0.5) - (t7 + crank_e2 * crank_e2));
-        let t50 = k(1.0) / (t8 * t49 - t48 * t14);
+                - closing0 * t42);
+        let t45 = coupler_dsz * (k(0.5) * t39) - (t2 * t43 - t0 * t42) + t44;
+        let t46 = k(2.0) * t26;
+        let t47 = k(2.0) * t30;
+        let t48 = k(2.0) * t33;
+        let t49 = (t23 * t48 - (t7 * t47 - t11 * t46)) * t45 - (t41 * t34 + t25 * t24);
+        let t50 = k(2e-5) * crank_dwx - t49;
         let t51 = crank_e0 * crank_e1;
         let t52 = crank_e2 * crank_e3;
         let t53 = k(2.0) * (t52 + t51);
-        let t54 = t53 * t17 - (t49 * t11 + t48 * t6);
-        let t55 = t53 * t37 + (t48 * t33 + t49 * t35);
-        let t56 = (t53 * t45 - (t48 * t43 - t49 * t44)) * t42 - (t55 * t31 + t22 * t54);
-        let t57 = k(0.2) * (t19 + t18);
+        let t54 = t53 * t20 - (t10 * t17 + t8 * t14);
+        let t55 = t53 * t40 + (t8 * t36 + t10 * t38);
+        let t56 = (t53 * t48 - (t8 * t46 - t10 * t47)) * t45 - (t55 * t34 + t25 * t54);
+        let t57 = k(0.2) * (t22 + t21);
         let t58 = k(0.2) * (t52 - t51);
-        let t59 = k(0.2) * (k(0.5) - (t7 + crank_e3 * crank_e3));
+        let t59 = k(0.2) * (k(0.5) - (t9 + crank_e3 * crank_e3));
         let t60 = k(0.00133) * (crank_wx * crank_wz) - k(0.00135) * crank_dwy
             - (coupler_dsz * t59 - (t2 * t58 + t0 * t57) - t56);
         let t61 = t4 * t59 - (t3 * t58 + t1 * t57) - t60;
@@ -2015,23 +1987,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
         let t77 = t64 * (k(0.4) * (k(0.5) - (t69 + rocker_e3 * rocker_e3)))
             - (t63 * t75 + t62 * t74);
         let t78 = t77 - t76;
-        let t79 = k(1.0) / (t21 * t55 - t38 * t54);
+        let t79 = k(1.0) / (t24 * t55 - t41 * t54);
         *lambda = [
             -t1,
             -t3,
             -t4,
-            t49 * t50 * t61 - t14 * t50 * t47,
-            t48 * t50 * t61 - t8 * t50 * t47,
+            t61 * (t10 * t12) - t50 * (t7 * t12),
+            t61 * (t8 * t12) - t50 * (t11 * t12),
             -t62,
             -t63,
             -t64,
-            t70 * t72 * t78 - t73 * (t67 * t72),
-            t68 * t72 * t78 - t73 * (t71 * t72),
+            t78 * (t70 * t72) - t73 * (t67 * t72),
+            t78 * (t68 * t72) - t73 * (t71 * t72),
             -t0,
             -t2,
             -coupler_dsz,
-            -(t55 * t79 * t31 + t22 * (t54 * t79)),
-            t38 * t79 * t31 + t22 * (t21 * t79),
+            -(t34 * (t55 * t79) + t25 * (t54 * t79)),
+            t34 * (t41 * t79) + t25 * (t24 * t79),
             closing0,
             closing1,
         ];

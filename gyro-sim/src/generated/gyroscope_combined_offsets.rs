@@ -19,7 +19,7 @@
 //! | gamma | γ | 169 | 255 | 0 | 424 | 6 of 15 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 120 | 173 | 0 | 293 | 0 of 15 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 423 | 613 | 5 | 1041 | 6 of 18 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 409 | 569 | 5 | 983 | 6 of 18 |
 //! | multipliers | λ, the accelerations being known | 144 | 229 | 3 | 376 | 0 of 15 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
@@ -34,6 +34,7 @@
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 73 | 101 | 2 | 176 | 0 of 3 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 132 | 187 | 2 | 321 | 6 of 18 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 100 | 133 | 0 | 233 | 0 of 15 |
+//! | corrected_solution | both | 198 | 280 | 2 | 480 | 6 of 33 |
 //!
 //! # Proof
 //!
@@ -50,7 +51,7 @@
 //! * joint_derivative: eqs. (14) and (16) on the constraints
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
-//! * corrected_multipliers: eq. (17) on the constraints
+//! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //!
 //! All of it holds but with a probability below 1e-143.
 //! Not proved: the size of rounding errors.
@@ -1920,7 +1921,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 1041 operations (423 ±, 613 ×, 5 ÷).
+    /// Solves eq. (17): 983 operations (409 ±, 569 ×, 5 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1946,522 +1947,489 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
         let rotor_wz = y[38];
         let (
             t0,
-            t3,
-            t4,
+            t2,
             t5,
             t6,
-            t7,
-            t9,
-            t11,
-            t12,
             t13,
-            t14,
-            t15,
-            t16,
-            t17,
-            t19,
             t20,
-            t27,
-            t34,
+            t28,
+            t29,
+            t38,
+            t41,
             t42,
-            t43,
-            t52,
+            t47,
+            t48,
+            t49,
+            t50,
             t55,
             t56,
+            t57,
             t58,
             t61,
-            t62,
             t63,
             t64,
+            t66,
             t69,
             t70,
             t71,
             t72,
             t75,
+            t76,
             t77,
             t78,
-            t80,
+            t81,
+            t82,
             t83,
             t84,
-            t85,
-            t86,
+            t87,
+            t88,
             t89,
             t90,
             t91,
             t92,
-            t95,
-            t96,
-            t97,
-            t98,
-            t101,
+            t93,
+            t94,
             t102,
-            t103,
-            t104,
             t105,
             t106,
-            t107,
             t108,
+            t109,
+            t110,
+            t114,
+            t115,
             t116,
+            t117,
+            t118,
             t119,
             t120,
+            t121,
             t122,
-            t124,
-            t125,
-            t126,
-            t127,
-            t128,
-            t129,
-            t130,
-            t131,
-            t132,
+            t134,
+            t135,
+            t136,
+            t137,
+            t138,
+            t139,
+            t142,
+            t143,
             t144,
             t145,
-            t146,
-            t147,
-            t148,
-            t149,
-            t152,
-            t153,
+            t150,
             t154,
-            t155,
-            t156,
-            t160,
-            t161,
-            t164,
-            t166,
-            t170,
-            t172,
-            t179,
-            t185,
-            t191,
+            t169,
+            t175,
+            t181,
+            t182,
+            t183,
+            t184,
             t192,
             t193,
-            t194,
+            t195,
             t197,
             t198,
             t199,
         ) = {
-            let t0 = outer_ring_wx * outer_ring_wy;
-            let t1 = outer_ring_e0 * outer_ring_e2;
-            let t2 = outer_ring_e1 * outer_ring_e3;
-            let t3 = k(2.0) * (t2 - t1);
-            let t4 = outer_ring_wz * outer_ring_wz;
-            let t5 = t4 + outer_ring_wx * outer_ring_wx;
-            let t6 = outer_ring_e0 * outer_ring_e1;
-            let t7 = outer_ring_e2 * outer_ring_e3;
-            let t8 = k(2.0) * (t7 + t6);
-            let t9 = outer_ring_wy * outer_ring_wz;
-            let t10 = outer_ring_e0 * outer_ring_e0;
-            let t11 = k(2.0) * (k(0.5) - (t10 + outer_ring_e3 * outer_ring_e3));
-            let t12 = t11 * t9 + (t8 * t5 - t3 * t0);
-            let t13 = k(2.0) * (k(0.5) - (t10 + outer_ring_e1 * outer_ring_e1));
-            let t14 = k(2.0) * (t2 + t1);
-            let t15 = k(1.0) / (t14 * t3 - t13 * t11);
-            let t16 = outer_ring_e0 * outer_ring_e3;
-            let t17 = outer_ring_e1 * outer_ring_e2;
-            let t18 = k(2.0) * (t17 - t16);
-            let t19 = t14 * t9 - (t18 * t5 + t13 * t0);
-            let t20 = t3 * t15 * t19 - t13 * t15 * t12;
-            let t21 = rotor_e0 * rotor_e3;
-            let t22 = rotor_e1 * rotor_e2;
-            let t23 = t22 - t21;
+            let t0 = outer_ring_e0 * outer_ring_e0;
+            let t1 = k(0.5) - (t0 + outer_ring_e2 * outer_ring_e2);
+            let t2 = (outer_ring_wz * outer_ring_wz + outer_ring_wx * outer_ring_wx)
+                * (k(0.5) / t1);
+            let t3 = outer_ring_e0 * outer_ring_e1;
+            let t4 = outer_ring_e2 * outer_ring_e3;
+            let t5 = k(2.0) * (t4 - t3);
+            let t6 = outer_ring_wy * outer_ring_wz - t5 * t2;
+            let t7 = rotor_e0 * rotor_e3;
+            let t8 = rotor_e1 * rotor_e2;
+            let t9 = t8 - t7;
+            let t10 = k(2.0) * t9;
+            let t11 = inner_ring_e0 * inner_ring_e0;
+            let t12 = k(0.5) - (t11 + inner_ring_e1 * inner_ring_e1);
+            let t13 = k(2.0) * t12;
+            let t14 = rotor_e0 * rotor_e0;
+            let t15 = k(0.5) - (t14 + rotor_e2 * rotor_e2);
+            let t16 = k(2.0) * t15;
+            let t17 = inner_ring_e0 * inner_ring_e3;
+            let t18 = inner_ring_e1 * inner_ring_e2;
+            let t19 = t18 + t17;
+            let t20 = k(2.0) * t19;
+            let t21 = rotor_e0 * rotor_e1;
+            let t22 = rotor_e2 * rotor_e3;
+            let t23 = t22 + t21;
             let t24 = k(2.0) * t23;
-            let t25 = inner_ring_e0 * inner_ring_e0;
-            let t26 = k(0.5) - (t25 + inner_ring_e1 * inner_ring_e1);
-            let t27 = k(2.0) * t26;
-            let t28 = rotor_e0 * rotor_e0;
-            let t29 = k(0.5) - (t28 + rotor_e2 * rotor_e2);
-            let t30 = k(2.0) * t29;
-            let t31 = inner_ring_e0 * inner_ring_e3;
-            let t32 = inner_ring_e1 * inner_ring_e2;
-            let t33 = t32 + t31;
-            let t34 = k(2.0) * t33;
-            let t35 = rotor_e0 * rotor_e1;
-            let t36 = rotor_e2 * rotor_e3;
-            let t37 = t36 + t35;
-            let t38 = k(2.0) * t37;
-            let t39 = inner_ring_e0 * inner_ring_e2;
-            let t40 = inner_ring_e1 * inner_ring_e3;
-            let t41 = t40 - t39;
-            let t42 = k(2.0) * t41;
-            let t43 = t42 * t38 - (t34 * t30 + t27 * t24);
-            let t44 = rotor_e0 * rotor_e2;
-            let t45 = rotor_e1 * rotor_e3;
-            let t46 = t45 + t44;
-            let t47 = k(2.0) * t46;
-            let t48 = t36 - t35;
-            let t49 = k(2.0) * t48;
-            let t50 = k(0.5) - (t28 + rotor_e3 * rotor_e3);
-            let t51 = k(2.0) * t50;
-            let t52 = t42 * t51 - (t34 * t49 - t27 * t47);
-            let t53 = k(2.400191904047976e-9) * t52 - k(5.002599744127936e-6) * t43;
-            let t54 = k(5.003999856071964e-6) * t52 - k(2.400191904047976e-9) * t43;
-            let t55 = k(0.0004) * t46 + k(0.0003) * t23;
-            let t56 = k(0.08) * t55;
-            let t57 = k(7996.001999000499) * t55;
-            let t58 = t57 * t56;
-            let t59 = t32 - t31;
-            let t60 = t40 + t39;
-            let t61 = k(0.0001) * t60 + k(6e-5) * t59;
-            let t62 = k(0.0004) * t48 - k(0.0003) * t29;
-            let t63 = k(0.08) * t62;
-            let t64 = t57 * t63;
-            let t65 = k(0.5) - (t25 + inner_ring_e2 * inner_ring_e2);
-            let t66 = inner_ring_e0 * inner_ring_e1;
-            let t67 = inner_ring_e2 * inner_ring_e3;
-            let t68 = t67 - t66;
-            let t69 = k(0.0001) * t68 - k(6e-5) * t65;
-            let t70 = k(0.0004) * t50 - k(0.0003) * t37;
-            let t71 = k(0.08) * t70;
-            let t72 = t71 * t57;
-            let t73 = t67 + t66;
-            let t74 = k(0.5) - (t25 + inner_ring_e3 * inner_ring_e3);
-            let t75 = k(0.0001) * t74 - k(6e-5) * t73;
-            let t76 = k(7996.001999000499) * t62;
-            let t77 = t76 * t63;
-            let t78 = t71 * t76;
-            let t79 = t69 * (t75 * t78 + (t69 * t77 + t61 * t64))
-                + t61 * (t75 * t72 + (t69 * t64 + t61 * t58));
-            let t80 = k(7996.001999000499) * t70 * t71;
-            let t81 = t75 * (t75 * t80 + (t69 * t78 + t61 * t72)) + t79;
-            let t82 = k(0.5) - (t28 + rotor_e1 * rotor_e1);
-            let t83 = k(0.0002) * t46 - k(0.0003) * t82;
-            let t84 = k(1.2793603198400799e-5) * t55 - k(0.08) * t83;
-            let t85 = k(0.0002) * t23 + k(0.0004) * t82;
-            let t86 = k(9.595202398800599e-6) * t55 - k(0.08) * t85;
-            let t87 = t52 * t86 + t43 * t84;
-            let t88 = t22 + t21;
-            let t89 = k(0.0002) * t48 + k(0.0003) * t88;
-            let t90 = k(1.2793603198400799e-5) * t62 - k(0.08) * t89;
-            let t91 = k(0.0002) * t29 + k(0.0004) * t88;
-            let t92 = k(9.595202398800599e-6) * t62 + k(0.08) * t91;
-            let t93 = t52 * t92 + t43 * t90;
-            let t94 = t45 - t44;
-            let t95 = k(0.0002) * t50 - k(0.0003) * t94;
-            let t96 = k(1.2793603198400799e-5) * t70 - k(0.08) * t95;
-            let t97 = k(0.0002) * t37 - k(0.0004) * t94;
-            let t98 = k(9.595202398800599e-6) * t70 + k(0.08) * t97;
-            let t99 = t52 * t98 + t43 * t96;
-            let t100 = k(2.0) * (t75 * t99 + (t69 * t93 + t61 * t87)) + t81;
-            let t101 = k(2.0) * t68;
-            let t102 = k(2.0) * t60;
-            let t103 = k(2.0) * t74;
-            let t104 = t103 * t38 - (t102 * t24 - t101 * t30);
-            let t105 = t102 * t47 + t101 * t49 + t103 * t51;
-            let t106 = k(0.00025) * t59 + k(0.0001) * t26;
-            let t107 = k(0.00025) * t65 + k(0.0001) * t33;
-            let t108 = k(0.00025) * t73 - k(0.0001) * t41;
-            let t109 = t108 * t72 + (t107 * t64 - t106 * t58);
-            let t110 = t108 * t78 + (t107 * t77 - t106 * t64);
-            let t111 = t108 * t80 + (t107 * t78 - t106 * t72);
-            let t112 = t105 * t86 + t104 * t84;
-            let t113 = t105 * t92 + t104 * t90;
-            let t114 = t105 * t98 + t104 * t96;
-            let t115 = t108 * t99 + (t107 * t93 - t106 * t87)
-                + (t75 * t114 + (t69 * t113 + t61 * t112));
-            let t116 = t115 + (t75 * t111 + (t69 * t110 + t61 * t109))
-                + (k(3e-10) - (t105 * t54 - t104 * t53));
-            let t117 = t105
-                * (k(5.003999856071964e-6) * t105 - k(2.400191904047976e-9) * t104)
-                - t104
-                    * (k(2.400191904047976e-9) * t105 - k(5.002599744127936e-6) * t104);
-            let t118 = k(2.0) * (t108 * t114 + (t107 * t113 - t106 * t112))
-                + (t108 * t111 + (t107 * t110 - t106 * t109));
-            let t119 = k(1e-6) - (t118 - (k(1.45e-9) + t117));
-            let t120 = k(1.0) / t119;
-            let t121 = t120 * t116;
-            let t122 = t116 * t121
-                - (k(1e-6) - (t100 - (k(2.72e-10) + (t52 * t54 - t43 * t53))));
-            let t123 = k(2.0) * (k(0.5) - (t10 + outer_ring_e2 * outer_ring_e2));
-            let t124 = t8 * t42 - (t123 * t34 + t18 * t27);
-            let t125 = k(2.0) * t65;
-            let t126 = k(2.0) * t59;
-            let t127 = k(2.0) * t73;
-            let t128 = t127 * t38 + (t126 * t24 + t125 * t30);
-            let t129 = t127 * t51 - (t126 * t47 - t125 * t49);
-            let t130 = k(0.00025) * t60 - k(6e-5) * t26;
-            let t131 = k(0.00025) * t68 + k(6e-5) * t33;
-            let t132 = k(0.00025) * t74 - k(6e-5) * t41;
-            let t133 = t132 * t72 + (t131 * t64 + t130 * t58);
-            let t134 = t132 * t78 + (t131 * t77 + t130 * t64);
-            let t135 = t132 * t80 + (t131 * t78 + t130 * t72);
-            let t136 = t129 * t86 + t128 * t84;
-            let t137 = t129 * t92 + t128 * t90;
-            let t138 = t129 * t98 + t128 * t96;
-            let t139 = t132 * t99 + (t131 * t93 + t130 * t87)
-                - (t75 * t138 + (t69 * t137 + t61 * t136));
-            let t140 = t139 + (t75 * t135 + (t69 * t134 + t61 * t133))
-                - (k(5e-10) - (t129 * t54 - t128 * t53));
-            let t141 = k(2.400191904047976e-9) * t129 - k(5.002599744127936e-6) * t128;
-            let t142 = k(5.003999856071964e-6) * t129 - k(2.400191904047976e-9) * t128;
-            let t143 = t108 * t138 + (t107 * t137 - t106 * t136)
-                - (t132 * t114 + (t131 * t113 + t130 * t112));
-            let t144 = t143 - (t132 * t111 + (t131 * t110 + t130 * t109))
-                + (k(1.2e-10) - (t105 * t142 - t104 * t141));
-            let t145 = t144 * t121 - t140;
-            let t146 = t8 * t127 + (t18 * t126 + t123 * t125);
-            let t147 = t116 - t119 * t121;
-            let t148 = t8 * t103 - (t18 * t102 - t123 * t101);
-            let t149 = t148 * t147 + (t146 * t145 + t124 * t122);
-            let t150 = k(2.0) * (t132 * t138 + (t131 * t137 + t130 * t136))
-                - (t132 * t135 + (t131 * t134 + t130 * t133));
-            let t151 = t120 * t144;
-            let t152 = t144 * t151
-                - (k(2e-6) + (t150 + (k(1.322e-9) + (t129 * t142 - t128 * t141))));
-            let t153 = t144 - t119 * t151;
-            let t154 = t148 * t153 + (t146 * t152 + t124 * t145);
-            let t155 = t146 * t153 + t124 * t147;
-            let t156 = rotor_wx * rotor_wz;
-            let t157 = inner_ring_wy * inner_ring_wy;
-            let t158 = inner_ring_wz * inner_ring_wz;
-            let t159 = t158 + t157;
-            let t160 = inner_ring_wx * inner_ring_wy;
-            let t161 = inner_ring_wx * inner_ring_wz;
-            let t162 = inner_ring_wx * inner_ring_wx;
-            let t163 = t158 + t162;
-            let t164 = inner_ring_wy * inner_ring_wz;
-            let t165 = k(5e-5) * (t102 * t164 - (t126 * t163 + t27 * t160))
-                + k(0.000125) * (t102 * t161 + (t126 * t160 + t27 * t159));
-            let t166 = t157 + t162;
-            let t167 = k(3e-5) * (t102 * t166 - (t126 * t164 - t27 * t161)) + t165;
-            let t168 = rotor_wy * rotor_wy;
-            let t169 = rotor_wz * rotor_wz;
-            let t170 = t169 + t168;
-            let t171 = k(2.0) * t82;
-            let t172 = rotor_wx * rotor_wy;
-            let t173 = rotor_wx * rotor_wx;
-            let t174 = t169 + t173;
-            let t175 = rotor_wy * rotor_wz;
-            let t176 = k(0.0002) * (t47 * t175 - (t24 * t174 + t171 * t172))
-                + k(0.0001) * (t47 * t156 + (t24 * t172 + t171 * t170));
-            let t177 = t168 + t173;
-            let t178 = k(0.00015) * (t47 * t177 - (t24 * t175 - t171 * t156)) + t176;
-            let t179 = t178 - t167;
-            let t180 = k(5e-5) * (t101 * t164 + (t125 * t163 + t34 * t160))
-                + k(0.000125) * (t101 * t161 - (t125 * t160 + t34 * t159));
-            let t181 = k(3e-5) * (t101 * t166 + (t125 * t164 - t34 * t161)) + t180;
-            let t182 = k(2.0) * t88;
-            let t183 = k(0.0002) * (t49 * t175 + (t30 * t174 + t182 * t172))
-                + k(0.0001) * (t49 * t156 - (t30 * t172 + t182 * t170));
-            let t184 = k(0.00015) * (t49 * t177 + (t30 * t175 - t182 * t156)) + t183;
-            let t185 = t184 - t181;
-            let t186 = k(5e-5) * (t103 * t164 + (t127 * t163 - t42 * t160))
-                + k(0.000125) * (t103 * t161 - (t127 * t160 - t42 * t159));
-            let t187 = k(3e-5) * (t103 * t166 + (t127 * t164 + t42 * t161)) + t186;
-            let t188 = k(2.0) * t94;
-            let t189 = k(0.0002) * (t51 * t175 + (t38 * t174 - t188 * t172))
-                + k(0.0001) * (t51 * t156 - (t38 * t172 - t188 * t170));
-            let t190 = k(0.00015) * (t51 * t177 + (t38 * t175 + t188 * t156)) + t189;
-            let t191 = t190 - t187;
-            let t192 = t42 * t188 + (t34 * t182 + t27 * t171);
-            let t193 = t127 * t188 - (t125 * t182 + t126 * t171);
-            let t194 = t103 * t188 - (t101 * t182 - t102 * t171);
-            let t195 = rotor_wy * t52 + rotor_wz * t43;
-            let t196 = k(2.0)
-                * (inner_ring_wx * (rotor_wy * t105 + rotor_wz * t104)
-                    + inner_ring_wz * t195);
-            let t197 = t156 * t129 - (t172 * t128 - t170 * t193) + t196
-                + (t164 * t194 + (t163 * t193 - t160 * t192));
-            let t198 = k(1.0) / (t128 * t105 - t129 * t104);
-            let t199 = k(2.0)
-                * (inner_ring_wx * (rotor_wy * t129 + rotor_wz * t128)
-                    - inner_ring_wy * t195);
+            let t25 = inner_ring_e0 * inner_ring_e2;
+            let t26 = inner_ring_e1 * inner_ring_e3;
+            let t27 = t26 - t25;
+            let t28 = k(2.0) * t27;
+            let t29 = t28 * t24 - (t20 * t16 + t13 * t10);
+            let t30 = rotor_e0 * rotor_e2;
+            let t31 = rotor_e1 * rotor_e3;
+            let t32 = t31 + t30;
+            let t33 = k(2.0) * t32;
+            let t34 = t22 - t21;
+            let t35 = k(2.0) * t34;
+            let t36 = k(0.5) - (t14 + rotor_e3 * rotor_e3);
+            let t37 = k(2.0) * t36;
+            let t38 = t28 * t37 - (t20 * t35 - t13 * t33);
+            let t39 = k(2.400191904047976e-9) * t38 - k(5.002599744127936e-6) * t29;
+            let t40 = k(5.003999856071964e-6) * t38 - k(2.400191904047976e-9) * t29;
+            let t41 = k(0.0004) * t32 + k(0.0003) * t9;
+            let t42 = k(0.08) * t41;
+            let t43 = k(7996.001999000499) * t41;
+            let t44 = t43 * t42;
+            let t45 = t18 - t17;
+            let t46 = t26 + t25;
+            let t47 = k(0.0001) * t46 + k(6e-5) * t45;
+            let t48 = k(0.0004) * t34 - k(0.0003) * t15;
+            let t49 = k(0.08) * t48;
+            let t50 = t43 * t49;
+            let t51 = k(0.5) - (t11 + inner_ring_e2 * inner_ring_e2);
+            let t52 = inner_ring_e0 * inner_ring_e1;
+            let t53 = inner_ring_e2 * inner_ring_e3;
+            let t54 = t53 - t52;
+            let t55 = k(0.0001) * t54 - k(6e-5) * t51;
+            let t56 = k(0.0004) * t36 - k(0.0003) * t23;
+            let t57 = k(0.08) * t56;
+            let t58 = t57 * t43;
+            let t59 = t53 + t52;
+            let t60 = k(0.5) - (t11 + inner_ring_e3 * inner_ring_e3);
+            let t61 = k(0.0001) * t60 - k(6e-5) * t59;
+            let t62 = k(7996.001999000499) * t48;
+            let t63 = t62 * t49;
+            let t64 = t57 * t62;
+            let t65 = t55 * (t61 * t64 + (t55 * t63 + t47 * t50))
+                + t47 * (t61 * t58 + (t55 * t50 + t47 * t44));
+            let t66 = k(7996.001999000499) * t56 * t57;
+            let t67 = t61 * (t61 * t66 + (t55 * t64 + t47 * t58)) + t65;
+            let t68 = k(0.5) - (t14 + rotor_e1 * rotor_e1);
+            let t69 = k(0.0002) * t32 - k(0.0003) * t68;
+            let t70 = k(1.2793603198400799e-5) * t41 - k(0.08) * t69;
+            let t71 = k(0.0002) * t9 + k(0.0004) * t68;
+            let t72 = k(9.595202398800599e-6) * t41 - k(0.08) * t71;
+            let t73 = t72 * t38 + t70 * t29;
+            let t74 = t8 + t7;
+            let t75 = k(0.0002) * t34 + k(0.0003) * t74;
+            let t76 = k(1.2793603198400799e-5) * t48 - k(0.08) * t75;
+            let t77 = k(0.0002) * t15 + k(0.0004) * t74;
+            let t78 = k(9.595202398800599e-6) * t48 + k(0.08) * t77;
+            let t79 = t78 * t38 + t76 * t29;
+            let t80 = t31 - t30;
+            let t81 = k(0.0002) * t36 - k(0.0003) * t80;
+            let t82 = k(1.2793603198400799e-5) * t56 - k(0.08) * t81;
+            let t83 = k(0.0002) * t23 - k(0.0004) * t80;
+            let t84 = k(9.595202398800599e-6) * t56 + k(0.08) * t83;
+            let t85 = t84 * t38 + t82 * t29;
+            let t86 = k(2.0) * (t61 * t85 + (t55 * t79 + t47 * t73)) + t67;
+            let t87 = k(2.0) * t54;
+            let t88 = k(2.0) * t46;
+            let t89 = k(2.0) * t60;
+            let t90 = t89 * t24 - (t88 * t10 - t87 * t16);
+            let t91 = t88 * t33 + t87 * t35 + t89 * t37;
+            let t92 = k(0.00025) * t45 + k(0.0001) * t12;
+            let t93 = k(0.00025) * t51 + k(0.0001) * t19;
+            let t94 = k(0.00025) * t59 - k(0.0001) * t27;
+            let t95 = t94 * t58 + (t93 * t50 - t92 * t44);
+            let t96 = t94 * t64 + (t93 * t63 - t92 * t50);
+            let t97 = t94 * t66 + (t93 * t64 - t92 * t58);
+            let t98 = t91 * t72 + t90 * t70;
+            let t99 = t91 * t78 + t90 * t76;
+            let t100 = t91 * t84 + t90 * t82;
+            let t101 = t94 * t85 + (t93 * t79 - t92 * t73)
+                + (t61 * t100 + (t55 * t99 + t47 * t98));
+            let t102 = t101 + (t61 * t97 + (t55 * t96 + t47 * t95))
+                + (k(3e-10) - (t91 * t40 - t90 * t39));
+            let t103 = t91
+                * (k(5.003999856071964e-6) * t91 - k(2.400191904047976e-9) * t90)
+                - t90 * (k(2.400191904047976e-9) * t91 - k(5.002599744127936e-6) * t90);
+            let t104 = k(2.0) * (t94 * t100 + (t93 * t99 - t92 * t98))
+                + (t94 * t97 + (t93 * t96 - t92 * t95));
+            let t105 = k(1e-6) - (t104 - (k(1.45e-9) + t103));
+            let t106 = k(1.0) / t105;
+            let t107 = t106 * t102;
+            let t108 = t102 * t107
+                - (k(1e-6) - (t86 - (k(2.72e-10) + (t38 * t40 - t29 * t39))));
+            let t109 = outer_ring_e0 * outer_ring_e3;
+            let t110 = outer_ring_e1 * outer_ring_e2;
+            let t111 = k(2.0) * (t110 - t109);
+            let t112 = k(2.0) * t1;
+            let t113 = k(2.0) * (t4 + t3);
+            let t114 = t113 * t28 - (t112 * t20 + t111 * t13);
+            let t115 = k(2.0) * t51;
+            let t116 = k(2.0) * t45;
+            let t117 = k(2.0) * t59;
+            let t118 = t117 * t24 + (t116 * t10 + t115 * t16);
+            let t119 = t117 * t37 - (t116 * t33 - t115 * t35);
+            let t120 = k(0.00025) * t46 - k(6e-5) * t12;
+            let t121 = k(0.00025) * t54 + k(6e-5) * t19;
+            let t122 = k(0.00025) * t60 - k(6e-5) * t27;
+            let t123 = t122 * t58 + (t121 * t50 + t120 * t44);
+            let t124 = t122 * t64 + (t121 * t63 + t120 * t50);
+            let t125 = t122 * t66 + (t121 * t64 + t120 * t58);
+            let t126 = t119 * t72 + t118 * t70;
+            let t127 = t119 * t78 + t118 * t76;
+            let t128 = t119 * t84 + t118 * t82;
+            let t129 = t122 * t85 + (t121 * t79 + t120 * t73)
+                - (t61 * t128 + (t55 * t127 + t47 * t126));
+            let t130 = t129 + (t61 * t125 + (t55 * t124 + t47 * t123))
+                - (k(5e-10) - (t119 * t40 - t118 * t39));
+            let t131 = k(2.400191904047976e-9) * t119 - k(5.002599744127936e-6) * t118;
+            let t132 = k(5.003999856071964e-6) * t119 - k(2.400191904047976e-9) * t118;
+            let t133 = t94 * t128 + (t93 * t127 - t92 * t126)
+                - (t122 * t100 + (t121 * t99 + t120 * t98));
+            let t134 = t133 - (t122 * t97 + (t121 * t96 + t120 * t95))
+                + (k(1.2e-10) - (t91 * t132 - t90 * t131));
+            let t135 = t134 * t107 - t130;
+            let t136 = t113 * t117 + (t111 * t116 + t112 * t115);
+            let t137 = t102 - t105 * t107;
+            let t138 = t113 * t89 - (t111 * t88 - t112 * t87);
+            let t139 = t138 * t137 + (t136 * t135 + t114 * t108);
+            let t140 = k(2.0) * (t122 * t128 + (t121 * t127 + t120 * t126))
+                - (t122 * t125 + (t121 * t124 + t120 * t123));
+            let t141 = t106 * t134;
+            let t142 = t134 * t141
+                - (k(2e-6) + (t140 + (k(1.322e-9) + (t119 * t132 - t118 * t131))));
+            let t143 = t134 - t105 * t141;
+            let t144 = t138 * t143 + (t136 * t142 + t114 * t135);
+            let t145 = t136 * t143 + t114 * t137;
+            let t146 = rotor_wx * rotor_wz;
+            let t147 = inner_ring_wy * inner_ring_wy;
+            let t148 = inner_ring_wz * inner_ring_wz;
+            let t149 = t148 + t147;
+            let t150 = inner_ring_wx * inner_ring_wy;
+            let t151 = inner_ring_wx * inner_ring_wz;
+            let t152 = inner_ring_wx * inner_ring_wx;
+            let t153 = t148 + t152;
+            let t154 = inner_ring_wy * inner_ring_wz;
+            let t155 = k(5e-5) * (t88 * t154 - (t116 * t153 + t13 * t150))
+                + k(0.000125) * (t88 * t151 + (t116 * t150 + t13 * t149));
+            let t156 = t147 + t152;
+            let t157 = k(3e-5) * (t88 * t156 - (t116 * t154 - t13 * t151)) + t155;
+            let t158 = rotor_wy * rotor_wy;
+            let t159 = rotor_wz * rotor_wz;
+            let t160 = t159 + t158;
+            let t161 = k(2.0) * t68;
+            let t162 = rotor_wx * rotor_wy;
+            let t163 = rotor_wx * rotor_wx;
+            let t164 = t159 + t163;
+            let t165 = rotor_wy * rotor_wz;
+            let t166 = k(0.0002) * (t33 * t165 - (t10 * t164 + t161 * t162))
+                + k(0.0001) * (t33 * t146 + (t10 * t162 + t161 * t160));
+            let t167 = t158 + t163;
+            let t168 = k(0.00015) * (t33 * t167 - (t10 * t165 - t161 * t146)) + t166;
+            let t169 = t168 - t157;
+            let t170 = k(5e-5) * (t87 * t154 + (t115 * t153 + t20 * t150))
+                + k(0.000125) * (t87 * t151 - (t115 * t150 + t20 * t149));
+            let t171 = k(3e-5) * (t87 * t156 + (t115 * t154 - t20 * t151)) + t170;
+            let t172 = k(2.0) * t74;
+            let t173 = k(0.0002) * (t35 * t165 + (t16 * t164 + t172 * t162))
+                + k(0.0001) * (t35 * t146 - (t16 * t162 + t172 * t160));
+            let t174 = k(0.00015) * (t35 * t167 + (t16 * t165 - t172 * t146)) + t173;
+            let t175 = t174 - t171;
+            let t176 = k(5e-5) * (t89 * t154 + (t117 * t153 - t28 * t150))
+                + k(0.000125) * (t89 * t151 - (t117 * t150 - t28 * t149));
+            let t177 = k(3e-5) * (t89 * t156 + (t117 * t154 + t28 * t151)) + t176;
+            let t178 = k(2.0) * t80;
+            let t179 = k(0.0002) * (t37 * t165 + (t24 * t164 - t178 * t162))
+                + k(0.0001) * (t37 * t146 - (t24 * t162 - t178 * t160));
+            let t180 = k(0.00015) * (t37 * t167 + (t24 * t165 + t178 * t146)) + t179;
+            let t181 = t180 - t177;
+            let t182 = t28 * t178 + (t20 * t172 + t13 * t161);
+            let t183 = t117 * t178 - (t115 * t172 + t116 * t161);
+            let t184 = t89 * t178 - (t87 * t172 - t88 * t161);
+            let t185 = inner_ring_wz * t184
+                - (inner_ring_wy * t183 + inner_ring_wx * t182);
+            let t186 = rotor_wx + t185;
+            let t187 = inner_ring_wz * t91
+                - (inner_ring_wy * t119 + inner_ring_wx * t38);
+            let t188 = rotor_wz - t187;
+            let t189 = inner_ring_wz * t90
+                - (inner_ring_wy * t118 + inner_ring_wx * t29);
+            let t190 = rotor_wy + t189;
+            let t191 = (t190 * t190 + t188 * t188) / t182;
+            let t192 = rotor_wz * t185 + rotor_wx * t187 - (t38 * t191 - t188 * t186);
+            let t193 = rotor_wx * t189 - rotor_wy * t185 - (t29 * t191 + t190 * t186);
+            let t194 = k(2.400191904047976e-9) * t193 + k(5.002599744127936e-6) * t192
+                + (t82 * t181 + (t76 * t175 + t70 * t169));
+            let t195 = t194
+                - (k(0.000127936031984008) * t48 - (k(5e-6) * t146 + k(0.8) * t75));
+            let t196 = k(5.003999856071964e-6) * t193 + k(2.400191904047976e-9) * t192
+                - (t84 * t181 + (t78 * t175 + t72 * t169));
+            let t197 = t196
+                + (k(9.595202398800599e-5) * t48 - (k(5e-6) * t162 - k(0.8) * t77));
+            let t198 = k(79960.01999000499) * t48;
+            let t199 = t58 * t181 + (t50 * t175 + t44 * t169) - k(0.08) * t169;
             (
                 t0,
-                t3,
-                t4,
+                t2,
                 t5,
                 t6,
-                t7,
-                t9,
-                t11,
-                t12,
                 t13,
-                t14,
-                t15,
-                t16,
-                t17,
-                t19,
                 t20,
-                t27,
-                t34,
+                t28,
+                t29,
+                t38,
+                t41,
                 t42,
-                t43,
-                t52,
+                t47,
+                t48,
+                t49,
+                t50,
                 t55,
                 t56,
+                t57,
                 t58,
                 t61,
-                t62,
                 t63,
                 t64,
+                t66,
                 t69,
                 t70,
                 t71,
                 t72,
                 t75,
+                t76,
                 t77,
                 t78,
-                t80,
+                t81,
+                t82,
                 t83,
                 t84,
-                t85,
-                t86,
+                t87,
+                t88,
                 t89,
                 t90,
                 t91,
                 t92,
-                t95,
-                t96,
-                t97,
-                t98,
-                t101,
+                t93,
+                t94,
                 t102,
-                t103,
-                t104,
                 t105,
                 t106,
-                t107,
                 t108,
+                t109,
+                t110,
+                t114,
+                t115,
                 t116,
+                t117,
+                t118,
                 t119,
                 t120,
+                t121,
                 t122,
-                t124,
-                t125,
-                t126,
-                t127,
-                t128,
-                t129,
-                t130,
-                t131,
-                t132,
+                t134,
+                t135,
+                t136,
+                t137,
+                t138,
+                t139,
+                t142,
+                t143,
                 t144,
                 t145,
-                t146,
-                t147,
-                t148,
-                t149,
-                t152,
-                t153,
+                t150,
                 t154,
-                t155,
-                t156,
-                t160,
-                t161,
-                t164,
-                t166,
-                t170,
-                t172,
-                t179,
-                t185,
-                t191,
+                t169,
+                t175,
+                t181,
+                t182,
+                t183,
+                t184,
                 t192,
                 t193,
-                t194,
+                t195,
                 t197,
                 t198,
                 t199,
             )
         };
-        let (t241, t243, t244, t245, t248, t249, t250, t251, t253, t254, t256) = {
-            let t200 = t156 * t105 - (t172 * t104 - t170 * t194) - t199
-                + (t166 * t194 + (t164 * t193 + t161 * t192));
-            let t201 = t128 * t198 * t200 - t104 * t198 * t197;
-            let t202 = t129 * t198 * t200 - t105 * t198 * t197;
-            let t203 = k(2.400191904047976e-9) * t202 - k(5.002599744127936e-6) * t201
-                - (t191 * t96 + (t185 * t90 + t179 * t84));
-            let t204 = t203
-                + (k(0.000127936031984008) * t62 - (k(5e-6) * t156 + k(0.8) * t89));
-            let t205 = k(5.003999856071964e-6) * t202 - k(2.400191904047976e-9) * t201
-                + (t191 * t98 + (t185 * t92 + t179 * t86));
-            let t206 = t205
-                - (k(9.595202398800599e-5) * t62 - (k(5e-6) * t172 - k(0.8) * t91));
-            let t207 = k(79960.01999000499) * t62;
-            let t208 = t191 * t72 + (t185 * t64 + t179 * t58) - k(0.08) * t179;
-            let t209 = t86 * t202 + t84 * t201 - t208 + t56 * t207;
-            let t210 = t191 * t78 + (t185 * t77 + t179 * t64) - k(0.08) * t185;
-            let t211 = t92 * t202 + t90 * t201 - t210 - (k(0.8) - t63 * t207);
-            let t212 = t191 * t80 + (t185 * t78 + t179 * t72) - k(0.08) * t191;
-            let t213 = t98 * t202 + t96 * t201 - t212 + t71 * t207;
-            let t214 = t75 * t213 + (t69 * t211 + t61 * t209)
-                - (t52 * t206 - t43 * t204);
-            let t215 = t108 * t213 + (t107 * t211 - t106 * t209)
-                - (t105 * t206 - t104 * t204);
-            let t216 = k(1e-6) * t160 + t215;
-            let t217 = t120 * t216;
-            let t218 = k(2.0) * (t17 + t16);
-            let t219 = t3 * t103 - (t218 * t101 - t13 * t102);
-            let t220 = k(2.0) * (t7 - t6);
-            let t221 = t14 * t102 + t220 * t101 + t11 * t103;
-            let t222 = outer_ring_wx * outer_ring_wz;
-            let t223 = t222 * t221
-                - (t0 * t148 - (t4 + outer_ring_wy * outer_ring_wy) * t219);
-            let t224 = t11 * t42 - (t220 * t34 - t14 * t27);
-            let t225 = t11 * t127 - (t14 * t126 - t220 * t125);
-            let t226 = inner_ring_wx * t225 - inner_ring_wy * t224;
-            let t227 = k(2.0)
-                * (outer_ring_wy * t226
-                    + outer_ring_wz * (inner_ring_wx * t146 - inner_ring_wy * t124));
-            let t228 = t3 * t42 + (t218 * t34 + t13 * t27);
-            let t229 = t3 * t127 - (t218 * t125 + t13 * t126);
-            let t230 = t166 * t219 + (t164 * t229 + t161 * t228) - t227 + t223;
-            let t231 = k(1.0) / (t228 * t146 - t229 * t124);
-            let t232 = k(2.0)
-                * (outer_ring_wx * t226
-                    + outer_ring_wz * (inner_ring_wx * t229 - inner_ring_wy * t228));
-            let t233 = t166 * t148 + (t164 * t146 + t161 * t124) + t232
-                + (t9 * t221 + (t5 * t148 - t0 * t219));
-            let t234 = t228 * t231 * t233 - t124 * t231 * t230;
-            let t235 = t229 * t231 * t233 - t146 * t231 * t230;
-            let t236 = t145 * t235 + t122 * t234
-                + (t116 * t217 + (k(1e-6) * t164 + t214));
-            let t237 = t132 * t213 + (t131 * t211 + t130 * t209)
-                + (t129 * t206 - t128 * t204);
-            let t238 = t146 * (t152 * t235 + t145 * t234 + (t144 * t217 - t237));
-            let t239 = t148 * (t153 * t235 + t147 * t234 + (t216 - t119 * t217));
-            let t240 = t146 * (t219 * t153 + (t229 * t152 + t228 * t145))
-                + t124 * (t219 * t147 + (t229 * t145 + t228 * t122));
-            let t241 = t11 * t15 * t19 - t14 * t15 * t12;
-            let t242 = t241 * (t221 * t155 + (t225 * t154 + t224 * t149))
-                + t20 * (t148 * (t229 * t153 + t228 * t147) + t240);
-            let t243 = (t242 + (k(1e-6) * t222 - (t239 + (t238 + t124 * t236))))
-                / (k(1e-6) - (t148 * t155 + (t146 * t154 + t124 * t149)));
-            let t244 = t234 - (t224 * t241 + (t124 * t243 + t228 * t20));
-            let t245 = t235 - (t225 * t241 + (t146 * t243 + t229 * t20));
-            let t246 = t221 * t241 + (t148 * t243 + t219 * t20);
-            let t247 = t120 * (t216 + (t119 * t246 + (t144 * t245 + t116 * t244)));
-            let t248 = t246 - t247;
-            let t249 = t179 - (t106 * t248 - (t130 * t245 - t61 * t244));
-            let t250 = t185 + (t107 * t248 + (t131 * t245 - t69 * t244));
-            let t251 = t191 + (t108 * t248 + (t132 * t245 - t75 * t244));
-            let t252 = t194 * t248 - (t193 * t245 + t192 * t244);
-            let t253 = t201 - (t104 * t248 - (t128 * t245 + t43 * t244));
-            let t254 = t202 - (t105 * t248 - (t129 * t245 + t52 * t244));
-            let t255 = k(1.2e-9) * t254 + (k(1.6e-9) * t253 + k(1.0005e-5) * t252)
-                - (t71 * t251 + (t63 * t250 + t56 * t249));
-            let t256 = t252 - k(99950.02498750624) * (t255 + k(0.8) * t62);
-            (t241, t243, t244, t245, t248, t249, t250, t251, t253, t254, t256)
+        let (t236, t239, t240, t241, t244, t245, t246, t247, t249, t250, t252) = {
+            let t200 = t72 * t193 - t70 * t192 + t199 - t42 * t198;
+            let t201 = t64 * t181 + (t63 * t175 + t50 * t169) - k(0.08) * t175;
+            let t202 = t78 * t193 - t76 * t192 + t201 + (k(0.8) - t49 * t198);
+            let t203 = t66 * t181 + (t64 * t175 + t58 * t169) - k(0.08) * t181;
+            let t204 = t84 * t193 - t82 * t192 + t203 - t57 * t198;
+            let t205 = t61 * t204 + (t55 * t202 + t47 * t200)
+                - (t38 * t197 - t29 * t195);
+            let t206 = t94 * t204 + (t93 * t202 - t92 * t200)
+                - (t91 * t197 - t90 * t195);
+            let t207 = k(1e-6) * t150 - t206;
+            let t208 = t106 * t207;
+            let t209 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
+            let t210 = k(2.0) * (t110 + t109);
+            let t211 = outer_ring_e0 * outer_ring_e2;
+            let t212 = outer_ring_e1 * outer_ring_e3;
+            let t213 = k(2.0) * (t212 - t211);
+            let t214 = t213 * t89 - (t210 * t87 - t209 * t88);
+            let t215 = k(2.0) * (k(0.5) - (t0 + outer_ring_e3 * outer_ring_e3));
+            let t216 = k(2.0) * (t212 + t211);
+            let t217 = t216 * t88 + t5 * t87 + t215 * t89;
+            let t218 = outer_ring_wz * t217
+                - (outer_ring_wy * t138 + outer_ring_wx * t214);
+            let t219 = inner_ring_wz - t218;
+            let t220 = t213 * t117 - (t210 * t115 + t209 * t116);
+            let t221 = t215 * t117 - (t216 * t116 - t5 * t115);
+            let t222 = outer_ring_wz * t221
+                - (outer_ring_wy * t136 + outer_ring_wx * t220);
+            let t223 = inner_ring_wy + t222;
+            let t224 = t213 * t28 + (t210 * t20 + t209 * t13);
+            let t225 = t215 * t28 - (t5 * t20 - t216 * t13);
+            let t226 = outer_ring_wz * t225
+                - (outer_ring_wy * t114 + outer_ring_wx * t224);
+            let t227 = inner_ring_wx + t226;
+            let t228 = (t227 * t227 + t223 * t223) / t217;
+            let t229 = inner_ring_wy * t218 + inner_ring_wz * t222
+                + (t221 * t228 - t223 * t219);
+            let t230 = inner_ring_wz * t226 + inner_ring_wx * t218
+                + (t225 * t228 - t227 * t219);
+            let t231 = t135 * t230 - t108 * t229
+                + (t102 * t208 + (k(1e-6) * t154 - t205));
+            let t232 = t122 * t204 + (t121 * t202 + t120 * t200)
+                + (t119 * t197 - t118 * t195);
+            let t233 = t136 * (t142 * t230 - t135 * t229 + (t134 * t208 + t232));
+            let t234 = t138 * (t143 * t230 - t137 * t229 + (t207 - t105 * t208));
+            let t235 = t136 * (t214 * t143 + (t220 * t142 + t224 * t135))
+                + t114 * (t214 * t137 + (t220 * t135 + t224 * t108));
+            let t236 = outer_ring_wx * outer_ring_wy - t210 * t2;
+            let t237 = (t217 * t145 + (t144 * t221 + t139 * t225)) * t236
+                + t6 * (t138 * (t220 * t143 + t224 * t137) + t235);
+            let t238 = t237
+                + (k(1e-6) * (outer_ring_wx * outer_ring_wz)
+                    - (t234 + (t233 + t114 * t231)));
+            let t239 = t238 / (k(1e-6) - (t138 * t145 + (t136 * t144 + t114 * t139)));
+            let t240 = t229 + (t225 * t236 + (t114 * t239 + t224 * t6));
+            let t241 = t230 - (t221 * t236 + (t136 * t239 + t220 * t6));
+            let t242 = t217 * t236 + (t138 * t239 + t214 * t6);
+            let t243 = t106 * (t207 + (t105 * t242 + (t134 * t241 - t102 * t240)));
+            let t244 = t242 - t243;
+            let t245 = t169 - (t92 * t244 - (t120 * t241 + t47 * t240));
+            let t246 = t175 + (t93 * t244 + (t121 * t241 + t55 * t240));
+            let t247 = t181 + (t94 * t244 + (t122 * t241 + t61 * t240));
+            let t248 = t184 * t244 - (t183 * t241 - t182 * t240);
+            let t249 = t192 - (t90 * t244 - (t118 * t241 - t29 * t240));
+            let t250 = t193 + (t91 * t244 - (t119 * t241 - t38 * t240));
+            let t251 = k(1.2e-9) * t250 - (k(1.6e-9) * t249 + k(1.0005e-5) * t248)
+                + (t57 * t247 + (t49 * t246 + t42 * t245));
+            let t252 = t248 + k(99950.02498750624) * (t251 - k(0.8) * t48);
+            (t236, t239, t240, t241, t244, t245, t246, t247, t249, t250, t252)
         };
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -t20,
-            -t243,
+            -t6,
+            -t239,
+            t236,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t240,
             t241,
-            k(0.0),
-            k(0.0),
-            k(0.0),
             t244,
-            t245,
-            t248,
-            t85 * t254 + (t83 * t253 + t55 * t256) - t249,
-            -(t250 + (t91 * t254 - (t89 * t253 + t62 * t256))),
-            t251 + (t97 * t254 - (t95 * t253 + t70 * t256)),
-            -t256,
-            t253,
-            -t254,
+            -(t245 + (t71 * t250 - (t69 * t249 + t41 * t252))),
+            t77 * t250 + (t75 * t249 + t48 * t252) - t246,
+            t247 - (t83 * t250 + (t81 * t249 + t56 * t252)),
+            -t252,
+            t249,
+            t250,
         ];
     }
     /// Writes λ: 376 operations (144 ±, 229 ×, 3 ÷).
@@ -2549,23 +2517,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
         let t35 = inner_ring_e1 * inner_ring_e3;
         let t36 = t35 - t34;
         let t37 = k(2.0) * t36;
-        let t38 = k(2.0) * t8;
-        let t39 = k(2.0) * t13;
-        let t40 = k(2.0) * t18;
-        let t41 = t2 * (k(0.0002) * t16 + k(0.0003) * t26)
+        let t38 = t2 * (k(0.0002) * t16 + k(0.0003) * t26)
             + t0 * (k(0.0002) * t11 - k(0.0003) * t21);
-        let t42 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy)
-            - (t4 * (k(0.0002) * t19 - k(0.0003) * t32) - t41);
-        let t43 = t42 * (t37 * t40 - (t31 * t39 + t25 * t38))
+        let t39 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy)
+            - (t4 * (k(0.0002) * t19 - k(0.0003) * t32) - t38);
+        let t40 = k(2.0) * t8;
+        let t41 = k(2.0) * t13;
+        let t42 = k(2.0) * t18;
+        let t43 = (t37 * t42 - (t31 * t41 + t25 * t40)) * t39
             + (t37 * t33 + (t31 * t27 + t25 * t22)) * t20;
-        let t44 = k(2.0) * t11;
-        let t45 = k(2.0) * t16;
-        let t46 = k(2.0) * t19;
-        let t47 = t2 * (k(0.0002) * t13 + k(0.0004) * t26)
+        let t44 = t2 * (k(0.0002) * t13 + k(0.0004) * t26)
             - t0 * (k(0.0002) * t8 + k(0.0004) * t21);
-        let t48 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz)
-            + (t4 * (k(0.0002) * t18 - k(0.0004) * t32) - t47);
-        let t49 = t48 * (t37 * t46 - (t31 * t45 - t25 * t44)) + t43;
+        let t45 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz)
+            + (t4 * (k(0.0002) * t18 - k(0.0004) * t32) - t44);
+        let t46 = k(2.0) * t11;
+        let t47 = k(2.0) * t16;
+        let t48 = k(2.0) * t19;
+        let t49 = (t37 * t48 - (t31 * t47 - t25 * t46)) * t45 + t43;
         let t50 = t29 - t28;
         let t51 = t35 + t34;
         let t52 = k(0.5) - (t23 + inner_ring_e2 * inner_ring_e2);
@@ -2590,23 +2558,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
         let t69 = k(2.0) * t50;
         let t70 = k(2.0) * t52;
         let t71 = k(2.0) * t57;
-        let t72 = t71 * t40 + (t69 * t38 + t70 * t39);
-        let t73 = t72 * t42 + (t71 * t33 - (t70 * t27 + t69 * t22)) * t20;
-        let t74 = t71 * t46 - (t69 * t44 - t70 * t45);
+        let t72 = t71 * t42 + (t69 * t40 + t70 * t41);
+        let t73 = t72 * t39 + (t71 * t33 - (t70 * t27 + t69 * t22)) * t20;
+        let t74 = t71 * t48 - (t69 * t46 - t70 * t47);
         let t75 = t2 * (k(0.00025) * t55 + k(6e-5) * t30)
             + t0 * (k(0.00025) * t51 - k(6e-5) * t24);
-        let t76 = t4 * (k(0.00025) * t58 - k(6e-5) * t36) - t75 + (t74 * t48 + t73);
+        let t76 = t4 * (k(0.00025) * t58 - k(6e-5) * t36) - t75 + (t74 * t45 + t73);
         let t77 = k(2e-6) * inner_ring_dwy + t76;
         let t78 = t67 * t71 - (t64 * t70 + t61 * t69);
         let t79 = k(2.0) * t51;
         let t80 = k(2.0) * t55;
         let t81 = k(2.0) * t58;
-        let t82 = t81 * t40 - (t79 * t38 - t80 * t39);
-        let t83 = t82 * t42 + (t81 * t33 - (t80 * t27 - t79 * t22)) * t20;
-        let t84 = t79 * t44 + t80 * t45 + t81 * t46;
+        let t82 = t81 * t42 - (t79 * t40 - t80 * t41);
+        let t83 = t82 * t39 + (t81 * t33 - (t80 * t27 - t79 * t22)) * t20;
+        let t84 = t79 * t46 + t80 * t47 + t81 * t48;
         let t85 = t2 * (k(0.00025) * t52 + k(0.0001) * t30)
             - t0 * (k(0.00025) * t50 + k(0.0001) * t24);
-        let t86 = t4 * (k(0.00025) * t57 - k(0.0001) * t36) - t85 - (t84 * t48 + t83);
+        let t86 = t4 * (k(0.00025) * t57 - k(0.0001) * t36) - t85 - (t84 * t45 + t83);
         let t87 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz) + t86;
         let t88 = (t67 * t81 - (t64 * t80 - t61 * t79)) * t87 - (t78 * t77 - t68 * t59);
         let t89 = k(2e-6) * outer_ring_dwx - t88;
@@ -2641,20 +2609,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
             -t0,
             -t2,
             -t4,
-            t84 * t105 * t48 + t82 * t105 * t42,
-            t74 * t105 * t48 + t72 * t105 * t42,
+            t84 * t105 * t45 + t82 * t105 * t39,
+            t74 * t105 * t45 + t72 * t105 * t39,
         ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
     type Joints = [T; 6];
     type Rates = [T; 3];
+    type Solution = [T; 33];
     fn joint_start(&self) -> Self::Joints {
         let k = T::constant;
         [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(100.0)]
     }
     fn rates(&self) -> Self::Rates {
         [T::constant(0.0); 3]
+    }
+    fn solution(&self) -> Self::Solution {
+        [T::constant(0.0); 33]
     }
     /// Writes u̇: 138 operations (57 ±, 79 ×, 2 ÷) and 4 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
@@ -3291,6 +3263,216 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
             -t4,
             t64,
             -t55,
+        ];
+    }
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 480 operations (198 ±, 280 ×, 2 ÷).
+    fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        let t0 = outer_ring_wy * outer_ring_wz;
+        let t1 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t2 = k(2.0) * t1;
+        let t3 = k(1.0) - t1 * t2;
+        let t4 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t5 = t4 * t2;
+        let t6 = t5 * (k(1.4e-9) * t3 - k(4.8e-9) * t5);
+        let t7 = k(2.52e-9) - (k(4.4e-10) * t5 - (t6 - k(1.08e-9) * t3));
+        let t8 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t9 = k(2.0) * t8;
+        let t10 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t11 = t10 * t9;
+        let t12 = k(3e-10) * t3 + k(4e-10) * t5;
+        let t13 = k(6e-11) - t12;
+        let t14 = k(1.0) - t8 * t9;
+        let t15 = outer_ring_wz - inner_ring_wz;
+        let t16 = k(1.2e-9) * t5 - k(1.6e-9) * t3;
+        let t17 = t5 * (k(4.8e-9) * t3 + k(1.4e-9) * t5);
+        let t18 = t17 - t16;
+        let t19 = k(4.00335e-6) - t18;
+        let t20 = k(0.5) * t16;
+        let t21 = k(2e-10) + t20;
+        let t22 = t11 * t21;
+        let t23 = outer_ring_wy * (t21 - k(2.0) * (t11 * (t22 - t14 * t19)));
+        let t24 = t14 * t12;
+        let t25 = inner_ring_wx - rotor_wx;
+        let t26 = k(2.4e-9) + t6;
+        let t27 = k(2.0) * t12 - t26;
+        let t28 = outer_ring_wy * (t26 + (t11 * (t24 + t11 * t27) + k(0.3) * t16));
+        let t29 = k(2.0)
+            * (t28 + (t17 + k(1.2) * (k(4.168166666666667e-6) - t12)) * (t15 * t14));
+        let t30 = t29
+            + t25 * (t24 + k(1.16e-9) * (t11 * (t5 + k(0.10344827586206896) * t3)));
+        let t31 = t25 * t30 + t15 * (t23 + t15 * (t14 * t13 + t11 * t7));
+        let t32 = t15 * t27;
+        let t33 = t14 * t16;
+        let t34 = outer_ring_wy
+            * (t33 - (t11 * t20 - t14 * (k(1.00064e-5) - k(2.0) * t17)));
+        let t35 = k(400000.0) * t24 + t15 * (t34 - t32) - outer_ring_wy * t28;
+        let t36 = k(0.25) * t33
+            - k(1.2e-10) * (t11 * (k(9.666666666666666) * t3 - (t5 + k(83375.0))));
+        let t37 = k(99950.02498750624) * t36;
+        let t38 = t25 * (t34 - k(2.0) * t32 - k(0.25) * (t25 * t16)) + k(2e-5) * t14;
+        let t39 = k(99950.02498750624) * t12;
+        let t40 = t39 * t35 - (t38 + k(0.5) * (outer_ring_wy * t23) + k(200000.0) * t22);
+        let t41 = t39 * t36 - (t14 * t7 - t11 * t13);
+        let t42 = k(1.0) / (t12 * t39 - (k(6.00345e-6) - t18));
+        let t43 = t42 * t41;
+        let t44 = k(8.001922e-6) - k(2.4) * t12 + t11 * (t14 * t21 + t11 * t19);
+        let t45 = (t43 * t40 - (t37 * t35 - t31))
+            / (t41 * t43 - (t36 * t37 - (t17 + t44)));
+        let t46 = outer_ring_wx * outer_ring_wy;
+        let t47 = inner_ring_wy * t15 + (t0 * t14 - t11 * t45);
+        let t48 = inner_ring_wx * t15 - (t0 * t11 + t14 * t45);
+        let t49 = t43 * t45 - t42 * t40;
+        let t50 = t46 + t49;
+        let t51 = k(0.0001) * rotor_wz + k(0.00015) * rotor_wx;
+        let t52 = k(0.0002) * rotor_wx - k(0.0001) * rotor_wy;
+        let t53 = k(0.000125) * inner_ring_wz + k(3e-5) * inner_ring_wx;
+        let t54 = k(5e-5) * inner_ring_wx - k(0.000125) * inner_ring_wy;
+        let t55 = inner_ring_wy * t54 - inner_ring_wz * t53
+            - (rotor_wy * t52 - rotor_wz * t51);
+        let t56 = rotor_wz * t25 + (t5 * t50 - t3 * t48);
+        let t57 = rotor_wy * t25 + (t3 * t50 + t5 * t48);
+        let t58 = k(0.0002) * t57 - k(0.00015) * t56
+            + (t55 - (k(5e-5) * t50 + k(3e-5) * t48));
+        let t59 = rotor_e0 * rotor_e0;
+        let t60 = k(0.5) - (t59 + rotor_e1 * rotor_e1);
+        let t61 = k(0.000125) * t50 - k(3e-5) * t47;
+        let t62 = k(0.000125) * t48 + k(5e-5) * t47;
+        let t63 = k(3e-5) * inner_ring_wy + k(5e-5) * inner_ring_wz;
+        let t64 = inner_ring_wz * t63 + inner_ring_wx * t54;
+        let t65 = inner_ring_wx * t53 + inner_ring_wy * t63;
+        let t66 = k(0.00015) * rotor_wy + k(0.0002) * rotor_wz;
+        let t67 = rotor_wz * t66 + rotor_wx * t52 - (t5 * t65 + t3 * t64);
+        let t68 = t39 * t49 - (t37 * t45 - k(99950.02498750624) * t35) - t47;
+        let t69 = k(0.0001) * t57 + k(0.00015) * t68 - (t67 + (t5 * t62 + t3 * t61));
+        let t70 = rotor_e0 * rotor_e3;
+        let t71 = rotor_e1 * rotor_e2;
+        let t72 = t71 - t70;
+        let t73 = rotor_wx * t51 + rotor_wy * t66 - (t3 * t65 - t5 * t64);
+        let t74 = k(0.0001) * t56 + k(0.0002) * t68 + (t73 + (t3 * t62 - t5 * t61));
+        let t75 = rotor_e0 * rotor_e2;
+        let t76 = rotor_e1 * rotor_e3;
+        let t77 = t76 + t75;
+        let t78 = k(2.0) * t77 * t74 + (k(2.0) * t72 * t69 + k(2.0) * t60 * t58);
+        let t79 = t71 + t70;
+        let t80 = k(0.5) - (t59 + rotor_e2 * rotor_e2);
+        let t81 = rotor_e0 * rotor_e1;
+        let t82 = rotor_e2 * rotor_e3;
+        let t83 = t82 - t81;
+        let t84 = k(2.0) * t83 * t74 - (k(2.0) * t80 * t69 + k(2.0) * t79 * t58);
+        let t85 = t76 - t75;
+        let t86 = t82 + t81;
+        let t87 = k(0.5) - (t59 + rotor_e3 * rotor_e3);
+        let t88 = k(2.0) * t87 * t74 - (k(2.0) * t86 * t69 - k(2.0) * t85 * t58);
+        let t89 = k(0.08) * t78;
+        let t90 = k(0.8) - k(0.08) * t84;
+        let t91 = k(0.1) + t90;
+        let t92 = k(0.08) * t88;
+        let t93 = (k(0.0002) * t72 + k(0.0004) * t60) * t89
+            + (k(0.0002) * t80 + k(0.0004) * t79) * t90;
+        let t94 = t93 - (k(0.0002) * t86 - k(0.0004) * t85) * t92
+            - k(5e-6) * (rotor_wx * rotor_wy - t57);
+        let t95 = (k(0.0002) * t77 - k(0.0003) * t60) * t89
+            - (k(0.0002) * t83 + k(0.0003) * t79) * t90;
+        let t96 = t95 + (k(0.0002) * t87 - k(0.0003) * t85) * t92
+            - k(5e-6) * (rotor_wx * rotor_wz - t56);
+        let t97 = t5 * t96 + t3 * t94;
+        let t98 = inner_ring_e0 * inner_ring_e2;
+        let t99 = inner_ring_e1 * inner_ring_e3;
+        let t100 = t99 - t98;
+        let t101 = inner_ring_e0 * inner_ring_e1;
+        let t102 = inner_ring_e2 * inner_ring_e3;
+        let t103 = t102 + t101;
+        let t104 = inner_ring_e0 * inner_ring_e3;
+        let t105 = inner_ring_e1 * inner_ring_e2;
+        let t106 = t105 + t104;
+        let t107 = inner_ring_e0 * inner_ring_e0;
+        let t108 = k(0.5) - (t107 + inner_ring_e2 * inner_ring_e2);
+        let t109 = k(0.5) - (t107 + inner_ring_e1 * inner_ring_e1);
+        let t110 = t105 - t104;
+        let t111 = (k(0.00025) * t110 + k(0.0001) * t109) * t89
+            + (k(0.00025) * t108 + k(0.0001) * t106) * t90;
+        let t112 = t111 - (k(0.00025) * t103 - k(0.0001) * t100) * t92 - t97
+            - k(1e-6) * (inner_ring_wx * inner_ring_wy + t50);
+        let t113 = k(2.0) * outer_ring_e2;
+        let t114 = outer_ring_e0 * t113;
+        let t115 = t3 * t96 - t5 * t94;
+        let t116 = k(0.5) - (t107 + inner_ring_e3 * inner_ring_e3);
+        let t117 = t102 - t101;
+        let t118 = t99 + t98;
+        let t119 = (k(0.00025) * t118 - k(6e-5) * t109) * t89
+            - (k(0.00025) * t117 + k(6e-5) * t106) * t90;
+        let t120 = t119 + (k(0.00025) * t116 - k(6e-5) * t100) * t92 - t115
+            + k(2e-6) * t48;
+        let t121 = (k(0.0001) * t118 + k(6e-5) * t110) * t89
+            - (k(0.0001) * t117 - k(6e-5) * t108) * t90;
+        let t122 = (k(0.0004) * t77 + k(0.0003) * t72) * t89
+            - (k(0.0004) * t83 - k(0.0003) * t80) * t90;
+        let t123 = t122 + (k(0.0004) * t87 - k(0.0003) * t86) * t92 + k(1e-5) * t68;
+        let t124 = t123 - (t121 + (k(0.0001) * t116 - k(6e-5) * t103) * t92)
+            - k(1e-6) * (inner_ring_wy * inner_ring_wz + t47);
+        let t125 = t14 * t124 + t11 * t120;
+        let t126 = t125 - k(2e-6) * t0;
+        let t127 = k(1.0) - outer_ring_e2 * t113;
+        *out = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t0,
+            -t45,
+            t46,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t47,
+            t48,
+            t50,
+            -t78,
+            -t84,
+            t88,
+            t68,
+            -t56,
+            t57,
+            t89,
+            -(k(0.1) + t91),
+            -t92,
+            t114 * t112 - t127 * t126,
+            -(t114 * t126 + t127 * t112),
+            t89,
+            -t91,
+            -t92,
+            t11 * t124 - t14 * t120,
+            t125,
+            t89,
+            -t90,
+            -t92,
+            -t97,
+            -t115,
         ];
     }
 }

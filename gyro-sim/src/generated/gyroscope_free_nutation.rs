@@ -20,7 +20,7 @@
 //! | gamma | γ | 115 | 181 | 0 | 296 | 9 of 15 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 84 | 119 | 0 | 203 | 0 of 15 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 12 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 194 | 306 | 5 | 505 | 10 of 18 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 177 | 256 | 5 | 438 | 10 of 18 |
 //! | multipliers | λ, the accelerations being known | 105 | 175 | 3 | 283 | 0 of 15 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | energy | T and V | 17 | 31 | 0 | 48 | 1 of 2 |
@@ -35,6 +35,7 @@
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 13 | 23 | 1 | 37 | 0 of 3 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 30 | 48 | 1 | 79 | 9 of 18 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 37 | 59 | 0 | 96 | 0 of 15 |
+//! | corrected_solution | both | 45 | 74 | 1 | 120 | 18 of 33 |
 //!
 //! # Proof
 //!
@@ -51,7 +52,7 @@
 //! * joint_derivative: eqs. (14) and (16) on the constraints
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
-//! * corrected_multipliers: eq. (17) on the constraints
+//! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //!
 //! All of it holds but with a probability below 1e-144.
 //! Not proved: the size of rounding errors.
@@ -1663,7 +1664,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 505 operations (194 ±, 306 ×, 5 ÷).
+    /// Solves eq. (17): 438 operations (177 ±, 256 ×, 5 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1687,173 +1688,154 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = outer_ring_wx * outer_ring_wy;
-        let t1 = outer_ring_e0 * outer_ring_e2;
-        let t2 = outer_ring_e1 * outer_ring_e3;
-        let t3 = k(2.0) * (t2 - t1);
-        let t4 = outer_ring_wz * outer_ring_wz;
-        let t5 = t4 + outer_ring_wx * outer_ring_wx;
-        let t6 = outer_ring_e0 * outer_ring_e1;
-        let t7 = outer_ring_e2 * outer_ring_e3;
-        let t8 = k(2.0) * (t7 + t6);
-        let t9 = outer_ring_wy * outer_ring_wz;
-        let t10 = outer_ring_e0 * outer_ring_e0;
-        let t11 = k(2.0) * (k(0.5) - (t10 + outer_ring_e3 * outer_ring_e3));
-        let t12 = t11 * t9 + (t8 * t5 - t3 * t0);
-        let t13 = k(2.0) * (k(0.5) - (t10 + outer_ring_e1 * outer_ring_e1));
-        let t14 = k(2.0) * (t2 + t1);
-        let t15 = k(1.0) / (t14 * t3 - t13 * t11);
-        let t16 = outer_ring_e0 * outer_ring_e3;
-        let t17 = outer_ring_e1 * outer_ring_e2;
-        let t18 = k(2.0) * (t17 - t16);
-        let t19 = t14 * t9 - (t18 * t5 + t13 * t0);
-        let t20 = t3 * t15 * t19 - t13 * t15 * t12;
-        let t21 = rotor_e0 * rotor_e3;
-        let t22 = rotor_e1 * rotor_e2;
-        let t23 = k(2.0) * (t22 - t21);
-        let t24 = inner_ring_e0 * inner_ring_e0;
-        let t25 = k(2.0) * (k(0.5) - (t24 + inner_ring_e1 * inner_ring_e1));
-        let t26 = rotor_e0 * rotor_e0;
-        let t27 = k(2.0) * (k(0.5) - (t26 + rotor_e2 * rotor_e2));
-        let t28 = inner_ring_e0 * inner_ring_e3;
-        let t29 = inner_ring_e1 * inner_ring_e2;
-        let t30 = k(2.0) * (t29 + t28);
-        let t31 = rotor_e0 * rotor_e1;
-        let t32 = rotor_e2 * rotor_e3;
-        let t33 = k(2.0) * (t32 + t31);
-        let t34 = inner_ring_e0 * inner_ring_e2;
-        let t35 = inner_ring_e1 * inner_ring_e3;
-        let t36 = k(2.0) * (t35 - t34);
-        let t37 = t36 * t33 - (t30 * t27 + t25 * t23);
-        let t38 = k(5e-6) * t37;
-        let t39 = rotor_e0 * rotor_e2;
-        let t40 = rotor_e1 * rotor_e3;
-        let t41 = k(2.0) * (t40 + t39);
-        let t42 = k(2.0) * (t32 - t31);
-        let t43 = k(2.0) * (k(0.5) - (t26 + rotor_e3 * rotor_e3));
-        let t44 = t36 * t43 - (t30 * t42 - t25 * t41);
-        let t45 = k(5e-6) * t44;
-        let t46 = inner_ring_e0 * inner_ring_e1;
-        let t47 = inner_ring_e2 * inner_ring_e3;
-        let t48 = k(2.0) * (t47 - t46);
-        let t49 = k(2.0) * (t35 + t34);
-        let t50 = k(2.0) * (k(0.5) - (t24 + inner_ring_e3 * inner_ring_e3));
-        let t51 = t50 * t33 - (t49 * t23 - t48 * t27);
-        let t52 = t49 * t41 + t48 * t42 + t50 * t43;
-        let t53 = t52 * t45 + t51 * t38;
-        let t54 = k(1e-6) + (t52 * (k(5e-6) * t52) + t51 * (k(5e-6) * t51));
-        let t55 = k(1.0) / t54;
-        let t56 = t55 * t53;
-        let t57 = t53 * t56 - (k(1e-6) + (t44 * t45 + t37 * t38));
-        let t58 = k(2.0) * (k(0.5) - (t10 + outer_ring_e2 * outer_ring_e2));
-        let t59 = t8 * t36 - (t58 * t30 + t18 * t25);
-        let t60 = k(2.0) * (k(0.5) - (t24 + inner_ring_e2 * inner_ring_e2));
-        let t61 = k(2.0) * (t29 - t28);
-        let t62 = k(2.0) * (t47 + t46);
-        let t63 = t62 * t33 + (t61 * t23 + t60 * t27);
-        let t64 = t62 * t43 - (t61 * t41 - t60 * t42);
-        let t65 = k(5e-6) * t63;
-        let t66 = k(5e-6) * t64;
-        let t67 = t52 * t66 + t51 * t65;
-        let t68 = t67 * t56 - (t64 * t45 + t63 * t38);
-        let t69 = t8 * t62 + (t18 * t61 + t58 * t60);
-        let t70 = t53 - t54 * t56;
-        let t71 = t8 * t50 - (t18 * t49 - t58 * t48);
-        let t72 = t71 * t70 - (t69 * t68 + t59 * t57);
-        let t73 = t55 * t67;
-        let t74 = t67 * t73 - (k(2e-6) + (t64 * t66 + t63 * t65));
-        let t75 = t67 - t54 * t73;
-        let t76 = t71 * t75 - (t69 * t74 + t59 * t68);
-        let t77 = t69 * t75 + t59 * t70;
-        let t78 = k(2.0) * (k(0.5) - (t26 + rotor_e1 * rotor_e1));
-        let t79 = k(2.0) * (t22 + t21);
-        let t80 = k(2.0) * (t40 - t39);
-        let t81 = t36 * t80 + (t30 * t79 + t25 * t78);
-        let t82 = inner_ring_wx * inner_ring_wy;
-        let t83 = t62 * t80 - (t60 * t79 + t61 * t78);
-        let t84 = inner_ring_wx * inner_ring_wx;
-        let t85 = t50 * t80 - (t48 * t79 - t49 * t78);
-        let t86 = inner_ring_wy * inner_ring_wz;
-        let t87 = t86 * t85 + ((inner_ring_wz * inner_ring_wz + t84) * t83 - t82 * t81);
-        let t88 = rotor_wy * t44 + rotor_wz * t37;
-        let t89 = k(2.0)
-            * (inner_ring_wx * (rotor_wy * t52 + rotor_wz * t51) + inner_ring_wz * t88);
-        let t90 = rotor_wz * rotor_wz + rotor_wy * rotor_wy;
-        let t91 = rotor_wx * rotor_wy;
-        let t92 = rotor_wx * rotor_wz;
-        let t93 = t92 * t64 - (t91 * t63 - t90 * t83) + t89 + t87;
-        let t94 = k(1.0) / (t63 * t52 - t64 * t51);
-        let t95 = inner_ring_wx * inner_ring_wz;
-        let t96 = inner_ring_wy * inner_ring_wy + t84;
-        let t97 = k(2.0)
-            * (inner_ring_wx * (rotor_wy * t64 + rotor_wz * t63) - inner_ring_wy * t88);
-        let t98 = t92 * t52 - (t91 * t51 - t90 * t85) - t97
-            + (t96 * t85 + (t86 * t83 + t95 * t81));
-        let t99 = t63 * t94 * t98 - t51 * t94 * t93;
-        let t100 = k(5e-6) * (t92 + t99);
-        let t101 = t64 * t94 * t98 - t52 * t94 * t93;
-        let t102 = k(5e-6) * (t91 + t101);
-        let t103 = k(1e-6) * t82 - (t52 * t102 + t51 * t100);
-        let t104 = t55 * t103;
-        let t105 = t53 * t104 - (k(1e-6) * t86 - (t44 * t102 + t37 * t100));
-        let t106 = k(2.0) * (t17 + t16);
-        let t107 = t3 * t50 - (t106 * t48 - t13 * t49);
-        let t108 = k(2.0) * (t7 - t6);
-        let t109 = t14 * t49 + t108 * t48 + t11 * t50;
-        let t110 = outer_ring_wx * outer_ring_wz;
-        let t111 = t110 * t109
-            - (t0 * t71 - (t4 + outer_ring_wy * outer_ring_wy) * t107);
-        let t112 = t11 * t36 - (t108 * t30 - t14 * t25);
-        let t113 = t11 * t62 - (t14 * t61 - t108 * t60);
-        let t114 = inner_ring_wx * t113 - inner_ring_wy * t112;
-        let t115 = k(2.0)
-            * (outer_ring_wy * t114
-                + outer_ring_wz * (inner_ring_wx * t69 - inner_ring_wy * t59));
-        let t116 = t3 * t36 + (t106 * t30 + t13 * t25);
-        let t117 = t3 * t62 - (t106 * t60 + t13 * t61);
-        let t118 = t96 * t107 + (t86 * t117 + t95 * t116) - t115 + t111;
-        let t119 = k(1.0) / (t116 * t69 - t117 * t59);
-        let t120 = k(2.0)
-            * (outer_ring_wx * t114
-                + outer_ring_wz * (inner_ring_wx * t117 - inner_ring_wy * t116));
-        let t121 = t96 * t71 + (t86 * t69 + t95 * t59) + t120
-            + (t9 * t109 + (t5 * t71 - t0 * t107));
-        let t122 = t116 * t119 * t121 - t59 * t119 * t118;
-        let t123 = t117 * t119 * t121 - t69 * t119 * t118;
-        let t124 = t74 * t123 + t68 * t122 - (t67 * t104 + (t64 * t102 + t63 * t100));
-        let t125 = t69 * t124 + t59 * (t68 * t123 + t57 * t122 - t105);
-        let t126 = t71 * (t75 * t123 + t70 * t122 - (t103 - t54 * t104));
-        let t127 = t69 * (t107 * t75 - (t117 * t74 + t116 * t68))
-            + t59 * (t107 * t70 - (t117 * t68 + t116 * t57));
-        let t128 = t11 * t15 * t19 - t14 * t15 * t12;
-        let t129 = t128 * (t109 * t77 + (t113 * t76 + t112 * t72))
-            + t20 * (t71 * (t117 * t75 + t116 * t70) + t127);
-        let t130 = (t129 - (k(1e-6) * t110 + (t126 - t125)))
-            / (k(1e-6) + (t71 * t77 + (t69 * t76 + t59 * t72)));
-        let t131 = t122 - (t112 * t128 - (t59 * t130 - t116 * t20));
-        let t132 = t123 - (t113 * t128 - (t69 * t130 - t117 * t20));
-        let t133 = t109 * t128 - (t71 * t130 - t107 * t20);
-        let t134 = t55 * (t103 + (t54 * t133 - (t67 * t132 + t53 * t131)));
-        let t135 = t133 - t134;
+        let t0 = outer_ring_e0 * outer_ring_e0;
+        let t1 = k(0.5) - (t0 + outer_ring_e2 * outer_ring_e2);
+        let t2 = (outer_ring_wz * outer_ring_wz + outer_ring_wx * outer_ring_wx)
+            * (k(0.5) / t1);
+        let t3 = outer_ring_e0 * outer_ring_e1;
+        let t4 = outer_ring_e2 * outer_ring_e3;
+        let t5 = k(2.0) * (t4 - t3);
+        let t6 = outer_ring_wy * outer_ring_wz - t5 * t2;
+        let t7 = rotor_e0 * rotor_e3;
+        let t8 = rotor_e1 * rotor_e2;
+        let t9 = k(2.0) * (t8 - t7);
+        let t10 = inner_ring_e0 * inner_ring_e0;
+        let t11 = k(2.0) * (k(0.5) - (t10 + inner_ring_e1 * inner_ring_e1));
+        let t12 = rotor_e0 * rotor_e0;
+        let t13 = k(2.0) * (k(0.5) - (t12 + rotor_e2 * rotor_e2));
+        let t14 = inner_ring_e0 * inner_ring_e3;
+        let t15 = inner_ring_e1 * inner_ring_e2;
+        let t16 = k(2.0) * (t15 + t14);
+        let t17 = rotor_e0 * rotor_e1;
+        let t18 = rotor_e2 * rotor_e3;
+        let t19 = k(2.0) * (t18 + t17);
+        let t20 = inner_ring_e0 * inner_ring_e2;
+        let t21 = inner_ring_e1 * inner_ring_e3;
+        let t22 = k(2.0) * (t21 - t20);
+        let t23 = t22 * t19 - (t16 * t13 + t11 * t9);
+        let t24 = k(5e-6) * t23;
+        let t25 = rotor_e0 * rotor_e2;
+        let t26 = rotor_e1 * rotor_e3;
+        let t27 = k(2.0) * (t26 + t25);
+        let t28 = k(2.0) * (t18 - t17);
+        let t29 = k(2.0) * (k(0.5) - (t12 + rotor_e3 * rotor_e3));
+        let t30 = t22 * t29 - (t16 * t28 - t11 * t27);
+        let t31 = k(5e-6) * t30;
+        let t32 = inner_ring_e0 * inner_ring_e1;
+        let t33 = inner_ring_e2 * inner_ring_e3;
+        let t34 = k(2.0) * (t33 - t32);
+        let t35 = k(2.0) * (t21 + t20);
+        let t36 = k(2.0) * (k(0.5) - (t10 + inner_ring_e3 * inner_ring_e3));
+        let t37 = t36 * t19 - (t35 * t9 - t34 * t13);
+        let t38 = t35 * t27 + t34 * t28 + t36 * t29;
+        let t39 = t38 * t31 + t37 * t24;
+        let t40 = k(1e-6) + (t38 * (k(5e-6) * t38) + t37 * (k(5e-6) * t37));
+        let t41 = k(1.0) / t40;
+        let t42 = t41 * t39;
+        let t43 = t39 * t42 - (k(1e-6) + (t30 * t31 + t23 * t24));
+        let t44 = outer_ring_e0 * outer_ring_e3;
+        let t45 = outer_ring_e1 * outer_ring_e2;
+        let t46 = k(2.0) * (t45 - t44);
+        let t47 = k(2.0) * t1;
+        let t48 = k(2.0) * (t4 + t3);
+        let t49 = t48 * t22 - (t47 * t16 + t46 * t11);
+        let t50 = k(2.0) * (k(0.5) - (t10 + inner_ring_e2 * inner_ring_e2));
+        let t51 = k(2.0) * (t15 - t14);
+        let t52 = k(2.0) * (t33 + t32);
+        let t53 = t52 * t19 + (t51 * t9 + t50 * t13);
+        let t54 = t52 * t29 - (t51 * t27 - t50 * t28);
+        let t55 = k(5e-6) * t53;
+        let t56 = k(5e-6) * t54;
+        let t57 = t38 * t56 + t37 * t55;
+        let t58 = t57 * t42 - (t54 * t31 + t53 * t24);
+        let t59 = t48 * t52 + (t46 * t51 + t47 * t50);
+        let t60 = t39 - t40 * t42;
+        let t61 = t48 * t36 - (t46 * t35 - t47 * t34);
+        let t62 = t61 * t60 - (t59 * t58 + t49 * t43);
+        let t63 = t41 * t57;
+        let t64 = t57 * t63 - (k(2e-6) + (t54 * t56 + t53 * t55));
+        let t65 = t57 - t40 * t63;
+        let t66 = t61 * t65 - (t59 * t64 + t49 * t58);
+        let t67 = t59 * t65 + t49 * t60;
+        let t68 = k(2.0) * (k(0.5) - (t12 + rotor_e1 * rotor_e1));
+        let t69 = k(2.0) * (t8 + t7);
+        let t70 = k(2.0) * (t26 - t25);
+        let t71 = t22 * t70 + (t16 * t69 + t11 * t68);
+        let t72 = inner_ring_wy * (t52 * t70 - (t50 * t69 + t51 * t68))
+            + inner_ring_wx * t71;
+        let t73 = inner_ring_wz * (t36 * t70 - (t34 * t69 - t35 * t68)) - t72;
+        let t74 = rotor_wx + t73;
+        let t75 = inner_ring_wz * t38 - (inner_ring_wy * t54 + inner_ring_wx * t30);
+        let t76 = rotor_wz - t75;
+        let t77 = inner_ring_wz * t37 - (inner_ring_wy * t53 + inner_ring_wx * t23);
+        let t78 = rotor_wy + t77;
+        let t79 = (t78 * t78 + t76 * t76) / t71;
+        let t80 = rotor_wz * t73 + rotor_wx * t75 - (t30 * t79 - t76 * t74);
+        let t81 = k(5e-6) * (rotor_wx * rotor_wz + t80);
+        let t82 = rotor_wx * t77 - rotor_wy * t73 - (t23 * t79 + t78 * t74);
+        let t83 = k(5e-6) * (rotor_wx * rotor_wy - t82);
+        let t84 = k(1e-6) * (inner_ring_wx * inner_ring_wy) - (t38 * t83 + t37 * t81);
+        let t85 = t41 * t84;
+        let t86 = t39 * t85
+            - (k(1e-6) * (inner_ring_wy * inner_ring_wz) - (t30 * t83 + t23 * t81));
+        let t87 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
+        let t88 = k(2.0) * (t45 + t44);
+        let t89 = outer_ring_e0 * outer_ring_e2;
+        let t90 = outer_ring_e1 * outer_ring_e3;
+        let t91 = k(2.0) * (t90 - t89);
+        let t92 = t91 * t36 - (t88 * t34 - t87 * t35);
+        let t93 = k(2.0) * (k(0.5) - (t0 + outer_ring_e3 * outer_ring_e3));
+        let t94 = k(2.0) * (t90 + t89);
+        let t95 = t94 * t35 + t5 * t34 + t93 * t36;
+        let t96 = outer_ring_wz * t95 - (outer_ring_wy * t61 + outer_ring_wx * t92);
+        let t97 = inner_ring_wz - t96;
+        let t98 = t91 * t52 - (t88 * t50 + t87 * t51);
+        let t99 = t93 * t52 - (t94 * t51 - t5 * t50);
+        let t100 = outer_ring_wz * t99 - (outer_ring_wy * t59 + outer_ring_wx * t98);
+        let t101 = inner_ring_wy + t100;
+        let t102 = t91 * t22 + (t88 * t16 + t87 * t11);
+        let t103 = t93 * t22 - (t5 * t16 - t94 * t11);
+        let t104 = outer_ring_wz * t103 - (outer_ring_wy * t49 + outer_ring_wx * t102);
+        let t105 = inner_ring_wx + t104;
+        let t106 = (t105 * t105 + t101 * t101) / t95;
+        let t107 = inner_ring_wy * t96 + inner_ring_wz * t100
+            + (t99 * t106 - t101 * t97);
+        let t108 = inner_ring_wz * t104 + inner_ring_wx * t96
+            + (t103 * t106 - t105 * t97);
+        let t109 = t64 * t108 - t58 * t107 - (t57 * t85 + (t54 * t83 + t53 * t81));
+        let t110 = t59 * t109 + t49 * (t58 * t108 - t43 * t107 - t86);
+        let t111 = t61 * (t65 * t108 - t60 * t107 - (t84 - t40 * t85));
+        let t112 = t59 * (t92 * t65 - (t98 * t64 + t102 * t58))
+            + t49 * (t92 * t60 - (t98 * t58 + t102 * t43));
+        let t113 = outer_ring_wx * outer_ring_wy - t88 * t2;
+        let t114 = (t95 * t67 + (t66 * t99 + t62 * t103)) * t113
+            + t6 * (t61 * (t98 * t65 + t102 * t60) + t112);
+        let t115 = (t114 - (k(1e-6) * (outer_ring_wx * outer_ring_wz) + (t111 - t110)))
+            / (k(1e-6) + (t61 * t67 + (t59 * t66 + t49 * t62)));
+        let t116 = t107 + (t103 * t113 - (t49 * t115 - t102 * t6));
+        let t117 = t108 - (t99 * t113 - (t59 * t115 - t98 * t6));
+        let t118 = t95 * t113 - (t61 * t115 - t92 * t6);
+        let t119 = t41 * (t84 + (t40 * t118 - (t57 * t117 - t39 * t116)));
+        let t120 = t118 - t119;
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -t20,
-            t130,
-            t128,
+            -t6,
+            t115,
+            t113,
             k(0.0),
             k(0.0),
             k(0.0),
-            t131,
-            t132,
-            t135,
+            -t116,
+            t117,
+            t120,
             k(0.0),
             k(0.0),
             k(0.0),
             k(0.0),
-            t99 - (t51 * t135 - (t63 * t132 + t37 * t131)),
-            t52 * t135 - (t64 * t132 + t44 * t131) - t101,
+            t80 - (t37 * t120 - (t53 * t117 - t23 * t116)),
+            t82 + (t38 * t120 - (t54 * t117 - t30 * t116)),
         ];
     }
     /// Writes λ: 283 operations (105 ±, 175 ×, 3 ÷).
@@ -2007,12 +1989,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
     type Joints = [T; 6];
     type Rates = [T; 3];
+    type Solution = [T; 33];
     fn joint_start(&self) -> Self::Joints {
         let k = T::constant;
         [k(0.0), k(0.0), k(0.0), k(1.0), k(0.5), k(100.0)]
     }
     fn rates(&self) -> Self::Rates {
         [T::constant(0.0); 3]
+    }
+    fn solution(&self) -> Self::Solution {
+        [T::constant(0.0); 33]
     }
     /// Writes u̇: 17 operations (4 ±, 12 ×, 1 ÷) and 2 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
@@ -2401,6 +2387,108 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
             -t4,
             t25,
             -t17,
+        ];
+    }
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 120 operations (45 ±, 74 ×, 1 ÷).
+    fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        let t0 = outer_ring_wy * outer_ring_wz;
+        let t1 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t2 = k(2.0) * t1;
+        let t3 = k(1.0) - t1 * t2;
+        let t4 = outer_ring_wz - inner_ring_wz;
+        let t5 = t4 * t3;
+        let t6 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t7 = t6 * t2;
+        let t8 = outer_ring_wy * t7;
+        let t9 = inner_ring_wx - rotor_wx;
+        let t10 = k(1.6666666666666667)
+            * ((t9 - k(0.2) * t8) / (k(1.3333333333333333) - t7 * t7));
+        let t11 = t10 * t5;
+        let t12 = outer_ring_wx * outer_ring_wy;
+        let t13 = inner_ring_wy * t4 + (t0 * t3 - t7 * t11);
+        let t14 = inner_ring_wx * t4 - (t0 * t7 + t3 * t11);
+        let t15 = t12
+            - k(1.6666666666666667) * (outer_ring_wy * t3 * (t9 + k(0.4) * t8));
+        let t16 = t5 * (outer_ring_wy - t7 * t10) - t13;
+        let t17 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t18 = k(2.0) * t17;
+        let t19 = k(1.0) - t17 * t18;
+        let t20 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t21 = t20 * t18;
+        let t22 = rotor_wz * t9 + (t21 * t15 - t19 * t14);
+        let t23 = rotor_wy * t9 + (t19 * t15 + t21 * t14);
+        let t24 = k(5e-6) * (rotor_wx * rotor_wy - t23);
+        let t25 = k(5e-6) * (rotor_wx * rotor_wz - t22);
+        let t26 = t21 * t25 + t19 * t24;
+        let t27 = t26 - k(1e-6) * (inner_ring_wx * inner_ring_wy + t15);
+        let t28 = k(2.0) * outer_ring_e2;
+        let t29 = outer_ring_e0 * t28;
+        let t30 = t19 * t25 - t21 * t24;
+        let t31 = t30 + k(2e-6) * t14;
+        let t32 = k(1e-5) * t16 - k(1e-6) * (inner_ring_wy * inner_ring_wz + t13);
+        let t33 = t3 * t32 + t7 * t31;
+        let t34 = t33 - k(2e-6) * t0;
+        let t35 = k(1.0) - outer_ring_e2 * t28;
+        *out = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t0,
+            -t11,
+            t12,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t13,
+            t14,
+            t15,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t16,
+            -t22,
+            t23,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t29 * t27 - t35 * t34,
+            -(t29 * t34 + t35 * t27),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t7 * t32 - t3 * t31,
+            t33,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t26,
+            t30,
         ];
     }
 }

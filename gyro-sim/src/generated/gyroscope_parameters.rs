@@ -19,7 +19,7 @@
 //! | gamma | γ | 122 | 193 | 0 | 315 | 6 of 15 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 90 | 128 | 0 | 218 | 0 of 15 |
 //! | applied_force | (f, n' − w̃'J'w') | 1 | 14 | 0 | 15 | 9 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 217 | 342 | 5 | 564 | 7 of 18 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 200 | 295 | 5 | 500 | 7 of 18 |
 //! | multipliers | λ, the accelerations being known | 115 | 191 | 3 | 309 | 0 of 15 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | energy | T and V | 19 | 36 | 0 | 55 | 0 of 2 |
@@ -34,6 +34,7 @@
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 21 | 29 | 2 | 52 | 0 of 3 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 63 | 97 | 2 | 162 | 6 of 18 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 55 | 90 | 0 | 145 | 0 of 15 |
+//! | corrected_solution | both | 98 | 159 | 2 | 259 | 6 of 33 |
 //!
 //! # Proof
 //!
@@ -50,7 +51,7 @@
 //! * joint_derivative: eqs. (14) and (16) on the constraints
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
-//! * corrected_multipliers: eq. (17) on the constraints
+//! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //!
 //! All of it holds but with a probability below 1e-144.
 //! Not proved: the size of rounding errors.
@@ -1745,7 +1746,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeParameters<T> {
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 564 operations (217 ±, 342 ×, 5 ÷).
+    /// Solves eq. (17): 500 operations (200 ±, 295 ×, 5 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1769,194 +1770,175 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeParameters<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = outer_ring_wx * outer_ring_wy;
-        let t1 = outer_ring_e0 * outer_ring_e2;
-        let t2 = outer_ring_e1 * outer_ring_e3;
-        let t3 = k(2.0) * (t2 - t1);
-        let t4 = outer_ring_wz * outer_ring_wz;
-        let t5 = t4 + outer_ring_wx * outer_ring_wx;
-        let t6 = outer_ring_e0 * outer_ring_e1;
-        let t7 = outer_ring_e2 * outer_ring_e3;
-        let t8 = k(2.0) * (t7 + t6);
-        let t9 = outer_ring_wy * outer_ring_wz;
-        let t10 = outer_ring_e0 * outer_ring_e0;
-        let t11 = k(2.0) * (k(0.5) - (t10 + outer_ring_e3 * outer_ring_e3));
-        let t12 = t11 * t9 + (t8 * t5 - t3 * t0);
-        let t13 = k(2.0) * (k(0.5) - (t10 + outer_ring_e1 * outer_ring_e1));
-        let t14 = k(2.0) * (t2 + t1);
-        let t15 = k(1.0) / (t14 * t3 - t13 * t11);
-        let t16 = outer_ring_e0 * outer_ring_e3;
-        let t17 = outer_ring_e1 * outer_ring_e2;
-        let t18 = k(2.0) * (t17 - t16);
-        let t19 = t14 * t9 - (t18 * t5 + t13 * t0);
-        let t20 = t3 * t15 * t19 - t13 * t15 * t12;
-        let t21 = rotor_e0 * rotor_e3;
-        let t22 = rotor_e1 * rotor_e2;
-        let t23 = k(2.0) * (t22 - t21);
-        let t24 = inner_ring_e0 * inner_ring_e0;
-        let t25 = k(2.0) * (k(0.5) - (t24 + inner_ring_e1 * inner_ring_e1));
-        let t26 = rotor_e0 * rotor_e0;
-        let t27 = k(2.0) * (k(0.5) - (t26 + rotor_e2 * rotor_e2));
-        let t28 = inner_ring_e0 * inner_ring_e3;
-        let t29 = inner_ring_e1 * inner_ring_e2;
-        let t30 = k(2.0) * (t29 + t28);
-        let t31 = rotor_e0 * rotor_e1;
-        let t32 = rotor_e2 * rotor_e3;
-        let t33 = k(2.0) * (t32 + t31);
-        let t34 = inner_ring_e0 * inner_ring_e2;
-        let t35 = inner_ring_e1 * inner_ring_e3;
-        let t36 = k(2.0) * (t35 - t34);
-        let t37 = t36 * t33 - (t30 * t27 + t25 * t23);
-        let t38 = k(5e-6) * t37;
-        let t39 = rotor_e0 * rotor_e2;
-        let t40 = rotor_e1 * rotor_e3;
-        let t41 = k(2.0) * (t40 + t39);
-        let t42 = k(2.0) * (t32 - t31);
-        let t43 = k(2.0) * (k(0.5) - (t26 + rotor_e3 * rotor_e3));
-        let t44 = t36 * t43 - (t30 * t42 - t25 * t41);
-        let t45 = k(5e-6) * t44;
-        let t46 = inner_ring_e0 * inner_ring_e1;
-        let t47 = inner_ring_e2 * inner_ring_e3;
-        let t48 = k(2.0) * (t47 - t46);
-        let t49 = k(2.0) * (t35 + t34);
-        let t50 = k(2.0) * (k(0.5) - (t24 + inner_ring_e3 * inner_ring_e3));
-        let t51 = t50 * t33 - (t49 * t23 - t48 * t27);
-        let t52 = t49 * t41 + t48 * t42 + t50 * t43;
-        let t53 = t52 * t45 + t51 * t38;
-        let t54 = self.rotor_mass * (self.rotor_offset * self.rotor_offset);
-        let t55 = self.ring_diametral_inertia
-            + (t54 + (t52 * (k(5e-6) * t52) + t51 * (k(5e-6) * t51)));
-        let t56 = k(1.0) / t55;
-        let t57 = t56 * t53;
-        let t58 = t53 * t57 - (self.ring_diametral_inertia + (t44 * t45 + t37 * t38));
-        let t59 = k(2.0) * (k(0.5) - (t10 + outer_ring_e2 * outer_ring_e2));
-        let t60 = t8 * t36 - (t59 * t30 + t18 * t25);
-        let t61 = k(2.0) * (k(0.5) - (t24 + inner_ring_e2 * inner_ring_e2));
-        let t62 = k(2.0) * (t29 - t28);
-        let t63 = k(2.0) * (t47 + t46);
-        let t64 = t63 * t33 + (t62 * t23 + t61 * t27);
-        let t65 = t63 * t43 - (t62 * t41 - t61 * t42);
-        let t66 = k(5e-6) * t64;
-        let t67 = k(5e-6) * t65;
-        let t68 = t52 * t67 + t51 * t66;
-        let t69 = t68 * t57 - (t65 * t45 + t64 * t38);
-        let t70 = t8 * t63 + (t18 * t62 + t59 * t61);
-        let t71 = t53 - t55 * t57;
-        let t72 = t8 * t50 - (t18 * t49 - t59 * t48);
-        let t73 = t72 * t71 - (t70 * t69 + t60 * t58);
-        let t74 = t56 * t68;
-        let t75 = t68 * t74
-            - (self.ring_axial_inertia + (t54 + (t65 * t67 + t64 * t66)));
-        let t76 = t68 - t55 * t74;
-        let t77 = t72 * t76 - (t70 * t75 + t60 * t69);
-        let t78 = t70 * t76 + t60 * t71;
-        let t79 = k(2.0) * (k(0.5) - (t26 + rotor_e1 * rotor_e1));
-        let t80 = k(2.0) * (t22 + t21);
-        let t81 = k(2.0) * (t40 - t39);
-        let t82 = t36 * t81 + (t30 * t80 + t25 * t79);
-        let t83 = inner_ring_wx * inner_ring_wy;
-        let t84 = t63 * t81 - (t61 * t80 + t62 * t79);
-        let t85 = inner_ring_wx * inner_ring_wx;
-        let t86 = inner_ring_wz * inner_ring_wz;
-        let t87 = t50 * t81 - (t48 * t80 - t49 * t79);
-        let t88 = inner_ring_wy * inner_ring_wz;
-        let t89 = rotor_wy * t44 + rotor_wz * t37;
-        let t90 = k(2.0)
-            * (inner_ring_wx * (rotor_wy * t52 + rotor_wz * t51) + inner_ring_wz * t89);
-        let t91 = rotor_wz * rotor_wz + rotor_wy * rotor_wy;
-        let t92 = rotor_wx * rotor_wy;
-        let t93 = rotor_wx * rotor_wz;
-        let t94 = t93 * t65 - (t92 * t64 - t91 * t84) + t90
-            + (t88 * t87 + ((t86 + t85) * t84 - t83 * t82));
-        let t95 = k(1.0) / (t64 * t52 - t65 * t51);
-        let t96 = inner_ring_wx * inner_ring_wz;
-        let t97 = inner_ring_wy * inner_ring_wy;
-        let t98 = t97 + t85;
-        let t99 = k(2.0)
-            * (inner_ring_wx * (rotor_wy * t65 + rotor_wz * t64) - inner_ring_wy * t89);
-        let t100 = t93 * t52 - (t92 * t51 - t91 * t87) - t99
-            + (t98 * t87 + (t88 * t84 + t96 * t82));
-        let t101 = t64 * t95 * t100 - t51 * t95 * t94;
-        let t102 = k(5e-6) * (t93 + t101);
-        let t103 = t65 * t95 * t100 - t52 * t95 * t94;
-        let t104 = k(5e-6) * (t92 + t103);
-        let t105 = self.ring_axial_inertia - self.ring_diametral_inertia;
-        let t106 = t86 + t97;
-        let t107 = self.rotor_offset * (t49 * t96 + (t62 * t83 + t25 * t106));
-        let t108 = self.rotor_mass * t107;
-        let t109 = t62 * self.rotor_offset;
-        let t110 = self.rotor_offset * (t48 * t96 - (t61 * t83 + t30 * t106));
-        let t111 = self.gravity * self.rotor_mass + self.rotor_mass * t110;
-        let t112 = t61 * self.rotor_offset;
-        let t113 = self.rotor_offset * (t50 * t96 - (t63 * t83 - t36 * t106));
-        let t114 = self.rotor_mass * t113;
-        let t115 = t63 * self.rotor_offset;
-        let t116 = t115 * t114 + (t112 * t111 - t109 * t108) + (t52 * t104 + t51 * t102);
-        let t117 = t83 * t105 - t116;
-        let t118 = t56 * t117;
-        let t119 = t53 * t118 - (t88 * t105 - (t44 * t104 + t37 * t102));
-        let t120 = k(2.0) * (t17 + t16);
-        let t121 = t3 * t50 - (t120 * t48 - t13 * t49);
-        let t122 = k(2.0) * (t7 - t6);
-        let t123 = t14 * t49 + t122 * t48 + t11 * t50;
-        let t124 = outer_ring_wx * outer_ring_wz;
-        let t125 = t124 * t123
-            - (t0 * t72 - (t4 + outer_ring_wy * outer_ring_wy) * t121);
-        let t126 = t11 * t36 - (t122 * t30 - t14 * t25);
-        let t127 = t11 * t63 - (t14 * t62 - t122 * t61);
-        let t128 = inner_ring_wx * t127 - inner_ring_wy * t126;
-        let t129 = k(2.0)
-            * (outer_ring_wy * t128
-                + outer_ring_wz * (inner_ring_wx * t70 - inner_ring_wy * t60));
-        let t130 = t3 * t36 + (t120 * t30 + t13 * t25);
-        let t131 = t3 * t63 - (t120 * t61 + t13 * t62);
-        let t132 = t98 * t121 + (t88 * t131 + t96 * t130) - t129 + t125;
-        let t133 = k(1.0) / (t130 * t70 - t131 * t60);
-        let t134 = k(2.0)
-            * (outer_ring_wx * t128
-                + outer_ring_wz * (inner_ring_wx * t131 - inner_ring_wy * t130));
-        let t135 = t98 * t72 + (t88 * t70 + t96 * t60) + t134
-            + (t9 * t123 + (t5 * t72 - t0 * t121));
-        let t136 = t130 * t133 * t135 - t60 * t133 * t132;
-        let t137 = t131 * t133 * t135 - t70 * t133 * t132;
-        let t138 = t49 * self.rotor_offset;
-        let t139 = t48 * self.rotor_offset;
-        let t140 = t50 * self.rotor_offset;
-        let t141 = t140 * t114 + (t139 * t111 + t138 * t108) - (t65 * t104 + t64 * t102);
-        let t142 = t70 * (t75 * t137 + t69 * t136 - (t68 * t118 - t141));
-        let t143 = t72 * (t76 * t137 + t71 * t136 - (t117 - t55 * t118));
-        let t144 = t143 - (t142 + t60 * (t69 * t137 + t58 * t136 - t119));
-        let t145 = t70 * (t121 * t76 - (t131 * t75 + t130 * t69))
-            + t60 * (t121 * t71 - (t131 * t69 + t130 * t58));
-        let t146 = t11 * t15 * t19 - t14 * t15 * t12;
-        let t147 = t146 * (t123 * t78 + (t127 * t77 + t126 * t73))
-            + t20 * (t72 * (t131 * t76 + t130 * t71) + t145);
-        let t148 = (t147 - (t124 * t105 + t144))
-            / (self.ring_diametral_inertia + (t72 * t78 + (t70 * t77 + t60 * t73)));
-        let t149 = t136 - (t126 * t146 - (t60 * t148 - t130 * t20));
-        let t150 = t137 - (t127 * t146 - (t70 * t148 - t131 * t20));
-        let t151 = t123 * t146 - (t72 * t148 - t121 * t20);
-        let t152 = t56 * (t117 + (t55 * t151 - (t68 * t150 + t53 * t149)));
-        let t153 = t151 - t152;
+        let t0 = outer_ring_e0 * outer_ring_e0;
+        let t1 = k(0.5) - (t0 + outer_ring_e2 * outer_ring_e2);
+        let t2 = (outer_ring_wz * outer_ring_wz + outer_ring_wx * outer_ring_wx)
+            * (k(0.5) / t1);
+        let t3 = outer_ring_e0 * outer_ring_e1;
+        let t4 = outer_ring_e2 * outer_ring_e3;
+        let t5 = k(2.0) * (t4 - t3);
+        let t6 = outer_ring_wy * outer_ring_wz - t5 * t2;
+        let t7 = rotor_e0 * rotor_e3;
+        let t8 = rotor_e1 * rotor_e2;
+        let t9 = k(2.0) * (t8 - t7);
+        let t10 = inner_ring_e0 * inner_ring_e0;
+        let t11 = k(2.0) * (k(0.5) - (t10 + inner_ring_e1 * inner_ring_e1));
+        let t12 = rotor_e0 * rotor_e0;
+        let t13 = k(2.0) * (k(0.5) - (t12 + rotor_e2 * rotor_e2));
+        let t14 = inner_ring_e0 * inner_ring_e3;
+        let t15 = inner_ring_e1 * inner_ring_e2;
+        let t16 = k(2.0) * (t15 + t14);
+        let t17 = rotor_e0 * rotor_e1;
+        let t18 = rotor_e2 * rotor_e3;
+        let t19 = k(2.0) * (t18 + t17);
+        let t20 = inner_ring_e0 * inner_ring_e2;
+        let t21 = inner_ring_e1 * inner_ring_e3;
+        let t22 = k(2.0) * (t21 - t20);
+        let t23 = t22 * t19 - (t16 * t13 + t11 * t9);
+        let t24 = k(5e-6) * t23;
+        let t25 = rotor_e0 * rotor_e2;
+        let t26 = rotor_e1 * rotor_e3;
+        let t27 = k(2.0) * (t26 + t25);
+        let t28 = k(2.0) * (t18 - t17);
+        let t29 = k(2.0) * (k(0.5) - (t12 + rotor_e3 * rotor_e3));
+        let t30 = t22 * t29 - (t16 * t28 - t11 * t27);
+        let t31 = k(5e-6) * t30;
+        let t32 = inner_ring_e0 * inner_ring_e1;
+        let t33 = inner_ring_e2 * inner_ring_e3;
+        let t34 = k(2.0) * (t33 - t32);
+        let t35 = k(2.0) * (t21 + t20);
+        let t36 = k(2.0) * (k(0.5) - (t10 + inner_ring_e3 * inner_ring_e3));
+        let t37 = t36 * t19 - (t35 * t9 - t34 * t13);
+        let t38 = t35 * t27 + t34 * t28 + t36 * t29;
+        let t39 = t38 * t31 + t37 * t24;
+        let t40 = self.rotor_mass * (self.rotor_offset * self.rotor_offset);
+        let t41 = self.ring_diametral_inertia
+            + (t40 + (t38 * (k(5e-6) * t38) + t37 * (k(5e-6) * t37)));
+        let t42 = k(1.0) / t41;
+        let t43 = t42 * t39;
+        let t44 = t39 * t43 - (self.ring_diametral_inertia + (t30 * t31 + t23 * t24));
+        let t45 = outer_ring_e0 * outer_ring_e3;
+        let t46 = outer_ring_e1 * outer_ring_e2;
+        let t47 = k(2.0) * (t46 - t45);
+        let t48 = k(2.0) * t1;
+        let t49 = k(2.0) * (t4 + t3);
+        let t50 = t49 * t22 - (t48 * t16 + t47 * t11);
+        let t51 = k(2.0) * (k(0.5) - (t10 + inner_ring_e2 * inner_ring_e2));
+        let t52 = k(2.0) * (t15 - t14);
+        let t53 = k(2.0) * (t33 + t32);
+        let t54 = t53 * t19 + (t52 * t9 + t51 * t13);
+        let t55 = t53 * t29 - (t52 * t27 - t51 * t28);
+        let t56 = k(5e-6) * t54;
+        let t57 = k(5e-6) * t55;
+        let t58 = t38 * t57 + t37 * t56;
+        let t59 = t58 * t43 - (t55 * t31 + t54 * t24);
+        let t60 = t49 * t53 + (t47 * t52 + t48 * t51);
+        let t61 = t39 - t41 * t43;
+        let t62 = t49 * t36 - (t47 * t35 - t48 * t34);
+        let t63 = t62 * t61 - (t60 * t59 + t50 * t44);
+        let t64 = t42 * t58;
+        let t65 = t58 * t64
+            - (self.ring_axial_inertia + (t40 + (t55 * t57 + t54 * t56)));
+        let t66 = t58 - t41 * t64;
+        let t67 = t62 * t66 - (t60 * t65 + t50 * t59);
+        let t68 = t60 * t66 + t50 * t61;
+        let t69 = k(2.0) * (k(0.5) - (t12 + rotor_e1 * rotor_e1));
+        let t70 = k(2.0) * (t8 + t7);
+        let t71 = k(2.0) * (t26 - t25);
+        let t72 = t22 * t71 + (t16 * t70 + t11 * t69);
+        let t73 = inner_ring_wy * (t53 * t71 - (t51 * t70 + t52 * t69))
+            + inner_ring_wx * t72;
+        let t74 = inner_ring_wz * (t36 * t71 - (t34 * t70 - t35 * t69)) - t73;
+        let t75 = rotor_wx + t74;
+        let t76 = inner_ring_wz * t38 - (inner_ring_wy * t55 + inner_ring_wx * t30);
+        let t77 = rotor_wz - t76;
+        let t78 = inner_ring_wz * t37 - (inner_ring_wy * t54 + inner_ring_wx * t23);
+        let t79 = rotor_wy + t78;
+        let t80 = (t79 * t79 + t77 * t77) / t72;
+        let t81 = rotor_wz * t74 + rotor_wx * t76 - (t30 * t80 - t77 * t75);
+        let t82 = k(5e-6) * (rotor_wx * rotor_wz + t81);
+        let t83 = rotor_wx * t78 - rotor_wy * t74 - (t23 * t80 + t79 * t75);
+        let t84 = k(5e-6) * (rotor_wx * rotor_wy - t83);
+        let t85 = self.ring_axial_inertia - self.ring_diametral_inertia;
+        let t86 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
+        let t87 = inner_ring_wx * inner_ring_wy;
+        let t88 = inner_ring_wx * inner_ring_wz;
+        let t89 = self.rotor_offset * (t35 * t88 + (t52 * t87 + t11 * t86));
+        let t90 = self.rotor_mass * t89;
+        let t91 = t52 * self.rotor_offset;
+        let t92 = self.rotor_offset * (t34 * t88 - (t51 * t87 + t16 * t86));
+        let t93 = self.gravity * self.rotor_mass + self.rotor_mass * t92;
+        let t94 = t51 * self.rotor_offset;
+        let t95 = self.rotor_offset * (t36 * t88 - (t53 * t87 - t22 * t86));
+        let t96 = self.rotor_mass * t95;
+        let t97 = t53 * self.rotor_offset;
+        let t98 = t97 * t96 + (t94 * t93 - t91 * t90) + (t38 * t84 + t37 * t82);
+        let t99 = t87 * t85 - t98;
+        let t100 = t42 * t99;
+        let t101 = t39 * t100
+            - (inner_ring_wy * inner_ring_wz * t85 - (t30 * t84 + t23 * t82));
+        let t102 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
+        let t103 = k(2.0) * (t46 + t45);
+        let t104 = outer_ring_e0 * outer_ring_e2;
+        let t105 = outer_ring_e1 * outer_ring_e3;
+        let t106 = k(2.0) * (t105 - t104);
+        let t107 = t106 * t36 - (t103 * t34 - t102 * t35);
+        let t108 = k(2.0) * (k(0.5) - (t0 + outer_ring_e3 * outer_ring_e3));
+        let t109 = k(2.0) * (t105 + t104);
+        let t110 = t109 * t35 + t5 * t34 + t108 * t36;
+        let t111 = outer_ring_wz * t110 - (outer_ring_wy * t62 + outer_ring_wx * t107);
+        let t112 = inner_ring_wz - t111;
+        let t113 = t106 * t53 - (t103 * t51 + t102 * t52);
+        let t114 = t108 * t53 - (t109 * t52 - t5 * t51);
+        let t115 = outer_ring_wz * t114 - (outer_ring_wy * t60 + outer_ring_wx * t113);
+        let t116 = inner_ring_wy + t115;
+        let t117 = t106 * t22 + (t103 * t16 + t102 * t11);
+        let t118 = t108 * t22 - (t5 * t16 - t109 * t11);
+        let t119 = outer_ring_wz * t118 - (outer_ring_wy * t50 + outer_ring_wx * t117);
+        let t120 = inner_ring_wx + t119;
+        let t121 = (t120 * t120 + t116 * t116) / t110;
+        let t122 = inner_ring_wy * t111 + inner_ring_wz * t115
+            + (t114 * t121 - t116 * t112);
+        let t123 = inner_ring_wz * t119 + inner_ring_wx * t111
+            + (t118 * t121 - t120 * t112);
+        let t124 = t35 * self.rotor_offset;
+        let t125 = t34 * self.rotor_offset;
+        let t126 = t36 * self.rotor_offset;
+        let t127 = t126 * t96 + (t125 * t93 + t124 * t90) - (t55 * t84 + t54 * t82);
+        let t128 = t60 * (t65 * t123 - t59 * t122 - (t58 * t100 - t127));
+        let t129 = t62 * (t66 * t123 - t61 * t122 - (t99 - t41 * t100));
+        let t130 = t129 - (t128 + t50 * (t59 * t123 - t44 * t122 - t101));
+        let t131 = t60 * (t107 * t66 - (t113 * t65 + t117 * t59))
+            + t50 * (t107 * t61 - (t113 * t59 + t117 * t44));
+        let t132 = outer_ring_wx * outer_ring_wy - t103 * t2;
+        let t133 = (t110 * t68 + (t67 * t114 + t63 * t118)) * t132
+            + t6 * (t62 * (t113 * t66 + t117 * t61) + t131);
+        let t134 = (t133 - (outer_ring_wx * outer_ring_wz * t85 + t130))
+            / (self.ring_diametral_inertia + (t62 * t68 + (t60 * t67 + t50 * t63)));
+        let t135 = t122 + (t118 * t132 - (t50 * t134 - t117 * t6));
+        let t136 = t123 - (t114 * t132 - (t60 * t134 - t113 * t6));
+        let t137 = t110 * t132 - (t62 * t134 - t107 * t6);
+        let t138 = t42 * (t99 + (t41 * t137 - (t58 * t136 - t39 * t135)));
+        let t139 = t137 - t138;
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -t20,
-            t148,
-            t146,
+            -t6,
+            t134,
+            t132,
             k(0.0),
             k(0.0),
             k(0.0),
-            t149,
-            t150,
-            t153,
-            t107 + (t109 * t153 - t138 * t150),
-            t110 - (t112 * t153 + t139 * t150),
-            t115 * t153 + t140 * t150 - t113,
+            -t135,
+            t136,
+            t139,
+            t89 + (t91 * t139 - t124 * t136),
+            t92 - (t94 * t139 + t125 * t136),
+            t97 * t139 + t126 * t136 - t95,
             k(0.0),
-            t101 - (t51 * t153 - (t64 * t150 + t37 * t149)),
-            t52 * t153 - (t65 * t150 + t44 * t149) - t103,
+            t81 - (t37 * t139 - (t54 * t136 - t23 * t135)),
+            t83 + (t38 * t139 - (t55 * t136 - t30 * t135)),
         ];
     }
     /// Writes λ: 309 operations (115 ±, 191 ×, 3 ÷).
@@ -2117,12 +2099,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeParameters<T> {
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
     type Joints = [T; 6];
     type Rates = [T; 3];
+    type Solution = [T; 33];
     fn joint_start(&self) -> Self::Joints {
         let k = T::constant;
         [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(100.0)]
     }
     fn rates(&self) -> Self::Rates {
         [T::constant(0.0); 3]
+    }
+    fn solution(&self) -> Self::Solution {
+        [T::constant(0.0); 33]
     }
     /// Writes u̇: 32 operations (12 ±, 18 ×, 2 ÷) and 2 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
@@ -2581,6 +2567,161 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
             -t4,
             t32,
             -t23,
+        ];
+    }
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 259 operations (98 ±, 159 ×, 2 ÷).
+    fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        let t0 = outer_ring_wy * outer_ring_wz;
+        let t1 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t2 = k(2.0) * t1;
+        let t3 = k(1.0) - t1 * t2;
+        let t4 = outer_ring_wz - inner_ring_wz;
+        let t5 = k(1e-5) * (t4 * t3);
+        let t6 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t7 = t6 * t2;
+        let t8 = outer_ring_wy * t7;
+        let t9 = self.rotor_offset * self.rotor_mass;
+        let t10 = self.rotor_offset * t9;
+        let t11 = self.ring_axial_inertia + t10;
+        let t12 = self.ring_diametral_inertia - t11;
+        let t13 = inner_ring_wx - rotor_wx;
+        let t14 = self.ring_diametral_inertia + k(5e-6);
+        let t15 = (t13 + k(200000.0) * (t12 * t8)) * t5
+            / (t14 + (t11 - (k(5e-6) - t12) * (t7 * t7)));
+        let t16 = outer_ring_wx * outer_ring_wy;
+        let t17 = t7 * t15;
+        let t18 = inner_ring_wy * t4 - (t17 - t0 * t3);
+        let t19 = inner_ring_wx * t4 - (t0 * t7 + t3 * t15);
+        let t20 = self.gravity * t9
+            + outer_ring_wy * ((k(5e-6) + t12) * t8 + k(1e-5) * t13);
+        let t21 = t16 - t3 * t20 / (t10 + t14);
+        let t22 = self.rotor_offset * t21;
+        let t23 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t24 = k(2.0) * t23;
+        let t25 = k(1.0) - t23 * t24;
+        let t26 = self.rotor_offset * t19;
+        let t27 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t28 = t27 * t24;
+        let t29 = inner_ring_wy * self.rotor_offset;
+        let t30 = inner_ring_wx * t29;
+        let t31 = inner_ring_wz * self.rotor_offset;
+        let t32 = inner_ring_wx * t31;
+        let t33 = t28 * t32 - t25 * t30 - (t28 * t26 + t25 * t22);
+        let t34 = rotor_e0 * rotor_e3;
+        let t35 = rotor_e1 * rotor_e2;
+        let t36 = inner_ring_wy * t29 + inner_ring_wz * t31;
+        let t37 = rotor_e0 * rotor_e0;
+        let t38 = k(2.0) * (k(0.5) - (t37 + rotor_e1 * rotor_e1)) * t36
+            - k(2.0) * (t35 - t34) * t33;
+        let t39 = t25 * t32 + t28 * t30 - (t25 * t26 - t28 * t22);
+        let t40 = rotor_e0 * rotor_e2;
+        let t41 = rotor_e1 * rotor_e3;
+        let t42 = k(2.0) * (t41 + t40) * t39 + t38;
+        let t43 = k(2.0) * (t35 + t34) * t36
+            - k(2.0) * (k(0.5) - (t37 + rotor_e2 * rotor_e2)) * t33;
+        let t44 = rotor_e0 * rotor_e1;
+        let t45 = rotor_e2 * rotor_e3;
+        let t46 = k(2.0) * (t45 - t44) * t39 - t43;
+        let t47 = k(2.0) * (t41 - t40) * t36 + k(2.0) * (t45 + t44) * t33;
+        let t48 = k(2.0) * (k(0.5) - (t37 + rotor_e3 * rotor_e3)) * t39 + t47;
+        let t49 = t17 - k(100000.0) * (outer_ring_wy * t5) + t18;
+        let t50 = rotor_wz * t13 + (t28 * t21 - t25 * t19);
+        let t51 = rotor_wy * t13 + (t25 * t21 + t28 * t19);
+        let t52 = self.rotor_mass * t42;
+        let t53 = self.gravity * self.rotor_mass + self.rotor_mass * t46;
+        let t54 = k(0.01) * self.gravity;
+        let t55 = t54 + t53;
+        let t56 = self.rotor_mass * t48;
+        let t57 = self.ring_axial_inertia - self.ring_diametral_inertia;
+        let t58 = k(5e-6) * (rotor_wx * rotor_wy - t51);
+        let t59 = k(5e-6) * (rotor_wx * rotor_wz - t50);
+        let t60 = t28 * t59 + t25 * t58;
+        let t61 = inner_ring_e0 * inner_ring_e1;
+        let t62 = inner_ring_e2 * inner_ring_e3;
+        let t63 = inner_ring_e0 * inner_ring_e0;
+        let t64 = k(2.0)
+            * (inner_ring_e1 * inner_ring_e2 - inner_ring_e0 * inner_ring_e3)
+            * self.rotor_offset * t52
+            - k(2.0) * (k(0.5) - (t63 + inner_ring_e2 * inner_ring_e2))
+                * self.rotor_offset * t53;
+        let t65 = t64 - k(2.0) * (t62 + t61) * self.rotor_offset * t56 - t60
+            + (inner_ring_wx * inner_ring_wy * t57 + self.ring_diametral_inertia * t21);
+        let t66 = t65 - (t16 * t57 - t16 * self.ring_diametral_inertia);
+        let t67 = k(2.0) * outer_ring_e2;
+        let t68 = outer_ring_e0 * t67;
+        let t69 = t25 * t59 - t28 * t58;
+        let t70 = k(2.0)
+            * (inner_ring_e1 * inner_ring_e3 + inner_ring_e0 * inner_ring_e2)
+            * self.rotor_offset * t52 + k(2.0) * (t62 - t61) * self.rotor_offset * t53;
+        let t71 = t70
+            + k(2.0) * (k(0.5) - (t63 + inner_ring_e3 * inner_ring_e3))
+                * self.rotor_offset * t56;
+        let t72 = t71 - t69 - self.ring_axial_inertia * t19;
+        let t73 = k(1e-5) * t49
+            + (inner_ring_wy * inner_ring_wz * t57 + self.ring_diametral_inertia * t18);
+        let t74 = t3 * t73 + t7 * t72;
+        let t75 = t74 + t0 * self.ring_axial_inertia;
+        let t76 = k(1.0) - outer_ring_e2 * t67;
+        *out = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t0,
+            -t15,
+            t16,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t18,
+            t19,
+            t21,
+            t42,
+            t46,
+            -t48,
+            -t49,
+            -t50,
+            t51,
+            -t52,
+            -(t54 + t55),
+            t56,
+            t76 * t75 - t68 * t66,
+            t68 * t75 + t76 * t66,
+            -t52,
+            -t55,
+            t56,
+            t3 * t72 - t7 * t73,
+            -t74,
+            -t52,
+            -t53,
+            t56,
+            t60,
+            t69,
         ];
     }
 }

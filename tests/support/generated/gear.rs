@@ -19,7 +19,7 @@
 //! | gamma | γ | 55 | 103 | 2 | 160 | 6 of 11 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 29 | 55 | 2 | 86 | 0 of 11 |
 //! | applied_force | (f, n' − w̃'J'w') | 7 | 19 | 0 | 26 | 6 of 12 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 74 | 148 | 5 | 227 | 6 of 13 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 74 | 132 | 5 | 211 | 6 of 13 |
 //! | multipliers | λ, the accelerations being known | 32 | 75 | 4 | 111 | 0 of 11 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 16 | 33 | 0 | 49 | 0 of 17 |
 //! | energy | T and V | 18 | 34 | 0 | 52 | 0 of 2 |
@@ -807,7 +807,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gear<T> {
             k(0.025) * (wheel_wx * wheel_wy),
         ];
     }
-    /// Solves eq. (17): 227 operations (74 ±, 148 ×, 5 ÷) and 3 functions.
+    /// Solves eq. (17): 211 operations (74 ±, 132 ×, 5 ÷) and 3 functions.
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let pinion_e0 = y[3];
@@ -826,86 +826,86 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gear<T> {
         let wheel_wz = y[25];
         let turn1 = y[28];
         let t0 = pinion_e0 * pinion_e0;
-        let t1 = k(2.0) * (k(0.5) - (t0 + pinion_e2 * pinion_e2));
-        let t2 = k(2.0) * (k(0.5) - (t0 + pinion_e1 * pinion_e1));
-        let t3 = pinion_e0 * pinion_e3;
-        let t4 = pinion_e1 * pinion_e2;
-        let t5 = k(2.0) * (t4 + t3);
-        let t6 = k(2.0) * (t4 - t3);
-        let t7 = t6 * t5 - t2 * t1;
-        let t8 = k(1.0) / t7;
-        let t9 = pinion_wx * pinion_wz;
-        let t10 = pinion_wy * pinion_wz;
-        let t11 = pinion_wy * pinion_wy;
-        let t12 = t11 + pinion_wx * pinion_wx;
-        let t13 = k(2.0) * (pinion_e1 * pinion_e3 + pinion_e0 * pinion_e2);
-        let t14 = t13 * t12 - (t6 * t10 - t2 * t9);
-        let t15 = k(2.0) * (pinion_e2 * pinion_e3 - pinion_e0 * pinion_e1);
-        let t16 = t15 * t12 + (t1 * t10 - t5 * t9);
-        let t17 = t16 * (t6 * t8) + t14 * (t1 * t8);
-        let t18 = k(1.0) / (t5 * t5 + t2 * t2);
-        let t19 = t18 * t7;
-        let t20 = k(87.5) * t19 - k(2.5) * ((t13 * t5 + t2 * t15) * t18) * t17;
-        let t21 = turn1.cos();
-        let t22 = wheel_e0 * wheel_e0;
-        let t23 = k(2.0) * (k(0.5) - (t22 + wheel_e2 * wheel_e2));
-        let t24 = turn1.sin();
-        let t25 = wheel_e0 * wheel_e1;
-        let t26 = wheel_e2 * wheel_e3;
-        let t27 = k(2.0) * (t26 + t25);
-        let t28 = (t27 * t21 + t23 * t24).atan2(t27 * t24 - t23 * t21);
-        let t29 = k(8.0) * (k(0.2) + (turn1 + t28));
-        let t30 = k(1.0) / (t27 * t27 + t23 * t23);
-        let t31 = k(2.0) * (k(0.5) - (t22 + wheel_e3 * wheel_e3));
-        let t32 = k(2.0) * (t26 - t25);
-        let t33 = t32 * t27 - t23 * t31;
-        let t34 = t33 * t30;
-        let t35 = k(1.0) / t33;
-        let t36 = wheel_wz * wheel_wz;
-        let t37 = t36 + wheel_wy * wheel_wy;
-        let t38 = k(2.0) * (wheel_e1 * wheel_e2 + wheel_e0 * wheel_e3);
-        let t39 = wheel_wx * wheel_wy;
-        let t40 = wheel_wx * wheel_wz;
-        let t41 = t32 * t40 - (t23 * t39 + t38 * t37);
-        let t42 = k(2.0) * (wheel_e1 * wheel_e3 - wheel_e0 * wheel_e2);
-        let t43 = t31 * t40 - (t27 * t39 - t42 * t37);
-        let t44 = t43 * (t32 * t35) - t41 * (t31 * t35);
-        let t45 = t30 * (t38 * t27 + t23 * t42) * t44 + t34 * t29;
-        let t46 = t31 * wheel_wx + t42 * wheel_wz;
-        let t47 = t32 * wheel_wx - t38 * wheel_wz;
-        let t48 = t30 * t30 * (k(2.0) * (t23 * t47 + t27 * t46))
-            * (t27 * t47 - t23 * t46);
-        let t49 = t36 + wheel_wx * wheel_wx;
-        let t50 = wheel_wy * wheel_wz;
-        let t51 = t46 * t47;
-        let t52 = t51 - t27 * (t32 * t50 + (t23 * t49 + t38 * t39));
-        let t53 = t23 * (t31 * t50 + (t27 * t49 - t42 * t39)) - t51;
-        let t54 = t15 * pinion_wy + t1 * pinion_wz;
-        let t55 = t13 * pinion_wy - t6 * pinion_wz;
-        let t56 = t18 * t18 * (k(2.0) * (t2 * t55 - t5 * t54)) * (t5 * t55 + t2 * t54);
-        let t57 = pinion_wz * pinion_wz + t11;
-        let t58 = pinion_wx * pinion_wy;
-        let t59 = t54 * t55;
-        let t60 = t59 + t5 * (t13 * t9 + (t6 * t58 + t2 * t57));
-        let t61 = t2 * (t15 * t9 - (t1 * t58 + t5 * t57)) - t59;
-        let t62 = k(2.5) * (t18 * (t61 + t60) + t56) - (t30 * (t53 + t52) - t48);
-        let t63 = k(125.0) * t19;
-        let t64 = k(20.0) * t34;
-        let t65 = (t62 - (t45 - t20)) / (t34 * t64 + k(2.5) * t19 * t63);
+        let t1 = pinion_wy * pinion_wy;
+        let t2 = (t1 + pinion_wx * pinion_wx)
+            * (k(0.5) / (k(0.5) - (t0 + pinion_e3 * pinion_e3)));
+        let t3 = pinion_e0 * pinion_e1;
+        let t4 = pinion_e2 * pinion_e3;
+        let t5 = pinion_e0 * pinion_e2;
+        let t6 = pinion_e1 * pinion_e3;
+        let t7 = pinion_wx * pinion_wz;
+        let t8 = t7 - k(2.0) * (t6 - t5) * t2;
+        let t9 = k(2.0) * (k(0.5) - (t0 + pinion_e1 * pinion_e1));
+        let t10 = pinion_e0 * pinion_e3;
+        let t11 = pinion_e1 * pinion_e2;
+        let t12 = k(2.0) * (t11 + t10);
+        let t13 = k(1.0) / (t12 * t12 + t9 * t9);
+        let t14 = k(2.0) * (t4 - t3);
+        let t15 = k(2.0) * (t6 + t5);
+        let t16 = k(2.0) * (k(0.5) - (t0 + pinion_e2 * pinion_e2));
+        let t17 = k(2.0) * (t11 - t10);
+        let t18 = t13 * (t17 * t12 - t9 * t16);
+        let t19 = k(87.5) * t18 + k(2.5) * ((t15 * t12 + t9 * t14) * t13) * t8;
+        let t20 = turn1.cos();
+        let t21 = wheel_e0 * wheel_e0;
+        let t22 = k(2.0) * (k(0.5) - (t21 + wheel_e2 * wheel_e2));
+        let t23 = turn1.sin();
+        let t24 = wheel_e0 * wheel_e1;
+        let t25 = wheel_e2 * wheel_e3;
+        let t26 = k(2.0) * (t25 + t24);
+        let t27 = (t26 * t20 + t22 * t23).atan2(t26 * t23 - t22 * t20);
+        let t28 = k(8.0) * (k(0.2) + (turn1 + t27));
+        let t29 = k(1.0) / (t26 * t26 + t22 * t22);
+        let t30 = k(2.0) * (k(0.5) - (t21 + wheel_e3 * wheel_e3));
+        let t31 = k(2.0) * (t25 - t24);
+        let t32 = (t31 * t26 - t22 * t30) * t29;
+        let t33 = wheel_wz * wheel_wz;
+        let t34 = (t33 + wheel_wy * wheel_wy)
+            * (k(0.5) / (k(0.5) - (t21 + wheel_e1 * wheel_e1)));
+        let t35 = wheel_e0 * wheel_e3;
+        let t36 = wheel_e1 * wheel_e2;
+        let t37 = wheel_wx * wheel_wy;
+        let t38 = t37 - k(2.0) * (t36 - t35) * t34;
+        let t39 = wheel_e0 * wheel_e2;
+        let t40 = wheel_e1 * wheel_e3;
+        let t41 = k(2.0) * (t40 - t39);
+        let t42 = k(2.0) * (t36 + t35);
+        let t43 = t29 * (t42 * t26 + t22 * t41) * t38 - t32 * t28;
+        let t44 = t30 * wheel_wx + t41 * wheel_wz;
+        let t45 = t31 * wheel_wx - t42 * wheel_wz;
+        let t46 = t29 * t29 * (k(2.0) * (t22 * t45 + t26 * t44))
+            * (t26 * t45 - t22 * t44);
+        let t47 = t33 + wheel_wx * wheel_wx;
+        let t48 = wheel_wy * wheel_wz;
+        let t49 = t44 * t45;
+        let t50 = t49 - t26 * (t31 * t48 + (t22 * t47 + t42 * t37));
+        let t51 = t22 * (t30 * t48 + (t26 * t47 - t41 * t37)) - t49;
+        let t52 = t14 * pinion_wy + t16 * pinion_wz;
+        let t53 = t15 * pinion_wy - t17 * pinion_wz;
+        let t54 = t13 * t13 * (k(2.0) * (t9 * t53 - t12 * t52)) * (t12 * t53 + t9 * t52);
+        let t55 = pinion_wz * pinion_wz + t1;
+        let t56 = pinion_wx * pinion_wy;
+        let t57 = t52 * t53;
+        let t58 = t57 + t12 * (t15 * t7 + (t17 * t56 + t9 * t55));
+        let t59 = t9 * (t14 * t7 - (t16 * t56 + t12 * t55)) - t57;
+        let t60 = k(2.5) * (t13 * (t59 + t58) + t54) - (t29 * (t51 + t50) - t46);
+        let t61 = k(125.0) * t18;
+        let t62 = k(20.0) * t32;
+        let t63 = (t60 + (t43 + t19)) / (t32 * t62 + k(2.5) * t18 * t61);
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -(t16 * (t2 * t8) + t14 * (t5 * t8)),
-            t17,
-            k(35.0) - t63 * t65,
+            pinion_wy * pinion_wz - k(2.0) * (t4 + t3) * t2,
+            -t8,
+            k(35.0) - t61 * t63,
             k(0.0),
             k(0.0),
             k(0.0),
-            -(t29 + t64 * t65),
-            t41 * (t27 * t35) - t43 * (t23 * t35),
-            t44,
-            -t65,
+            -(t28 + t62 * t63),
+            wheel_wx * wheel_wz - k(2.0) * (t40 + t39) * t34,
+            -t38,
+            -t63,
         ];
     }
     /// Writes λ: 111 operations (32 ±, 75 ×, 4 ÷).
@@ -972,13 +972,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gear<T> {
             -(k(2.0) * pinion_dsx),
             -(k(2.0) * pinion_dsy),
             -(k(2.0) * pinion_dsz),
-            t1 * t7 * t11 + t8 * (t5 * t7),
-            t6 * t7 * t11 + t8 * (t2 * t7),
+            t11 * (t1 * t7) + t8 * (t5 * t7),
+            t11 * (t6 * t7) + t8 * (t2 * t7),
             -(k(4.0) * wheel_dsx),
             -(k(4.0) * wheel_dsy),
             -(k(4.0) * wheel_dsz),
-            t13 * t19 * t22 + t20 * (t17 * t19),
-            t18 * t19 * t22 + t20 * (t14 * t19),
+            t22 * (t13 * t19) + t20 * (t17 * t19),
+            t22 * (t18 * t19) + t20 * (t14 * t19),
             closing0,
         ];
     }

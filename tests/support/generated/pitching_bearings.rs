@@ -18,7 +18,7 @@
 //! | gamma | γ | 157 | 249 | 0 | 406 | 6 of 15 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 101 | 156 | 0 | 257 | 0 of 15 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 257 | 405 | 5 | 667 | 7 of 18 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 235 | 354 | 5 | 594 | 7 of 18 |
 //! | multipliers | λ, the accelerations being known | 120 | 203 | 3 | 326 | 0 of 15 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 132 | 236 | 1 | 369 | 0 of 22 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
@@ -32,8 +32,9 @@
 //! | to_maximal | (q, v) of a joint state | 39 | 88 | 0 | 127 | 12 of 39 |
 //! | to_joints | (x, u) of a maximal state | 68 | 86 | 0 | 154 | 0 of 6 |
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 47 | 100 | 1 | 148 | 0 of 3 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 86 | 159 | 1 | 246 | 7 of 18 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 235 | 354 | 5 | 594 | 7 of 18 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 60 | 96 | 0 | 156 | 0 of 15 |
+//! | corrected_solution | both | 280 | 422 | 5 | 707 | 7 of 33 |
 //!
 //! # Proof
 //!
@@ -50,7 +51,7 @@
 //! * joint_derivative: eqs. (14) and (16) on the constraints
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
-//! * corrected_multipliers: eq. (17) on the constraints
+//! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //!
 //! All of it holds but with a probability below 1e-144.
 //! Not proved: the size of rounding errors.
@@ -2123,7 +2124,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for PitchingBearings<T> {
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 667 operations (257 ±, 405 ×, 5 ÷) and 8 functions.
+    /// Solves eq. (17): 594 operations (235 ±, 354 ×, 5 ÷) and 8 functions.
     fn accelerations(&self, t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2147,244 +2148,217 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for PitchingBearings<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = outer_ring_wx * outer_ring_wy;
-        let t1 = outer_ring_e0 * outer_ring_e3;
-        let t2 = outer_ring_e1 * outer_ring_e2;
-        let t3 = k(2.0) * (t2 + t1);
-        let t4 = outer_ring_wz * outer_ring_wz;
-        let t5 = t4 + outer_ring_wx * outer_ring_wx;
-        let t6 = outer_ring_e0 * outer_ring_e0;
-        let t7 = k(2.0) * (k(0.5) - (t6 + outer_ring_e2 * outer_ring_e2));
-        let t8 = outer_ring_wy * outer_ring_wz;
-        let t9 = outer_ring_e0 * outer_ring_e1;
-        let t10 = outer_ring_e2 * outer_ring_e3;
-        let t11 = k(2.0) * (t10 - t9);
-        let t12 = t11 * t8 + (t7 * t5 + t3 * t0);
-        let t13 = k(12.566370614359172) * t;
-        let t14 = t13.sin();
-        let t15 = k(0.1) * t14;
-        let t16 = t15.sin();
-        let t17 = t11 * outer_ring_wx - t3 * outer_ring_wz;
-        let t18 = t15.cos();
-        let t19 = k(1.2566370614359172) * t13.cos();
-        let t20 = t19 * t18;
-        let t21 = t20 * t17;
-        let t22 = t19 * t16;
-        let t23 = k(15.791367041742975) * t14;
-        let t24 = t18 * t23 + t19 * t22;
-        let t25 = outer_ring_e0 * outer_ring_e2;
-        let t26 = outer_ring_e1 * outer_ring_e3;
-        let t27 = k(2.0) * (t26 - t25);
-        let t28 = k(2.0) * (t10 + t9);
-        let t29 = k(2.0) * (k(0.5) - (t6 + outer_ring_e3 * outer_ring_e3));
-        let t30 = t29 * t8 + (t28 * t5 - t27 * t0);
-        let t31 = t29 * outer_ring_wx + t27 * outer_ring_wz;
-        let t32 = t22 * t31;
-        let t33 = t16 * t23 - t19 * t20;
-        let t34 = t28 * t33 + t32 + (t32 - t18 * t30)
-            - (t7 * t24 + t21 + (t21 + t16 * t12));
-        let t35 = k(2.0) * (k(0.5) - (t6 + outer_ring_e1 * outer_ring_e1));
-        let t36 = k(18.84955592153876) * t;
-        let t37 = t36.sin();
-        let t38 = k(0.05) * t37;
-        let t39 = t38.cos();
-        let t40 = t38.sin();
-        let t41 = t18 * t40;
-        let t42 = t16 * t40;
-        let t43 = t42 * t27 + (t41 * t3 - t39 * t35);
-        let t44 = t16 * t11 + t18 * t29;
-        let t45 = k(2.0) * (t26 + t25);
-        let t46 = t39 * t45 + t41 * t11 - t42 * t29;
-        let t47 = t16 * t3 - t18 * t27;
-        let t48 = k(1.0) / (t47 * t46 - t44 * t43);
-        let t49 = k(2.0) * (t2 - t1);
-        let t50 = k(0.9424777960769379) * t36.cos();
-        let t51 = t50 * t40;
-        let t52 = t51 * (t45 * outer_ring_wx + t35 * outer_ring_wz);
-        let t53 = t52 - t39 * (t45 * t8 - (t49 * t5 + t35 * t0));
-        let t54 = t50 * t39;
-        let t55 = k(17.765287921960844) * t37;
-        let t56 = (t40 * t22 - t18 * t54) * t17;
-        let t57 = t22 * t54;
-        let t58 = t39 * t55 + t50 * t51;
-        let t59 = t7 * (t57 + t18 * t58 + (t57 - t40 * t33)) - t56;
-        let t60 = t59 - (t56 - t41 * t12) + (t49 * (t40 * t55 - t50 * t54) - t52 - t53);
-        let t61 = (t40 * t20 + t16 * t54) * t31;
-        let t62 = t20 * t54;
-        let t63 = t28 * (t62 - t16 * t58 + (t62 - t40 * t24)) - t61;
-        let t64 = t63 - (t61 + t42 * t30) + t60;
-        let t65 = t47 * t48 * t64 + t43 * t48 * t34;
-        let t66 = rotor_e0 * rotor_e3;
-        let t67 = rotor_e1 * rotor_e2;
-        let t68 = k(2.0) * (t67 - t66);
-        let t69 = inner_ring_e0 * inner_ring_e0;
-        let t70 = k(2.0) * (k(0.5) - (t69 + inner_ring_e1 * inner_ring_e1));
-        let t71 = rotor_e0 * rotor_e0;
-        let t72 = k(2.0) * (k(0.5) - (t71 + rotor_e2 * rotor_e2));
-        let t73 = inner_ring_e0 * inner_ring_e3;
-        let t74 = inner_ring_e1 * inner_ring_e2;
+        let t0 = outer_ring_e0 * outer_ring_e0;
+        let t1 = k(2.0) * (k(0.5) - (t0 + outer_ring_e2 * outer_ring_e2));
+        let t2 = k(18.84955592153876) * t;
+        let t3 = t2.sin();
+        let t4 = k(0.05) * t3;
+        let t5 = t4.sin();
+        let t6 = k(12.566370614359172) * t;
+        let t7 = t6.sin();
+        let t8 = k(0.1) * t7;
+        let t9 = t8.cos();
+        let t10 = t9 * t5;
+        let t11 = outer_ring_e0 * outer_ring_e3;
+        let t12 = outer_ring_e1 * outer_ring_e2;
+        let t13 = k(2.0) * (t12 - t11);
+        let t14 = t4.cos();
+        let t15 = outer_ring_e0 * outer_ring_e1;
+        let t16 = outer_ring_e2 * outer_ring_e3;
+        let t17 = k(2.0) * (t16 + t15);
+        let t18 = t8.sin();
+        let t19 = t18 * t5;
+        let t20 = k(1.2566370614359172) * t6.cos();
+        let t21 = t20 * t14;
+        let t22 = t9 * t14;
+        let t23 = t18 * t14;
+        let t24 = t23 * t17 - (t5 * t13 + t22 * t1);
+        let t25 = t20 * t5;
+        let t26 = t25 * t24 - t21 * (t19 * t17 + (t14 * t13 - t10 * t1));
+        let t27 = k(0.9424777960769379) * t2.cos();
+        let t28 = t27 * (t9 * t17 + t18 * t1) - t26;
+        let t29 = outer_ring_wy - t28;
+        let t30 = k(2.0) * (k(0.5) - (t0 + outer_ring_e3 * outer_ring_e3));
+        let t31 = k(2.0) * (t16 - t15);
+        let t32 = outer_ring_e0 * outer_ring_e2;
+        let t33 = outer_ring_e1 * outer_ring_e3;
+        let t34 = k(2.0) * (t33 + t32);
+        let t35 = t14 * t34 + t10 * t31 - t19 * t30;
+        let t36 = t5 * t34 - t22 * t31 + t23 * t30;
+        let t37 = t18 * t31 + t9 * t30;
+        let t38 = t27 * t37 - (t25 * t36 + t21 * t35);
+        let t39 = outer_ring_wz + t38;
+        let t40 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
+        let t41 = k(2.0) * (t12 + t11);
+        let t42 = k(2.0) * (t33 - t32);
+        let t43 = t19 * t42 + (t10 * t41 - t14 * t40);
+        let t44 = t23 * t42 + (t22 * t41 + t5 * t40);
+        let t45 = t18 * t41 - t9 * t42;
+        let t46 = t27 * t45 + (t25 * t44 - t21 * t43);
+        let t47 = outer_ring_wx + t46;
+        let t48 = (t47 * t47 + t39 * t39) / t24;
+        let t49 = k(15.791367041742975) * t7;
+        let t50 = t14 * t49 + t20 * (t27 * t5);
+        let t51 = t5 * t49 - t20 * (t27 * t14);
+        let t52 = k(17.765287921960844) * t3;
+        let t53 = outer_ring_wy * t38 + outer_ring_wz * t28
+            + (t52 * t45 + (t51 * t44 - t50 * t43));
+        let t54 = t53 + (t36 * t48 - t39 * t29);
+        let t55 = rotor_e0 * rotor_e3;
+        let t56 = rotor_e1 * rotor_e2;
+        let t57 = k(2.0) * (t56 - t55);
+        let t58 = inner_ring_e0 * inner_ring_e0;
+        let t59 = k(2.0) * (k(0.5) - (t58 + inner_ring_e1 * inner_ring_e1));
+        let t60 = rotor_e0 * rotor_e0;
+        let t61 = k(2.0) * (k(0.5) - (t60 + rotor_e2 * rotor_e2));
+        let t62 = inner_ring_e0 * inner_ring_e3;
+        let t63 = inner_ring_e1 * inner_ring_e2;
+        let t64 = k(2.0) * (t63 + t62);
+        let t65 = rotor_e0 * rotor_e1;
+        let t66 = rotor_e2 * rotor_e3;
+        let t67 = k(2.0) * (t66 + t65);
+        let t68 = inner_ring_e0 * inner_ring_e2;
+        let t69 = inner_ring_e1 * inner_ring_e3;
+        let t70 = k(2.0) * (t69 - t68);
+        let t71 = t70 * t67 - (t64 * t61 + t59 * t57);
+        let t72 = k(5e-6) * t71;
+        let t73 = rotor_e0 * rotor_e2;
+        let t74 = rotor_e1 * rotor_e3;
         let t75 = k(2.0) * (t74 + t73);
-        let t76 = rotor_e0 * rotor_e1;
-        let t77 = rotor_e2 * rotor_e3;
-        let t78 = k(2.0) * (t77 + t76);
-        let t79 = inner_ring_e0 * inner_ring_e2;
-        let t80 = inner_ring_e1 * inner_ring_e3;
-        let t81 = k(2.0) * (t80 - t79);
-        let t82 = t81 * t78 - (t75 * t72 + t70 * t68);
-        let t83 = k(5e-6) * t82;
-        let t84 = rotor_e0 * rotor_e2;
-        let t85 = rotor_e1 * rotor_e3;
-        let t86 = k(2.0) * (t85 + t84);
-        let t87 = k(2.0) * (t77 - t76);
-        let t88 = k(2.0) * (k(0.5) - (t71 + rotor_e3 * rotor_e3));
-        let t89 = t81 * t88 - (t75 * t87 - t70 * t86);
-        let t90 = k(5e-6) * t89;
-        let t91 = inner_ring_e0 * inner_ring_e1;
-        let t92 = inner_ring_e2 * inner_ring_e3;
-        let t93 = t92 - t91;
-        let t94 = k(2.0) * t93;
-        let t95 = t80 + t79;
-        let t96 = k(2.0) * t95;
-        let t97 = k(0.5) - (t69 + inner_ring_e3 * inner_ring_e3);
-        let t98 = k(2.0) * t97;
-        let t99 = t98 * t78 - (t96 * t68 - t94 * t72);
-        let t100 = t96 * t86 + t94 * t87 + t98 * t88;
-        let t101 = t100 * t90 + t99 * t83;
-        let t102 = k(1e-6)
-            + (k(1.25e-9) + (t100 * (k(5e-6) * t100) + t99 * (k(5e-6) * t99)));
-        let t103 = k(1.0) / t102;
-        let t104 = t103 * t101;
-        let t105 = t101 * t104 - (k(1e-6) + (t89 * t90 + t82 * t83));
-        let t106 = t28 * t81 - (t7 * t75 + t49 * t70);
-        let t107 = k(0.5) - (t69 + inner_ring_e2 * inner_ring_e2);
-        let t108 = k(2.0) * t107;
-        let t109 = t74 - t73;
-        let t110 = k(2.0) * t109;
-        let t111 = t92 + t91;
-        let t112 = k(2.0) * t111;
-        let t113 = t112 * t78 + (t110 * t68 + t108 * t72);
-        let t114 = t112 * t88 - (t110 * t86 - t108 * t87);
-        let t115 = k(5e-6) * t113;
-        let t116 = k(5e-6) * t114;
-        let t117 = t100 * t116 + t99 * t115;
-        let t118 = t117 * t104 - (t114 * t90 + t113 * t83);
-        let t119 = t28 * t112 + (t49 * t110 + t7 * t108);
-        let t120 = t101 - t102 * t104;
-        let t121 = t28 * t98 - (t49 * t96 - t7 * t94);
-        let t122 = t121 * t120 - (t119 * t118 + t106 * t105);
-        let t123 = t103 * t117;
-        let t124 = t117 * t123 - (k(2e-6) + (k(1.25e-9) + (t114 * t116 + t113 * t115)));
-        let t125 = t117 - t102 * t123;
-        let t126 = t121 * t125 - (t119 * t124 + t106 * t118);
-        let t127 = t119 * t125 + t106 * t120;
-        let t128 = k(2.0) * (k(0.5) - (t71 + rotor_e1 * rotor_e1));
-        let t129 = k(2.0) * (t67 + t66);
-        let t130 = k(2.0) * (t85 - t84);
-        let t131 = t81 * t130 + (t75 * t129 + t70 * t128);
-        let t132 = inner_ring_wx * inner_ring_wy;
-        let t133 = t112 * t130 - (t108 * t129 + t110 * t128);
-        let t134 = inner_ring_wx * inner_ring_wx;
-        let t135 = inner_ring_wz * inner_ring_wz;
-        let t136 = t98 * t130 - (t94 * t129 - t96 * t128);
-        let t137 = inner_ring_wy * inner_ring_wz;
-        let t138 = rotor_wy * t89 + rotor_wz * t82;
-        let t139 = k(2.0)
-            * (inner_ring_wx * (rotor_wy * t100 + rotor_wz * t99)
-                + inner_ring_wz * t138);
-        let t140 = rotor_wz * rotor_wz + rotor_wy * rotor_wy;
-        let t141 = rotor_wx * rotor_wy;
-        let t142 = rotor_wx * rotor_wz;
-        let t143 = t142 * t114 - (t141 * t113 - t140 * t133) + t139
-            + (t137 * t136 + ((t135 + t134) * t133 - t132 * t131));
-        let t144 = k(1.0) / (t113 * t100 - t114 * t99);
-        let t145 = inner_ring_wx * inner_ring_wz;
-        let t146 = inner_ring_wy * inner_ring_wy;
-        let t147 = t146 + t134;
-        let t148 = k(2.0)
-            * (inner_ring_wx * (rotor_wy * t114 + rotor_wz * t113)
-                - inner_ring_wy * t138);
-        let t149 = t142 * t100 - (t141 * t99 - t140 * t136) - t148
-            + (t147 * t136 + (t137 * t133 + t145 * t131));
-        let t150 = t113 * t144 * t149 - t99 * t144 * t143;
-        let t151 = k(5e-6) * (t142 + t150);
-        let t152 = t114 * t144 * t149 - t100 * t144 * t143;
-        let t153 = k(5e-6) * (t141 + t152);
-        let t154 = t135 + t146;
-        let t155 = t96 * t145 + (t110 * t132 + t70 * t154);
-        let t156 = k(1e-5) * t155;
-        let t157 = k(0.00025) * t109;
-        let t158 = t94 * t145 - (t108 * t132 + t75 * t154);
-        let t159 = k(0.8) + k(1e-5) * t158;
-        let t160 = k(0.00025) * t107;
-        let t161 = t98 * t145 - (t112 * t132 - t81 * t154);
-        let t162 = k(1e-5) * t161;
-        let t163 = k(0.00025) * t111;
-        let t164 = t163 * t162 + (t160 * t159 - t157 * t156)
-            + (t100 * t153 + t99 * t151);
-        let t165 = k(1e-6) * t132 - t164;
-        let t166 = t103 * t165;
-        let t167 = t101 * t166 - (k(1e-6) * t137 - (t89 * t153 + t82 * t151));
-        let t168 = t27 * t98 - (t3 * t94 - t35 * t96);
-        let t169 = t45 * t96 + t11 * t94 + t29 * t98;
-        let t170 = outer_ring_wx * outer_ring_wz;
-        let t171 = t170 * t169
-            - (t0 * t121 - (t4 + outer_ring_wy * outer_ring_wy) * t168);
-        let t172 = t29 * t81 - (t11 * t75 - t45 * t70);
-        let t173 = t29 * t112 - (t45 * t110 - t11 * t108);
-        let t174 = inner_ring_wx * t173 - inner_ring_wy * t172;
-        let t175 = k(2.0)
-            * (outer_ring_wy * t174
-                + outer_ring_wz * (inner_ring_wx * t119 - inner_ring_wy * t106));
-        let t176 = t27 * t81 + (t3 * t75 + t35 * t70);
-        let t177 = t27 * t112 - (t3 * t108 + t35 * t110);
-        let t178 = t147 * t168 + (t137 * t177 + t145 * t176) - t175 + t171;
-        let t179 = k(1.0) / (t176 * t119 - t177 * t106);
-        let t180 = k(2.0)
-            * (outer_ring_wx * t174
-                + outer_ring_wz * (inner_ring_wx * t177 - inner_ring_wy * t176));
-        let t181 = t147 * t121 + (t137 * t119 + t145 * t106) + t180
-            + (t8 * t169 + (t5 * t121 - t0 * t168));
-        let t182 = t176 * t179 * t181 - t106 * t179 * t178;
-        let t183 = t177 * t179 * t181 - t119 * t179 * t178;
-        let t184 = k(0.00025) * t95;
-        let t185 = k(0.00025) * t93;
-        let t186 = k(0.00025) * t97;
-        let t187 = t186 * t162 + (t185 * t159 + t184 * t156)
-            - (t114 * t153 + t113 * t151);
-        let t188 = t119 * (t124 * t183 + t118 * t182 - (t117 * t166 - t187));
-        let t189 = t121 * (t125 * t183 + t120 * t182 - (t165 - t102 * t166));
-        let t190 = t189 - (t188 + t106 * (t118 * t183 + t105 * t182 - t167));
-        let t191 = t119 * (t168 * t125 - (t177 * t124 + t176 * t118))
-            + t106 * (t168 * t120 - (t177 * t118 + t176 * t105));
-        let t192 = t44 * t48 * t64 + t46 * t48 * t34;
-        let t193 = t192 * (t169 * t127 + (t173 * t126 + t172 * t122))
-            - t65 * (t121 * (t177 * t125 + t176 * t120) + t191);
-        let t194 = (t193 + (k(1e-6) * t170 + t190))
-            / (k(1e-6) + (t121 * t127 + (t119 * t126 + t106 * t122)));
-        let t195 = t182 + (t172 * t192 - (t106 * t194 + t176 * t65));
-        let t196 = t183 + (t173 * t192 - (t119 * t194 + t177 * t65));
-        let t197 = t169 * t192 - (t121 * t194 + t168 * t65);
-        let t198 = t103 * (t165 - (t102 * t197 + (t117 * t196 + t101 * t195)));
-        let t199 = t197 + t198;
+        let t76 = k(2.0) * (t66 - t65);
+        let t77 = k(2.0) * (k(0.5) - (t60 + rotor_e3 * rotor_e3));
+        let t78 = t70 * t77 - (t64 * t76 - t59 * t75);
+        let t79 = k(5e-6) * t78;
+        let t80 = inner_ring_e0 * inner_ring_e1;
+        let t81 = inner_ring_e2 * inner_ring_e3;
+        let t82 = t81 - t80;
+        let t83 = k(2.0) * t82;
+        let t84 = t69 + t68;
+        let t85 = k(2.0) * t84;
+        let t86 = k(0.5) - (t58 + inner_ring_e3 * inner_ring_e3);
+        let t87 = k(2.0) * t86;
+        let t88 = t87 * t67 - (t85 * t57 - t83 * t61);
+        let t89 = t85 * t75 + t83 * t76 + t87 * t77;
+        let t90 = t89 * t79 + t88 * t72;
+        let t91 = k(1e-6)
+            + (k(1.25e-9) + (t89 * (k(5e-6) * t89) + t88 * (k(5e-6) * t88)));
+        let t92 = k(1.0) / t91;
+        let t93 = t92 * t90;
+        let t94 = t90 * t93 - (k(1e-6) + (t78 * t79 + t71 * t72));
+        let t95 = t17 * t70 - (t1 * t64 + t13 * t59);
+        let t96 = k(0.5) - (t58 + inner_ring_e2 * inner_ring_e2);
+        let t97 = k(2.0) * t96;
+        let t98 = t63 - t62;
+        let t99 = k(2.0) * t98;
+        let t100 = t81 + t80;
+        let t101 = k(2.0) * t100;
+        let t102 = t101 * t67 + (t99 * t57 + t97 * t61);
+        let t103 = t101 * t77 - (t99 * t75 - t97 * t76);
+        let t104 = k(5e-6) * t102;
+        let t105 = k(5e-6) * t103;
+        let t106 = t89 * t105 + t88 * t104;
+        let t107 = t106 * t93 - (t103 * t79 + t102 * t72);
+        let t108 = t17 * t101 + (t13 * t99 + t1 * t97);
+        let t109 = t90 - t91 * t93;
+        let t110 = t17 * t87 - (t13 * t85 - t1 * t83);
+        let t111 = t110 * t109 - (t108 * t107 + t95 * t94);
+        let t112 = t92 * t106;
+        let t113 = t106 * t112 - (k(2e-6) + (k(1.25e-9) + (t103 * t105 + t102 * t104)));
+        let t114 = t106 - t91 * t112;
+        let t115 = t110 * t114 - (t108 * t113 + t95 * t107);
+        let t116 = t108 * t114 + t95 * t109;
+        let t117 = k(2.0) * (k(0.5) - (t60 + rotor_e1 * rotor_e1));
+        let t118 = k(2.0) * (t56 + t55);
+        let t119 = k(2.0) * (t74 - t73);
+        let t120 = t70 * t119 + (t64 * t118 + t59 * t117);
+        let t121 = inner_ring_wy * (t101 * t119 - (t97 * t118 + t99 * t117))
+            + inner_ring_wx * t120;
+        let t122 = inner_ring_wz * (t87 * t119 - (t83 * t118 - t85 * t117)) - t121;
+        let t123 = rotor_wx + t122;
+        let t124 = inner_ring_wz * t89 - (inner_ring_wy * t103 + inner_ring_wx * t78);
+        let t125 = rotor_wz - t124;
+        let t126 = inner_ring_wz * t88 - (inner_ring_wy * t102 + inner_ring_wx * t71);
+        let t127 = rotor_wy + t126;
+        let t128 = (t127 * t127 + t125 * t125) / t120;
+        let t129 = rotor_wz * t122 + rotor_wx * t124 - (t78 * t128 - t125 * t123);
+        let t130 = k(5e-6) * (rotor_wx * rotor_wz + t129);
+        let t131 = rotor_wx * t126 - rotor_wy * t122 - (t71 * t128 + t127 * t123);
+        let t132 = k(5e-6) * (rotor_wx * rotor_wy - t131);
+        let t133 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
+        let t134 = inner_ring_wx * inner_ring_wy;
+        let t135 = inner_ring_wx * inner_ring_wz;
+        let t136 = t85 * t135 + (t99 * t134 + t59 * t133);
+        let t137 = k(1e-5) * t136;
+        let t138 = k(0.00025) * t98;
+        let t139 = t83 * t135 - (t97 * t134 + t64 * t133);
+        let t140 = k(0.8) + k(1e-5) * t139;
+        let t141 = k(0.00025) * t96;
+        let t142 = t87 * t135 - (t101 * t134 - t70 * t133);
+        let t143 = k(1e-5) * t142;
+        let t144 = k(0.00025) * t100;
+        let t145 = t144 * t143 + (t141 * t140 - t138 * t137) + (t89 * t132 + t88 * t130);
+        let t146 = k(1e-6) * t134 - t145;
+        let t147 = t92 * t146;
+        let t148 = t90 * t147
+            - (k(1e-6) * (inner_ring_wy * inner_ring_wz) - (t78 * t132 + t71 * t130));
+        let t149 = t42 * t87 - (t41 * t83 - t40 * t85);
+        let t150 = t34 * t85 + t31 * t83 + t30 * t87;
+        let t151 = outer_ring_wz * t150 - (outer_ring_wy * t110 + outer_ring_wx * t149);
+        let t152 = inner_ring_wz - t151;
+        let t153 = t42 * t101 - (t41 * t97 + t40 * t99);
+        let t154 = t30 * t101 - (t34 * t99 - t31 * t97);
+        let t155 = outer_ring_wz * t154 - (outer_ring_wy * t108 + outer_ring_wx * t153);
+        let t156 = inner_ring_wy + t155;
+        let t157 = t42 * t70 + (t41 * t64 + t40 * t59);
+        let t158 = t30 * t70 - (t31 * t64 - t34 * t59);
+        let t159 = outer_ring_wz * t158 - (outer_ring_wy * t95 + outer_ring_wx * t157);
+        let t160 = inner_ring_wx + t159;
+        let t161 = (t160 * t160 + t156 * t156) / t150;
+        let t162 = inner_ring_wy * t151 + inner_ring_wz * t155
+            + (t154 * t161 - t156 * t152);
+        let t163 = inner_ring_wz * t159 + inner_ring_wx * t151
+            + (t158 * t161 - t160 * t152);
+        let t164 = k(0.00025) * t84;
+        let t165 = k(0.00025) * t82;
+        let t166 = k(0.00025) * t86;
+        let t167 = t166 * t143 + (t165 * t140 + t164 * t137)
+            - (t103 * t132 + t102 * t130);
+        let t168 = t108 * (t113 * t163 - t107 * t162 - (t106 * t147 - t167));
+        let t169 = t110 * (t114 * t163 - t109 * t162 - (t146 - t91 * t147));
+        let t170 = t169 - (t168 + t95 * (t107 * t163 - t94 * t162 - t148));
+        let t171 = t108 * (t149 * t114 - (t153 * t113 + t157 * t107))
+            + t95 * (t149 * t109 - (t153 * t107 + t157 * t94));
+        let t172 = outer_ring_wx * t28 + outer_ring_wy * t46
+            - (t52 * t37 - (t51 * t36 + t50 * t35));
+        let t173 = t172 - (t44 * t48 + t47 * t29);
+        let t174 = (t150 * t116 + (t115 * t154 + t111 * t158)) * t173
+            + t54 * (t110 * (t153 * t114 + t157 * t109) + t171);
+        let t175 = (t174 + (k(1e-6) * (outer_ring_wx * outer_ring_wz) + t170))
+            / (k(1e-6) + (t110 * t116 + (t108 * t115 + t95 * t111)));
+        let t176 = t162 - (t158 * t173 - (t95 * t175 - t157 * t54));
+        let t177 = t163 + (t154 * t173 - (t108 * t175 - t153 * t54));
+        let t178 = t150 * t173 - (t110 * t175 - t149 * t54);
+        let t179 = t92 * (t146 - (t91 * t178 + (t106 * t177 - t90 * t176)));
+        let t180 = t178 + t179;
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -t65,
-            -t194,
-            -t192,
+            t54,
+            -t175,
+            -t173,
             k(0.0),
             k(0.0),
             k(0.0),
-            t195,
-            t196,
-            -t199,
-            k(0.000125) * t155 - (t157 * t199 + t184 * t196),
-            k(0.000125) * t158 + (t160 * t199 - t185 * t196),
-            -(k(0.000125) * t161 + (t163 * t199 - t186 * t196)),
+            -t176,
+            t177,
+            -t180,
+            k(0.000125) * t136 - (t138 * t180 + t164 * t177),
+            t141 * t180 - t165 * t177 + k(0.000125) * t139,
+            -(t144 * t180 - t166 * t177 + k(0.000125) * t142),
             k(0.0),
-            t150 + (t99 * t199 + (t113 * t196 + t82 * t195)),
-            -(t152 + (t100 * t199 + (t114 * t196 + t89 * t195))),
+            t129 + (t88 * t180 + (t102 * t177 - t71 * t176)),
+            t131 - (t89 * t180 + (t103 * t177 - t78 * t176)),
         ];
     }
     /// Writes λ: 326 operations (120 ±, 203 ×, 3 ÷) and 6 functions.
@@ -2560,12 +2534,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for PitchingBearings<T> {
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
     type Joints = [T; 7];
     type Rates = [T; 3];
+    type Solution = [T; 33];
     fn joint_start(&self) -> Self::Joints {
         let k = T::constant;
         [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(100.0), k(0.0)]
     }
     fn rates(&self) -> Self::Rates {
         [T::constant(0.0); 3]
+    }
+    fn solution(&self) -> Self::Solution {
+        [T::constant(0.0); 33]
     }
     /// Writes u̇: 118 operations (36 ±, 81 ×, 1 ÷) and 12 functions.
     fn joint_accelerations(&self, t: T, x: &Self::Joints, out: &mut Self::Rates) {
@@ -2609,7 +2587,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
         let t29 = k(15.791367041742975) * t24;
         let t30 = t7 * t29 + t9 * (t12 * t15);
         let t31 = k(17.765287921960844) * t5;
-        let t32 = t31 * t11 - t3 * t30 - u0 * t14;
+        let t32 = t31 * t11 - t30 * t3 - u0 * t14;
         let t33 = t15 * t29 - t9 * (t12 * t7);
         let t34 = t33 * t2 - (t1 * (k(7.00125e-6) * t0) - t0 * (k(1e-6) * t1)) * t32;
         let t35 = t34 + k(1e-5) * t1 * (t3 * t28 - t11 * t27)
@@ -2618,7 +2596,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
         let t37 = k(1e-5) * (t20 * (k(0.000125) * t17))
             + k(5e-6) * (t21 * t17 + u2 * t17);
         let t38 = t1 * (k(10.0) * (t26 * t7)) - t0 * (t11 * t28 + t3 * t27);
-        let t39 = k(6.00125e-6) * (t31 * t3 + t11 * t30 + u0 * t13) - k(1e-5) * t38;
+        let t39 = k(6.00125e-6) * (t31 * t3 + t30 * t11 + u0 * t13) - k(1e-5) * t38;
         *out = [
             -t36,
             k(166631.95167673402) * (t39 - (t37 + k(1e-6) * (t20 * t17))),
@@ -2651,7 +2629,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
             t49,
             t50,
             t51,
-            t58,
+            t59,
             t103,
             t196,
             t199,
@@ -2714,13 +2692,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
             let t55 = k(1.0) - t1 * t52;
             let t56 = k(0.9424777960769379) * t2.cos();
             let t57 = t56 * t55 + t54 * t53;
-            let t58 = t56 * t38;
-            let t59 = k(15.791367041742975) * t7;
-            let t60 = t34 * t59 + t26 * t58;
-            let t61 = x0.cos();
+            let t58 = x0.cos();
+            let t59 = t56 * t38;
+            let t60 = k(15.791367041742975) * t7;
+            let t61 = t34 * t60 + t26 * t59;
             let t62 = x0.sin();
             let t63 = k(17.765287921960844) * t3;
-            let t64 = t63 * t62 - t61 * t60;
+            let t64 = t63 * t62 - t61 * t58;
             let t65 = t64 - u0 * t57;
             let t66 = k(0.5) * x1;
             let t67 = t66.sin();
@@ -2747,8 +2725,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
             let t88 = x1.cos();
             let t89 = x1.sin();
             let t90 = k(1e-6) + (t88 * (k(7.00125e-6) * t88) + t89 * (k(1e-6) * t89));
-            let t91 = t56 * t62 - t54 * t61;
-            let t92 = t56 * t61 + t54 * t62;
+            let t91 = t56 * t62 - t54 * t58;
+            let t92 = t56 * t58 + t54 * t62;
             let t93 = t86 * t88 - t89 * t91;
             let t94 = u1 * t93;
             let t95 = u1 + t92;
@@ -2762,10 +2740,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
             let t101 = k(10.0) * t25;
             let t102 = t64 - u0 * t92;
             let t103 = t56 * t34;
-            let t104 = t38 * t59 - t26 * t103;
+            let t104 = t38 * t60 - t26 * t103;
             let t105 = t104 * t90
                 - (t88 * (k(7.00125e-6) * t89) - t89 * (k(1e-6) * t88)) * t102;
-            let t106 = t105 + k(1e-5) * t88 * (t61 * t101 - t62 * t100)
+            let t106 = t105 + k(1e-5) * t88 * (t58 * t101 - t62 * t100)
                 + (t99 - k(1e-6) * (t92 * t91));
             let t107 = t104 - t106 / t90;
             let t108 = t89 * t107;
@@ -2799,11 +2777,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
             let t136 = u2 - t135;
             let t137 = t88 * t107 - t89 * t65 + u1 * t135;
             let t138 = x2.cos();
-            let t139 = t63 * t61 + t62 * t60;
+            let t139 = t63 * t58 + t61 * t62;
             let t140 = t139 + u0 * t82;
             let t141 = k(1e-5) * (t96 * (k(0.000125) * t93))
                 + k(5e-6) * (t97 * t93 + u2 * t93);
-            let t142 = t88 * (k(10.0) * (t30 * t34)) - t89 * (t62 * t101 + t61 * t100);
+            let t142 = t88 * (k(10.0) * (t30 * t34)) - t89 * (t62 * t101 + t58 * t100);
             let t143 = k(6.00125e-6) * (t139 + u0 * t91) - k(1e-5) * t142
                 - (t141 + k(1e-6) * (t96 * t93));
             let t144 = k(166631.95167673402) * t143 - t140;
@@ -2886,7 +2864,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
                 t49,
                 t50,
                 t51,
-                t58,
+                t59,
                 t103,
                 t196,
                 t199,
@@ -2895,7 +2873,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
         let (t200, t202) = {
             let t200 = (t199 * (t49 * t51) + t196 * (t44 * t51))
                 * (t31 * t29 + t27 * t23);
-            let t201 = t58 * (k(2.0) * (t36 + t35)) + (t38 * t27 - t30 * t103) * t29;
+            let t201 = t59 * (k(2.0) * (t36 + t35)) + (t38 * t27 - t30 * t103) * t29;
             let t202 = (t199 * (t47 * t51) + t196 * (t50 * t51))
                 * (t201 - (t38 * t31 + t25 * t103) * t23);
             (t200, t202)
@@ -3149,45 +3127,45 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
         let t15 = k(12.566370614359172) * t;
         let t16 = k(1.2566370614359172) * t15.cos();
         let t17 = t16 * t14 + outer_ring_wy;
-        let t18 = k(0.9424777960769379) * t11.cos();
-        let t19 = t15.sin();
-        let t20 = k(15.791367041742975) * t19;
-        let t21 = t13.cos();
-        let t22 = t21 * t20 + t16 * (t18 * t14);
-        let t23 = k(0.025) * t12;
-        let t24 = t23.cos();
-        let t25 = k(0.05) * t19;
-        let t26 = t25.sin();
-        let t27 = t26 * t24;
-        let t28 = t25.cos();
-        let t29 = t28 * t24;
-        let t30 = t23.sin();
-        let t31 = t28 * t30;
-        let t32 = t26 * t30;
-        let t33 = t32 * outer_ring_e0 - t31 * outer_ring_e1 + t29 * outer_ring_e2
+        let t18 = k(0.025) * t12;
+        let t19 = t18.cos();
+        let t20 = t15.sin();
+        let t21 = k(0.05) * t20;
+        let t22 = t21.sin();
+        let t23 = t22 * t19;
+        let t24 = t21.cos();
+        let t25 = t24 * t19;
+        let t26 = t18.sin();
+        let t27 = t24 * t26;
+        let t28 = t22 * t26;
+        let t29 = t28 * outer_ring_e0 - t27 * outer_ring_e1 + t25 * outer_ring_e2
+            + t23 * outer_ring_e3;
+        let t30 = k(2.0) * t29;
+        let t31 = k(1.0) - t29 * t30;
+        let t32 = k(0.9424777960769379) * t11.cos();
+        let t33 = k(15.791367041742975) * t20;
+        let t34 = t13.cos();
+        let t35 = t34 * t33 + t16 * (t32 * t14);
+        let t36 = t25 * outer_ring_e0 + t23 * outer_ring_e1 - t28 * outer_ring_e2
             + t27 * outer_ring_e3;
-        let t34 = k(2.0) * t33;
-        let t35 = k(1.0) - t33 * t34;
-        let t36 = t29 * outer_ring_e0 + t27 * outer_ring_e1 - t32 * outer_ring_e2
-            + t31 * outer_ring_e3;
-        let t37 = t36 * t34;
+        let t37 = t36 * t30;
         let t38 = k(17.765287921960844) * t12;
-        let t39 = t38 * t37 - t35 * t22 - outer_ring_wz * t17;
+        let t39 = t38 * t37 - t35 * t31 - outer_ring_wz * t17;
         let t40 = k(1e-6) + (t9 * (k(7.00125e-6) * t9) + t5 * (k(1e-6) * t5));
-        let t41 = t14 * t20 - t16 * (t18 * t21);
+        let t41 = t14 * t33 - t16 * (t32 * t34);
         let t42 = t41 * t40 + (t9 * (k(7.00125e-6) * t5) - t5 * (k(1e-6) * t9)) * t39;
-        let t43 = k(0.1) * t19;
+        let t43 = k(0.1) * t20;
         let t44 = t43.cos();
         let t45 = k(10.0) * (t44 * t14);
         let t46 = k(10.0) * t43.sin();
-        let t47 = k(1e-5) * t9 * (t35 * t46 - t37 * t45) + t42
+        let t47 = k(1e-5) * t9 * (t31 * t46 - t37 * t45) + t42
             + (k(1e-6) * (outer_ring_wx * outer_ring_wz) + t10);
         let t48 = t47 / t40;
         let t49 = k(1e-5) * (inner_ring_wx * (k(0.000125) * inner_ring_wy))
             - k(5e-6) * (inner_ring_wy * t7 - inner_ring_wy * t6);
-        let t50 = t9 * (k(10.0) * (t44 * t21)) + t5 * (t37 * t46 + t35 * t45);
+        let t50 = t9 * (k(10.0) * (t44 * t34)) + t5 * (t37 * t46 + t31 * t45);
         let t51 = k(1e-5) * t50
-            - k(6.00125e-6) * (t38 * t35 + t37 * t22 - outer_ring_wx * t17);
+            - k(6.00125e-6) * (t38 * t31 + t35 * t37 - outer_ring_wx * t17);
         *out = [
             -t48,
             -(k(166631.95167673402)
@@ -3195,7 +3173,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
             t1 + (t5 * (t41 - t48) - t9 * t39),
         ];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 246 operations (86 ±, 159 ×, 1 ÷) and 12 functions.
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 594 operations (235 ±, 354 ×, 5 ÷) and 8 functions.
     fn corrected_accelerations(
         &self,
         t: T,
@@ -3224,117 +3202,217 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = k(18.84955592153876) * t;
-        let t1 = t0.sin();
-        let t2 = k(0.05) * t1;
+        let t0 = outer_ring_e0 * outer_ring_e0;
+        let t1 = k(2.0) * (k(0.5) - (t0 + outer_ring_e2 * outer_ring_e2));
+        let t2 = k(18.84955592153876) * t;
         let t3 = t2.sin();
-        let t4 = k(12.566370614359172) * t;
-        let t5 = k(1.2566370614359172) * t4.cos();
-        let t6 = t5 * t3 + outer_ring_wy;
-        let t7 = k(0.9424777960769379) * t0.cos();
-        let t8 = t4.sin();
-        let t9 = k(15.791367041742975) * t8;
-        let t10 = t2.cos();
-        let t11 = t10 * t9 + t5 * (t7 * t3);
-        let t12 = k(0.025) * t1;
-        let t13 = t12.cos();
-        let t14 = k(0.05) * t8;
-        let t15 = t14.sin();
-        let t16 = t15 * t13;
-        let t17 = t14.cos();
-        let t18 = t17 * t13;
-        let t19 = t12.sin();
-        let t20 = t17 * t19;
-        let t21 = t15 * t19;
-        let t22 = t21 * outer_ring_e0 - t20 * outer_ring_e1 + t18 * outer_ring_e2
-            + t16 * outer_ring_e3;
-        let t23 = k(2.0) * t22;
-        let t24 = k(1.0) - t22 * t23;
-        let t25 = t18 * outer_ring_e0 + t16 * outer_ring_e1 - t21 * outer_ring_e2
-            + t20 * outer_ring_e3;
-        let t26 = t25 * t23;
-        let t27 = k(17.765287921960844) * t1;
-        let t28 = t27 * t26 - t24 * t11 - outer_ring_wz * t6;
-        let t29 = outer_ring_wz - inner_ring_wz;
-        let t30 = inner_ring_wy * t29;
-        let t31 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
-            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
-        let t32 = k(2.0) * t31;
-        let t33 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
-            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
-        let t34 = t33 * t32;
-        let t35 = inner_ring_wx - rotor_wx;
-        let t36 = inner_ring_wx - t35;
-        let t37 = k(0.000125) * inner_ring_wz;
-        let t38 = inner_ring_wx * t37;
-        let t39 = inner_ring_wx * t29;
-        let t40 = k(7.00125e-6) * t39
-            - (k(1e-5) * t38 - k(5e-6) * (inner_ring_wz * t36 - inner_ring_wz * t35));
-        let t41 = k(1.0) - t31 * t32;
-        let t42 = k(1e-6) * (outer_ring_wx * outer_ring_wz)
-            + (t41 * t40 + t34 * (k(1e-6) * (inner_ring_wy * inner_ring_wz + t30)));
-        let t43 = k(1e-6) + (t41 * (k(7.00125e-6) * t41) + t34 * (k(1e-6) * t34));
-        let t44 = t3 * t9 - t5 * (t7 * t10);
-        let t45 = t44 * t43
-            + (t41 * (k(7.00125e-6) * t34) - t34 * (k(1e-6) * t41)) * t28;
-        let t46 = k(0.1) * t8;
-        let t47 = t46.cos();
-        let t48 = k(10.0) * (t47 * t3);
-        let t49 = k(10.0) * t46.sin();
-        let t50 = k(1e-5) * t41 * (t24 * t49 - t26 * t48) + t45 + t42;
-        let t51 = t44 - t50 / t43;
-        let t52 = t27 * t24 + t26 * t11 - outer_ring_wx * t6;
-        let t53 = t39 + (t34 * t28 + t41 * t51);
-        let t54 = k(0.000125) * inner_ring_wy;
-        let t55 = inner_ring_wx * t54;
-        let t56 = k(1e-6) * (inner_ring_wx * inner_ring_wy)
-            + (k(1e-5) * t55 - k(5e-6) * (inner_ring_wy * t36 - inner_ring_wy * t35));
-        let t57 = t41 * (k(10.0) * (t47 * t10)) + t34 * (t26 * t49 + t24 * t48);
-        let t58 = t52
-            + k(166631.95167673402) * (k(1e-5) * t57 - k(6.00125e-6) * t52 + t56);
-        let t59 = k(0.000125) * t58;
-        let t60 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
-            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
-        let t61 = k(2.0) * t60;
-        let t62 = k(1.0) - t60 * t61;
-        let t63 = k(0.000125) * t53;
-        let t64 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
-            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
-        let t65 = t64 * t61;
-        let t66 = t65 * t38 - t62 * t55 - (t65 * t63 - t62 * t59);
-        let t67 = rotor_e0 * rotor_e3;
-        let t68 = rotor_e1 * rotor_e2;
-        let t69 = inner_ring_wy * t54 + inner_ring_wz * t37;
-        let t70 = rotor_e0 * rotor_e0;
-        let t71 = k(2.0) * (k(0.5) - (t70 + rotor_e1 * rotor_e1)) * t69
-            - k(2.0) * (t68 - t67) * t66;
-        let t72 = t62 * t38 + t65 * t55 - (t62 * t63 + t65 * t59);
+        let t4 = k(0.05) * t3;
+        let t5 = t4.sin();
+        let t6 = k(12.566370614359172) * t;
+        let t7 = t6.sin();
+        let t8 = k(0.1) * t7;
+        let t9 = t8.cos();
+        let t10 = t9 * t5;
+        let t11 = outer_ring_e0 * outer_ring_e3;
+        let t12 = outer_ring_e1 * outer_ring_e2;
+        let t13 = k(2.0) * (t12 - t11);
+        let t14 = t4.cos();
+        let t15 = outer_ring_e0 * outer_ring_e1;
+        let t16 = outer_ring_e2 * outer_ring_e3;
+        let t17 = k(2.0) * (t16 + t15);
+        let t18 = t8.sin();
+        let t19 = t18 * t5;
+        let t20 = k(1.2566370614359172) * t6.cos();
+        let t21 = t20 * t14;
+        let t22 = t9 * t14;
+        let t23 = t18 * t14;
+        let t24 = t23 * t17 - (t5 * t13 + t22 * t1);
+        let t25 = t20 * t5;
+        let t26 = t25 * t24 - t21 * (t19 * t17 + (t14 * t13 - t10 * t1));
+        let t27 = k(0.9424777960769379) * t2.cos();
+        let t28 = t27 * (t9 * t17 + t18 * t1) - t26;
+        let t29 = outer_ring_wy - t28;
+        let t30 = k(2.0) * (k(0.5) - (t0 + outer_ring_e3 * outer_ring_e3));
+        let t31 = k(2.0) * (t16 - t15);
+        let t32 = outer_ring_e0 * outer_ring_e2;
+        let t33 = outer_ring_e1 * outer_ring_e3;
+        let t34 = k(2.0) * (t33 + t32);
+        let t35 = t14 * t34 + t10 * t31 - t19 * t30;
+        let t36 = t5 * t34 - t22 * t31 + t23 * t30;
+        let t37 = t18 * t31 + t9 * t30;
+        let t38 = t27 * t37 - (t25 * t36 + t21 * t35);
+        let t39 = outer_ring_wz + t38;
+        let t40 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
+        let t41 = k(2.0) * (t12 + t11);
+        let t42 = k(2.0) * (t33 - t32);
+        let t43 = t19 * t42 + (t10 * t41 - t14 * t40);
+        let t44 = t23 * t42 + (t22 * t41 + t5 * t40);
+        let t45 = t18 * t41 - t9 * t42;
+        let t46 = t27 * t45 + (t25 * t44 - t21 * t43);
+        let t47 = outer_ring_wx + t46;
+        let t48 = (t47 * t47 + t39 * t39) / t24;
+        let t49 = k(15.791367041742975) * t7;
+        let t50 = t14 * t49 + t20 * (t27 * t5);
+        let t51 = t5 * t49 - t20 * (t27 * t14);
+        let t52 = k(17.765287921960844) * t3;
+        let t53 = outer_ring_wy * t38 + outer_ring_wz * t28
+            + (t52 * t45 + (t51 * t44 - t50 * t43));
+        let t54 = t53 + (t36 * t48 - t39 * t29);
+        let t55 = rotor_e0 * rotor_e3;
+        let t56 = rotor_e1 * rotor_e2;
+        let t57 = k(2.0) * (t56 - t55);
+        let t58 = inner_ring_e0 * inner_ring_e0;
+        let t59 = k(2.0) * (k(0.5) - (t58 + inner_ring_e1 * inner_ring_e1));
+        let t60 = rotor_e0 * rotor_e0;
+        let t61 = k(2.0) * (k(0.5) - (t60 + rotor_e2 * rotor_e2));
+        let t62 = inner_ring_e0 * inner_ring_e3;
+        let t63 = inner_ring_e1 * inner_ring_e2;
+        let t64 = k(2.0) * (t63 + t62);
+        let t65 = rotor_e0 * rotor_e1;
+        let t66 = rotor_e2 * rotor_e3;
+        let t67 = k(2.0) * (t66 + t65);
+        let t68 = inner_ring_e0 * inner_ring_e2;
+        let t69 = inner_ring_e1 * inner_ring_e3;
+        let t70 = k(2.0) * (t69 - t68);
+        let t71 = t70 * t67 - (t64 * t61 + t59 * t57);
+        let t72 = k(5e-6) * t71;
         let t73 = rotor_e0 * rotor_e2;
         let t74 = rotor_e1 * rotor_e3;
-        let t75 = k(2.0) * (t68 + t67) * t69
-            - k(2.0) * (k(0.5) - (t70 + rotor_e2 * rotor_e2)) * t66;
-        let t76 = rotor_e0 * rotor_e1;
-        let t77 = rotor_e2 * rotor_e3;
-        let t78 = k(2.0) * (t74 - t73) * t69 + k(2.0) * (t77 + t76) * t66;
+        let t75 = k(2.0) * (t74 + t73);
+        let t76 = k(2.0) * (t66 - t65);
+        let t77 = k(2.0) * (k(0.5) - (t60 + rotor_e3 * rotor_e3));
+        let t78 = t70 * t77 - (t64 * t76 - t59 * t75);
+        let t79 = k(5e-6) * t78;
+        let t80 = inner_ring_e0 * inner_ring_e1;
+        let t81 = inner_ring_e2 * inner_ring_e3;
+        let t82 = t81 - t80;
+        let t83 = k(2.0) * t82;
+        let t84 = t69 + t68;
+        let t85 = k(2.0) * t84;
+        let t86 = k(0.5) - (t58 + inner_ring_e3 * inner_ring_e3);
+        let t87 = k(2.0) * t86;
+        let t88 = t87 * t67 - (t85 * t57 - t83 * t61);
+        let t89 = t85 * t75 + t83 * t76 + t87 * t77;
+        let t90 = t89 * t79 + t88 * t72;
+        let t91 = k(1e-6)
+            + (k(1.25e-9) + (t89 * (k(5e-6) * t89) + t88 * (k(5e-6) * t88)));
+        let t92 = k(1.0) / t91;
+        let t93 = t92 * t90;
+        let t94 = t90 * t93 - (k(1e-6) + (t78 * t79 + t71 * t72));
+        let t95 = t17 * t70 - (t1 * t64 + t13 * t59);
+        let t96 = k(0.5) - (t58 + inner_ring_e2 * inner_ring_e2);
+        let t97 = k(2.0) * t96;
+        let t98 = t63 - t62;
+        let t99 = k(2.0) * t98;
+        let t100 = t81 + t80;
+        let t101 = k(2.0) * t100;
+        let t102 = t101 * t67 + (t99 * t57 + t97 * t61);
+        let t103 = t101 * t77 - (t99 * t75 - t97 * t76);
+        let t104 = k(5e-6) * t102;
+        let t105 = k(5e-6) * t103;
+        let t106 = t89 * t105 + t88 * t104;
+        let t107 = t106 * t93 - (t103 * t79 + t102 * t72);
+        let t108 = t17 * t101 + (t13 * t99 + t1 * t97);
+        let t109 = t90 - t91 * t93;
+        let t110 = t17 * t87 - (t13 * t85 - t1 * t83);
+        let t111 = t110 * t109 - (t108 * t107 + t95 * t94);
+        let t112 = t92 * t106;
+        let t113 = t106 * t112 - (k(2e-6) + (k(1.25e-9) + (t103 * t105 + t102 * t104)));
+        let t114 = t106 - t91 * t112;
+        let t115 = t110 * t114 - (t108 * t113 + t95 * t107);
+        let t116 = t108 * t114 + t95 * t109;
+        let t117 = k(2.0) * (k(0.5) - (t60 + rotor_e1 * rotor_e1));
+        let t118 = k(2.0) * (t56 + t55);
+        let t119 = k(2.0) * (t74 - t73);
+        let t120 = t70 * t119 + (t64 * t118 + t59 * t117);
+        let t121 = inner_ring_wy * (t101 * t119 - (t97 * t118 + t99 * t117))
+            + inner_ring_wx * t120;
+        let t122 = inner_ring_wz * (t87 * t119 - (t83 * t118 - t85 * t117)) - t121;
+        let t123 = rotor_wx + t122;
+        let t124 = inner_ring_wz * t89 - (inner_ring_wy * t103 + inner_ring_wx * t78);
+        let t125 = rotor_wz - t124;
+        let t126 = inner_ring_wz * t88 - (inner_ring_wy * t102 + inner_ring_wx * t71);
+        let t127 = rotor_wy + t126;
+        let t128 = (t127 * t127 + t125 * t125) / t120;
+        let t129 = rotor_wz * t122 + rotor_wx * t124 - (t78 * t128 - t125 * t123);
+        let t130 = k(5e-6) * (rotor_wx * rotor_wz + t129);
+        let t131 = rotor_wx * t126 - rotor_wy * t122 - (t71 * t128 + t127 * t123);
+        let t132 = k(5e-6) * (rotor_wx * rotor_wy - t131);
+        let t133 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
+        let t134 = inner_ring_wx * inner_ring_wy;
+        let t135 = inner_ring_wx * inner_ring_wz;
+        let t136 = t85 * t135 + (t99 * t134 + t59 * t133);
+        let t137 = k(1e-5) * t136;
+        let t138 = k(0.00025) * t98;
+        let t139 = t83 * t135 - (t97 * t134 + t64 * t133);
+        let t140 = k(0.8) + k(1e-5) * t139;
+        let t141 = k(0.00025) * t96;
+        let t142 = t87 * t135 - (t101 * t134 - t70 * t133);
+        let t143 = k(1e-5) * t142;
+        let t144 = k(0.00025) * t100;
+        let t145 = t144 * t143 + (t141 * t140 - t138 * t137) + (t89 * t132 + t88 * t130);
+        let t146 = k(1e-6) * t134 - t145;
+        let t147 = t92 * t146;
+        let t148 = t90 * t147
+            - (k(1e-6) * (inner_ring_wy * inner_ring_wz) - (t78 * t132 + t71 * t130));
+        let t149 = t42 * t87 - (t41 * t83 - t40 * t85);
+        let t150 = t34 * t85 + t31 * t83 + t30 * t87;
+        let t151 = outer_ring_wz * t150 - (outer_ring_wy * t110 + outer_ring_wx * t149);
+        let t152 = inner_ring_wz - t151;
+        let t153 = t42 * t101 - (t41 * t97 + t40 * t99);
+        let t154 = t30 * t101 - (t34 * t99 - t31 * t97);
+        let t155 = outer_ring_wz * t154 - (outer_ring_wy * t108 + outer_ring_wx * t153);
+        let t156 = inner_ring_wy + t155;
+        let t157 = t42 * t70 + (t41 * t64 + t40 * t59);
+        let t158 = t30 * t70 - (t31 * t64 - t34 * t59);
+        let t159 = outer_ring_wz * t158 - (outer_ring_wy * t95 + outer_ring_wx * t157);
+        let t160 = inner_ring_wx + t159;
+        let t161 = (t160 * t160 + t156 * t156) / t150;
+        let t162 = inner_ring_wy * t151 + inner_ring_wz * t155
+            + (t154 * t161 - t156 * t152);
+        let t163 = inner_ring_wz * t159 + inner_ring_wx * t151
+            + (t158 * t161 - t160 * t152);
+        let t164 = k(0.00025) * t84;
+        let t165 = k(0.00025) * t82;
+        let t166 = k(0.00025) * t86;
+        let t167 = t166 * t143 + (t165 * t140 + t164 * t137)
+            - (t103 * t132 + t102 * t130);
+        let t168 = t108 * (t113 * t163 - t107 * t162 - (t106 * t147 - t167));
+        let t169 = t110 * (t114 * t163 - t109 * t162 - (t146 - t91 * t147));
+        let t170 = t169 - (t168 + t95 * (t107 * t163 - t94 * t162 - t148));
+        let t171 = t108 * (t149 * t114 - (t153 * t113 + t157 * t107))
+            + t95 * (t149 * t109 - (t153 * t107 + t157 * t94));
+        let t172 = outer_ring_wx * t28 + outer_ring_wy * t46
+            - (t52 * t37 - (t51 * t36 + t50 * t35));
+        let t173 = t172 - (t44 * t48 + t47 * t29);
+        let t174 = (t150 * t116 + (t115 * t154 + t111 * t158)) * t173
+            + t54 * (t110 * (t153 * t114 + t157 * t109) + t171);
+        let t175 = (t174 + (k(1e-6) * (outer_ring_wx * outer_ring_wz) + t170))
+            / (k(1e-6) + (t110 * t116 + (t108 * t115 + t95 * t111)));
+        let t176 = t162 - (t158 * t173 - (t95 * t175 - t157 * t54));
+        let t177 = t163 + (t154 * t173 - (t108 * t175 - t153 * t54));
+        let t178 = t150 * t173 - (t110 * t175 - t149 * t54);
+        let t179 = t92 * (t146 - (t91 * t178 + (t106 * t177 - t90 * t176)));
+        let t180 = t178 + t179;
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            t28,
-            t51,
-            -t52,
+            t54,
+            -t175,
+            -t173,
             k(0.0),
             k(0.0),
             k(0.0),
-            -(t30 + (t34 * t51 - t41 * t28)),
-            t53,
-            -t58,
-            k(2.0) * (t74 + t73) * t72 + t71,
-            k(2.0) * (t77 - t76) * t72 - t75,
-            -(k(2.0) * (k(0.5) - (t70 + rotor_e3 * rotor_e3)) * t72 + t78),
+            -t176,
+            t177,
+            -t180,
+            k(0.000125) * t136 - (t138 * t180 + t164 * t177),
+            t141 * t180 - t165 * t177 + k(0.000125) * t139,
+            -(t144 * t180 - t166 * t177 + k(0.000125) * t142),
             k(0.0),
-            t65 * t58 + t62 * t53 - rotor_wz * t35,
-            rotor_wy * t35 - (t62 * t58 - t65 * t53),
+            t129 + (t88 * t180 + (t102 * t177 - t71 * t176)),
+            t131 - (t89 * t180 + (t103 * t177 - t78 * t176)),
         ];
     }
     /// Writes λ: 156 operations (60 ±, 96 ×, 0 ÷) and 6 functions.
@@ -3462,6 +3540,384 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
             -t4,
             t42,
             -t21,
+        ];
+    }
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 707 operations (280 ±, 422 ×, 5 ÷) and 12 functions.
+    fn corrected_solution(&self, t: T, y: &Self::State, out: &mut Self::Solution) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        let (
+            t3,
+            t7,
+            t54,
+            t135,
+            t137,
+            t141,
+            t144,
+            t147,
+            t167,
+            t168,
+            t169,
+            t176,
+            t178,
+            t179,
+            t180,
+            t183,
+            t184,
+            t185,
+            t186,
+            t187,
+            t188,
+            t189,
+            t190,
+            t191,
+            t192,
+            t193,
+            t196,
+            t197,
+            t199,
+        ) = {
+            let t0 = outer_ring_e0 * outer_ring_e0;
+            let t1 = k(2.0) * (k(0.5) - (t0 + outer_ring_e2 * outer_ring_e2));
+            let t2 = k(18.84955592153876) * t;
+            let t3 = t2.sin();
+            let t4 = k(0.05) * t3;
+            let t5 = t4.sin();
+            let t6 = k(12.566370614359172) * t;
+            let t7 = t6.sin();
+            let t8 = k(0.1) * t7;
+            let t9 = t8.cos();
+            let t10 = t9 * t5;
+            let t11 = outer_ring_e0 * outer_ring_e3;
+            let t12 = outer_ring_e1 * outer_ring_e2;
+            let t13 = k(2.0) * (t12 - t11);
+            let t14 = t4.cos();
+            let t15 = outer_ring_e0 * outer_ring_e1;
+            let t16 = outer_ring_e2 * outer_ring_e3;
+            let t17 = k(2.0) * (t16 + t15);
+            let t18 = t8.sin();
+            let t19 = t18 * t5;
+            let t20 = k(1.2566370614359172) * t6.cos();
+            let t21 = t20 * t14;
+            let t22 = t9 * t14;
+            let t23 = t18 * t14;
+            let t24 = t23 * t17 - (t5 * t13 + t22 * t1);
+            let t25 = t20 * t5;
+            let t26 = t25 * t24 - t21 * (t19 * t17 + (t14 * t13 - t10 * t1));
+            let t27 = k(0.9424777960769379) * t2.cos();
+            let t28 = t27 * (t9 * t17 + t18 * t1) - t26;
+            let t29 = outer_ring_wy - t28;
+            let t30 = k(2.0) * (k(0.5) - (t0 + outer_ring_e3 * outer_ring_e3));
+            let t31 = k(2.0) * (t16 - t15);
+            let t32 = outer_ring_e0 * outer_ring_e2;
+            let t33 = outer_ring_e1 * outer_ring_e3;
+            let t34 = k(2.0) * (t33 + t32);
+            let t35 = t14 * t34 + t10 * t31 - t19 * t30;
+            let t36 = t5 * t34 - t22 * t31 + t23 * t30;
+            let t37 = t18 * t31 + t9 * t30;
+            let t38 = t27 * t37 - (t25 * t36 + t21 * t35);
+            let t39 = outer_ring_wz + t38;
+            let t40 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
+            let t41 = k(2.0) * (t12 + t11);
+            let t42 = k(2.0) * (t33 - t32);
+            let t43 = t19 * t42 + (t10 * t41 - t14 * t40);
+            let t44 = t23 * t42 + (t22 * t41 + t5 * t40);
+            let t45 = t18 * t41 - t9 * t42;
+            let t46 = t27 * t45 + (t25 * t44 - t21 * t43);
+            let t47 = outer_ring_wx + t46;
+            let t48 = (t47 * t47 + t39 * t39) / t24;
+            let t49 = k(15.791367041742975) * t7;
+            let t50 = t14 * t49 + t20 * (t27 * t5);
+            let t51 = t5 * t49 - t20 * (t27 * t14);
+            let t52 = k(17.765287921960844) * t3;
+            let t53 = outer_ring_wy * t38 + outer_ring_wz * t28
+                + (t52 * t45 + (t51 * t44 - t50 * t43));
+            let t54 = t53 + (t36 * t48 - t39 * t29);
+            let t55 = rotor_e0 * rotor_e3;
+            let t56 = rotor_e1 * rotor_e2;
+            let t57 = k(2.0) * (t56 - t55);
+            let t58 = inner_ring_e0 * inner_ring_e0;
+            let t59 = k(2.0) * (k(0.5) - (t58 + inner_ring_e1 * inner_ring_e1));
+            let t60 = rotor_e0 * rotor_e0;
+            let t61 = k(2.0) * (k(0.5) - (t60 + rotor_e2 * rotor_e2));
+            let t62 = inner_ring_e0 * inner_ring_e3;
+            let t63 = inner_ring_e1 * inner_ring_e2;
+            let t64 = k(2.0) * (t63 + t62);
+            let t65 = rotor_e0 * rotor_e1;
+            let t66 = rotor_e2 * rotor_e3;
+            let t67 = k(2.0) * (t66 + t65);
+            let t68 = inner_ring_e0 * inner_ring_e2;
+            let t69 = inner_ring_e1 * inner_ring_e3;
+            let t70 = k(2.0) * (t69 - t68);
+            let t71 = t70 * t67 - (t64 * t61 + t59 * t57);
+            let t72 = k(5e-6) * t71;
+            let t73 = rotor_e0 * rotor_e2;
+            let t74 = rotor_e1 * rotor_e3;
+            let t75 = k(2.0) * (t74 + t73);
+            let t76 = k(2.0) * (t66 - t65);
+            let t77 = k(2.0) * (k(0.5) - (t60 + rotor_e3 * rotor_e3));
+            let t78 = t70 * t77 - (t64 * t76 - t59 * t75);
+            let t79 = k(5e-6) * t78;
+            let t80 = inner_ring_e0 * inner_ring_e1;
+            let t81 = inner_ring_e2 * inner_ring_e3;
+            let t82 = t81 - t80;
+            let t83 = k(2.0) * t82;
+            let t84 = t69 + t68;
+            let t85 = k(2.0) * t84;
+            let t86 = k(0.5) - (t58 + inner_ring_e3 * inner_ring_e3);
+            let t87 = k(2.0) * t86;
+            let t88 = t87 * t67 - (t85 * t57 - t83 * t61);
+            let t89 = t85 * t75 + t83 * t76 + t87 * t77;
+            let t90 = t89 * t79 + t88 * t72;
+            let t91 = k(1e-6)
+                + (k(1.25e-9) + (t89 * (k(5e-6) * t89) + t88 * (k(5e-6) * t88)));
+            let t92 = k(1.0) / t91;
+            let t93 = t92 * t90;
+            let t94 = t90 * t93 - (k(1e-6) + (t78 * t79 + t71 * t72));
+            let t95 = t17 * t70 - (t1 * t64 + t13 * t59);
+            let t96 = k(0.5) - (t58 + inner_ring_e2 * inner_ring_e2);
+            let t97 = k(2.0) * t96;
+            let t98 = t63 - t62;
+            let t99 = k(2.0) * t98;
+            let t100 = t81 + t80;
+            let t101 = k(2.0) * t100;
+            let t102 = t101 * t67 + (t99 * t57 + t97 * t61);
+            let t103 = t101 * t77 - (t99 * t75 - t97 * t76);
+            let t104 = k(5e-6) * t102;
+            let t105 = k(5e-6) * t103;
+            let t106 = t89 * t105 + t88 * t104;
+            let t107 = t106 * t93 - (t103 * t79 + t102 * t72);
+            let t108 = t17 * t101 + (t13 * t99 + t1 * t97);
+            let t109 = t90 - t91 * t93;
+            let t110 = t17 * t87 - (t13 * t85 - t1 * t83);
+            let t111 = t110 * t109 - (t108 * t107 + t95 * t94);
+            let t112 = t92 * t106;
+            let t113 = t106 * t112
+                - (k(2e-6) + (k(1.25e-9) + (t103 * t105 + t102 * t104)));
+            let t114 = t106 - t91 * t112;
+            let t115 = t110 * t114 - (t108 * t113 + t95 * t107);
+            let t116 = t108 * t114 + t95 * t109;
+            let t117 = k(2.0) * (k(0.5) - (t60 + rotor_e1 * rotor_e1));
+            let t118 = k(2.0) * (t56 + t55);
+            let t119 = k(2.0) * (t74 - t73);
+            let t120 = t70 * t119 + (t64 * t118 + t59 * t117);
+            let t121 = inner_ring_wy * (t101 * t119 - (t97 * t118 + t99 * t117))
+                + inner_ring_wx * t120;
+            let t122 = inner_ring_wz * (t87 * t119 - (t83 * t118 - t85 * t117)) - t121;
+            let t123 = rotor_wx + t122;
+            let t124 = inner_ring_wz * t89
+                - (inner_ring_wy * t103 + inner_ring_wx * t78);
+            let t125 = rotor_wz - t124;
+            let t126 = inner_ring_wz * t88
+                - (inner_ring_wy * t102 + inner_ring_wx * t71);
+            let t127 = rotor_wy + t126;
+            let t128 = (t127 * t127 + t125 * t125) / t120;
+            let t129 = rotor_wz * t122 + rotor_wx * t124 - (t78 * t128 - t125 * t123);
+            let t130 = rotor_wx * rotor_wz;
+            let t131 = k(5e-6) * (t130 + t129);
+            let t132 = rotor_wx * t126 - rotor_wy * t122 - (t71 * t128 + t127 * t123);
+            let t133 = rotor_wx * rotor_wy;
+            let t134 = k(5e-6) * (t133 - t132);
+            let t135 = inner_ring_wy * inner_ring_wz;
+            let t136 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
+            let t137 = inner_ring_wx * inner_ring_wy;
+            let t138 = inner_ring_wx * inner_ring_wz;
+            let t139 = t85 * t138 + (t99 * t137 + t59 * t136);
+            let t140 = k(1e-5) * t139;
+            let t141 = k(0.00025) * t98;
+            let t142 = t83 * t138 - (t97 * t137 + t64 * t136);
+            let t143 = k(0.8) + k(1e-5) * t142;
+            let t144 = k(0.00025) * t96;
+            let t145 = t87 * t138 - (t101 * t137 - t70 * t136);
+            let t146 = k(1e-5) * t145;
+            let t147 = k(0.00025) * t100;
+            let t148 = t147 * t146 + (t144 * t143 - t141 * t140)
+                + (t89 * t134 + t88 * t131);
+            let t149 = k(1e-6) * t137 - t148;
+            let t150 = t92 * t149;
+            let t151 = t90 * t150 - (k(1e-6) * t135 - (t78 * t134 + t71 * t131));
+            let t152 = t42 * t87 - (t41 * t83 - t40 * t85);
+            let t153 = t34 * t85 + t31 * t83 + t30 * t87;
+            let t154 = outer_ring_wz * t153
+                - (outer_ring_wy * t110 + outer_ring_wx * t152);
+            let t155 = inner_ring_wz - t154;
+            let t156 = t42 * t101 - (t41 * t97 + t40 * t99);
+            let t157 = t30 * t101 - (t34 * t99 - t31 * t97);
+            let t158 = outer_ring_wz * t157
+                - (outer_ring_wy * t108 + outer_ring_wx * t156);
+            let t159 = inner_ring_wy + t158;
+            let t160 = t42 * t70 + (t41 * t64 + t40 * t59);
+            let t161 = t30 * t70 - (t31 * t64 - t34 * t59);
+            let t162 = outer_ring_wz * t161
+                - (outer_ring_wy * t95 + outer_ring_wx * t160);
+            let t163 = inner_ring_wx + t162;
+            let t164 = (t163 * t163 + t159 * t159) / t153;
+            let t165 = inner_ring_wy * t154 + inner_ring_wz * t158
+                + (t157 * t164 - t159 * t155);
+            let t166 = inner_ring_wz * t162 + inner_ring_wx * t154
+                + (t161 * t164 - t163 * t155);
+            let t167 = k(0.00025) * t84;
+            let t168 = k(0.00025) * t82;
+            let t169 = k(0.00025) * t86;
+            let t170 = t169 * t146 + (t168 * t143 + t167 * t140)
+                - (t103 * t134 + t102 * t131);
+            let t171 = t108 * (t113 * t166 - t107 * t165 - (t106 * t150 - t170));
+            let t172 = t110 * (t114 * t166 - t109 * t165 - (t149 - t91 * t150));
+            let t173 = t172 - (t171 + t95 * (t107 * t166 - t94 * t165 - t151));
+            let t174 = t108 * (t152 * t114 - (t156 * t113 + t160 * t107))
+                + t95 * (t152 * t109 - (t156 * t107 + t160 * t94));
+            let t175 = outer_ring_wx * t28 + outer_ring_wy * t46
+                - (t52 * t37 - (t51 * t36 + t50 * t35));
+            let t176 = t175 - (t44 * t48 + t47 * t29);
+            let t177 = (t153 * t116 + (t115 * t157 + t111 * t161)) * t176
+                + t54 * (t110 * (t156 * t114 + t160 * t109) + t174);
+            let t178 = (t177 + (k(1e-6) * (outer_ring_wx * outer_ring_wz) + t173))
+                / (k(1e-6) + (t110 * t116 + (t108 * t115 + t95 * t111)));
+            let t179 = t165 - (t161 * t176 - (t95 * t178 - t160 * t54));
+            let t180 = t166 + (t157 * t176 - (t108 * t178 - t156 * t54));
+            let t181 = t153 * t176 - (t110 * t178 - t152 * t54);
+            let t182 = t92 * (t149 - (t91 * t181 + (t106 * t180 - t90 * t179)));
+            let t183 = t181 + t182;
+            let t184 = t141 * t183 + t167 * t180 - k(0.000125) * t139;
+            let t185 = t144 * t183 - t168 * t180 + k(0.000125) * t142;
+            let t186 = t147 * t183 - t169 * t180 + k(0.000125) * t145;
+            let t187 = t129 + (t88 * t183 + (t102 * t180 - t71 * t179));
+            let t188 = t132 - (t89 * t183 + (t103 * t180 - t78 * t179));
+            let t189 = k(0.08) * t184;
+            let t190 = k(0.8) + k(0.08) * t185;
+            let t191 = k(0.1) + t190;
+            let t192 = k(0.08) * t186;
+            let t193 = k(5e-6) * (t133 - t188);
+            let t194 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+                - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+            let t195 = k(2.0) * t194;
+            let t196 = k(1.0) - t194 * t195;
+            let t197 = k(5e-6) * (t130 + t187);
+            let t198 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+                + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+            let t199 = t198 * t195;
+            (
+                t3,
+                t7,
+                t54,
+                t135,
+                t137,
+                t141,
+                t144,
+                t147,
+                t167,
+                t168,
+                t169,
+                t176,
+                t178,
+                t179,
+                t180,
+                t183,
+                t184,
+                t185,
+                t186,
+                t187,
+                t188,
+                t189,
+                t190,
+                t191,
+                t192,
+                t193,
+                t196,
+                t197,
+                t199,
+            )
+        };
+        let (t200, t202, t216, t217, t218, t222, t223, t224, t225, t226, t227) = {
+            let t200 = t199 * t197 + t196 * t193;
+            let t201 = t141 * t189 + t144 * t190 + t147 * t192 + t200
+                - k(1e-6) * (t137 - t183);
+            let t202 = t201 + k(1e-6) * (outer_ring_wx * outer_ring_wy + t176);
+            let t203 = k(0.025) * t3;
+            let t204 = t203.cos();
+            let t205 = k(0.05) * t7;
+            let t206 = t205.sin();
+            let t207 = t206 * t204;
+            let t208 = t205.cos();
+            let t209 = t208 * t204;
+            let t210 = t203.sin();
+            let t211 = t208 * t210;
+            let t212 = t206 * t210;
+            let t213 = t212 * outer_ring_e0 - t211 * outer_ring_e1 + t209 * outer_ring_e2
+                + t207 * outer_ring_e3;
+            let t214 = k(2.0) * t213;
+            let t215 = t209 * outer_ring_e0 + t207 * outer_ring_e1 - t212 * outer_ring_e2
+                + t211 * outer_ring_e3;
+            let t216 = t215 * t214;
+            let t217 = t196 * t197 - t199 * t193;
+            let t218 = t167 * t189 - t168 * t190 - t169 * t192 + t217 + k(2e-6) * t180;
+            let t219 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+                + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+            let t220 = k(2.0) * t219;
+            let t221 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+                + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+            let t222 = t221 * t220;
+            let t223 = k(1e-6) * (t135 + t179);
+            let t224 = k(1.0) - t219 * t220;
+            let t225 = t224 * t223 - t222 * t218;
+            let t226 = t225 - k(2e-6) * t54;
+            let t227 = k(1.0) - t213 * t214;
+            (t200, t202, t216, t217, t218, t222, t223, t224, t225, t226, t227)
+        };
+        *out = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t54,
+            -t178,
+            -t176,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t179,
+            t180,
+            -t183,
+            -t184,
+            t185,
+            -t186,
+            k(0.0),
+            t187,
+            t188,
+            t189,
+            -(k(0.1) + t191),
+            t192,
+            t227 * t226 + t216 * t202,
+            t216 * t226 - t227 * t202,
+            t189,
+            -t191,
+            t192,
+            -(t222 * t223 + t224 * t218),
+            -t225,
+            t189,
+            -t190,
+            t192,
+            t200,
+            t217,
         ];
     }
 }

@@ -35,6 +35,7 @@
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 25 | 36 | 0 | 61 | 0 of 3 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 53 | 76 | 0 | 129 | 0 of 6 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 1 | 3 | 0 | 4 | 0 of 3 |
+//! | corrected_solution | both | 54 | 79 | 0 | 133 | 0 of 9 |
 //!
 //! # Proof
 //!
@@ -51,7 +52,7 @@
 //! * joint_derivative: eqs. (14) and (16) on the constraints
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
-//! * corrected_multipliers: eq. (17) on the constraints
+//! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //!
 //! All of it holds but with a probability below 1e-149.
 //! Not proved: the size of rounding errors.
@@ -718,18 +719,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Spherical<T> {
         let t58 = k(0.48695652173913045) * t56 - (t57 + k(147.15) * t48);
         let t59 = t11 + k(0.6) * t2;
         let t60 = t28 + k(0.6) * t23;
-        let t61 = t33
-            * (k(1.440918687224106) * t47 + (k(2.869565217391304) * t27 + k(15.0) * t60))
-            + t22
-                * (k(1.440918687224106) * t45
-                    + (k(2.869565217391304) * t6 - k(15.0) * t59));
-        let t62 = t42
-            * (k(1.440918687224106) * t49 + (k(2.869565217391304) * t36 - k(15.0) * t50))
-            + t61;
+        let t61 = (k(1.440918687224106) * t47
+            + (k(2.869565217391304) * t27 + k(15.0) * t60)) * t33
+            + (k(1.440918687224106) * t45 + (k(2.869565217391304) * t6 - k(15.0) * t59))
+                * t22;
+        let t62 = (k(1.440918687224106) * t49
+            + (k(2.869565217391304) * t36 - k(15.0) * t50)) * t42 + t61;
         let t63 = t62
             - (k(1.440918687224106) * t58
                 + (k(0.19130434782608696) * t56 + (t53 - k(147.15) * t50)));
-        let t64 = k(0.7882702418008584) * t63 + (t42 * t49 + (t33 * t47 + t22 * t45));
+        let t64 = k(0.7882702418008584) * t63 + (t49 * t42 + (t47 * t33 + t45 * t22));
         let t65 = t58 - t64;
         let t66 = k(0.21739130434782608)
             * (t56 - (k(0.3541843824989871) * t63 - k(1.6480071652485446) * t65 + t43));
@@ -766,12 +765,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Spherical<T> {
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Spherical<T> {
     type Joints = [T; 7];
     type Rates = [T; 3];
+    type Solution = [T; 9];
     fn joint_start(&self) -> Self::Joints {
         let k = T::constant;
         [k(1.0), k(0.0), k(0.0), k(0.0), k(3.0), k(20.0), k(-5.0)]
     }
     fn rates(&self) -> Self::Rates {
         [T::constant(0.0); 3]
+    }
+    fn solution(&self) -> Self::Solution {
+        [T::constant(0.0); 9]
     }
     /// Writes u̇: 61 operations (25 ±, 36 ×, 0 ÷).
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
@@ -1000,6 +1003,68 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Spherical<T> {
             -(k(15.0) * top_dsx),
             -(k(15.0) * top_dsy),
             -(k(147.15) + k(15.0) * top_dsz),
+        ];
+    }
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 133 operations (54 ±, 79 ×, 0 ÷).
+    fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
+        let k = T::constant;
+        let top_e0 = y[3];
+        let top_e1 = y[4];
+        let top_e2 = y[5];
+        let top_e3 = y[6];
+        let top_wx = y[10];
+        let top_wy = y[11];
+        let top_wz = y[12];
+        let t0 = k(1.53) * top_wy + k(0.88) * top_wx;
+        let t1 = top_e2 * top_e2;
+        let t2 = top_e1 * top_e1;
+        let t3 = k(0.5) - (t2 + t1);
+        let t4 = top_e0 * top_e2;
+        let t5 = top_e1 * top_e3;
+        let t6 = t5 - t4;
+        let t7 = k(2.24) * top_wy - k(0.88) * top_wz;
+        let t8 = top_wz * t7 + k(58.86) * t6 + k(88.29) * t3
+            + top_wx * (k(0.875) * top_wz + t0);
+        let t9 = k(1.53) * top_wz - k(2.24) * top_wx;
+        let t10 = top_e0 * top_e1;
+        let t11 = top_e2 * top_e3;
+        let t12 = t11 + t10;
+        let t13 = k(147.15) * t6 - k(88.29) * t12 - top_wy * t7
+            + top_wx * (k(2.15) * top_wy - t9);
+        let t14 = k(0.27945205479452057) * t13 - t8;
+        let t15 = top_wy * t0 + k(58.86) * t12 + k(147.15) * t3
+            - top_wz * (t9 - k(3.025) * top_wy);
+        let t16 = k(1.2291686422194827) * t14 + (k(0.16073059360730593) * t13 + t15);
+        let t17 = k(0.876134676932097) * t16 + k(0.49445264769232855) * t14;
+        let t18 = k(0.27945205479452057) * t17
+            + (k(0.11456657928481043) * t16 + k(0.182648401826484) * t13);
+        let t19 = k(0.3) * top_wz + k(0.2) * top_wx;
+        let t20 = k(0.5) * top_wx - k(0.3) * top_wy;
+        let t21 = top_wy * t20 - top_wz * t19 - (k(0.5) * t18 - k(0.2) * t17);
+        let t22 = top_e0 * top_e0;
+        let t23 = k(0.2) * top_wy + k(0.5) * top_wz;
+        let t24 = top_wz * t23 + top_wx * t20
+            - (k(0.3) * t18 - k(0.14255727763280387) * t16);
+        let t25 = top_e0 * top_e3;
+        let t26 = top_e1 * top_e2;
+        let t27 = k(2.0) * (t26 - t25) * t24 + k(2.0) * (k(0.5) - (t22 + t2)) * t21;
+        let t28 = top_wx * t19 + top_wy * t23
+            + (k(0.3) * t17 - k(0.3563931940820097) * t16);
+        let t29 = k(2.0) * (t5 + t4) * t28 - t27;
+        let t30 = k(2.0) * (k(0.5) - (t22 + t1)) * t24 + k(2.0) * (t26 + t25) * t21;
+        let t31 = k(2.0) * (t11 - t10) * t28 + t30;
+        let t32 = k(2.0) * (k(0.5) - (t22 + top_e3 * top_e3)) * t28
+            + (k(2.0) * t12 * t24 - k(2.0) * t6 * t21);
+        *out = [
+            t29,
+            t31,
+            -t32,
+            -(k(0.7127863881640194) * t16),
+            -t17,
+            t18,
+            -(k(15.0) * t29),
+            -(k(15.0) * t31),
+            k(15.0) * t32 - k(147.15),
         ];
     }
 }
