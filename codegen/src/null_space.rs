@@ -336,8 +336,41 @@ pub struct EliminatedJoint {
 #[derive(Debug)]
 struct Step {
     twist: Twist,
+    /// Which component the twist is, if it is only one: what becomes zero there is then not computed.
+    component: Option<Component>,
     resistance: Twist,
     inverse: ExprId,
+}
+
+/// A component of a twist or wrench.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Component {
+    T(usize),
+    Rho(usize),
+}
+
+impl Component {
+    /// The component along which a twist is one, all others being zero.
+    fn of(twist: &Twist) -> Option<Self> {
+        let all = (0..3).map(Self::T).chain((0..3).map(Self::Rho));
+        let mut others = all.filter(|component| *component.get(twist) != Graph::ZERO);
+        let first = others.next()?;
+        (others.next().is_none() && *first.get(twist) == Graph::ONE).then_some(first)
+    }
+
+    fn get(self, twist: &Twist) -> &ExprId {
+        match self {
+            Self::T(k) => &twist.t[k],
+            Self::Rho(k) => &twist.rho[k],
+        }
+    }
+
+    fn set(self, twist: &mut Twist, value: ExprId) {
+        match self {
+            Self::T(k) => twist.t[k] = value,
+            Self::Rho(k) => twist.rho[k] = value,
+        }
+    }
 }
 
 impl EliminatedJoint {
@@ -349,7 +382,8 @@ impl EliminatedJoint {
         for twist in &freedom.free {
             let resistance = rest.times(graph, twist);
             let pivot = twist.dot(graph, &resistance);
-            let step = Step { twist: *twist, resistance, inverse: graph.recip(pivot) };
+            let (component, inverse) = (Component::of(twist), graph.recip(pivot));
+            let step = Step { twist: *twist, component, resistance, inverse };
             rest = step.eliminate(graph, &rest);
             steps.push(step);
         }
@@ -373,6 +407,9 @@ impl EliminatedJoint {
             let share = graph.mul(load, step.inverse);
             let reaction = step.resistance.scaled(graph, share).negated(graph);
             bias = bias.plus(graph, &reaction);
+            if let Some(component) = step.component {
+                component.set(&mut bias, along.get(k).copied().unwrap_or(Graph::ZERO));
+            }
             loads.push(load);
         }
         let Some(parent) = self.freedom.parent else { return (loads, Twist::ZERO) };
@@ -396,10 +433,7 @@ impl EliminatedJoint {
         }
         let mut rates = Vec::new();
         for (step, load) in self.steps.iter().zip(loads).rev() {
-            let rate = step.release(graph, &motion, *load);
-            let yielded = step.twist.scaled(graph, rate);
-            motion = motion.plus(graph, &yielded);
-            rates.push(rate);
+            rates.push(step.release(graph, &mut motion, *load));
         }
         rates.reverse();
         let arm = Arm::on_body(graph, &self.freedom);
@@ -412,20 +446,46 @@ impl Step {
     fn eliminate(&self, graph: &mut Graph, body: &Inertia) -> Inertia {
         let u = self.resistance;
         let factor = u.scaled(graph, self.inverse);
-        Inertia {
+        let mut rest = Inertia {
             mass: body.mass,
             linear: less_product(graph, &body.linear, &factor.t, &u.t, Symmetry::Symmetric),
             coupling: less_product(graph, &body.coupling, &factor.t, &u.rho, Symmetry::None),
             angular: less_product(graph, &body.angular, &factor.rho, &u.rho, Symmetry::Symmetric),
+        };
+        // Nothing resists the twist any more.
+        match self.component {
+            Some(Component::T(k)) => {
+                (0..3).for_each(|other| {
+                    (rest.linear[k][other], rest.linear[other][k]) = (Graph::ZERO, Graph::ZERO)
+                });
+                rest.linear[k][k] = graph.neg(body.mass);
+                rest.coupling[k] = ZERO3;
+            }
+            Some(Component::Rho(k)) => {
+                (0..3).for_each(|other| {
+                    (rest.angular[k][other], rest.angular[other][k]) = (Graph::ZERO, Graph::ZERO)
+                });
+                rest.coupling.iter_mut().for_each(|row| row[k] = Graph::ZERO);
+            }
+            None => {}
         }
+        rest
     }
 
-    /// How fast the twist accelerates, yielding to the load and to the acceleration so far.
-    fn release(&self, graph: &mut Graph, motion: &Twist, load: ExprId) -> ExprId {
+    /// How fast the twist accelerates, yielding to the load and to the acceleration so far, to which its own is added.
+    fn release(&self, graph: &mut Graph, motion: &mut Twist, load: ExprId) -> ExprId {
+        let own = self.component.map(|component| *component.get(motion));
+        if let Some(component) = self.component {
+            // It does not matter how fast the body would accelerate along a twist that is free.
+            component.set(motion, Graph::ZERO);
+        }
         let inertial = self.resistance.dot(graph, motion);
         let resisting = graph.add(inertial, load);
-        let rate = graph.mul(resisting, self.inverse);
-        graph.neg(rate)
+        let resisted = graph.mul(resisting, self.inverse);
+        let rate = graph.neg(resisted);
+        let yielded = self.twist.scaled(graph, rate);
+        *motion = motion.plus(graph, &yielded);
+        own.map_or(rate, |own| graph.sub(rate, own))
     }
 }
 

@@ -18,7 +18,7 @@
 //! | gamma | γ | 135 | 216 | 0 | 351 | 6 of 15 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 94 | 139 | 0 | 233 | 0 of 15 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 211 | 310 | 5 | 526 | 7 of 18 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 192 | 289 | 5 | 486 | 7 of 18 |
 //! | multipliers | λ, the accelerations being known | 116 | 193 | 3 | 312 | 0 of 15 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 121 | 210 | 1 | 332 | 0 of 22 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
@@ -30,10 +30,10 @@
 //! | joint_derivative | ẋ but for u̇ | 160 | 287 | 2 | 449 | 0 of 4 |
 //! | to_maximal | (q, v) of a joint state | 32 | 72 | 0 | 104 | 12 of 39 |
 //! | to_joints | (x, u) of a maximal state | 65 | 77 | 0 | 142 | 0 of 6 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 34 | 71 | 1 | 106 | 0 of 3 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 211 | 310 | 5 | 526 | 7 of 18 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 34 | 70 | 1 | 105 | 0 of 3 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 192 | 289 | 5 | 486 | 7 of 18 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 56 | 86 | 0 | 142 | 0 of 15 |
-//! | corrected_solution | both | 252 | 369 | 5 | 626 | 7 of 33 |
+//! | corrected_solution | both | 233 | 348 | 5 | 586 | 7 of 33 |
 //!
 //! # Proof
 //!
@@ -1995,7 +1995,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenGyroscope<T> {
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 526 operations (211 ±, 310 ×, 5 ÷) and 4 functions.
+    /// Solves eq. (17): 486 operations (192 ±, 289 ×, 5 ÷) and 4 functions.
     fn accelerations(&self, t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2104,106 +2104,97 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenGyroscope<T> {
         let t80 = t63 * t79 + t62 * t78;
         let t81 = t80 * t67 - (t77 * t53 + t76 * t46);
         let t82 = t25 * t75 + (t2 * t73 + t24 * t71);
-        let t83 = t64 - t65 * t67;
-        let t84 = t25 * t61 - (t2 * t59 - t24 * t57);
-        let t85 = t84 * t83 - (t82 * t81 + t69 * t68);
-        let t86 = t66 * t80;
-        let t87 = t80 * t86 - (k(2e-6) + (k(1.25e-9) + (t77 * t79 + t76 * t78)));
-        let t88 = t80 - t65 * t86;
-        let t89 = t84 * t88 - (t82 * t87 + t69 * t81);
-        let t90 = t82 * t88 + t69 * t83;
-        let t91 = k(2.0) * (k(0.5) - (t34 + rotor_e1 * rotor_e1));
-        let t92 = k(2.0) * (t30 + t29);
-        let t93 = k(2.0) * (t48 - t47);
-        let t94 = t44 * t93 + (t38 * t92 + t33 * t91);
-        let t95 = inner_ring_wy * (t75 * t93 - (t71 * t92 + t73 * t91))
-            + inner_ring_wx * t94;
-        let t96 = inner_ring_wz * (t61 * t93 - (t57 * t92 - t59 * t91)) - t95;
-        let t97 = rotor_wx + t96;
-        let t98 = inner_ring_wz * t63 - (inner_ring_wy * t77 + inner_ring_wx * t52);
-        let t99 = rotor_wz - t98;
-        let t100 = inner_ring_wz * t62 - (inner_ring_wy * t76 + inner_ring_wx * t45);
-        let t101 = rotor_wy + t100;
-        let t102 = (t101 * t101 + t99 * t99) / t94;
-        let t103 = rotor_wz * t96 + rotor_wx * t98 - (t52 * t102 - t99 * t97);
-        let t104 = k(5e-6) * (rotor_wx * rotor_wz + t103);
-        let t105 = rotor_wx * t100 - rotor_wy * t96 - (t45 * t102 + t101 * t97);
-        let t106 = k(5e-6) * (rotor_wx * rotor_wy - t105);
-        let t107 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
-        let t108 = inner_ring_wx * inner_ring_wy;
-        let t109 = inner_ring_wx * inner_ring_wz;
-        let t110 = t59 * t109 + (t73 * t108 + t33 * t107);
-        let t111 = k(1e-5) * t110;
-        let t112 = k(0.00025) * t72;
-        let t113 = t57 * t109 - (t71 * t108 + t38 * t107);
-        let t114 = k(0.8) + k(1e-5) * t113;
-        let t115 = k(0.00025) * t70;
-        let t116 = t61 * t109 - (t75 * t108 - t44 * t107);
-        let t117 = k(1e-5) * t116;
-        let t118 = k(0.00025) * t74;
-        let t119 = t118 * t117 + (t115 * t114 - t112 * t111) + (t63 * t106 + t62 * t104);
-        let t120 = k(1e-6) * t108 - t119;
-        let t121 = t66 * t120;
-        let t122 = t64 * t121
-            - (k(1e-6) * (inner_ring_wy * inner_ring_wz) - (t52 * t106 + t45 * t104));
-        let t123 = k(2.0) * (t1 + t0);
-        let t124 = k(2.0) * (t8 - t7);
-        let t125 = t124 * t61 - (t123 * t57 - t21 * t59);
-        let t126 = t9 * t59 + t19 * t57 + t13 * t61;
-        let t127 = outer_ring_wz * t126 - (outer_ring_wy * t84 + outer_ring_wx * t125);
-        let t128 = inner_ring_wz - t127;
-        let t129 = t124 * t75 - (t123 * t71 + t21 * t73);
-        let t130 = t13 * t75 - (t9 * t73 - t19 * t71);
-        let t131 = outer_ring_wz * t130 - (outer_ring_wy * t82 + outer_ring_wx * t129);
-        let t132 = inner_ring_wy + t131;
-        let t133 = t124 * t44 + (t123 * t38 + t21 * t33);
-        let t134 = t13 * t44 - (t19 * t38 - t9 * t33);
-        let t135 = outer_ring_wz * t134 - (outer_ring_wy * t69 + outer_ring_wx * t133);
-        let t136 = inner_ring_wx + t135;
-        let t137 = (t136 * t136 + t132 * t132) / t126;
-        let t138 = inner_ring_wy * t127 + inner_ring_wz * t131
-            + (t130 * t137 - t132 * t128);
-        let t139 = inner_ring_wz * t135 + inner_ring_wx * t127
-            + (t134 * t137 - t136 * t128);
-        let t140 = k(0.00025) * t58;
-        let t141 = k(0.00025) * t56;
-        let t142 = k(0.00025) * t60;
-        let t143 = t142 * t117 + (t141 * t114 + t140 * t111) - (t77 * t106 + t76 * t104);
-        let t144 = t82 * (t87 * t139 - t81 * t138 - (t80 * t121 - t143));
-        let t145 = t84 * (t88 * t139 - t83 * t138 - (t120 - t65 * t121));
-        let t146 = t145 - (t144 + t69 * (t81 * t139 - t68 * t138 - t122));
-        let t147 = t82 * (t125 * t88 - (t129 * t87 + t133 * t81))
-            + t69 * (t125 * t83 - (t129 * t81 + t133 * t68));
-        let t148 = outer_ring_wx * t5 + outer_ring_wy * t22 + t9 * t27
-            - ((t20 * t123 + t16 * t124) * t26 + t23 * t6);
-        let t149 = (t126 * t90 + (t89 * t130 + t85 * t134)) * t148
-            - t28 * (t84 * (t129 * t88 + t133 * t83) + t147);
-        let t150 = (t149 + (k(1e-6) * (outer_ring_wx * outer_ring_wz) + t146))
-            / (k(1e-6) + (t84 * t90 + (t82 * t89 + t69 * t85)));
-        let t151 = t138 - (t134 * t148 - (t69 * t150 + t133 * t28));
-        let t152 = t139 + (t130 * t148 - (t82 * t150 + t129 * t28));
-        let t153 = t126 * t148 - (t84 * t150 + t125 * t28);
-        let t154 = t66 * (t120 - (t65 * t153 + (t80 * t152 - t64 * t151)));
-        let t155 = t153 + t154;
+        let t83 = t82 * t81 + t69 * t68;
+        let t84 = t80 * (t66 * t80) - (k(2e-6) + (k(1.25e-9) + (t77 * t79 + t76 * t78)));
+        let t85 = t82 * t84 + t69 * t81;
+        let t86 = k(2.0) * (k(0.5) - (t34 + rotor_e1 * rotor_e1));
+        let t87 = k(2.0) * (t30 + t29);
+        let t88 = k(2.0) * (t48 - t47);
+        let t89 = t44 * t88 + (t38 * t87 + t33 * t86);
+        let t90 = inner_ring_wy * (t75 * t88 - (t71 * t87 + t73 * t86))
+            + inner_ring_wx * t89;
+        let t91 = inner_ring_wz * (t61 * t88 - (t57 * t87 - t59 * t86)) - t90;
+        let t92 = rotor_wx + t91;
+        let t93 = inner_ring_wz * t63 - (inner_ring_wy * t77 + inner_ring_wx * t52);
+        let t94 = rotor_wz - t93;
+        let t95 = inner_ring_wz * t62 - (inner_ring_wy * t76 + inner_ring_wx * t45);
+        let t96 = rotor_wy + t95;
+        let t97 = (t96 * t96 + t94 * t94) / t89;
+        let t98 = rotor_wz * t91 + rotor_wx * t93 - (t52 * t97 - t94 * t92);
+        let t99 = k(5e-6) * (rotor_wx * rotor_wz + t98);
+        let t100 = rotor_wx * t95 - rotor_wy * t91 - (t45 * t97 + t96 * t92);
+        let t101 = k(5e-6) * (rotor_wx * rotor_wy - t100);
+        let t102 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
+        let t103 = inner_ring_wx * inner_ring_wy;
+        let t104 = inner_ring_wx * inner_ring_wz;
+        let t105 = t59 * t104 + (t73 * t103 + t33 * t102);
+        let t106 = k(1e-5) * t105;
+        let t107 = k(0.00025) * t72;
+        let t108 = t57 * t104 - (t71 * t103 + t38 * t102);
+        let t109 = k(0.8) + k(1e-5) * t108;
+        let t110 = k(0.00025) * t70;
+        let t111 = t61 * t104 - (t75 * t103 - t44 * t102);
+        let t112 = k(1e-5) * t111;
+        let t113 = k(0.00025) * t74;
+        let t114 = t113 * t112 + (t110 * t109 - t107 * t106) + (t63 * t101 + t62 * t99);
+        let t115 = k(1e-6) * t103 - t114;
+        let t116 = t66 * t115;
+        let t117 = t64 * t116
+            - (k(1e-6) * (inner_ring_wy * inner_ring_wz) - (t52 * t101 + t45 * t99));
+        let t118 = k(2.0) * (t1 + t0);
+        let t119 = k(2.0) * (t8 - t7);
+        let t120 = outer_ring_wy * (t25 * t61 - (t2 * t59 - t24 * t57))
+            + outer_ring_wx * (t119 * t61 - (t118 * t57 - t21 * t59));
+        let t121 = t9 * t59 + t19 * t57 + t13 * t61;
+        let t122 = outer_ring_wz * t121 - t120;
+        let t123 = inner_ring_wz - t122;
+        let t124 = t119 * t75 - (t118 * t71 + t21 * t73);
+        let t125 = t13 * t75 - (t9 * t73 - t19 * t71);
+        let t126 = outer_ring_wz * t125 - (outer_ring_wy * t82 + outer_ring_wx * t124);
+        let t127 = inner_ring_wy + t126;
+        let t128 = t119 * t44 + (t118 * t38 + t21 * t33);
+        let t129 = t13 * t44 - (t19 * t38 - t9 * t33);
+        let t130 = outer_ring_wz * t129 - (outer_ring_wy * t69 + outer_ring_wx * t128);
+        let t131 = inner_ring_wx + t130;
+        let t132 = (t131 * t131 + t127 * t127) / t121;
+        let t133 = inner_ring_wy * t122 + inner_ring_wz * t126
+            + (t125 * t132 - t127 * t123);
+        let t134 = inner_ring_wz * t130 + inner_ring_wx * t122
+            + (t129 * t132 - t131 * t123);
+        let t135 = k(0.00025) * t58;
+        let t136 = k(0.00025) * t56;
+        let t137 = k(0.00025) * t60;
+        let t138 = t137 * t112 + (t136 * t109 + t135 * t106) - (t77 * t101 + t76 * t99);
+        let t139 = t82 * (t84 * t134 - t81 * t133 - (t80 * t116 - t138));
+        let t140 = k(1e-6) * (outer_ring_wx * outer_ring_wz)
+            - (t139 + t69 * (t81 * t134 - t68 * t133 - t117));
+        let t141 = t82 * (t124 * t84 + t128 * t81) + t69 * (t124 * t81 + t128 * t68);
+        let t142 = outer_ring_wx * t5 + outer_ring_wy * t22 + t9 * t27
+            - ((t20 * t118 + t16 * t119) * t26 + t23 * t6);
+        let t143 = (t85 * t125 + t83 * t129) * t142 - t28 * t141 - t140;
+        let t144 = t143 / (k(1e-6) - (t82 * t85 + t69 * t83));
+        let t145 = t133 - (t129 * t142 + (t69 * t144 - t128 * t28));
+        let t146 = t134 + (t125 * t142 + (t82 * t144 - t124 * t28));
+        let t147 = t66 * (t115 - (t80 * t146 - t64 * t145));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t28,
-            -t150,
-            -t148,
+            t144,
+            -t142,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t151,
-            t152,
-            -t155,
-            k(0.000125) * t110 - (t112 * t155 + t140 * t152),
-            t115 * t155 - t141 * t152 + k(0.000125) * t113,
-            -(t118 * t155 - t142 * t152 + k(0.000125) * t116),
+            -t145,
+            t146,
+            -t147,
+            k(0.000125) * t105 - (t107 * t147 + t135 * t146),
+            t110 * t147 - t136 * t146 + k(0.000125) * t108,
+            -(t113 * t147 - t137 * t146 + k(0.000125) * t111),
             k(0.0),
-            t103 + (t62 * t155 + (t76 * t152 - t45 * t151)),
-            t105 - (t63 * t155 + (t77 * t152 - t52 * t151)),
+            t98 + (t62 * t147 + (t76 * t146 - t45 * t145)),
+            t100 - (t63 * t147 + (t77 * t146 - t52 * t145)),
         ];
     }
     /// Writes λ: 312 operations (116 ±, 193 ×, 3 ÷) and 3 functions.
@@ -2803,7 +2794,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for DrivenGyroscope<T> {
         x[5] = rotor_wx - inner_ring_wx;
         x[6] = y[39];
     }
-    /// Writes u̇ at a state that satisfies the constraints: 106 operations (34 ±, 71 ×, 1 ÷) and 5 functions.
+    /// Writes u̇ at a state that satisfies the constraints: 105 operations (34 ±, 70 ×, 1 ÷) and 5 functions.
     fn joint_accelerations_at(&self, t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2851,15 +2842,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for DrivenGyroscope<T> {
             - (t9 * (k(7.00125e-6) * t5) - t5 * (k(1e-6) * t9)) * t19;
         let t23 = (t22 + (k(1e-6) * (outer_ring_wx * outer_ring_wz) + t10))
             / (k(1e-6) + (t9 * (k(7.00125e-6) * t9) + t5 * (k(1e-6) * t5)));
-        let t24 = k(1e-5) * (inner_ring_wx * (k(0.000125) * inner_ring_wy))
+        let t24 = (t14 * outer_ring_e0 + t13 * outer_ring_e1) * t16;
+        let t25 = k(1e-5) * (inner_ring_wx * (k(0.000125) * inner_ring_wy))
             - k(5e-6) * (inner_ring_wy * t7 - inner_ring_wy * t6);
-        let t25 = (t14 * outer_ring_e0 + t13 * outer_ring_e1) * t16;
-        let t26 = k(1e-5) * (t9 * (k(10.0) * t20.cos()) + t5 * (t25 * t21));
-        let t27 = t26 + k(6.00125e-6) * (outer_ring_wx * outer_ring_wy - t18 * t25)
-            + (k(1e-6) * (inner_ring_wx * inner_ring_wy) + t24);
-        *out = [-t23, -(k(166631.95167673402) * t27), t1 - (t5 * t23 - t9 * t19)];
+        let t26 = k(1e-5) * (t9 * (k(10.0) * t20.cos()) + t5 * (t24 * t21));
+        let t27 = k(166631.95167673402)
+            * (t26 + (k(1e-6) * (inner_ring_wx * inner_ring_wy) + t25))
+            + (outer_ring_wx * outer_ring_wy - t18 * t24);
+        *out = [-t23, -t27, t1 - (t5 * t23 - t9 * t19)];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 526 operations (211 ±, 310 ×, 5 ÷) and 4 functions.
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 486 operations (192 ±, 289 ×, 5 ÷) and 4 functions.
     fn corrected_accelerations(
         &self,
         t: T,
@@ -2973,106 +2965,97 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for DrivenGyroscope<T> {
         let t80 = t63 * t79 + t62 * t78;
         let t81 = t80 * t67 - (t77 * t53 + t76 * t46);
         let t82 = t25 * t75 + (t2 * t73 + t24 * t71);
-        let t83 = t64 - t65 * t67;
-        let t84 = t25 * t61 - (t2 * t59 - t24 * t57);
-        let t85 = t84 * t83 - (t82 * t81 + t69 * t68);
-        let t86 = t66 * t80;
-        let t87 = t80 * t86 - (k(2e-6) + (k(1.25e-9) + (t77 * t79 + t76 * t78)));
-        let t88 = t80 - t65 * t86;
-        let t89 = t84 * t88 - (t82 * t87 + t69 * t81);
-        let t90 = t82 * t88 + t69 * t83;
-        let t91 = k(2.0) * (k(0.5) - (t34 + rotor_e1 * rotor_e1));
-        let t92 = k(2.0) * (t30 + t29);
-        let t93 = k(2.0) * (t48 - t47);
-        let t94 = t44 * t93 + (t38 * t92 + t33 * t91);
-        let t95 = inner_ring_wy * (t75 * t93 - (t71 * t92 + t73 * t91))
-            + inner_ring_wx * t94;
-        let t96 = inner_ring_wz * (t61 * t93 - (t57 * t92 - t59 * t91)) - t95;
-        let t97 = rotor_wx + t96;
-        let t98 = inner_ring_wz * t63 - (inner_ring_wy * t77 + inner_ring_wx * t52);
-        let t99 = rotor_wz - t98;
-        let t100 = inner_ring_wz * t62 - (inner_ring_wy * t76 + inner_ring_wx * t45);
-        let t101 = rotor_wy + t100;
-        let t102 = (t101 * t101 + t99 * t99) / t94;
-        let t103 = rotor_wz * t96 + rotor_wx * t98 - (t52 * t102 - t99 * t97);
-        let t104 = k(5e-6) * (rotor_wx * rotor_wz + t103);
-        let t105 = rotor_wx * t100 - rotor_wy * t96 - (t45 * t102 + t101 * t97);
-        let t106 = k(5e-6) * (rotor_wx * rotor_wy - t105);
-        let t107 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
-        let t108 = inner_ring_wx * inner_ring_wy;
-        let t109 = inner_ring_wx * inner_ring_wz;
-        let t110 = t59 * t109 + (t73 * t108 + t33 * t107);
-        let t111 = k(1e-5) * t110;
-        let t112 = k(0.00025) * t72;
-        let t113 = t57 * t109 - (t71 * t108 + t38 * t107);
-        let t114 = k(0.8) + k(1e-5) * t113;
-        let t115 = k(0.00025) * t70;
-        let t116 = t61 * t109 - (t75 * t108 - t44 * t107);
-        let t117 = k(1e-5) * t116;
-        let t118 = k(0.00025) * t74;
-        let t119 = t118 * t117 + (t115 * t114 - t112 * t111) + (t63 * t106 + t62 * t104);
-        let t120 = k(1e-6) * t108 - t119;
-        let t121 = t66 * t120;
-        let t122 = t64 * t121
-            - (k(1e-6) * (inner_ring_wy * inner_ring_wz) - (t52 * t106 + t45 * t104));
-        let t123 = k(2.0) * (t1 + t0);
-        let t124 = k(2.0) * (t8 - t7);
-        let t125 = t124 * t61 - (t123 * t57 - t21 * t59);
-        let t126 = t9 * t59 + t19 * t57 + t13 * t61;
-        let t127 = outer_ring_wz * t126 - (outer_ring_wy * t84 + outer_ring_wx * t125);
-        let t128 = inner_ring_wz - t127;
-        let t129 = t124 * t75 - (t123 * t71 + t21 * t73);
-        let t130 = t13 * t75 - (t9 * t73 - t19 * t71);
-        let t131 = outer_ring_wz * t130 - (outer_ring_wy * t82 + outer_ring_wx * t129);
-        let t132 = inner_ring_wy + t131;
-        let t133 = t124 * t44 + (t123 * t38 + t21 * t33);
-        let t134 = t13 * t44 - (t19 * t38 - t9 * t33);
-        let t135 = outer_ring_wz * t134 - (outer_ring_wy * t69 + outer_ring_wx * t133);
-        let t136 = inner_ring_wx + t135;
-        let t137 = (t136 * t136 + t132 * t132) / t126;
-        let t138 = inner_ring_wy * t127 + inner_ring_wz * t131
-            + (t130 * t137 - t132 * t128);
-        let t139 = inner_ring_wz * t135 + inner_ring_wx * t127
-            + (t134 * t137 - t136 * t128);
-        let t140 = k(0.00025) * t58;
-        let t141 = k(0.00025) * t56;
-        let t142 = k(0.00025) * t60;
-        let t143 = t142 * t117 + (t141 * t114 + t140 * t111) - (t77 * t106 + t76 * t104);
-        let t144 = t82 * (t87 * t139 - t81 * t138 - (t80 * t121 - t143));
-        let t145 = t84 * (t88 * t139 - t83 * t138 - (t120 - t65 * t121));
-        let t146 = t145 - (t144 + t69 * (t81 * t139 - t68 * t138 - t122));
-        let t147 = t82 * (t125 * t88 - (t129 * t87 + t133 * t81))
-            + t69 * (t125 * t83 - (t129 * t81 + t133 * t68));
-        let t148 = outer_ring_wx * t5 + outer_ring_wy * t22 + t9 * t27
-            - ((t20 * t123 + t16 * t124) * t26 + t23 * t6);
-        let t149 = (t126 * t90 + (t89 * t130 + t85 * t134)) * t148
-            - t28 * (t84 * (t129 * t88 + t133 * t83) + t147);
-        let t150 = (t149 + (k(1e-6) * (outer_ring_wx * outer_ring_wz) + t146))
-            / (k(1e-6) + (t84 * t90 + (t82 * t89 + t69 * t85)));
-        let t151 = t138 - (t134 * t148 - (t69 * t150 + t133 * t28));
-        let t152 = t139 + (t130 * t148 - (t82 * t150 + t129 * t28));
-        let t153 = t126 * t148 - (t84 * t150 + t125 * t28);
-        let t154 = t66 * (t120 - (t65 * t153 + (t80 * t152 - t64 * t151)));
-        let t155 = t153 + t154;
+        let t83 = t82 * t81 + t69 * t68;
+        let t84 = t80 * (t66 * t80) - (k(2e-6) + (k(1.25e-9) + (t77 * t79 + t76 * t78)));
+        let t85 = t82 * t84 + t69 * t81;
+        let t86 = k(2.0) * (k(0.5) - (t34 + rotor_e1 * rotor_e1));
+        let t87 = k(2.0) * (t30 + t29);
+        let t88 = k(2.0) * (t48 - t47);
+        let t89 = t44 * t88 + (t38 * t87 + t33 * t86);
+        let t90 = inner_ring_wy * (t75 * t88 - (t71 * t87 + t73 * t86))
+            + inner_ring_wx * t89;
+        let t91 = inner_ring_wz * (t61 * t88 - (t57 * t87 - t59 * t86)) - t90;
+        let t92 = rotor_wx + t91;
+        let t93 = inner_ring_wz * t63 - (inner_ring_wy * t77 + inner_ring_wx * t52);
+        let t94 = rotor_wz - t93;
+        let t95 = inner_ring_wz * t62 - (inner_ring_wy * t76 + inner_ring_wx * t45);
+        let t96 = rotor_wy + t95;
+        let t97 = (t96 * t96 + t94 * t94) / t89;
+        let t98 = rotor_wz * t91 + rotor_wx * t93 - (t52 * t97 - t94 * t92);
+        let t99 = k(5e-6) * (rotor_wx * rotor_wz + t98);
+        let t100 = rotor_wx * t95 - rotor_wy * t91 - (t45 * t97 + t96 * t92);
+        let t101 = k(5e-6) * (rotor_wx * rotor_wy - t100);
+        let t102 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
+        let t103 = inner_ring_wx * inner_ring_wy;
+        let t104 = inner_ring_wx * inner_ring_wz;
+        let t105 = t59 * t104 + (t73 * t103 + t33 * t102);
+        let t106 = k(1e-5) * t105;
+        let t107 = k(0.00025) * t72;
+        let t108 = t57 * t104 - (t71 * t103 + t38 * t102);
+        let t109 = k(0.8) + k(1e-5) * t108;
+        let t110 = k(0.00025) * t70;
+        let t111 = t61 * t104 - (t75 * t103 - t44 * t102);
+        let t112 = k(1e-5) * t111;
+        let t113 = k(0.00025) * t74;
+        let t114 = t113 * t112 + (t110 * t109 - t107 * t106) + (t63 * t101 + t62 * t99);
+        let t115 = k(1e-6) * t103 - t114;
+        let t116 = t66 * t115;
+        let t117 = t64 * t116
+            - (k(1e-6) * (inner_ring_wy * inner_ring_wz) - (t52 * t101 + t45 * t99));
+        let t118 = k(2.0) * (t1 + t0);
+        let t119 = k(2.0) * (t8 - t7);
+        let t120 = outer_ring_wy * (t25 * t61 - (t2 * t59 - t24 * t57))
+            + outer_ring_wx * (t119 * t61 - (t118 * t57 - t21 * t59));
+        let t121 = t9 * t59 + t19 * t57 + t13 * t61;
+        let t122 = outer_ring_wz * t121 - t120;
+        let t123 = inner_ring_wz - t122;
+        let t124 = t119 * t75 - (t118 * t71 + t21 * t73);
+        let t125 = t13 * t75 - (t9 * t73 - t19 * t71);
+        let t126 = outer_ring_wz * t125 - (outer_ring_wy * t82 + outer_ring_wx * t124);
+        let t127 = inner_ring_wy + t126;
+        let t128 = t119 * t44 + (t118 * t38 + t21 * t33);
+        let t129 = t13 * t44 - (t19 * t38 - t9 * t33);
+        let t130 = outer_ring_wz * t129 - (outer_ring_wy * t69 + outer_ring_wx * t128);
+        let t131 = inner_ring_wx + t130;
+        let t132 = (t131 * t131 + t127 * t127) / t121;
+        let t133 = inner_ring_wy * t122 + inner_ring_wz * t126
+            + (t125 * t132 - t127 * t123);
+        let t134 = inner_ring_wz * t130 + inner_ring_wx * t122
+            + (t129 * t132 - t131 * t123);
+        let t135 = k(0.00025) * t58;
+        let t136 = k(0.00025) * t56;
+        let t137 = k(0.00025) * t60;
+        let t138 = t137 * t112 + (t136 * t109 + t135 * t106) - (t77 * t101 + t76 * t99);
+        let t139 = t82 * (t84 * t134 - t81 * t133 - (t80 * t116 - t138));
+        let t140 = k(1e-6) * (outer_ring_wx * outer_ring_wz)
+            - (t139 + t69 * (t81 * t134 - t68 * t133 - t117));
+        let t141 = t82 * (t124 * t84 + t128 * t81) + t69 * (t124 * t81 + t128 * t68);
+        let t142 = outer_ring_wx * t5 + outer_ring_wy * t22 + t9 * t27
+            - ((t20 * t118 + t16 * t119) * t26 + t23 * t6);
+        let t143 = (t85 * t125 + t83 * t129) * t142 - t28 * t141 - t140;
+        let t144 = t143 / (k(1e-6) - (t82 * t85 + t69 * t83));
+        let t145 = t133 - (t129 * t142 + (t69 * t144 - t128 * t28));
+        let t146 = t134 + (t125 * t142 + (t82 * t144 - t124 * t28));
+        let t147 = t66 * (t115 - (t80 * t146 - t64 * t145));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t28,
-            -t150,
-            -t148,
+            t144,
+            -t142,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t151,
-            t152,
-            -t155,
-            k(0.000125) * t110 - (t112 * t155 + t140 * t152),
-            t115 * t155 - t141 * t152 + k(0.000125) * t113,
-            -(t118 * t155 - t142 * t152 + k(0.000125) * t116),
+            -t145,
+            t146,
+            -t147,
+            k(0.000125) * t105 - (t107 * t147 + t135 * t146),
+            t110 * t147 - t136 * t146 + k(0.000125) * t108,
+            -(t113 * t147 - t137 * t146 + k(0.000125) * t111),
             k(0.0),
-            t103 + (t62 * t155 + (t76 * t152 - t45 * t151)),
-            t105 - (t63 * t155 + (t77 * t152 - t52 * t151)),
+            t98 + (t62 * t147 + (t76 * t146 - t45 * t145)),
+            t100 - (t63 * t147 + (t77 * t146 - t52 * t145)),
         ];
     }
     /// Writes λ: 142 operations (56 ±, 86 ×, 0 ÷) and 3 functions.
@@ -3192,7 +3175,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for DrivenGyroscope<T> {
             -t21,
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 626 operations (252 ±, 369 ×, 5 ÷) and 6 functions.
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 586 operations (233 ±, 348 ×, 5 ÷) and 6 functions.
     fn corrected_solution(&self, t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -3301,164 +3284,155 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for DrivenGyroscope<T> {
         let t80 = t63 * t79 + t62 * t78;
         let t81 = t80 * t67 - (t77 * t53 + t76 * t46);
         let t82 = t25 * t75 + (t2 * t73 + t24 * t71);
-        let t83 = t64 - t65 * t67;
-        let t84 = t25 * t61 - (t2 * t59 - t24 * t57);
-        let t85 = t84 * t83 - (t82 * t81 + t69 * t68);
-        let t86 = t66 * t80;
-        let t87 = t80 * t86 - (k(2e-6) + (k(1.25e-9) + (t77 * t79 + t76 * t78)));
-        let t88 = t80 - t65 * t86;
-        let t89 = t84 * t88 - (t82 * t87 + t69 * t81);
-        let t90 = t82 * t88 + t69 * t83;
-        let t91 = k(2.0) * (k(0.5) - (t34 + rotor_e1 * rotor_e1));
-        let t92 = k(2.0) * (t30 + t29);
-        let t93 = k(2.0) * (t48 - t47);
-        let t94 = t44 * t93 + (t38 * t92 + t33 * t91);
-        let t95 = inner_ring_wy * (t75 * t93 - (t71 * t92 + t73 * t91))
-            + inner_ring_wx * t94;
-        let t96 = inner_ring_wz * (t61 * t93 - (t57 * t92 - t59 * t91)) - t95;
-        let t97 = rotor_wx + t96;
-        let t98 = inner_ring_wz * t63 - (inner_ring_wy * t77 + inner_ring_wx * t52);
-        let t99 = rotor_wz - t98;
-        let t100 = inner_ring_wz * t62 - (inner_ring_wy * t76 + inner_ring_wx * t45);
-        let t101 = rotor_wy + t100;
-        let t102 = (t101 * t101 + t99 * t99) / t94;
-        let t103 = rotor_wz * t96 + rotor_wx * t98 - (t52 * t102 - t99 * t97);
-        let t104 = rotor_wx * rotor_wz;
-        let t105 = k(5e-6) * (t104 + t103);
-        let t106 = rotor_wx * t100 - rotor_wy * t96 - (t45 * t102 + t101 * t97);
-        let t107 = rotor_wx * rotor_wy;
-        let t108 = k(5e-6) * (t107 - t106);
-        let t109 = inner_ring_wy * inner_ring_wz;
-        let t110 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
-        let t111 = inner_ring_wx * inner_ring_wy;
-        let t112 = inner_ring_wx * inner_ring_wz;
-        let t113 = t59 * t112 + (t73 * t111 + t33 * t110);
-        let t114 = k(1e-5) * t113;
-        let t115 = k(0.00025) * t72;
-        let t116 = t57 * t112 - (t71 * t111 + t38 * t110);
-        let t117 = k(0.8) + k(1e-5) * t116;
-        let t118 = k(0.00025) * t70;
-        let t119 = t61 * t112 - (t75 * t111 - t44 * t110);
-        let t120 = k(1e-5) * t119;
-        let t121 = k(0.00025) * t74;
-        let t122 = t121 * t120 + (t118 * t117 - t115 * t114) + (t63 * t108 + t62 * t105);
-        let t123 = k(1e-6) * t111 - t122;
-        let t124 = t66 * t123;
-        let t125 = t64 * t124 - (k(1e-6) * t109 - (t52 * t108 + t45 * t105));
-        let t126 = k(2.0) * (t1 + t0);
-        let t127 = k(2.0) * (t8 - t7);
-        let t128 = t127 * t61 - (t126 * t57 - t21 * t59);
-        let t129 = t9 * t59 + t19 * t57 + t13 * t61;
-        let t130 = outer_ring_wz * t129 - (outer_ring_wy * t84 + outer_ring_wx * t128);
-        let t131 = inner_ring_wz - t130;
-        let t132 = t127 * t75 - (t126 * t71 + t21 * t73);
-        let t133 = t13 * t75 - (t9 * t73 - t19 * t71);
-        let t134 = outer_ring_wz * t133 - (outer_ring_wy * t82 + outer_ring_wx * t132);
-        let t135 = inner_ring_wy + t134;
-        let t136 = t127 * t44 + (t126 * t38 + t21 * t33);
-        let t137 = t13 * t44 - (t19 * t38 - t9 * t33);
-        let t138 = outer_ring_wz * t137 - (outer_ring_wy * t69 + outer_ring_wx * t136);
-        let t139 = inner_ring_wx + t138;
-        let t140 = (t139 * t139 + t135 * t135) / t129;
-        let t141 = inner_ring_wy * t130 + inner_ring_wz * t134
-            + (t133 * t140 - t135 * t131);
-        let t142 = inner_ring_wz * t138 + inner_ring_wx * t130
-            + (t137 * t140 - t139 * t131);
-        let t143 = k(0.00025) * t58;
-        let t144 = k(0.00025) * t56;
-        let t145 = k(0.00025) * t60;
-        let t146 = t145 * t120 + (t144 * t117 + t143 * t114) - (t77 * t108 + t76 * t105);
-        let t147 = t82 * (t87 * t142 - t81 * t141 - (t80 * t124 - t146));
-        let t148 = t84 * (t88 * t142 - t83 * t141 - (t123 - t65 * t124));
-        let t149 = t148 - (t147 + t69 * (t81 * t142 - t68 * t141 - t125));
-        let t150 = t82 * (t128 * t88 - (t132 * t87 + t136 * t81))
-            + t69 * (t128 * t83 - (t132 * t81 + t136 * t68));
-        let t151 = outer_ring_wx * t5 + outer_ring_wy * t22 + t9 * t27
-            - ((t20 * t126 + t16 * t127) * t26 + t23 * t6);
-        let t152 = (t129 * t90 + (t89 * t133 + t85 * t137)) * t151
-            - t28 * (t84 * (t132 * t88 + t136 * t83) + t150);
-        let t153 = (t152 + (k(1e-6) * (outer_ring_wx * outer_ring_wz) + t149))
-            / (k(1e-6) + (t84 * t90 + (t82 * t89 + t69 * t85)));
-        let t154 = t141 - (t137 * t151 - (t69 * t153 + t136 * t28));
-        let t155 = t142 + (t133 * t151 - (t82 * t153 + t132 * t28));
-        let t156 = t129 * t151 - (t84 * t153 + t128 * t28);
-        let t157 = t66 * (t123 - (t65 * t156 + (t80 * t155 - t64 * t154)));
-        let t158 = t156 + t157;
-        let t159 = t115 * t158 + t143 * t155 - k(0.000125) * t113;
-        let t160 = t118 * t158 - t144 * t155 + k(0.000125) * t116;
-        let t161 = t121 * t158 - t145 * t155 + k(0.000125) * t119;
-        let t162 = t103 + (t62 * t158 + (t76 * t155 - t45 * t154));
-        let t163 = t106 - (t63 * t158 + (t77 * t155 - t52 * t154));
-        let t164 = k(0.08) * t159;
-        let t165 = k(0.8) + k(0.08) * t160;
-        let t166 = k(0.1) + t165;
-        let t167 = k(0.08) * t161;
-        let t168 = k(5e-6) * (t107 - t163);
-        let t169 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+        let t83 = t82 * t81 + t69 * t68;
+        let t84 = t80 * (t66 * t80) - (k(2e-6) + (k(1.25e-9) + (t77 * t79 + t76 * t78)));
+        let t85 = t82 * t84 + t69 * t81;
+        let t86 = k(2.0) * (k(0.5) - (t34 + rotor_e1 * rotor_e1));
+        let t87 = k(2.0) * (t30 + t29);
+        let t88 = k(2.0) * (t48 - t47);
+        let t89 = t44 * t88 + (t38 * t87 + t33 * t86);
+        let t90 = inner_ring_wy * (t75 * t88 - (t71 * t87 + t73 * t86))
+            + inner_ring_wx * t89;
+        let t91 = inner_ring_wz * (t61 * t88 - (t57 * t87 - t59 * t86)) - t90;
+        let t92 = rotor_wx + t91;
+        let t93 = inner_ring_wz * t63 - (inner_ring_wy * t77 + inner_ring_wx * t52);
+        let t94 = rotor_wz - t93;
+        let t95 = inner_ring_wz * t62 - (inner_ring_wy * t76 + inner_ring_wx * t45);
+        let t96 = rotor_wy + t95;
+        let t97 = (t96 * t96 + t94 * t94) / t89;
+        let t98 = rotor_wz * t91 + rotor_wx * t93 - (t52 * t97 - t94 * t92);
+        let t99 = rotor_wx * rotor_wz;
+        let t100 = k(5e-6) * (t99 + t98);
+        let t101 = rotor_wx * t95 - rotor_wy * t91 - (t45 * t97 + t96 * t92);
+        let t102 = rotor_wx * rotor_wy;
+        let t103 = k(5e-6) * (t102 - t101);
+        let t104 = inner_ring_wy * inner_ring_wz;
+        let t105 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
+        let t106 = inner_ring_wx * inner_ring_wy;
+        let t107 = inner_ring_wx * inner_ring_wz;
+        let t108 = t59 * t107 + (t73 * t106 + t33 * t105);
+        let t109 = k(1e-5) * t108;
+        let t110 = k(0.00025) * t72;
+        let t111 = t57 * t107 - (t71 * t106 + t38 * t105);
+        let t112 = k(0.8) + k(1e-5) * t111;
+        let t113 = k(0.00025) * t70;
+        let t114 = t61 * t107 - (t75 * t106 - t44 * t105);
+        let t115 = k(1e-5) * t114;
+        let t116 = k(0.00025) * t74;
+        let t117 = t116 * t115 + (t113 * t112 - t110 * t109) + (t63 * t103 + t62 * t100);
+        let t118 = k(1e-6) * t106 - t117;
+        let t119 = t66 * t118;
+        let t120 = t64 * t119 - (k(1e-6) * t104 - (t52 * t103 + t45 * t100));
+        let t121 = k(2.0) * (t1 + t0);
+        let t122 = k(2.0) * (t8 - t7);
+        let t123 = outer_ring_wy * (t25 * t61 - (t2 * t59 - t24 * t57))
+            + outer_ring_wx * (t122 * t61 - (t121 * t57 - t21 * t59));
+        let t124 = t9 * t59 + t19 * t57 + t13 * t61;
+        let t125 = outer_ring_wz * t124 - t123;
+        let t126 = inner_ring_wz - t125;
+        let t127 = t122 * t75 - (t121 * t71 + t21 * t73);
+        let t128 = t13 * t75 - (t9 * t73 - t19 * t71);
+        let t129 = outer_ring_wz * t128 - (outer_ring_wy * t82 + outer_ring_wx * t127);
+        let t130 = inner_ring_wy + t129;
+        let t131 = t122 * t44 + (t121 * t38 + t21 * t33);
+        let t132 = t13 * t44 - (t19 * t38 - t9 * t33);
+        let t133 = outer_ring_wz * t132 - (outer_ring_wy * t69 + outer_ring_wx * t131);
+        let t134 = inner_ring_wx + t133;
+        let t135 = (t134 * t134 + t130 * t130) / t124;
+        let t136 = inner_ring_wy * t125 + inner_ring_wz * t129
+            + (t128 * t135 - t130 * t126);
+        let t137 = inner_ring_wz * t133 + inner_ring_wx * t125
+            + (t132 * t135 - t134 * t126);
+        let t138 = k(0.00025) * t58;
+        let t139 = k(0.00025) * t56;
+        let t140 = k(0.00025) * t60;
+        let t141 = t140 * t115 + (t139 * t112 + t138 * t109) - (t77 * t103 + t76 * t100);
+        let t142 = t82 * (t84 * t137 - t81 * t136 - (t80 * t119 - t141));
+        let t143 = k(1e-6) * (outer_ring_wx * outer_ring_wz)
+            - (t142 + t69 * (t81 * t137 - t68 * t136 - t120));
+        let t144 = t82 * (t127 * t84 + t131 * t81) + t69 * (t127 * t81 + t131 * t68);
+        let t145 = outer_ring_wx * t5 + outer_ring_wy * t22 + t9 * t27
+            - ((t20 * t121 + t16 * t122) * t26 + t23 * t6);
+        let t146 = (t85 * t128 + t83 * t132) * t145 - t28 * t144 - t143;
+        let t147 = t146 / (k(1e-6) - (t82 * t85 + t69 * t83));
+        let t148 = t136 - (t132 * t145 + (t69 * t147 - t131 * t28));
+        let t149 = t137 + (t128 * t145 + (t82 * t147 - t127 * t28));
+        let t150 = t66 * (t118 - (t80 * t149 - t64 * t148));
+        let t151 = t110 * t150 + t138 * t149 - k(0.000125) * t108;
+        let t152 = t113 * t150 - t139 * t149 + k(0.000125) * t111;
+        let t153 = t116 * t150 - t140 * t149 + k(0.000125) * t114;
+        let t154 = t98 + (t62 * t150 + (t76 * t149 - t45 * t148));
+        let t155 = t101 - (t63 * t150 + (t77 * t149 - t52 * t148));
+        let t156 = k(0.08) * t151;
+        let t157 = k(0.8) + k(0.08) * t152;
+        let t158 = k(0.1) + t157;
+        let t159 = k(0.08) * t153;
+        let t160 = k(5e-6) * (t102 - t155);
+        let t161 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
             - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
-        let t170 = k(2.0) * t169;
-        let t171 = k(1.0) - t169 * t170;
-        let t172 = k(5e-6) * (t104 + t162);
-        let t173 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+        let t162 = k(2.0) * t161;
+        let t163 = k(1.0) - t161 * t162;
+        let t164 = k(5e-6) * (t99 + t154);
+        let t165 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
             + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
-        let t174 = t173 * t170;
-        let t175 = t174 * t172 + t171 * t168;
-        let t176 = t115 * t164 + t118 * t165 + t121 * t167 + t175
-            - k(1e-6) * (t111 - t158);
-        let t177 = t176 + k(1e-6) * (outer_ring_wx * outer_ring_wy + t151);
-        let t178 = k(0.05) * t14;
-        let t179 = t178.sin();
-        let t180 = t178.cos();
-        let t181 = t180 * outer_ring_e2 + t179 * outer_ring_e3;
-        let t182 = k(2.0) * t181;
-        let t183 = (t180 * outer_ring_e0 + t179 * outer_ring_e1) * t182;
-        let t184 = t171 * t172 - t174 * t168;
-        let t185 = t143 * t164 - t144 * t165 - t145 * t167 + t184 + k(2e-6) * t155;
-        let t186 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+        let t166 = t165 * t162;
+        let t167 = t166 * t164 + t163 * t160;
+        let t168 = t110 * t156 + t113 * t157 + t116 * t159 + t167
+            - k(1e-6) * (t106 - t150);
+        let t169 = t168 + k(1e-6) * (outer_ring_wx * outer_ring_wy + t145);
+        let t170 = k(0.05) * t14;
+        let t171 = t170.sin();
+        let t172 = t170.cos();
+        let t173 = t172 * outer_ring_e2 + t171 * outer_ring_e3;
+        let t174 = k(2.0) * t173;
+        let t175 = (t172 * outer_ring_e0 + t171 * outer_ring_e1) * t174;
+        let t176 = t163 * t164 - t166 * t160;
+        let t177 = t138 * t156 - t139 * t157 - t140 * t159 + t176 + k(2e-6) * t149;
+        let t178 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
             + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
-        let t187 = k(2.0) * t186;
-        let t188 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+        let t179 = k(2.0) * t178;
+        let t180 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
             + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
-        let t189 = t188 * t187;
-        let t190 = k(1e-6) * (t109 + t154);
-        let t191 = k(1.0) - t186 * t187;
-        let t192 = t191 * t190 - t189 * t185;
-        let t193 = t192 + k(2e-6) * t28;
-        let t194 = k(1.0) - t181 * t182;
+        let t181 = t180 * t179;
+        let t182 = k(1e-6) * (t104 + t148);
+        let t183 = k(1.0) - t178 * t179;
+        let t184 = t183 * t182 - t181 * t177;
+        let t185 = t184 + k(2e-6) * t28;
+        let t186 = k(1.0) - t173 * t174;
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t28,
-            -t153,
+            t147,
+            -t145,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t148,
+            t149,
+            -t150,
             -t151,
+            t152,
+            -t153,
             k(0.0),
-            k(0.0),
-            k(0.0),
-            -t154,
+            t154,
             t155,
+            t156,
+            -(k(0.1) + t158),
+            t159,
+            t186 * t185 + t175 * t169,
+            t175 * t185 - t186 * t169,
+            t156,
             -t158,
-            -t159,
-            t160,
-            -t161,
-            k(0.0),
-            t162,
-            t163,
-            t164,
-            -(k(0.1) + t166),
+            t159,
+            -(t181 * t182 + t183 * t177),
+            -t184,
+            t156,
+            -t157,
+            t159,
             t167,
-            t194 * t193 + t183 * t177,
-            t183 * t193 - t194 * t177,
-            t164,
-            -t166,
-            t167,
-            -(t189 * t190 + t191 * t185),
-            -t192,
-            t164,
-            -t165,
-            t167,
-            t175,
-            t184,
+            t176,
         ];
     }
 }

@@ -19,7 +19,7 @@
 //! | gamma | γ | 101 | 163 | 0 | 264 | 0 of 17 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 83 | 107 | 0 | 190 | 0 of 17 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 528 | 704 | 9 | 1241 | 0 of 21 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 487 | 660 | 9 | 1156 | 0 of 21 |
 //! | multipliers | λ, the accelerations being known | 104 | 165 | 3 | 272 | 0 of 17 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
@@ -34,7 +34,7 @@
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints: their definitions
 //!
-//! All of it holds but with a probability below 1e-142.
+//! All of it holds but with a probability below 1e-143.
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
 
 /// The mechanism `four_bar`.
@@ -1435,7 +1435,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
             -(k(0.01076) * (rocker_wx * rocker_wy)),
         ];
     }
-    /// Solves eq. (17): 1241 operations (528 ±, 704 ×, 9 ÷).
+    /// Solves eq. (17): 1156 operations (487 ±, 660 ×, 9 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let crank_e0 = y[3];
@@ -1469,45 +1469,50 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
             t35,
             t40,
             t42,
-            t43,
             t47,
             t48,
             t49,
             t50,
             t51,
             t55,
-            t56,
+            t58,
             t59,
             t60,
             t61,
-            t62,
-            t64,
-            t69,
+            t63,
+            t68,
+            t78,
             t79,
             t80,
-            t81,
-            t83,
-            t86,
+            t82,
+            t85,
+            t91,
             t92,
             t93,
-            t94,
-            t96,
-            t99,
-            t119,
+            t95,
+            t98,
+            t117,
+            t131,
+            t135,
             t139,
-            t143,
-            t147,
-            t160,
+            t152,
+            t174,
+            t175,
+            t177,
+            t180,
+            t181,
+            t183,
             t184,
             t185,
-            t187,
-            t188,
             t190,
             t191,
+            t192,
             t193,
             t194,
             t195,
+            t196,
             t197,
+            t198,
             t199,
         ) = {
             let t0 = crank_e0 * crank_e0;
@@ -1565,169 +1570,171 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
             let t52 = t51 * t43;
             let t53 = t16 - t49 * t52;
             let t54 = t49 * t51;
-            let t55 = k(0.0835) - t49 * t54;
-            let t56 = k(1.0) / t55;
-            let t57 = t56 * t53;
-            let t58 = t48 * t51;
-            let t59 = t49 * t58;
-            let t60 = k(0.5) * t40;
-            let t61 = k(0.5) * t26;
-            let t62 = t61 * t42 + t60 * t32;
-            let t63 = t51 * t62;
-            let t64 = t60 - t49 * t63;
-            let t65 = t56 * t64;
-            let t66 = t59 * t65 - t48 * t63;
-            let t67 = coupler_wz * coupler_wz;
-            let t68 = t67 + coupler_wy * coupler_wy;
-            let t69 = k(0.25) * (t41 * t15 + (t27 * t33 + t44 * t68));
-            let t70 = crank_wz * crank_wz + t2;
-            let t71 = k(2.0) * (k(0.5) - (t0 + crank_e1 * crank_e1));
-            let t72 = crank_wx * crank_wy;
-            let t73 = crank_e0 * crank_e3;
-            let t74 = crank_e1 * crank_e2;
-            let t75 = t74 - t73;
-            let t76 = k(2.0) * t75;
-            let t77 = k(0.1) * (t28 * t8 + (t76 * t72 + t71 * t70));
-            let t78 = t77 + t69;
-            let t79 = k(0.5) * t14;
-            let t80 = k(0.5) * t18;
-            let t81 = t80 * t42 - t79 * t32;
-            let t82 = t51 * t81;
-            let t83 = t79 + t49 * t82;
-            let t84 = t56 * t83;
-            let t85 = t59 * t84 + t48 * t82;
-            let t86 = k(0.25) * (t37 * t15 - (t19 * t33 + t45 * t68));
-            let t87 = k(2.0) * (t74 + t73);
-            let t88 = k(0.5) - (t0 + crank_e2 * crank_e2);
-            let t89 = k(2.0) * t88;
-            let t90 = k(0.1) * (t23 * t8 - (t89 * t72 + t87 * t70));
-            let t91 = t90 + t86;
-            let t92 = k(0.5) * t35;
-            let t93 = k(0.5) * t29;
-            let t94 = t93 * t42 - t92 * t32;
-            let t95 = t51 * t94;
-            let t96 = t92 + t49 * t95;
-            let t97 = t56 * t96;
-            let t98 = t59 * t97 + t48 * t95;
-            let t99 = k(0.25) * (t36 * t15 - (t30 * t33 - t46 * t68));
-            let t100 = t21 + t20;
-            let t101 = k(2.0) * t100;
-            let t102 = k(0.1) * (t31 * t8 - (t101 * t72 - t7 * t70));
-            let t103 = t102 + t99;
-            let t104 = k(1.0) / (t47 * t47 + t42 * t42);
-            let t105 = t7 * t30 - (t87 * t19 + t71 * t27);
-            let t106 = t101 * t30 + (t76 * t27 + t89 * t19);
-            let t107 = crank_wy * crank_wz;
-            let t108 = t7 * t46 + (t87 * t45 + t71 * t44);
-            let t109 = t7 * t36 - (t87 * t37 - t71 * t41);
-            let t110 = t101 * t46 - (t89 * t45 + t76 * t44);
-            let t111 = t101 * t36 - (t76 * t41 - t89 * t37);
-            let t112 = crank_wx * (coupler_wx * t111 + coupler_wz * t110)
-                - crank_wy * (coupler_wx * t109 + coupler_wz * t108);
-            let t113 = coupler_wy * coupler_wz * t42
-                + ((t67 + coupler_wx * coupler_wx) * t32 - t33 * t47);
-            let t114 = t113 + k(2.0) * t112 + (t3 * t32 + (t107 * t106 + t8 * t105));
-            let t115 = t114 * (t42 * t104);
-            let t116 = t56 * t59;
-            let t117 = t59 * t116 - (k(5e-5) - t48 * t58);
-            let t118 = t114 * (t47 * t104);
-            let t119 = t50 * t54;
-            let t120 = t119 * t116 + t50 * t58;
-            let t121 = t120 * t118 - t117 * t115
-                + (t103 * t98 + (t91 * t85 + t78 * t66));
-            let t122 = t64 - t55 * t65;
-            let t123 = t83 - t55 * t84;
-            let t124 = t96 - t55 * t97;
-            let t125 = t59 - t55 * t116;
-            let t126 = t125 * t115 - (t103 * t124 + (t91 * t123 + t78 * t122));
-            let t127 = t32 * (t126 - (t53 - t55 * t57))
-                - t47 * (t121 + (t59 * t57 - t48 * t52));
-            let t128 = t119 * t65 + (t61 - t50 * t63);
-            let t129 = t119 * t84 - (t80 - t50 * t82);
-            let t130 = t119 * t97 - (t93 - t50 * t95);
-            let t131 = t119 * (t56 * t119) - (k(0.0835) - t50 * (t50 * t51));
-            let t132 = t131 * t118 - t120 * t115
-                + (t103 * t130 + (t91 * t129 + t78 * t128));
-            let t133 = t42 * (t132 + (t119 * t57 + (t34 - t50 * t52))) - t127;
-            let t134 = t83 * t65 - t81 * t63;
-            let t135 = t83 * t84 + t81 * t82;
-            let t136 = t96 * t84 + t94 * t82;
-            let t137 = t129 * t118 - t85 * t115
-                - (t91 - (t103 * t136 + (t91 * t135 + t78 * t134)));
-            let t138 = t137 + (t83 * t57 - (k(9.81) + t81 * t52));
-            let t139 = k(0.2) * t88;
-            let t140 = t64 * t65 + t62 * t63;
-            let t141 = t96 * t65 - t94 * t63;
-            let t142 = t128 * t118 - t66 * t115
-                - (t78 - (t103 * t141 + (t91 * t134 + t78 * t140)));
-            let t143 = k(0.2) * t75;
-            let t144 = t143 * (t142 + (t64 * t57 + t62 * t52));
-            let t145 = t96 * t97 + t94 * t95;
-            let t146 = t130 * t118 - t98 * t115
-                - (t103 - (t103 * t145 + (t91 * t136 + t78 * t141)));
-            let t147 = k(0.2) * t100;
-            let t148 = t147 * (t146 + (t96 * t57 - t94 * t52));
-            let t149 = t139 * (k(3.924) - t138) + t144 - t148
-                - (k(0.00133) * t72 + (t148 - (t144 - t139 * t138) + t133));
-            let t150 = t147 * t141 + (t139 * t134 - t143 * t140);
-            let t151 = t42 * t128 + (t32 * t122 + t47 * t66);
-            let t152 = t143 + t150 + t151;
-            let t153 = t147 * t136 + (t139 * t135 - t143 * t134);
-            let t154 = t42 * t129 + (t32 * t123 + t47 * t85);
-            let t155 = t139 - t153 - t154;
-            let t156 = t90 * (t155 - (t153 - k(0.28) * t88))
-                - t77 * (t152 + (t150 + k(0.28) * t75));
-            let t157 = t147 * t145 + (t139 * t136 - t143 * t141);
-            let t158 = t42 * t130 + (t32 * t124 + t47 * t98);
-            let t159 = t147 - t157 - t158;
-            let t160 = t107 - t101 * t4;
-            let t161 = t32 * (t108 * t125)
-                + t47 * (t109 * t120 + (t105 * t125 + t108 * t117));
-            let t162 = t139 * (t109 * t129 + (t105 * t123 + t108 * t85))
-                - t143 * (t109 * t128 + (t105 * t122 + t108 * t66));
-            let t163 = t147 * (t109 * t130 + (t105 * t124 + t108 * t98)) + t162;
-            let t164 = t163 + (t163 + (t42 * (t109 * t131 + t108 * t120) + t161));
-            let t165 = t32 * (t110 * t125)
-                + t47 * (t111 * t120 + (t106 * t125 + t110 * t117));
-            let t166 = k(0.2) * t22;
-            let t167 = k(0.2) * t1;
-            let t168 = t111 * t128 + (t106 * t122 + t110 * t66);
-            let t169 = t111 * t129 + (t106 * t123 + t110 * t85);
-            let t170 = t111 * t130 + (t106 * t124 + t110 * t98);
-            let t171 = t147 * t170 + (t139 * t169 - t143 * t168)
-                - (t167 * t158 + (t166 * t154 + t11 * t151));
-            let t172 = t167 * t157 + (t166 * t153 + t11 * t150);
-            let t173 = t172 - t171 - (t42 * (t111 * t131 + t110 * t120) + t165);
-            let t174 = t11 - (t167 * t141 + (t166 * t134 + t11 * t140)) + t168;
-            let t175 = t166 - (t167 * t136 + (t166 * t135 + t11 * t134)) + t169;
-            let t176 = t167 - (t167 * t145 + (t166 * t136 + t11 * t141)) + t170;
-            let t177 = t147 * t176 + (t139 * t175 - t143 * t174)
-                + (t167 * t159 + (t166 * t155 - t11 * t152));
-            let t178 = (t177 - t172 - t173) * t9 - t164 * t160
-                + (t102 * (t159 - (t157 - k(0.28) * t100)) + t156);
-            let t179 = t32 * (t47 * t125)
-                + t47 * (t42 * t120 + (t32 * t125 + t47 * t117));
-            let t180 = t147 * t157 + (t139 * t153 - t143 * t150);
-            let t181 = t180 + k(2.0) * (t147 * t158 + (t139 * t154 - t143 * t151));
-            let t182 = t181 - (k(0.01) - (t42 * (t42 * t131 + t47 * t120) + t179));
-            let t183 = k(2.0) * (t147 * t159 + (t139 * t155 + t143 * t152)) - t180;
-            let t184 = k(1.0) / (t183 + (k(0.014) + (k(0.00135) - t182)));
-            let t185 = t184 * (t178 + t149);
-            let t186 = t143 * t185 + t11 * t9;
-            let t187 = t77 + t186;
-            let t188 = t78 + (t186 + t187);
-            let t189 = t139 * t185 - t166 * t9;
-            let t190 = t90 - t189;
-            let t191 = t91 - (t189 - t190);
-            let t192 = t147 * t185 - t167 * t9;
-            let t193 = t102 - t192;
-            let t194 = t103 - (t192 - t193);
-            let t195 = t115 + (t47 * t185 + (t110 * t9 - t108 * t160));
-            let t196 = t32 * t185 + (t106 * t9 - t105 * t160);
-            let t197 = t118 - (t42 * t185 + (t111 * t9 - t109 * t160));
-            let t198 = t119 * t197 + (t55 * t196 - t59 * t195)
-                + (t96 * t194 + (t83 * t191 + t64 * t188));
-            let t199 = t196 - t56 * (t53 + t198);
+            let t55 = k(1.0) / (k(0.0835) - t49 * t54);
+            let t56 = t55 * t53;
+            let t57 = t48 * t51;
+            let t58 = t49 * t57;
+            let t59 = k(0.5) * t40;
+            let t60 = k(0.5) * t26;
+            let t61 = t60 * t42 + t59 * t32;
+            let t62 = t51 * t61;
+            let t63 = t59 - t49 * t62;
+            let t64 = t55 * t63;
+            let t65 = t58 * t64 - t48 * t62;
+            let t66 = coupler_wz * coupler_wz;
+            let t67 = t66 + coupler_wy * coupler_wy;
+            let t68 = k(0.25) * (t41 * t15 + (t27 * t33 + t44 * t67));
+            let t69 = crank_wz * crank_wz + t2;
+            let t70 = k(2.0) * (k(0.5) - (t0 + crank_e1 * crank_e1));
+            let t71 = crank_wx * crank_wy;
+            let t72 = crank_e0 * crank_e3;
+            let t73 = crank_e1 * crank_e2;
+            let t74 = t73 - t72;
+            let t75 = k(2.0) * t74;
+            let t76 = k(0.1) * (t28 * t8 + (t75 * t71 + t70 * t69));
+            let t77 = t76 + t68;
+            let t78 = k(0.5) * t14;
+            let t79 = k(0.5) * t18;
+            let t80 = t79 * t42 - t78 * t32;
+            let t81 = t51 * t80;
+            let t82 = t78 + t49 * t81;
+            let t83 = t55 * t82;
+            let t84 = t58 * t83 + t48 * t81;
+            let t85 = k(0.25) * (t37 * t15 - (t19 * t33 + t45 * t67));
+            let t86 = k(2.0) * (t73 + t72);
+            let t87 = k(0.5) - (t0 + crank_e2 * crank_e2);
+            let t88 = k(2.0) * t87;
+            let t89 = k(0.1) * (t23 * t8 - (t88 * t71 + t86 * t69));
+            let t90 = t89 + t85;
+            let t91 = k(0.5) * t35;
+            let t92 = k(0.5) * t29;
+            let t93 = t92 * t42 - t91 * t32;
+            let t94 = t51 * t93;
+            let t95 = t91 + t49 * t94;
+            let t96 = t55 * t95;
+            let t97 = t58 * t96 + t48 * t94;
+            let t98 = k(0.25) * (t36 * t15 - (t30 * t33 - t46 * t67));
+            let t99 = t21 + t20;
+            let t100 = k(2.0) * t99;
+            let t101 = k(0.1) * (t31 * t8 - (t100 * t71 - t7 * t69));
+            let t102 = t101 + t98;
+            let t103 = k(1.0) / (t47 * t47 + t42 * t42);
+            let t104 = crank_wy * crank_wz;
+            let t105 = t104 * (t100 * t30 + (t75 * t27 + t88 * t19))
+                + t8 * (t7 * t30 - (t86 * t19 + t70 * t27));
+            let t106 = t7 * t46 + (t86 * t45 + t70 * t44);
+            let t107 = t7 * t36 - (t86 * t37 - t70 * t41);
+            let t108 = t100 * t46 - (t88 * t45 + t75 * t44);
+            let t109 = t100 * t36 - (t75 * t41 - t88 * t37);
+            let t110 = crank_wx * (coupler_wx * t109 + coupler_wz * t108)
+                - crank_wy * (coupler_wx * t107 + coupler_wz * t106);
+            let t111 = coupler_wy * coupler_wz * t42
+                + ((t66 + coupler_wx * coupler_wx) * t32 - t33 * t47);
+            let t112 = t111 + k(2.0) * t110 + (t3 * t32 + t105);
+            let t113 = t112 * (t42 * t103);
+            let t114 = t55 * t58;
+            let t115 = t58 * t114 - (k(5e-5) - t48 * t57);
+            let t116 = t112 * (t47 * t103);
+            let t117 = t50 * t54;
+            let t118 = t117 * t114 + t50 * t57;
+            let t119 = t118 * t116 - t115 * t113
+                + (t102 * t97 + (t90 * t84 + t77 * t65));
+            let t120 = t117 * t64 + (t60 - t50 * t62);
+            let t121 = t117 * t83 - (t79 - t50 * t81);
+            let t122 = t117 * t96 - (t92 - t50 * t94);
+            let t123 = t117 * (t55 * t117) - (k(0.0835) - t50 * (t50 * t51));
+            let t124 = t123 * t116 - t118 * t113
+                + (t102 * t122 + (t90 * t121 + t77 * t120));
+            let t125 = t42 * (t124 + (t117 * t56 + (t34 - t50 * t52)))
+                + t47 * (t119 + (t58 * t56 - t48 * t52));
+            let t126 = t82 * t64 - t80 * t62;
+            let t127 = t82 * t83 + t80 * t81;
+            let t128 = t95 * t83 + t93 * t81;
+            let t129 = t121 * t116 - t84 * t113
+                - (t90 - (t102 * t128 + (t90 * t127 + t77 * t126)));
+            let t130 = t129 + (t82 * t56 - (k(9.81) + t80 * t52));
+            let t131 = k(0.2) * t87;
+            let t132 = t63 * t64 + t61 * t62;
+            let t133 = t95 * t64 - t93 * t62;
+            let t134 = t120 * t116 - t65 * t113
+                - (t77 - (t102 * t133 + (t90 * t126 + t77 * t132)));
+            let t135 = k(0.2) * t74;
+            let t136 = t135 * (t134 + (t63 * t56 + t61 * t52));
+            let t137 = t95 * t96 + t93 * t94;
+            let t138 = t122 * t116 - t97 * t113
+                - (t102 - (t102 * t137 + (t90 * t128 + t77 * t133)));
+            let t139 = k(0.2) * t99;
+            let t140 = t139 * (t138 + (t95 * t56 - t93 * t52));
+            let t141 = t131 * (k(3.924) - t130) + t136 - t140
+                - (k(0.00133) * t71 + (t140 - (t136 - t131 * t130) + t125));
+            let t142 = t139 * t133 + (t131 * t126 - t135 * t132);
+            let t143 = t42 * t120 + t47 * t65;
+            let t144 = t135 + t142 + t143;
+            let t145 = t139 * t128 + (t131 * t127 - t135 * t126);
+            let t146 = t42 * t121 + t47 * t84;
+            let t147 = t131 - t145 - t146;
+            let t148 = t89 * (t147 - (t145 - k(0.28) * t87))
+                - t76 * (t144 + (t142 + k(0.28) * t74));
+            let t149 = t139 * t137 + (t131 * t128 - t135 * t133);
+            let t150 = t42 * t122 + t47 * t97;
+            let t151 = t139 - t149 - t150;
+            let t152 = t104 - t100 * t4;
+            let t153 = t42 * (t107 * t123 + t106 * t118)
+                + t47 * (t107 * t118 + t106 * t115);
+            let t154 = t131 * (t107 * t121 + t106 * t84)
+                - t135 * (t107 * t120 + t106 * t65);
+            let t155 = t139 * (t107 * t122 + t106 * t97) + t154;
+            let t156 = t42 * (t109 * t123 + t108 * t118)
+                + t47 * (t109 * t118 + t108 * t115);
+            let t157 = k(0.2) * t22;
+            let t158 = k(0.2) * t1;
+            let t159 = t109 * t120 + t108 * t65;
+            let t160 = t109 * t121 + t108 * t84;
+            let t161 = t109 * t122 + t108 * t97;
+            let t162 = t139 * t161 + (t131 * t160 - t135 * t159)
+                - (t158 * t150 + (t157 * t146 + t11 * t143));
+            let t163 = t158 * t149 + (t157 * t145 + t11 * t142);
+            let t164 = t11 - (t158 * t133 + (t157 * t126 + t11 * t132)) + t159;
+            let t165 = t157 - (t158 * t128 + (t157 * t127 + t11 * t126)) + t160;
+            let t166 = t158 - (t158 * t137 + (t157 * t128 + t11 * t133)) + t161;
+            let t167 = t139 * t166 + (t131 * t165 - t135 * t164)
+                + (t158 * t151 + (t157 * t147 - t11 * t144));
+            let t168 = (t167 - t163 - (t163 - t162 - t156)) * t9
+                - (t155 + (t155 + t153)) * t152;
+            let t169 = t168 + (t101 * (t151 - (t149 - k(0.28) * t99)) + t148) + t141;
+            let t170 = t42 * (t42 * t123 + t47 * t118) + t47 * (t42 * t118 + t47 * t115);
+            let t171 = t139 * t149 + (t131 * t145 - t135 * t142);
+            let t172 = t171 + k(2.0) * (t139 * t150 + (t131 * t146 - t135 * t143));
+            let t173 = k(2.0) * (t139 * t151 + (t131 * t147 + t135 * t144)) - t171;
+            let t174 = k(1.0)
+                / (t173 + (k(0.014) + (k(0.00135) - (t172 - (k(0.01) - t170)))));
+            let t175 = t174 * t169;
+            let t176 = t135 * t175 + t11 * t9;
+            let t177 = t76 + t176;
+            let t178 = t77 + (t176 + t177);
+            let t179 = t131 * t175 - t157 * t9;
+            let t180 = t89 - t179;
+            let t181 = t90 - (t179 - t180);
+            let t182 = t139 * t175 - t158 * t9;
+            let t183 = t101 - t182;
+            let t184 = t102 - (t182 - t183);
+            let t185 = t113 + (t47 * t175 + (t108 * t9 - t106 * t152));
+            let t186 = t116 - (t42 * t175 + (t109 * t9 - t107 * t152));
+            let t187 = t117 * t186 - t58 * t185
+                + (t95 * t184 + (t82 * t181 + t63 * t178));
+            let t188 = t55 * (t53 + t187);
+            let t189 = t50 * t186 + (t49 * t188 - t48 * t185)
+                + (t93 * t184 + (t80 * t181 - t61 * t178));
+            let t190 = t51 * (t43 - t189);
+            let t191 = t188 + t32 * t190;
+            let t192 = t186 + t42 * t190;
+            let t193 = t60 * t192 + t59 * t191;
+            let t194 = t178 - t193;
+            let t195 = rocker_e0 * rocker_e0;
+            let t196 = k(0.5) - (t195 + rocker_e3 * rocker_e3);
+            let t197 = rocker_wy * rocker_wy;
+            let t198 = (t197 + rocker_wx * rocker_wx) * (k(0.5) / t196);
+            let t199 = rocker_e0 * rocker_e2;
             (
                 t9,
                 t14,
@@ -1738,344 +1745,328 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
                 t35,
                 t40,
                 t42,
-                t43,
                 t47,
                 t48,
                 t49,
                 t50,
                 t51,
                 t55,
-                t56,
+                t58,
                 t59,
                 t60,
                 t61,
-                t62,
-                t64,
-                t69,
+                t63,
+                t68,
+                t78,
                 t79,
                 t80,
-                t81,
-                t83,
-                t86,
+                t82,
+                t85,
+                t91,
                 t92,
                 t93,
-                t94,
-                t96,
-                t99,
-                t119,
+                t95,
+                t98,
+                t117,
+                t131,
+                t135,
                 t139,
-                t143,
-                t147,
-                t160,
+                t152,
+                t174,
+                t175,
+                t177,
+                t180,
+                t181,
+                t183,
                 t184,
                 t185,
-                t187,
-                t188,
                 t190,
                 t191,
+                t192,
                 t193,
                 t194,
                 t195,
+                t196,
                 t197,
+                t198,
                 t199,
             )
         };
         let (
-            t202,
             t203,
-            t209,
-            t214,
-            t230,
-            t233,
-            t246,
+            t219,
+            t222,
+            t234,
+            t235,
+            t237,
+            t239,
             t247,
-            t249,
+            t248,
             t251,
-            t260,
-            t261,
-            t264,
+            t272,
+            t273,
+            t275,
+            t277,
+            t285,
             t286,
-            t287,
             t289,
-            t291,
-            t300,
-            t301,
+            t293,
+            t296,
+            t298,
+            t299,
             t304,
-            t308,
-            t311,
-            t313,
-            t314,
-            t319,
+            t305,
+            t315,
+            t316,
+            t317,
+            t318,
             t320,
+            t322,
+            t327,
+            t328,
+            t329,
             t331,
             t332,
             t333,
-            t334,
+            t335,
             t336,
+            t337,
             t338,
-            t344,
-            t345,
-            t346,
-            t348,
-            t349,
-            t350,
-            t352,
-            t353,
-            t354,
-            t355,
-            t356,
-            t357,
-            t358,
-            t359,
+            t339,
+            t340,
+            t341,
+            t342,
         ) = {
-            let t200 = t50 * t197 - (t49 * t199 + t48 * t195)
-                + (t94 * t194 + (t81 * t191 - t62 * t188));
-            let t201 = t51 * (t43 - t200);
-            let t202 = t199 - t32 * t201;
-            let t203 = t197 + t42 * t201;
-            let t204 = t61 * t203 - t60 * t202;
-            let t205 = t188 - t204;
-            let t206 = rocker_e0 * rocker_e0;
-            let t207 = k(0.5) - (t206 + rocker_e3 * rocker_e3);
-            let t208 = rocker_wy * rocker_wy;
-            let t209 = (t208 + rocker_wx * rocker_wx) * (k(0.5) / t207);
-            let t210 = rocker_e0 * rocker_e2;
-            let t211 = rocker_e1 * rocker_e3;
-            let t212 = k(2.0) * (t211 - t210);
-            let t213 = rocker_wx * rocker_wz;
-            let t214 = t213 - t212 * t209;
-            let t215 = t211 + t210;
-            let t216 = k(0.5) - (t206 + rocker_e2 * rocker_e2);
-            let t217 = rocker_wx * rocker_wy;
-            let t218 = rocker_e0 * rocker_e3;
-            let t219 = rocker_e1 * rocker_e2;
-            let t220 = t219 - t218;
-            let t221 = rocker_wz * rocker_wz + t208;
-            let t222 = k(2.0) * t220 * t217
-                + k(2.0) * (k(0.5) - (t206 + rocker_e1 * rocker_e1)) * t221;
-            let t223 = k(0.2) * (k(2.0) * t215 * t213 + t222);
-            let t224 = rocker_e0 * rocker_e1;
-            let t225 = rocker_e2 * rocker_e3;
-            let t226 = t225 - t224;
-            let t227 = k(2.0) * t226 * t213
-                - (k(2.0) * t216 * t217 + k(2.0) * (t219 + t218) * t221);
-            let t228 = k(0.2) * t227;
-            let t229 = t225 + t224;
-            let t230 = k(2.0) * t229;
-            let t231 = k(0.2) * (k(2.0) * t207 * t213 - (t230 * t217 - t212 * t221));
-            let t232 = t231 * (k(0.32) * t229)
-                + (t228 * (k(0.32) * t216) - t223 * (k(0.32) * t220));
-            let t233 = k(23.364485981308412)
-                * (t232 - (k(0.01076) * t217 - k(3.1392) * t216));
-            let t234 = k(0.4) * t220;
-            let t235 = t234 * t233 + k(0.4) * t215 * t214;
-            let t236 = t223 + t235;
-            let t237 = t223 - t69 + (t235 + t236 + (t204 - t205));
-            let t238 = t26 * t42 + t40 * t32;
-            let t239 = t238 * t51;
-            let t240 = t40 - t49 * t239;
-            let t241 = t240 * t56;
-            let t242 = t32 * (t240 - t55 * t241) + t47 * (t241 * t59 - t48 * t239);
-            let t243 = t139 * (t241 * t83 - t239 * t81)
-                - t143 * (t241 * t64 - (k(1.0) - t239 * t62));
-            let t244 = t147 * (t241 * t96 - t239 * t94) + t243;
-            let t245 = t244 + (t42 * (t241 * t119 + (t26 - t50 * t239)) + t242);
-            let t246 = (t244 + t245) * t184;
-            let t247 = t143 * t246;
-            let t248 = k(2.0) * t247;
-            let t249 = t139 * t246;
-            let t250 = k(2.0) * t249;
-            let t251 = t147 * t246;
-            let t252 = k(2.0) * t251;
-            let t253 = t47 * t246;
-            let t254 = t32 * t246;
-            let t255 = t42 * t246;
-            let t256 = t119 * t255 - (t55 * t254 - t59 * t253)
-                + (t96 * t252 + (t83 * t250 - t64 * t248));
-            let t257 = t254 + t56 * (t240 + t256);
-            let t258 = t50 * t255 + (t49 * t257 + t48 * t253)
-                + (t94 * t252 + (t81 * t250 + t62 * t248));
-            let t259 = t51 * (t238 - t258);
-            let t260 = t257 + t32 * t259;
-            let t261 = t255 + t42 * t259;
-            let t262 = t61 * t261 + t60 * t260;
-            let t263 = t248 + t262;
-            let t264 = k(18.69158878504673) * t220;
-            let t265 = t234 * t264;
-            let t266 = k(1.0) / (k(2.0) * t265 + (t262 + t263));
-            let t267 = t80 * t203 + t79 * t202;
-            let t268 = t191 + t267;
-            let t269 = k(0.4) * t216;
-            let t270 = t269 * t233 - k(0.4) * t226 * t214;
-            let t271 = t228 - t270;
-            let t272 = t80 * t261 - t79 * t260;
-            let t273 = t250 + t272;
-            let t274 = t269 * t264;
-            let t275 = k(2.0) * t274 + (t272 + t273);
-            let t276 = t266 * t275;
-            let t277 = t276 * t237 + (t228 - t86 - (t270 - t271 + (t267 + t268)));
-            let t278 = t18 * t42 - t14 * t32;
-            let t279 = t51 * t278;
-            let t280 = t14 + t49 * t279;
-            let t281 = t56 * t280;
-            let t282 = t32 * (t280 - t55 * t281) + t47 * (t59 * t281 + t48 * t279);
-            let t283 = t139 * (t83 * t281 - (k(1.0) - t81 * t279))
-                - t143 * (t64 * t281 - t62 * t279);
-            let t284 = t147 * (t96 * t281 + t94 * t279) + t283;
-            let t285 = t284 + (t42 * (t119 * t281 - (t18 - t50 * t279)) + t282);
-            let t286 = t184 * (t284 + t285);
-            let t287 = t143 * t286;
-            let t288 = k(2.0) * t287;
-            let t289 = t139 * t286;
-            let t290 = k(2.0) * t289;
-            let t291 = t147 * t286;
-            let t292 = k(2.0) * t291;
-            let t293 = t47 * t286;
-            let t294 = t32 * t286;
-            let t295 = t42 * t286;
-            let t296 = t119 * t295 - (t55 * t294 - t59 * t293)
-                + (t96 * t292 + (t83 * t290 - t64 * t288));
-            let t297 = t294 + t56 * (t280 + t296);
-            let t298 = t50 * t295 + (t49 * t297 + t48 * t293)
-                + (t94 * t292 + (t81 * t290 + t62 * t288));
-            let t299 = t51 * (t278 + t298);
-            let t300 = t297 - t32 * t299;
-            let t301 = t295 - t42 * t299;
-            let t302 = t80 * t301 - t79 * t300;
-            let t303 = t290 + t302;
-            let t304 = k(18.69158878504673) * t216;
-            let t305 = t269 * t304;
-            let t306 = k(1.0) / (t275 * t276 - (k(2.0) * t305 - (t302 + t303)));
-            let t307 = t93 * t203 + t92 * t202;
-            let t308 = t194 + t307;
-            let t309 = k(0.4) * t229;
-            let t310 = t309 * t233 - k(0.4) * t207 * t214;
-            let t311 = t231 - t310;
-            let t312 = t93 * t261 - t92 * t260;
-            let t313 = t252 + t312;
-            let t314 = t309 * t264;
-            let t315 = k(2.0) * t314 + (t312 + t313);
-            let t316 = t266 * t315;
-            let t317 = t316 * t237 + (t231 - t99 - (t310 - t311 + (t307 + t308)));
-            let t318 = t93 * t301 - t92 * t300;
-            let t319 = t292 + t318;
-            let t320 = t309 * t304;
-            let t321 = t275 * t316 - (k(2.0) * t320 - (t318 + t319));
-            let t322 = t306 * t321;
-            let t323 = t29 * t42 - t35 * t32;
-            let t324 = t51 * t323;
-            let t325 = t35 + t49 * t324;
-            let t326 = t56 * t325;
-            let t327 = t32 * (t325 - t55 * t326) + t47 * (t59 * t326 + t48 * t324);
-            let t328 = t139 * (t83 * t326 + t81 * t324)
-                - t143 * (t64 * t326 - t62 * t324);
-            let t329 = t147 * (t96 * t326 - (k(1.0) - t94 * t324)) + t328;
-            let t330 = t329 + (t42 * (t119 * t326 - (t29 - t50 * t324)) + t327);
-            let t331 = t184 * (t329 + t330);
-            let t332 = t143 * t331;
-            let t333 = k(2.0) * t332;
-            let t334 = t139 * t331;
-            let t335 = k(2.0) * t334;
-            let t336 = t147 * t331;
-            let t337 = k(2.0) * t336;
-            let t338 = t47 * t331;
-            let t339 = t32 * t331;
-            let t340 = t42 * t331;
-            let t341 = t119 * t340 - (t55 * t339 - t59 * t338)
-                + (t96 * t337 + (t83 * t335 - t64 * t333));
-            let t342 = t339 + t56 * (t325 + t341);
-            let t343 = t50 * t340 + (t49 * t342 + t48 * t338)
-                + (t94 * t337 + (t81 * t335 + t62 * t333));
-            let t344 = t51 * (t323 + t343);
-            let t345 = t342 - t32 * t344;
-            let t346 = t340 - t42 * t344;
-            let t347 = t93 * t346 - t92 * t345;
-            let t348 = t337 + t347;
-            let t349 = k(18.69158878504673) * t229;
-            let t350 = t309 * t349;
-            let t351 = t321 * t322 - (t315 * t316 - (k(2.0) * t350 - (t347 + t348)));
-            let t352 = (t322 * t277 - t317) / t351;
-            let t353 = t322 * t352 - t306 * t277;
-            let t354 = t316 * t352 - (t276 * t353 + t266 * t237);
-            let t355 = t353 * (t288 + (t61 * t301 + t60 * t300)) + (t205 - t263 * t354);
-            let t356 = t352 * (t335 + (t80 * t346 - t79 * t345))
-                - (t303 * t353 - (t268 + t273 * t354));
-            let t357 = t353 * (t293 - t47 * t299)
-                - (t354 * (t253 + t47 * t259) - (t195 - t47 * t201));
-            let t358 = t352 * (t234 * t349)
-                - (t353 * (t234 * t304) + (t236 + t265 * t354));
-            let t359 = t352 * (t269 * t349) - (t305 * t353 - (t271 - t274 * t354));
+            let t200 = rocker_e1 * rocker_e3;
+            let t201 = k(2.0) * (t200 - t199);
+            let t202 = rocker_wx * rocker_wz;
+            let t203 = t202 - t201 * t198;
+            let t204 = t200 + t199;
+            let t205 = k(0.5) - (t195 + rocker_e2 * rocker_e2);
+            let t206 = rocker_wx * rocker_wy;
+            let t207 = rocker_e0 * rocker_e3;
+            let t208 = rocker_e1 * rocker_e2;
+            let t209 = t208 - t207;
+            let t210 = rocker_wz * rocker_wz + t197;
+            let t211 = k(2.0) * t209 * t206
+                + k(2.0) * (k(0.5) - (t195 + rocker_e1 * rocker_e1)) * t210;
+            let t212 = k(0.2) * (k(2.0) * t204 * t202 + t211);
+            let t213 = rocker_e0 * rocker_e1;
+            let t214 = rocker_e2 * rocker_e3;
+            let t215 = t214 - t213;
+            let t216 = k(2.0) * t215 * t202
+                - (k(2.0) * t205 * t206 + k(2.0) * (t208 + t207) * t210);
+            let t217 = k(0.2) * t216;
+            let t218 = t214 + t213;
+            let t219 = k(2.0) * t218;
+            let t220 = k(0.2) * (k(2.0) * t196 * t202 - (t219 * t206 - t201 * t210));
+            let t221 = t220 * (k(0.32) * t218)
+                + (t217 * (k(0.32) * t205) - t212 * (k(0.32) * t209));
+            let t222 = k(23.364485981308412)
+                * (t221 - (k(0.01076) * t206 - k(3.1392) * t205));
+            let t223 = k(0.4) * t209;
+            let t224 = t223 * t222 + k(0.4) * t204 * t203;
+            let t225 = t212 + t224;
+            let t226 = t212 - t68 + (t224 + t225 + (t193 - t194));
+            let t227 = t26 * t42 + t40 * t32;
+            let t228 = t227 * t51;
+            let t229 = t40 - t49 * t228;
+            let t230 = t229 * t55;
+            let t231 = t42 * (t230 * t117 + (t26 - t50 * t228))
+                + t47 * (t230 * t58 - t48 * t228);
+            let t232 = t131 * (t230 * t82 - t228 * t80)
+                - t135 * (t230 * t63 - (k(1.0) - t228 * t61));
+            let t233 = t139 * (t230 * t95 - t228 * t93) + t232;
+            let t234 = (t233 + (t233 + t231)) * t174;
+            let t235 = t135 * t234;
+            let t236 = k(2.0) * t235;
+            let t237 = t131 * t234;
+            let t238 = k(2.0) * t237;
+            let t239 = t139 * t234;
+            let t240 = k(2.0) * t239;
+            let t241 = t47 * t234;
+            let t242 = t42 * t234;
+            let t243 = t117 * t242 + t58 * t241
+                + (t95 * t240 + (t82 * t238 - t63 * t236));
+            let t244 = t55 * (t229 + t243);
+            let t245 = t50 * t242 + (t49 * t244 + t48 * t241)
+                + (t93 * t240 + (t80 * t238 + t61 * t236));
+            let t246 = t51 * (t227 - t245);
+            let t247 = t244 + t32 * t246;
+            let t248 = t242 + t42 * t246;
+            let t249 = t60 * t248 + t59 * t247;
+            let t250 = t236 + t249;
+            let t251 = k(18.69158878504673) * t209;
+            let t252 = t223 * t251;
+            let t253 = k(1.0) / (k(2.0) * t252 + (t249 + t250));
+            let t254 = t79 * t192 - t78 * t191;
+            let t255 = t181 + t254;
+            let t256 = k(0.4) * t205;
+            let t257 = t256 * t222 - k(0.4) * t215 * t203;
+            let t258 = t217 - t257;
+            let t259 = t79 * t248 - t78 * t247;
+            let t260 = t238 + t259;
+            let t261 = t256 * t251;
+            let t262 = k(2.0) * t261 + (t259 + t260);
+            let t263 = t253 * t262;
+            let t264 = t263 * t226 + (t217 - t85 - (t257 - t258 + (t254 + t255)));
+            let t265 = t18 * t42 - t14 * t32;
+            let t266 = t51 * t265;
+            let t267 = t14 + t49 * t266;
+            let t268 = t55 * t267;
+            let t269 = t42 * (t117 * t268 - (t18 - t50 * t266))
+                + t47 * (t58 * t268 + t48 * t266);
+            let t270 = t131 * (t82 * t268 - (k(1.0) - t80 * t266))
+                - t135 * (t63 * t268 - t61 * t266);
+            let t271 = t139 * (t95 * t268 + t93 * t266) + t270;
+            let t272 = t174 * (t271 + (t271 + t269));
+            let t273 = t135 * t272;
+            let t274 = k(2.0) * t273;
+            let t275 = t131 * t272;
+            let t276 = k(2.0) * t275;
+            let t277 = t139 * t272;
+            let t278 = k(2.0) * t277;
+            let t279 = t47 * t272;
+            let t280 = t42 * t272;
+            let t281 = t117 * t280 + t58 * t279
+                + (t95 * t278 + (t82 * t276 - t63 * t274));
+            let t282 = t55 * (t267 + t281);
+            let t283 = t50 * t280 + (t49 * t282 + t48 * t279)
+                + (t93 * t278 + (t80 * t276 + t61 * t274));
+            let t284 = t51 * (t265 + t283);
+            let t285 = t282 - t32 * t284;
+            let t286 = t280 - t42 * t284;
+            let t287 = t79 * t286 - t78 * t285;
+            let t288 = t276 + t287;
+            let t289 = k(18.69158878504673) * t205;
+            let t290 = t256 * t289;
+            let t291 = k(1.0) / (t262 * t263 - (k(2.0) * t290 - (t287 + t288)));
+            let t292 = t92 * t192 - t91 * t191;
+            let t293 = t184 + t292;
+            let t294 = k(0.4) * t218;
+            let t295 = t294 * t222 - k(0.4) * t196 * t203;
+            let t296 = t220 - t295;
+            let t297 = t92 * t248 - t91 * t247;
+            let t298 = t240 + t297;
+            let t299 = t294 * t251;
+            let t300 = k(2.0) * t299 + (t297 + t298);
+            let t301 = t253 * t300;
+            let t302 = t301 * t226 + (t220 - t98 - (t295 - t296 + (t292 + t293)));
+            let t303 = t92 * t286 - t91 * t285;
+            let t304 = t278 + t303;
+            let t305 = t294 * t289;
+            let t306 = t262 * t301 - (k(2.0) * t305 - (t303 + t304));
+            let t307 = t291 * t306;
+            let t308 = t29 * t42 - t35 * t32;
+            let t309 = t51 * t308;
+            let t310 = t35 + t49 * t309;
+            let t311 = t55 * t310;
+            let t312 = t42 * (t117 * t311 - (t29 - t50 * t309))
+                + t47 * (t58 * t311 + t48 * t309);
+            let t313 = t131 * (t82 * t311 + t80 * t309)
+                - t135 * (t63 * t311 - t61 * t309);
+            let t314 = t139 * (t95 * t311 - (k(1.0) - t93 * t309)) + t313;
+            let t315 = t174 * (t314 + (t314 + t312));
+            let t316 = t135 * t315;
+            let t317 = k(2.0) * t316;
+            let t318 = t131 * t315;
+            let t319 = k(2.0) * t318;
+            let t320 = t139 * t315;
+            let t321 = k(2.0) * t320;
+            let t322 = t47 * t315;
+            let t323 = t42 * t315;
+            let t324 = t117 * t323 + t58 * t322
+                + (t95 * t321 + (t82 * t319 - t63 * t317));
+            let t325 = t55 * (t310 + t324);
+            let t326 = t50 * t323 + (t49 * t325 + t48 * t322)
+                + (t93 * t321 + (t80 * t319 + t61 * t317));
+            let t327 = t51 * (t308 + t326);
+            let t328 = t325 - t32 * t327;
+            let t329 = t323 - t42 * t327;
+            let t330 = t92 * t329 - t91 * t328;
+            let t331 = t321 + t330;
+            let t332 = k(18.69158878504673) * t218;
+            let t333 = t294 * t332;
+            let t334 = t306 * t307 - (t300 * t301 - (k(2.0) * t333 - (t330 + t331)));
+            let t335 = (t307 * t264 - t302) / t334;
+            let t336 = t307 * t335 - t291 * t264;
+            let t337 = t301 * t335 - (t263 * t336 + t253 * t226);
+            let t338 = t336 * (t274 + (t60 * t286 + t59 * t285)) + (t194 - t250 * t337);
+            let t339 = t335 * (t319 + (t79 * t329 - t78 * t328))
+                - (t288 * t336 - (t255 + t260 * t337));
+            let t340 = t336 * (t279 - t47 * t284)
+                - (t337 * (t241 + t47 * t246) - (t185 - t47 * t190));
+            let t341 = t335 * (t223 * t332)
+                - (t336 * (t223 * t289) + (t225 + t252 * t337));
+            let t342 = t335 * (t256 * t332) - (t290 * t336 - (t258 - t261 * t337));
             (
-                t202,
                 t203,
-                t209,
-                t214,
-                t230,
-                t233,
-                t246,
+                t219,
+                t222,
+                t234,
+                t235,
+                t237,
+                t239,
                 t247,
-                t249,
+                t248,
                 t251,
-                t260,
-                t261,
-                t264,
+                t272,
+                t273,
+                t275,
+                t277,
+                t285,
                 t286,
-                t287,
                 t289,
-                t291,
-                t300,
-                t301,
+                t293,
+                t296,
+                t298,
+                t299,
                 t304,
-                t308,
-                t311,
-                t313,
-                t314,
-                t319,
+                t305,
+                t315,
+                t316,
+                t317,
+                t318,
                 t320,
+                t322,
+                t327,
+                t328,
+                t329,
                 t331,
                 t332,
                 t333,
-                t334,
+                t335,
                 t336,
+                t337,
                 t338,
-                t344,
-                t345,
-                t346,
-                t348,
-                t349,
-                t350,
-                t352,
-                t353,
-                t354,
-                t355,
-                t356,
-                t357,
-                t358,
-                t359,
+                t339,
+                t340,
+                t341,
+                t342,
             )
         };
         *out = [
-            t287 * t353 + (t187 - t247 * t354) - t332 * t352,
-            t334 * t352 - (t289 * t353 - (t190 + t249 * t354)),
-            t291 * t353 - (t193 + t251 * t354) - t336 * t352,
-            t160,
+            t273 * t336 + (t177 - t235 * t337) - t316 * t335,
+            t318 * t335 - (t275 * t336 - (t180 + t237 * t337)),
+            t277 * t336 - (t183 + t239 * t337) - t320 * t335,
+            t152,
             -t9,
-            t286 * t353 + (t185 - t246 * t354) - t331 * t352,
-            t355 - t352 * (t333 + (t61 * t346 + t60 * t345)),
-            t356,
-            t319 * t353 - (t308 + t313 * t354) - t348 * t352,
-            t352 * (t338 - t47 * t344) - t357,
-            t345 * t352 - (t300 * t353 + (t202 - t260 * t354)),
-            t301 * t353 - (t203 + t261 * t354) - t346 * t352,
-            -t358,
-            t359,
-            t320 * t353 - (t311 - t314 * t354) - t350 * t352,
-            rocker_wy * rocker_wz - t230 * t209,
-            -t214,
-            t304 * t353 + (t233 + t264 * t354) - t349 * t352,
-            -t354,
-            t353,
-            t352,
+            t272 * t336 + (t175 - t234 * t337) - t315 * t335,
+            t338 - t335 * (t317 + (t60 * t329 + t59 * t328)),
+            t339,
+            t304 * t336 - (t293 + t298 * t337) - t331 * t335,
+            t335 * (t322 - t47 * t327) - t340,
+            t328 * t335 - (t285 * t336 - (t191 + t247 * t337)),
+            t286 * t336 - (t192 + t248 * t337) - t329 * t335,
+            -t341,
+            t342,
+            t305 * t336 - (t296 - t299 * t337) - t333 * t335,
+            rocker_wy * rocker_wz - t219 * t198,
+            -t203,
+            t289 * t336 + (t222 + t251 * t337) - t332 * t335,
+            -t337,
+            t336,
+            t335,
         ];
     }
     /// Writes λ: 272 operations (104 ±, 165 ×, 3 ÷).

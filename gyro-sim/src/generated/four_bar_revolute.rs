@@ -22,7 +22,7 @@
 //! | gamma | γ | 109 | 174 | 0 | 283 | 0 of 17 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 89 | 120 | 0 | 209 | 0 of 17 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 322 | 440 | 6 | 768 | 0 of 20 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 314 | 432 | 6 | 752 | 0 of 20 |
 //! | multipliers | λ, the accelerations being known | 96 | 157 | 3 | 256 | 0 of 17 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
@@ -1389,7 +1389,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
             -(k(0.01076) * (rocker_wx * rocker_wy)),
         ];
     }
-    /// Solves eq. (17): 768 operations (322 ±, 440 ×, 6 ÷).
+    /// Solves eq. (17): 752 operations (314 ±, 432 ×, 6 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let crank_e0 = y[3];
@@ -1418,54 +1418,55 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
             t15,
             t29,
             t39,
-            t50,
-            t53,
+            t52,
+            t58,
             t59,
             t60,
-            t61,
-            t65,
+            t64,
+            t73,
             t74,
-            t75,
-            t78,
-            t81,
-            t87,
-            t92,
+            t77,
+            t80,
+            t86,
+            t91,
+            t95,
             t96,
-            t97,
-            t101,
-            t105,
+            t100,
+            t104,
+            t137,
             t138,
             t139,
-            t140,
-            t142,
+            t141,
+            t144,
             t145,
-            t146,
+            t147,
             t148,
             t149,
-            t152,
-            t154,
-            t156,
-            t158,
-            t163,
-            t165,
-            t169,
+            t151,
+            t153,
+            t155,
+            t160,
+            t162,
+            t172,
+            t174,
             t175,
+            t176,
             t177,
-            t178,
             t179,
             t180,
             t182,
             t183,
-            t185,
             t186,
-            t189,
+            t187,
+            t188,
             t190,
             t191,
             t192,
             t193,
             t194,
-            t195,
             t196,
+            t197,
+            t198,
             t199,
         ) = {
             let t0 = crank_e0 * crank_e0;
@@ -1511,347 +1512,341 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
             let t40 = k(2.0) * t39;
             let t41 = k(0.5) - (t14 + coupler_e3 * coupler_e3);
             let t42 = k(2.0) * t41;
-            let t43 = t26 * t42 - (t19 * t40 - t13 * t38);
-            let t44 = t7 * t42 - (t33 * t38 - t31 * t40);
-            let t45 = k(2.0) * t1;
-            let t46 = t5 - t4;
-            let t47 = k(2.0) * t46;
-            let t48 = t25 + t24;
-            let t49 = k(2.0) * t48;
-            let t50 = t49 * t38 + t47 * t40 + t45 * t42;
-            let t51 = crank_wz * t50 - (crank_wy * t44 + crank_wx * t43);
-            let t52 = coupler_wz - t51;
-            let t53 = t45 * t23 - (t49 * t12 - t47 * t16);
-            let t54 = crank_wz * t53 - (crank_wy * t34 + crank_wx * t27);
-            let t55 = coupler_wy + t54;
-            let t56 = k(2.0) * (k(0.5) - (t14 + coupler_e1 * coupler_e1));
-            let t57 = k(2.0) * (t10 + t9);
-            let t58 = k(2.0) * (t36 - t35);
-            let t59 = t26 * t58 + (t19 * t57 + t13 * t56);
-            let t60 = t7 * t58 - (t31 * t57 + t33 * t56);
-            let t61 = t45 * t58 - (t47 * t57 - t49 * t56);
-            let t62 = crank_wz * t61 - (crank_wy * t60 + crank_wx * t59);
-            let t63 = coupler_wx + t62;
-            let t64 = (t63 * t63 + t55 * t55) / t50;
-            let t65 = coupler_wy * t51 + coupler_wz * t54 + (t53 * t64 - t55 * t52);
-            let t66 = coupler_wx * coupler_wz;
-            let t67 = coupler_wz * coupler_wz + coupler_wy * coupler_wy;
-            let t68 = coupler_wx * coupler_wy;
-            let t69 = k(0.25) * (t38 * t66 + (t12 * t68 + t56 * t67));
-            let t70 = crank_wz * crank_wz + t2;
-            let t71 = crank_wx * crank_wy;
-            let t72 = k(0.1) * (t49 * t28 + (t33 * t71 + t13 * t70));
-            let t73 = t72 + t69;
-            let t74 = k(0.5) * t37;
-            let t75 = k(0.25) * (t40 * t66 - (t16 * t68 + t57 * t67));
-            let t76 = k(0.1) * (t47 * t28 - (t31 * t71 + t19 * t70));
-            let t77 = t76 + t75;
-            let t78 = k(0.5) * t39;
-            let t79 = k(0.1) * (t45 * t28 - (t7 * t71 - t26 * t70));
-            let t80 = t79 + k(0.25) * (t42 * t66 - (t23 * t68 - t58 * t67));
-            let t81 = k(0.5) * t41;
-            let t82 = coupler_wz * t62 + coupler_wx * t51 + (t61 * t64 - t63 * t52);
-            let t83 = k(0.0835) * t82 - (t81 * t80 + (t78 * t77 + t74 * t73));
-            let t84 = t53 * (t83 - (k(0.02095) * t66 + k(4.905) * t39))
-                - t61 * (k(5e-5) * t65);
-            let t85 = k(0.02095) * t68 - k(4.905) * t15;
-            let t86 = k(11.976047904191617) * t85;
-            let t87 = k(0.5) * t15;
-            let t88 = k(5.9880239520958085) * t11;
-            let t89 = t87 * t88;
-            let t90 = k(5.9880239520958085) * t15;
-            let t91 = t87 * t90;
-            let t92 = k(0.5) * t22;
-            let t93 = t92 * t90;
-            let t94 = t78 * t82 - (t77 - (t80 * t93 + (t77 * t91 - t73 * t89)));
-            let t95 = t94 - (k(9.81) + t87 * t86);
-            let t96 = k(0.2) * t30;
-            let t97 = k(0.5) * t11;
-            let t98 = t97 * t88;
-            let t99 = t92 * t88;
-            let t100 = t74 * t82 - (t73 + (t80 * t99 + (t77 * t89 - t73 * t98)));
-            let t101 = k(0.2) * t32;
-            let t102 = t101 * (t100 + t97 * t86);
-            let t103 = t92 * (k(5.9880239520958085) * t22);
-            let t104 = t81 * t82 - (t80 - (t80 * t103 + (t77 * t93 - t73 * t99)));
-            let t105 = k(0.2) * t6;
-            let t106 = t105 * (t104 - t92 * t86);
-            let t107 = t96 * (k(3.924) - t95) + t102 - t106
-                - (k(0.00133) * t71 + (t106 - (t102 - t96 * t95) - t84));
-            let t108 = t105 * t99 + (t96 * t89 + t101 * t98);
-            let t109 = t74 * t53;
-            let t110 = t101 - t108 + t109;
-            let t111 = t105 * t93 + (t96 * t91 + t101 * t89);
-            let t112 = t78 * t53;
-            let t113 = t96 - t111 - t112;
-            let t114 = t76 * (t113 - (t111 - k(0.28) * t30))
-                - t72 * (t110 - (t108 - k(0.28) * t32));
-            let t115 = t105 * t103 + (t96 * t93 + t101 * t99);
-            let t116 = t81 * t53;
-            let t117 = t105 - t115 - t116;
-            let t118 = t105 * (t81 * t27) + (t96 * (t78 * t27) - t101 * (t74 * t27));
-            let t119 = t118 + (t118 - (t53 * (k(0.0835) * t27) + t61 * (k(5e-5) * t59)));
-            let t120 = k(0.2) * t48;
-            let t121 = k(0.2) * t46;
-            let t122 = k(0.2) * t1;
-            let t123 = t74 * t34;
-            let t124 = t78 * t34;
-            let t125 = t81 * t34;
-            let t126 = t105 * t125 + (t96 * t124 - t101 * t123)
-                - (t122 * t116 + (t121 * t112 + t120 * t109));
-            let t127 = t122 * t115 + (t121 * t111 - t120 * t108);
-            let t128 = t127 - t126 + (t53 * (k(0.0835) * t34) + t61 * (k(5e-5) * t60));
-            let t129 = t120 + (t122 * t99 + (t121 * t89 - t120 * t98)) + t123;
-            let t130 = t121 - (t122 * t93 + (t121 * t91 - t120 * t89)) + t124;
-            let t131 = t122 - (t122 * t103 + (t121 * t93 - t120 * t99)) + t125;
-            let t132 = t105 * t131 + (t96 * t130 - t101 * t129)
-                + (t122 * t117 + (t121 * t113 - t120 * t110));
-            let t133 = (t132 - t127 - t128) * t29 - t119 * t8
-                + (t79 * (t117 - (t115 - k(0.28) * t6)) + t114);
-            let t134 = t105 * t115 + (t96 * t111 + t101 * t108);
-            let t135 = t134 + k(2.0) * (t105 * t116 + (t96 * t112 - t101 * t109));
-            let t136 = t135
-                - (k(0.01) + (t53 * (k(0.0835) * t53) + t61 * (k(5e-5) * t61)));
-            let t137 = k(2.0) * (t105 * t117 + (t96 * t113 + t101 * t110)) - t134;
-            let t138 = k(1.0) / (t137 + (k(0.014) + (k(0.00135) - t136)));
-            let t139 = t138 * (t133 + t107);
-            let t140 = t82 - (t53 * t139 + (t34 * t29 - t27 * t8));
-            let t141 = t101 * t139 + t120 * t29;
-            let t142 = t72 + t141;
-            let t143 = t73 + (t141 + t142);
-            let t144 = t96 * t139 - t121 * t29;
-            let t145 = t76 - t144;
-            let t146 = t77 - (t144 - t145);
-            let t147 = t105 * t139 - t122 * t29;
-            let t148 = t79 - t147;
-            let t149 = t80 - (t147 - t148);
-            let t150 = t50 * t139 + (t44 * t29 - t43 * t8);
-            let t151 = k(0.0835) * t150 - (t92 * t149 + (t87 * t146 - t97 * t143));
-            let t152 = t150 - k(11.976047904191617) * (t85 + t151);
-            let t153 = t97 * t152 - t74 * t140;
-            let t154 = t143 + t153;
-            let t155 = rocker_e0 * rocker_e0;
-            let t156 = k(0.5) - (t155 + rocker_e3 * rocker_e3);
-            let t157 = rocker_wy * rocker_wy;
-            let t158 = (t157 + rocker_wx * rocker_wx) * (k(0.5) / t156);
-            let t159 = rocker_e0 * rocker_e2;
-            let t160 = rocker_e1 * rocker_e3;
-            let t161 = k(2.0) * (t160 - t159);
-            let t162 = rocker_wx * rocker_wz;
-            let t163 = t162 - t161 * t158;
-            let t164 = t160 + t159;
-            let t165 = k(0.5) - (t155 + rocker_e2 * rocker_e2);
-            let t166 = rocker_wx * rocker_wy;
-            let t167 = rocker_e0 * rocker_e3;
-            let t168 = rocker_e1 * rocker_e2;
-            let t169 = t168 - t167;
-            let t170 = rocker_wz * rocker_wz + t157;
-            let t171 = k(2.0) * t169 * t166
-                + k(2.0) * (k(0.5) - (t155 + rocker_e1 * rocker_e1)) * t170;
-            let t172 = k(0.2) * (k(2.0) * t164 * t162 + t171);
-            let t173 = rocker_e0 * rocker_e1;
-            let t174 = rocker_e2 * rocker_e3;
-            let t175 = t174 - t173;
-            let t176 = k(2.0) * t175 * t162
-                - (k(2.0) * t165 * t166 + k(2.0) * (t168 + t167) * t170);
-            let t177 = k(0.2) * t176;
-            let t178 = t174 + t173;
-            let t179 = k(2.0) * t178;
-            let t180 = k(0.2) * (k(2.0) * t156 * t162 - (t179 * t166 - t161 * t170));
-            let t181 = t180 * (k(0.32) * t178)
-                + (t177 * (k(0.32) * t165) - t172 * (k(0.32) * t169));
-            let t182 = k(23.364485981308412)
-                * (t181 - (k(0.01076) * t166 - k(3.1392) * t165));
-            let t183 = k(0.4) * t169;
-            let t184 = t183 * t182 + k(0.4) * t164 * t163;
-            let t185 = t172 + t184;
-            let t186 = t172 - t69 + (t184 + t185 - (t153 + t154));
-            let t187 = k(11.976047904191617) * t11;
-            let t188 = t105 * (t92 * t187)
-                + (t96 * (t87 * t187) - t101 * (k(1.0) - t97 * t187));
-            let t189 = (t188 + (t188 - t37 * t53)) * t138;
-            let t190 = t53 * t189;
-            let t191 = t101 * t189;
-            let t192 = k(2.0) * t191;
-            let t193 = t96 * t189;
-            let t194 = k(2.0) * t193;
-            let t195 = t105 * t189;
-            let t196 = k(2.0) * t195;
-            let t197 = t50 * t189;
-            let t198 = k(0.0835) * t197 + (t92 * t196 + (t87 * t194 + t97 * t192));
-            let t199 = t197 - k(11.976047904191617) * (t11 + t198);
+            let t43 = crank_wy * (t7 * t42 - (t33 * t38 - t31 * t40))
+                + crank_wx * (t26 * t42 - (t19 * t40 - t13 * t38));
+            let t44 = k(2.0) * t1;
+            let t45 = t5 - t4;
+            let t46 = k(2.0) * t45;
+            let t47 = t25 + t24;
+            let t48 = k(2.0) * t47;
+            let t49 = t48 * t38 + t46 * t40 + t44 * t42;
+            let t50 = crank_wz * t49 - t43;
+            let t51 = coupler_wz - t50;
+            let t52 = t44 * t23 - (t48 * t12 - t46 * t16);
+            let t53 = crank_wz * t52 - (crank_wy * t34 + crank_wx * t27);
+            let t54 = coupler_wy + t53;
+            let t55 = k(2.0) * (k(0.5) - (t14 + coupler_e1 * coupler_e1));
+            let t56 = k(2.0) * (t10 + t9);
+            let t57 = k(2.0) * (t36 - t35);
+            let t58 = t26 * t57 + (t19 * t56 + t13 * t55);
+            let t59 = t7 * t57 - (t31 * t56 + t33 * t55);
+            let t60 = t44 * t57 - (t46 * t56 - t48 * t55);
+            let t61 = crank_wz * t60 - (crank_wy * t59 + crank_wx * t58);
+            let t62 = coupler_wx + t61;
+            let t63 = (t62 * t62 + t54 * t54) / t49;
+            let t64 = coupler_wy * t50 + coupler_wz * t53 + (t52 * t63 - t54 * t51);
+            let t65 = coupler_wx * coupler_wz;
+            let t66 = coupler_wz * coupler_wz + coupler_wy * coupler_wy;
+            let t67 = coupler_wx * coupler_wy;
+            let t68 = k(0.25) * (t38 * t65 + (t12 * t67 + t55 * t66));
+            let t69 = crank_wz * crank_wz + t2;
+            let t70 = crank_wx * crank_wy;
+            let t71 = k(0.1) * (t48 * t28 + (t33 * t70 + t13 * t69));
+            let t72 = t71 + t68;
+            let t73 = k(0.5) * t37;
+            let t74 = k(0.25) * (t40 * t65 - (t16 * t67 + t56 * t66));
+            let t75 = k(0.1) * (t46 * t28 - (t31 * t70 + t19 * t69));
+            let t76 = t75 + t74;
+            let t77 = k(0.5) * t39;
+            let t78 = k(0.1) * (t44 * t28 - (t7 * t70 - t26 * t69));
+            let t79 = t78 + k(0.25) * (t42 * t65 - (t23 * t67 - t57 * t66));
+            let t80 = k(0.5) * t41;
+            let t81 = coupler_wz * t61 + coupler_wx * t50 + (t60 * t63 - t62 * t51);
+            let t82 = k(0.0835) * t81 - (t80 * t79 + (t77 * t76 + t73 * t72));
+            let t83 = t52 * (t82 - (k(0.02095) * t65 + k(4.905) * t39))
+                - t60 * (k(5e-5) * t64);
+            let t84 = k(0.02095) * t67 - k(4.905) * t15;
+            let t85 = k(11.976047904191617) * t84;
+            let t86 = k(0.5) * t15;
+            let t87 = k(5.9880239520958085) * t11;
+            let t88 = t86 * t87;
+            let t89 = k(5.9880239520958085) * t15;
+            let t90 = t86 * t89;
+            let t91 = k(0.5) * t22;
+            let t92 = t91 * t89;
+            let t93 = t77 * t81 - (t76 - (t79 * t92 + (t76 * t90 - t72 * t88)));
+            let t94 = t93 - (k(9.81) + t86 * t85);
+            let t95 = k(0.2) * t30;
+            let t96 = k(0.5) * t11;
+            let t97 = t96 * t87;
+            let t98 = t91 * t87;
+            let t99 = t73 * t81 - (t72 + (t79 * t98 + (t76 * t88 - t72 * t97)));
+            let t100 = k(0.2) * t32;
+            let t101 = t100 * (t99 + t96 * t85);
+            let t102 = t91 * (k(5.9880239520958085) * t22);
+            let t103 = t80 * t81 - (t79 - (t79 * t102 + (t76 * t92 - t72 * t98)));
+            let t104 = k(0.2) * t6;
+            let t105 = t104 * (t103 - t91 * t85);
+            let t106 = t95 * (k(3.924) - t94) + t101 - t105
+                - (k(0.00133) * t70 + (t105 - (t101 - t95 * t94) - t83));
+            let t107 = t104 * t98 + (t95 * t88 + t100 * t97);
+            let t108 = t73 * t52;
+            let t109 = t100 - t107 + t108;
+            let t110 = t104 * t92 + (t95 * t90 + t100 * t88);
+            let t111 = t77 * t52;
+            let t112 = t95 - t110 - t111;
+            let t113 = t75 * (t112 - (t110 - k(0.28) * t30))
+                - t71 * (t109 - (t107 - k(0.28) * t32));
+            let t114 = t104 * t102 + (t95 * t92 + t100 * t98);
+            let t115 = t80 * t52;
+            let t116 = t104 - t114 - t115;
+            let t117 = t104 * (t80 * t27) + (t95 * (t77 * t27) - t100 * (t73 * t27));
+            let t118 = t117 + (t117 - (t52 * (k(0.0835) * t27) + t60 * (k(5e-5) * t58)));
+            let t119 = k(0.2) * t47;
+            let t120 = k(0.2) * t45;
+            let t121 = k(0.2) * t1;
+            let t122 = t73 * t34;
+            let t123 = t77 * t34;
+            let t124 = t80 * t34;
+            let t125 = t104 * t124 + (t95 * t123 - t100 * t122)
+                - (t121 * t115 + (t120 * t111 + t119 * t108));
+            let t126 = t121 * t114 + (t120 * t110 - t119 * t107);
+            let t127 = t126 - t125 + (t52 * (k(0.0835) * t34) + t60 * (k(5e-5) * t59));
+            let t128 = t119 + (t121 * t98 + (t120 * t88 - t119 * t97)) + t122;
+            let t129 = t120 - (t121 * t92 + (t120 * t90 - t119 * t88)) + t123;
+            let t130 = t121 - (t121 * t102 + (t120 * t92 - t119 * t98)) + t124;
+            let t131 = t104 * t130 + (t95 * t129 - t100 * t128)
+                + (t121 * t116 + (t120 * t112 - t119 * t109));
+            let t132 = (t131 - t126 - t127) * t29 - t118 * t8
+                + (t78 * (t116 - (t114 - k(0.28) * t6)) + t113);
+            let t133 = t104 * t114 + (t95 * t110 + t100 * t107);
+            let t134 = t133 + k(2.0) * (t104 * t115 + (t95 * t111 - t100 * t108));
+            let t135 = t134
+                - (k(0.01) + (t52 * (k(0.0835) * t52) + t60 * (k(5e-5) * t60)));
+            let t136 = k(2.0) * (t104 * t116 + (t95 * t112 + t100 * t109)) - t133;
+            let t137 = k(1.0) / (t136 + (k(0.014) + (k(0.00135) - t135)));
+            let t138 = t137 * (t132 + t106);
+            let t139 = t81 - (t52 * t138 + (t34 * t29 - t27 * t8));
+            let t140 = t100 * t138 + t119 * t29;
+            let t141 = t71 + t140;
+            let t142 = t72 + (t140 + t141);
+            let t143 = t95 * t138 - t120 * t29;
+            let t144 = t75 - t143;
+            let t145 = t76 - (t143 - t144);
+            let t146 = t104 * t138 - t121 * t29;
+            let t147 = t78 - t146;
+            let t148 = t79 - (t146 - t147);
+            let t149 = k(11.976047904191617)
+                * (t84 - (t91 * t148 + (t86 * t145 - t96 * t142)));
+            let t150 = t96 * t149 + t73 * t139;
+            let t151 = t142 - t150;
+            let t152 = rocker_e0 * rocker_e0;
+            let t153 = k(0.5) - (t152 + rocker_e3 * rocker_e3);
+            let t154 = rocker_wy * rocker_wy;
+            let t155 = (t154 + rocker_wx * rocker_wx) * (k(0.5) / t153);
+            let t156 = rocker_e0 * rocker_e2;
+            let t157 = rocker_e1 * rocker_e3;
+            let t158 = k(2.0) * (t157 - t156);
+            let t159 = rocker_wx * rocker_wz;
+            let t160 = t159 - t158 * t155;
+            let t161 = t157 + t156;
+            let t162 = k(0.5) - (t152 + rocker_e2 * rocker_e2);
+            let t163 = rocker_wx * rocker_wy;
+            let t164 = rocker_e0 * rocker_e3;
+            let t165 = rocker_e1 * rocker_e2;
+            let t166 = t165 - t164;
+            let t167 = rocker_wz * rocker_wz + t154;
+            let t168 = k(2.0) * t166 * t163
+                + k(2.0) * (k(0.5) - (t152 + rocker_e1 * rocker_e1)) * t167;
+            let t169 = k(0.2) * (k(2.0) * t161 * t159 + t168);
+            let t170 = rocker_e0 * rocker_e1;
+            let t171 = rocker_e2 * rocker_e3;
+            let t172 = t171 - t170;
+            let t173 = k(2.0) * t172 * t159
+                - (k(2.0) * t162 * t163 + k(2.0) * (t165 + t164) * t167);
+            let t174 = k(0.2) * t173;
+            let t175 = t171 + t170;
+            let t176 = k(2.0) * t175;
+            let t177 = k(0.2) * (k(2.0) * t153 * t159 - (t176 * t163 - t158 * t167));
+            let t178 = t177 * (k(0.32) * t175)
+                + (t174 * (k(0.32) * t162) - t169 * (k(0.32) * t166));
+            let t179 = k(23.364485981308412)
+                * (t178 - (k(0.01076) * t163 - k(3.1392) * t162));
+            let t180 = k(0.4) * t166;
+            let t181 = t180 * t179 + k(0.4) * t161 * t160;
+            let t182 = t169 + t181;
+            let t183 = t169 - t68 + (t181 + t182 + (t150 - t151));
+            let t184 = k(11.976047904191617) * t11;
+            let t185 = t104 * (t91 * t184)
+                + (t95 * (t86 * t184) - t100 * (k(1.0) - t96 * t184));
+            let t186 = (t185 + (t185 - t37 * t52)) * t137;
+            let t187 = t52 * t186;
+            let t188 = t100 * t186;
+            let t189 = k(2.0) * t188;
+            let t190 = t95 * t186;
+            let t191 = k(2.0) * t190;
+            let t192 = t104 * t186;
+            let t193 = k(2.0) * t192;
+            let t194 = k(11.976047904191617)
+                * (t11 + (t91 * t193 + (t86 * t191 + t96 * t189)));
+            let t195 = t96 * t194 - t73 * t187;
+            let t196 = t189 - t195;
+            let t197 = k(18.69158878504673) * t166;
+            let t198 = t180 * t197;
+            let t199 = k(1.0) / (k(2.0) * t198 + (t195 - t196));
             (
                 t8,
                 t15,
                 t29,
                 t39,
-                t50,
-                t53,
+                t52,
+                t58,
                 t59,
                 t60,
-                t61,
-                t65,
+                t64,
+                t73,
                 t74,
-                t75,
-                t78,
-                t81,
-                t87,
-                t92,
+                t77,
+                t80,
+                t86,
+                t91,
+                t95,
                 t96,
-                t97,
-                t101,
-                t105,
+                t100,
+                t104,
+                t137,
                 t138,
                 t139,
-                t140,
-                t142,
+                t141,
+                t144,
                 t145,
-                t146,
+                t147,
                 t148,
                 t149,
-                t152,
-                t154,
-                t156,
-                t158,
-                t163,
-                t165,
-                t169,
+                t151,
+                t153,
+                t155,
+                t160,
+                t162,
+                t172,
+                t174,
                 t175,
+                t176,
                 t177,
-                t178,
                 t179,
                 t180,
                 t182,
                 t183,
-                t185,
                 t186,
-                t189,
+                t187,
+                t188,
                 t190,
                 t191,
                 t192,
                 t193,
                 t194,
-                t195,
                 t196,
+                t197,
+                t198,
                 t199,
             )
         };
         let (
-            t202,
-            t203,
+            t201,
+            t204,
             t206,
-            t209,
-            t211,
-            t212,
-            t218,
+            t207,
+            t213,
+            t214,
+            t215,
+            t217,
             t219,
             t220,
-            t222,
+            t221,
+            t223,
             t224,
             t225,
+            t226,
+            t227,
             t228,
+            t229,
             t230,
             t231,
             t232,
-            t233,
-            t234,
-            t235,
-            t236,
-            t237,
-            t238,
-            t239,
         ) = {
-            let t200 = t97 * t199 + t74 * t190;
-            let t201 = t192 + t200;
-            let t202 = k(18.69158878504673) * t169;
-            let t203 = t183 * t202;
-            let t204 = k(1.0) / (k(2.0) * t203 - (t200 + t201));
-            let t205 = t87 * t152 + t78 * t140;
-            let t206 = t146 - t205;
-            let t207 = k(0.4) * t165;
-            let t208 = t207 * t182 - k(0.4) * t175 * t163;
-            let t209 = t177 - t208;
-            let t210 = t87 * t199 - t78 * t190;
-            let t211 = t194 + t210;
-            let t212 = t207 * t202;
-            let t213 = k(2.0) * t212 - (t210 + t211);
-            let t214 = t204 * t213;
-            let t215 = t214 * t186 + (t177 - t75 - (t208 - t209 - (t205 - t206)));
-            let t216 = k(11.976047904191617) * t15;
-            let t217 = t105 * (t92 * t216)
-                - (t96 * (k(1.0) - t87 * t216) - t101 * (t97 * t216));
-            let t218 = t138 * (t217 + (t217 + t39 * t53));
-            let t219 = t53 * t218;
-            let t220 = t101 * t218;
-            let t221 = k(2.0) * t220;
-            let t222 = t96 * t218;
-            let t223 = k(2.0) * t222;
-            let t224 = t105 * t218;
-            let t225 = k(2.0) * t224;
-            let t226 = t50 * t218;
-            let t227 = k(0.0835) * t226 + (t92 * t225 + (t87 * t223 + t97 * t221));
-            let t228 = t226 - k(11.976047904191617) * (t15 + t227);
-            let t229 = t87 * t228 - t78 * t219;
-            let t230 = t223 + t229;
-            let t231 = k(18.69158878504673) * t165;
-            let t232 = t207 * t231;
-            let t233 = t215 / (t213 * t214 - (k(2.0) * t232 - (t229 + t230)));
-            let t234 = t214 * t233 - t204 * t186;
-            let t235 = t233 * (t221 + (t97 * t228 + t74 * t219)) - (t154 + t201 * t234);
-            let t236 = t234 * (t196 + (t92 * t199 - t81 * t190))
-                - (t149 - (t92 * t152 + t81 * t140));
-            let t237 = t234 * (t61 * t189)
-                + (t65 + (t61 * t139 + (t60 * t29 - t59 * t8)));
-            let t238 = k(0.4) * t178;
-            let t239 = t234 * (t238 * t202)
-                - (t180 - (t238 * t182 - k(0.4) * t156 * t163));
+            let t200 = t86 * t149 - t77 * t139;
+            let t201 = t145 + t200;
+            let t202 = k(0.4) * t162;
+            let t203 = t202 * t179 - k(0.4) * t172 * t160;
+            let t204 = t174 - t203;
+            let t205 = t86 * t194 + t77 * t187;
+            let t206 = t191 - t205;
+            let t207 = t202 * t197;
+            let t208 = k(2.0) * t207 + (t205 - t206);
+            let t209 = t199 * t208;
+            let t210 = t209 * t183 + (t174 - t74 - (t203 - t204 + (t200 + t201)));
+            let t211 = k(11.976047904191617) * t15;
+            let t212 = t104 * (t91 * t211)
+                - (t95 * (k(1.0) - t86 * t211) - t100 * (t96 * t211));
+            let t213 = t137 * (t212 + (t212 + t39 * t52));
+            let t214 = t52 * t213;
+            let t215 = t100 * t213;
+            let t216 = k(2.0) * t215;
+            let t217 = t95 * t213;
+            let t218 = k(2.0) * t217;
+            let t219 = t104 * t213;
+            let t220 = k(2.0) * t219;
+            let t221 = k(11.976047904191617)
+                * (t15 + (t91 * t220 + (t86 * t218 + t96 * t216)));
+            let t222 = t86 * t221 + t77 * t214;
+            let t223 = t218 - t222;
+            let t224 = k(18.69158878504673) * t162;
+            let t225 = t202 * t224;
+            let t226 = t210 / (t208 * t209 - (k(2.0) * t225 + (t222 - t223)));
+            let t227 = t209 * t226 - t199 * t183;
+            let t228 = t226 * (t216 - (t96 * t221 - t73 * t214)) - (t151 + t196 * t227);
+            let t229 = t227 * (t193 - (t91 * t194 + t80 * t187))
+                - (t148 + (t91 * t149 - t80 * t139));
+            let t230 = t227 * (t60 * t186)
+                + (t64 + (t60 * t138 + (t59 * t29 - t58 * t8)));
+            let t231 = k(0.4) * t175;
+            let t232 = t227 * (t231 * t197)
+                - (t177 - (t231 * t179 - k(0.4) * t153 * t160));
             (
-                t202,
-                t203,
+                t201,
+                t204,
                 t206,
-                t209,
-                t211,
-                t212,
-                t218,
+                t207,
+                t213,
+                t214,
+                t215,
+                t217,
                 t219,
                 t220,
-                t222,
+                t221,
+                t223,
                 t224,
                 t225,
+                t226,
+                t227,
                 t228,
+                t229,
                 t230,
                 t231,
                 t232,
-                t233,
-                t234,
-                t235,
-                t236,
-                t237,
-                t238,
-                t239,
             )
         };
         *out = [
-            t142 + t191 * t234 - t220 * t233,
-            t222 * t233 + (t145 - t193 * t234),
-            -(t224 * t233 + (t148 - t195 * t234)),
+            t141 + t188 * t227 - t215 * t226,
+            t217 * t226 + (t144 - t190 * t227),
+            -(t219 * t226 + (t147 - t192 * t227)),
             t8,
             -t29,
-            t139 + t189 * t234 - t218 * t233,
-            -t235,
-            t230 * t233 + (t206 - t211 * t234),
-            t236 - t233 * (t225 + (t92 * t228 - t81 * t219)),
-            t233 * (t61 * t218) - t237,
-            t219 * t233 + (t140 - t190 * t234),
-            t152 + t199 * t234 - t228 * t233,
-            t185 + t203 * t234 - t233 * (t183 * t231),
-            t232 * t233 + (t209 - t212 * t234),
-            t239 - t233 * (t238 * t231),
-            rocker_wy * rocker_wz - t179 * t158,
-            -t163,
-            t182 + t202 * t234 - t231 * t233,
-            -t234,
-            -t233,
+            t138 + t186 * t227 - t213 * t226,
+            -t228,
+            t223 * t226 + (t201 - t206 * t227),
+            t229 - t226 * (t220 - (t91 * t221 + t80 * t214)),
+            t226 * (t60 * t213) - t230,
+            t214 * t226 + (t139 - t187 * t227),
+            t221 * t226 - (t149 + t194 * t227),
+            t182 + t198 * t227 - t226 * (t180 * t224),
+            t225 * t226 + (t204 - t207 * t227),
+            t232 - t226 * (t231 * t224),
+            rocker_wy * rocker_wz - t176 * t155,
+            -t160,
+            t179 + t197 * t227 - t224 * t226,
+            -t227,
+            -t226,
         ];
     }
     /// Writes λ: 256 operations (96 ±, 157 ×, 3 ÷).

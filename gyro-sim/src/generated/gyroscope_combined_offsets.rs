@@ -19,7 +19,7 @@
 //! | gamma | γ | 169 | 255 | 0 | 424 | 6 of 15 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 120 | 173 | 0 | 293 | 0 of 15 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 409 | 569 | 5 | 983 | 6 of 18 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 386 | 544 | 5 | 935 | 6 of 18 |
 //! | multipliers | λ, the accelerations being known | 144 | 229 | 3 | 376 | 0 of 15 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
@@ -1921,7 +1921,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 983 operations (409 ±, 569 ×, 5 ÷).
+    /// Solves eq. (17): 935 operations (386 ±, 544 ×, 5 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1960,27 +1960,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
             t47,
             t48,
             t49,
-            t50,
             t55,
             t56,
             t57,
-            t58,
             t61,
-            t63,
-            t64,
-            t66,
             t69,
-            t70,
             t71,
-            t72,
             t75,
-            t76,
             t77,
-            t78,
             t81,
-            t82,
             t83,
-            t84,
             t87,
             t88,
             t89,
@@ -1991,10 +1980,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
             t94,
             t102,
             t105,
-            t106,
+            t107,
             t108,
             t109,
             t110,
+            t111,
+            t112,
+            t113,
             t114,
             t115,
             t116,
@@ -2003,26 +1995,21 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
             t119,
             t120,
             t121,
-            t122,
+            t133,
             t134,
             t135,
             t136,
-            t137,
             t138,
             t139,
-            t142,
-            t143,
             t144,
-            t145,
-            t150,
-            t154,
+            t148,
+            t163,
             t169,
             t175,
-            t181,
-            t182,
-            t183,
-            t184,
-            t192,
+            t185,
+            t186,
+            t188,
+            t190,
             t193,
             t195,
             t197,
@@ -2141,121 +2128,123 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
                 - t90 * (k(2.400191904047976e-9) * t91 - k(5.002599744127936e-6) * t90);
             let t104 = k(2.0) * (t94 * t100 + (t93 * t99 - t92 * t98))
                 + (t94 * t97 + (t93 * t96 - t92 * t95));
-            let t105 = k(1e-6) - (t104 - (k(1.45e-9) + t103));
-            let t106 = k(1.0) / t105;
-            let t107 = t106 * t102;
-            let t108 = t102 * t107
+            let t105 = k(1.0) / (k(1e-6) - (t104 - (k(1.45e-9) + t103)));
+            let t106 = t105 * t102;
+            let t107 = t102 * t106
                 - (k(1e-6) - (t86 - (k(2.72e-10) + (t38 * t40 - t29 * t39))));
-            let t109 = outer_ring_e0 * outer_ring_e3;
-            let t110 = outer_ring_e1 * outer_ring_e2;
-            let t111 = k(2.0) * (t110 - t109);
-            let t112 = k(2.0) * t1;
-            let t113 = k(2.0) * (t4 + t3);
-            let t114 = t113 * t28 - (t112 * t20 + t111 * t13);
-            let t115 = k(2.0) * t51;
-            let t116 = k(2.0) * t45;
-            let t117 = k(2.0) * t59;
-            let t118 = t117 * t24 + (t116 * t10 + t115 * t16);
-            let t119 = t117 * t37 - (t116 * t33 - t115 * t35);
-            let t120 = k(0.00025) * t46 - k(6e-5) * t12;
-            let t121 = k(0.00025) * t54 + k(6e-5) * t19;
-            let t122 = k(0.00025) * t60 - k(6e-5) * t27;
-            let t123 = t122 * t58 + (t121 * t50 + t120 * t44);
-            let t124 = t122 * t64 + (t121 * t63 + t120 * t50);
-            let t125 = t122 * t66 + (t121 * t64 + t120 * t58);
-            let t126 = t119 * t72 + t118 * t70;
-            let t127 = t119 * t78 + t118 * t76;
-            let t128 = t119 * t84 + t118 * t82;
-            let t129 = t122 * t85 + (t121 * t79 + t120 * t73)
-                - (t61 * t128 + (t55 * t127 + t47 * t126));
-            let t130 = t129 + (t61 * t125 + (t55 * t124 + t47 * t123))
-                - (k(5e-10) - (t119 * t40 - t118 * t39));
-            let t131 = k(2.400191904047976e-9) * t119 - k(5.002599744127936e-6) * t118;
-            let t132 = k(5.003999856071964e-6) * t119 - k(2.400191904047976e-9) * t118;
-            let t133 = t94 * t128 + (t93 * t127 - t92 * t126)
-                - (t122 * t100 + (t121 * t99 + t120 * t98));
-            let t134 = t133 - (t122 * t97 + (t121 * t96 + t120 * t95))
-                + (k(1.2e-10) - (t91 * t132 - t90 * t131));
-            let t135 = t134 * t107 - t130;
-            let t136 = t113 * t117 + (t111 * t116 + t112 * t115);
-            let t137 = t102 - t105 * t107;
-            let t138 = t113 * t89 - (t111 * t88 - t112 * t87);
-            let t139 = t138 * t137 + (t136 * t135 + t114 * t108);
-            let t140 = k(2.0) * (t122 * t128 + (t121 * t127 + t120 * t126))
-                - (t122 * t125 + (t121 * t124 + t120 * t123));
-            let t141 = t106 * t134;
-            let t142 = t134 * t141
-                - (k(2e-6) + (t140 + (k(1.322e-9) + (t119 * t132 - t118 * t131))));
-            let t143 = t134 - t105 * t141;
-            let t144 = t138 * t143 + (t136 * t142 + t114 * t135);
-            let t145 = t136 * t143 + t114 * t137;
-            let t146 = rotor_wx * rotor_wz;
-            let t147 = inner_ring_wy * inner_ring_wy;
-            let t148 = inner_ring_wz * inner_ring_wz;
-            let t149 = t148 + t147;
-            let t150 = inner_ring_wx * inner_ring_wy;
-            let t151 = inner_ring_wx * inner_ring_wz;
-            let t152 = inner_ring_wx * inner_ring_wx;
-            let t153 = t148 + t152;
-            let t154 = inner_ring_wy * inner_ring_wz;
-            let t155 = k(5e-5) * (t88 * t154 - (t116 * t153 + t13 * t150))
-                + k(0.000125) * (t88 * t151 + (t116 * t150 + t13 * t149));
-            let t156 = t147 + t152;
-            let t157 = k(3e-5) * (t88 * t156 - (t116 * t154 - t13 * t151)) + t155;
-            let t158 = rotor_wy * rotor_wy;
-            let t159 = rotor_wz * rotor_wz;
-            let t160 = t159 + t158;
-            let t161 = k(2.0) * t68;
-            let t162 = rotor_wx * rotor_wy;
-            let t163 = rotor_wx * rotor_wx;
-            let t164 = t159 + t163;
-            let t165 = rotor_wy * rotor_wz;
-            let t166 = k(0.0002) * (t33 * t165 - (t10 * t164 + t161 * t162))
-                + k(0.0001) * (t33 * t146 + (t10 * t162 + t161 * t160));
-            let t167 = t158 + t163;
-            let t168 = k(0.00015) * (t33 * t167 - (t10 * t165 - t161 * t146)) + t166;
-            let t169 = t168 - t157;
-            let t170 = k(5e-5) * (t87 * t154 + (t115 * t153 + t20 * t150))
-                + k(0.000125) * (t87 * t151 - (t115 * t150 + t20 * t149));
-            let t171 = k(3e-5) * (t87 * t156 + (t115 * t154 - t20 * t151)) + t170;
-            let t172 = k(2.0) * t74;
-            let t173 = k(0.0002) * (t35 * t165 + (t16 * t164 + t172 * t162))
-                + k(0.0001) * (t35 * t146 - (t16 * t162 + t172 * t160));
-            let t174 = k(0.00015) * (t35 * t167 + (t16 * t165 - t172 * t146)) + t173;
+            let t108 = outer_ring_e0 * outer_ring_e3;
+            let t109 = outer_ring_e1 * outer_ring_e2;
+            let t110 = k(2.0) * (t109 - t108);
+            let t111 = k(2.0) * t1;
+            let t112 = k(2.0) * (t4 + t3);
+            let t113 = t112 * t28 - (t111 * t20 + t110 * t13);
+            let t114 = k(2.0) * t51;
+            let t115 = k(2.0) * t45;
+            let t116 = k(2.0) * t59;
+            let t117 = t116 * t24 + (t115 * t10 + t114 * t16);
+            let t118 = t116 * t37 - (t115 * t33 - t114 * t35);
+            let t119 = k(0.00025) * t46 - k(6e-5) * t12;
+            let t120 = k(0.00025) * t54 + k(6e-5) * t19;
+            let t121 = k(0.00025) * t60 - k(6e-5) * t27;
+            let t122 = t121 * t58 + (t120 * t50 + t119 * t44);
+            let t123 = t121 * t64 + (t120 * t63 + t119 * t50);
+            let t124 = t121 * t66 + (t120 * t64 + t119 * t58);
+            let t125 = t118 * t72 + t117 * t70;
+            let t126 = t118 * t78 + t117 * t76;
+            let t127 = t118 * t84 + t117 * t82;
+            let t128 = t121 * t85 + (t120 * t79 + t119 * t73)
+                - (t61 * t127 + (t55 * t126 + t47 * t125));
+            let t129 = t128 + (t61 * t124 + (t55 * t123 + t47 * t122))
+                - (k(5e-10) - (t118 * t40 - t117 * t39));
+            let t130 = k(2.400191904047976e-9) * t118 - k(5.002599744127936e-6) * t117;
+            let t131 = k(5.003999856071964e-6) * t118 - k(2.400191904047976e-9) * t117;
+            let t132 = t94 * t127 + (t93 * t126 - t92 * t125)
+                - (t121 * t100 + (t120 * t99 + t119 * t98));
+            let t133 = t132 - (t121 * t97 + (t120 * t96 + t119 * t95))
+                + (k(1.2e-10) - (t91 * t131 - t90 * t130));
+            let t134 = t133 * t106 - t129;
+            let t135 = t112 * t116 + (t110 * t115 + t111 * t114);
+            let t136 = t135 * t134 + t113 * t107;
+            let t137 = k(2.0) * (t121 * t127 + (t120 * t126 + t119 * t125))
+                - (t121 * t124 + (t120 * t123 + t119 * t122));
+            let t138 = t133 * (t105 * t133)
+                - (k(2e-6) + (t137 + (k(1.322e-9) + (t118 * t131 - t117 * t130))));
+            let t139 = t135 * t138 + t113 * t134;
+            let t140 = rotor_wx * rotor_wz;
+            let t141 = inner_ring_wy * inner_ring_wy;
+            let t142 = inner_ring_wz * inner_ring_wz;
+            let t143 = t142 + t141;
+            let t144 = inner_ring_wx * inner_ring_wy;
+            let t145 = inner_ring_wx * inner_ring_wz;
+            let t146 = inner_ring_wx * inner_ring_wx;
+            let t147 = t142 + t146;
+            let t148 = inner_ring_wy * inner_ring_wz;
+            let t149 = k(5e-5) * (t88 * t148 - (t115 * t147 + t13 * t144))
+                + k(0.000125) * (t88 * t145 + (t115 * t144 + t13 * t143));
+            let t150 = t141 + t146;
+            let t151 = k(3e-5) * (t88 * t150 - (t115 * t148 - t13 * t145)) + t149;
+            let t152 = rotor_wy * rotor_wy;
+            let t153 = rotor_wz * rotor_wz;
+            let t154 = t153 + t152;
+            let t155 = k(2.0) * t68;
+            let t156 = rotor_wx * rotor_wy;
+            let t157 = rotor_wx * rotor_wx;
+            let t158 = t153 + t157;
+            let t159 = rotor_wy * rotor_wz;
+            let t160 = k(0.0002) * (t33 * t159 - (t10 * t158 + t155 * t156))
+                + k(0.0001) * (t33 * t140 + (t10 * t156 + t155 * t154));
+            let t161 = t152 + t157;
+            let t162 = k(0.00015) * (t33 * t161 - (t10 * t159 - t155 * t140)) + t160;
+            let t163 = t162 - t151;
+            let t164 = k(5e-5) * (t87 * t148 + (t114 * t147 + t20 * t144))
+                + k(0.000125) * (t87 * t145 - (t114 * t144 + t20 * t143));
+            let t165 = k(3e-5) * (t87 * t150 + (t114 * t148 - t20 * t145)) + t164;
+            let t166 = k(2.0) * t74;
+            let t167 = k(0.0002) * (t35 * t159 + (t16 * t158 + t166 * t156))
+                + k(0.0001) * (t35 * t140 - (t16 * t156 + t166 * t154));
+            let t168 = k(0.00015) * (t35 * t161 + (t16 * t159 - t166 * t140)) + t167;
+            let t169 = t168 - t165;
+            let t170 = k(5e-5) * (t89 * t148 + (t116 * t147 - t28 * t144))
+                + k(0.000125) * (t89 * t145 - (t116 * t144 - t28 * t143));
+            let t171 = k(3e-5) * (t89 * t150 + (t116 * t148 + t28 * t145)) + t170;
+            let t172 = k(2.0) * t80;
+            let t173 = k(0.0002) * (t37 * t159 + (t24 * t158 - t172 * t156))
+                + k(0.0001) * (t37 * t140 - (t24 * t156 - t172 * t154));
+            let t174 = k(0.00015) * (t37 * t161 + (t24 * t159 + t172 * t140)) + t173;
             let t175 = t174 - t171;
-            let t176 = k(5e-5) * (t89 * t154 + (t117 * t153 - t28 * t150))
-                + k(0.000125) * (t89 * t151 - (t117 * t150 - t28 * t149));
-            let t177 = k(3e-5) * (t89 * t156 + (t117 * t154 + t28 * t151)) + t176;
-            let t178 = k(2.0) * t80;
-            let t179 = k(0.0002) * (t37 * t165 + (t24 * t164 - t178 * t162))
-                + k(0.0001) * (t37 * t146 - (t24 * t162 - t178 * t160));
-            let t180 = k(0.00015) * (t37 * t167 + (t24 * t165 + t178 * t146)) + t179;
-            let t181 = t180 - t177;
-            let t182 = t28 * t178 + (t20 * t172 + t13 * t161);
-            let t183 = t117 * t178 - (t115 * t172 + t116 * t161);
-            let t184 = t89 * t178 - (t87 * t172 - t88 * t161);
-            let t185 = inner_ring_wz * t184
-                - (inner_ring_wy * t183 + inner_ring_wx * t182);
-            let t186 = rotor_wx + t185;
-            let t187 = inner_ring_wz * t91
-                - (inner_ring_wy * t119 + inner_ring_wx * t38);
-            let t188 = rotor_wz - t187;
-            let t189 = inner_ring_wz * t90
-                - (inner_ring_wy * t118 + inner_ring_wx * t29);
-            let t190 = rotor_wy + t189;
-            let t191 = (t190 * t190 + t188 * t188) / t182;
-            let t192 = rotor_wz * t185 + rotor_wx * t187 - (t38 * t191 - t188 * t186);
-            let t193 = rotor_wx * t189 - rotor_wy * t185 - (t29 * t191 + t190 * t186);
-            let t194 = k(2.400191904047976e-9) * t193 + k(5.002599744127936e-6) * t192
-                + (t82 * t181 + (t76 * t175 + t70 * t169));
-            let t195 = t194
-                - (k(0.000127936031984008) * t48 - (k(5e-6) * t146 + k(0.8) * t75));
-            let t196 = k(5.003999856071964e-6) * t193 + k(2.400191904047976e-9) * t192
-                - (t84 * t181 + (t78 * t175 + t72 * t169));
-            let t197 = t196
-                + (k(9.595202398800599e-5) * t48 - (k(5e-6) * t162 - k(0.8) * t77));
-            let t198 = k(79960.01999000499) * t48;
-            let t199 = t58 * t181 + (t50 * t175 + t44 * t169) - k(0.08) * t169;
+            let t176 = t28 * t172 + (t20 * t166 + t13 * t155);
+            let t177 = inner_ring_wy * (t116 * t172 - (t114 * t166 + t115 * t155))
+                + inner_ring_wx * t176;
+            let t178 = inner_ring_wz * (t89 * t172 - (t87 * t166 - t88 * t155)) - t177;
+            let t179 = rotor_wx + t178;
+            let t180 = inner_ring_wz * t91
+                - (inner_ring_wy * t118 + inner_ring_wx * t38);
+            let t181 = rotor_wz - t180;
+            let t182 = inner_ring_wz * t90
+                - (inner_ring_wy * t117 + inner_ring_wx * t29);
+            let t183 = rotor_wy + t182;
+            let t184 = (t183 * t183 + t181 * t181) / t176;
+            let t185 = rotor_wz * t178 + rotor_wx * t180 - (t38 * t184 - t181 * t179);
+            let t186 = rotor_wx * t182 - rotor_wy * t178 - (t29 * t184 + t183 * t179);
+            let t187 = k(2.400191904047976e-9) * t186 + k(5.002599744127936e-6) * t185
+                + (t82 * t175 + (t76 * t169 + t70 * t163));
+            let t188 = t187
+                - (k(0.000127936031984008) * t48 - (k(5e-6) * t140 + k(0.8) * t75));
+            let t189 = k(5.003999856071964e-6) * t186 + k(2.400191904047976e-9) * t185
+                - (t84 * t175 + (t78 * t169 + t72 * t163));
+            let t190 = t189
+                + (k(9.595202398800599e-5) * t48 - (k(5e-6) * t156 - k(0.8) * t77));
+            let t191 = k(79960.01999000499) * t48;
+            let t192 = t58 * t175 + (t50 * t169 + t44 * t163) - k(0.08) * t163;
+            let t193 = t72 * t186 - t70 * t185 + t192 - t42 * t191;
+            let t194 = t64 * t175 + (t63 * t169 + t50 * t163) - k(0.08) * t169;
+            let t195 = t78 * t186 - t76 * t185 + t194 + (k(0.8) - t49 * t191);
+            let t196 = t66 * t175 + (t64 * t169 + t58 * t163) - k(0.08) * t175;
+            let t197 = t84 * t186 - t82 * t185 + t196 - t57 * t191;
+            let t198 = t61 * t197 + (t55 * t195 + t47 * t193)
+                - (t38 * t190 - t29 * t188);
+            let t199 = t94 * t197 + (t93 * t195 - t92 * t193)
+                - (t91 * t190 - t90 * t188);
             (
                 t0,
                 t2,
@@ -2271,27 +2260,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
                 t47,
                 t48,
                 t49,
-                t50,
                 t55,
                 t56,
                 t57,
-                t58,
                 t61,
-                t63,
-                t64,
-                t66,
                 t69,
-                t70,
                 t71,
-                t72,
                 t75,
-                t76,
                 t77,
-                t78,
                 t81,
-                t82,
                 t83,
-                t84,
                 t87,
                 t88,
                 t89,
@@ -2302,10 +2280,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
                 t94,
                 t102,
                 t105,
-                t106,
+                t107,
                 t108,
                 t109,
                 t110,
+                t111,
+                t112,
+                t113,
                 t114,
                 t115,
                 t116,
@@ -2314,26 +2295,21 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
                 t119,
                 t120,
                 t121,
-                t122,
+                t133,
                 t134,
                 t135,
                 t136,
-                t137,
                 t138,
                 t139,
-                t142,
-                t143,
                 t144,
-                t145,
-                t150,
-                t154,
+                t148,
+                t163,
                 t169,
                 t175,
-                t181,
-                t182,
-                t183,
-                t184,
-                t192,
+                t185,
+                t186,
+                t188,
+                t190,
                 t193,
                 t195,
                 t197,
@@ -2341,95 +2317,79 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
                 t199,
             )
         };
-        let (t236, t239, t240, t241, t244, t245, t246, t247, t249, t250, t252) = {
-            let t200 = t72 * t193 - t70 * t192 + t199 - t42 * t198;
-            let t201 = t64 * t181 + (t63 * t175 + t50 * t169) - k(0.08) * t175;
-            let t202 = t78 * t193 - t76 * t192 + t201 + (k(0.8) - t49 * t198);
-            let t203 = t66 * t181 + (t64 * t175 + t58 * t169) - k(0.08) * t181;
-            let t204 = t84 * t193 - t82 * t192 + t203 - t57 * t198;
-            let t205 = t61 * t204 + (t55 * t202 + t47 * t200)
-                - (t38 * t197 - t29 * t195);
-            let t206 = t94 * t204 + (t93 * t202 - t92 * t200)
-                - (t91 * t197 - t90 * t195);
-            let t207 = k(1e-6) * t150 - t206;
-            let t208 = t106 * t207;
-            let t209 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
-            let t210 = k(2.0) * (t110 + t109);
-            let t211 = outer_ring_e0 * outer_ring_e2;
-            let t212 = outer_ring_e1 * outer_ring_e3;
-            let t213 = k(2.0) * (t212 - t211);
-            let t214 = t213 * t89 - (t210 * t87 - t209 * t88);
-            let t215 = k(2.0) * (k(0.5) - (t0 + outer_ring_e3 * outer_ring_e3));
-            let t216 = k(2.0) * (t212 + t211);
-            let t217 = t216 * t88 + t5 * t87 + t215 * t89;
-            let t218 = outer_ring_wz * t217
-                - (outer_ring_wy * t138 + outer_ring_wx * t214);
-            let t219 = inner_ring_wz - t218;
-            let t220 = t213 * t117 - (t210 * t115 + t209 * t116);
-            let t221 = t215 * t117 - (t216 * t116 - t5 * t115);
-            let t222 = outer_ring_wz * t221
-                - (outer_ring_wy * t136 + outer_ring_wx * t220);
-            let t223 = inner_ring_wy + t222;
-            let t224 = t213 * t28 + (t210 * t20 + t209 * t13);
-            let t225 = t215 * t28 - (t5 * t20 - t216 * t13);
-            let t226 = outer_ring_wz * t225
-                - (outer_ring_wy * t114 + outer_ring_wx * t224);
-            let t227 = inner_ring_wx + t226;
-            let t228 = (t227 * t227 + t223 * t223) / t217;
-            let t229 = inner_ring_wy * t218 + inner_ring_wz * t222
-                + (t221 * t228 - t223 * t219);
-            let t230 = inner_ring_wz * t226 + inner_ring_wx * t218
-                + (t225 * t228 - t227 * t219);
-            let t231 = t135 * t230 - t108 * t229
-                + (t102 * t208 + (k(1e-6) * t154 - t205));
-            let t232 = t122 * t204 + (t121 * t202 + t120 * t200)
-                + (t119 * t197 - t118 * t195);
-            let t233 = t136 * (t142 * t230 - t135 * t229 + (t134 * t208 + t232));
-            let t234 = t138 * (t143 * t230 - t137 * t229 + (t207 - t105 * t208));
-            let t235 = t136 * (t214 * t143 + (t220 * t142 + t224 * t135))
-                + t114 * (t214 * t137 + (t220 * t135 + t224 * t108));
-            let t236 = outer_ring_wx * outer_ring_wy - t210 * t2;
-            let t237 = (t217 * t145 + (t144 * t221 + t139 * t225)) * t236
-                + t6 * (t138 * (t220 * t143 + t224 * t137) + t235);
-            let t238 = t237
-                + (k(1e-6) * (outer_ring_wx * outer_ring_wz)
-                    - (t234 + (t233 + t114 * t231)));
-            let t239 = t238 / (k(1e-6) - (t138 * t145 + (t136 * t144 + t114 * t139)));
-            let t240 = t229 + (t225 * t236 + (t114 * t239 + t224 * t6));
-            let t241 = t230 - (t221 * t236 + (t136 * t239 + t220 * t6));
-            let t242 = t217 * t236 + (t138 * t239 + t214 * t6);
-            let t243 = t106 * (t207 + (t105 * t242 + (t134 * t241 - t102 * t240)));
-            let t244 = t242 - t243;
-            let t245 = t169 - (t92 * t244 - (t120 * t241 + t47 * t240));
-            let t246 = t175 + (t93 * t244 + (t121 * t241 + t55 * t240));
-            let t247 = t181 + (t94 * t244 + (t122 * t241 + t61 * t240));
-            let t248 = t184 * t244 - (t183 * t241 - t182 * t240);
-            let t249 = t192 - (t90 * t244 - (t118 * t241 - t29 * t240));
-            let t250 = t193 + (t91 * t244 - (t119 * t241 - t38 * t240));
-            let t251 = k(1.2e-9) * t250 - (k(1.6e-9) * t249 + k(1.0005e-5) * t248)
-                + (t57 * t247 + (t49 * t246 + t42 * t245));
-            let t252 = t248 + k(99950.02498750624) * (t251 - k(0.8) * t48);
-            (t236, t239, t240, t241, t244, t245, t246, t247, t249, t250, t252)
+        let (t228, t230, t231, t232, t233, t234, t235, t236, t237, t238, t240) = {
+            let t200 = k(1e-6) * t144 - t199;
+            let t201 = t105 * t200;
+            let t202 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
+            let t203 = k(2.0) * (t109 + t108);
+            let t204 = outer_ring_e0 * outer_ring_e2;
+            let t205 = outer_ring_e1 * outer_ring_e3;
+            let t206 = k(2.0) * (t205 - t204);
+            let t207 = outer_ring_wy * (t112 * t89 - (t110 * t88 - t111 * t87))
+                + outer_ring_wx * (t206 * t89 - (t203 * t87 - t202 * t88));
+            let t208 = k(2.0) * (k(0.5) - (t0 + outer_ring_e3 * outer_ring_e3));
+            let t209 = k(2.0) * (t205 + t204);
+            let t210 = t209 * t88 + t5 * t87 + t208 * t89;
+            let t211 = outer_ring_wz * t210 - t207;
+            let t212 = inner_ring_wz - t211;
+            let t213 = t206 * t116 - (t203 * t114 + t202 * t115);
+            let t214 = t208 * t116 - (t209 * t115 - t5 * t114);
+            let t215 = outer_ring_wz * t214
+                - (outer_ring_wy * t135 + outer_ring_wx * t213);
+            let t216 = inner_ring_wy + t215;
+            let t217 = t206 * t28 + (t203 * t20 + t202 * t13);
+            let t218 = t208 * t28 - (t5 * t20 - t209 * t13);
+            let t219 = outer_ring_wz * t218
+                - (outer_ring_wy * t113 + outer_ring_wx * t217);
+            let t220 = inner_ring_wx + t219;
+            let t221 = (t220 * t220 + t216 * t216) / t210;
+            let t222 = inner_ring_wy * t211 + inner_ring_wz * t215
+                + (t214 * t221 - t216 * t212);
+            let t223 = inner_ring_wz * t219 + inner_ring_wx * t211
+                + (t218 * t221 - t220 * t212);
+            let t224 = t134 * t223 - t107 * t222
+                + (t102 * t201 + (k(1e-6) * t148 - t198));
+            let t225 = t121 * t197 + (t120 * t195 + t119 * t193)
+                + (t118 * t190 - t117 * t188);
+            let t226 = t135 * (t138 * t223 - t134 * t222 + (t133 * t201 + t225));
+            let t227 = t135 * (t213 * t138 + t217 * t134)
+                + t113 * (t213 * t134 + t217 * t107);
+            let t228 = outer_ring_wx * outer_ring_wy - t203 * t2;
+            let t229 = (t139 * t214 + t136 * t218) * t228 + t6 * t227
+                + (k(1e-6) * (outer_ring_wx * outer_ring_wz) - (t226 + t113 * t224));
+            let t230 = t229 / (k(1e-6) - (t135 * t139 + t113 * t136));
+            let t231 = t222 + (t218 * t228 + (t113 * t230 + t217 * t6));
+            let t232 = t223 - (t214 * t228 + (t135 * t230 + t213 * t6));
+            let t233 = t105 * (t200 + (t133 * t232 - t102 * t231));
+            let t234 = t163 + (t92 * t233 + (t119 * t232 + t47 * t231));
+            let t235 = t169 - (t93 * t233 - (t120 * t232 + t55 * t231));
+            let t236 = t175 - (t94 * t233 - (t121 * t232 + t61 * t231));
+            let t237 = t185 + (t90 * t233 + (t117 * t232 - t29 * t231));
+            let t238 = t186 - (t91 * t233 + (t118 * t232 - t38 * t231));
+            let t239 = k(1.2e-9) * t238 - k(1.6e-9) * t237
+                + (t57 * t236 + (t49 * t235 + t42 * t234));
+            let t240 = k(99950.02498750624) * (t239 - k(0.8) * t48);
+            (t228, t230, t231, t232, t233, t234, t235, t236, t237, t238, t240)
         };
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t6,
-            -t239,
-            t236,
+            -t230,
+            t228,
             k(0.0),
             k(0.0),
             k(0.0),
+            -t231,
+            t232,
+            -t233,
+            -(t234 + (t71 * t238 - (t69 * t237 + t41 * t240))),
+            t77 * t238 + (t75 * t237 + t48 * t240) - t235,
+            t236 - (t83 * t238 + (t81 * t237 + t56 * t240)),
             -t240,
-            t241,
-            t244,
-            -(t245 + (t71 * t250 - (t69 * t249 + t41 * t252))),
-            t77 * t250 + (t75 * t249 + t48 * t252) - t246,
-            t247 - (t83 * t250 + (t81 * t249 + t56 * t252)),
-            -t252,
-            t249,
-            t250,
+            t237,
+            t238,
         ];
     }
     /// Writes λ: 376 operations (144 ±, 229 ×, 3 ÷).

@@ -20,7 +20,7 @@
 //! | gamma | γ | 115 | 181 | 0 | 296 | 9 of 15 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 84 | 119 | 0 | 203 | 0 of 15 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 12 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 177 | 256 | 5 | 438 | 10 of 18 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 158 | 235 | 5 | 398 | 10 of 18 |
 //! | multipliers | λ, the accelerations being known | 105 | 175 | 3 | 283 | 0 of 15 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | energy | T and V | 17 | 31 | 0 | 48 | 1 of 2 |
@@ -1664,7 +1664,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 438 operations (177 ±, 256 ×, 5 ÷).
+    /// Solves eq. (17): 398 operations (158 ±, 235 ×, 5 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1729,113 +1729,101 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
         let t37 = t36 * t19 - (t35 * t9 - t34 * t13);
         let t38 = t35 * t27 + t34 * t28 + t36 * t29;
         let t39 = t38 * t31 + t37 * t24;
-        let t40 = k(1e-6) + (t38 * (k(5e-6) * t38) + t37 * (k(5e-6) * t37));
-        let t41 = k(1.0) / t40;
-        let t42 = t41 * t39;
-        let t43 = t39 * t42 - (k(1e-6) + (t30 * t31 + t23 * t24));
-        let t44 = outer_ring_e0 * outer_ring_e3;
-        let t45 = outer_ring_e1 * outer_ring_e2;
-        let t46 = k(2.0) * (t45 - t44);
-        let t47 = k(2.0) * t1;
-        let t48 = k(2.0) * (t4 + t3);
-        let t49 = t48 * t22 - (t47 * t16 + t46 * t11);
-        let t50 = k(2.0) * (k(0.5) - (t10 + inner_ring_e2 * inner_ring_e2));
-        let t51 = k(2.0) * (t15 - t14);
-        let t52 = k(2.0) * (t33 + t32);
-        let t53 = t52 * t19 + (t51 * t9 + t50 * t13);
-        let t54 = t52 * t29 - (t51 * t27 - t50 * t28);
+        let t40 = k(1.0) / (k(1e-6) + (t38 * (k(5e-6) * t38) + t37 * (k(5e-6) * t37)));
+        let t41 = t40 * t39;
+        let t42 = t39 * t41 - (k(1e-6) + (t30 * t31 + t23 * t24));
+        let t43 = outer_ring_e0 * outer_ring_e3;
+        let t44 = outer_ring_e1 * outer_ring_e2;
+        let t45 = k(2.0) * (t44 - t43);
+        let t46 = k(2.0) * t1;
+        let t47 = k(2.0) * (t4 + t3);
+        let t48 = t47 * t22 - (t46 * t16 + t45 * t11);
+        let t49 = k(2.0) * (k(0.5) - (t10 + inner_ring_e2 * inner_ring_e2));
+        let t50 = k(2.0) * (t15 - t14);
+        let t51 = k(2.0) * (t33 + t32);
+        let t52 = t51 * t19 + (t50 * t9 + t49 * t13);
+        let t53 = t51 * t29 - (t50 * t27 - t49 * t28);
+        let t54 = k(5e-6) * t52;
         let t55 = k(5e-6) * t53;
-        let t56 = k(5e-6) * t54;
-        let t57 = t38 * t56 + t37 * t55;
-        let t58 = t57 * t42 - (t54 * t31 + t53 * t24);
-        let t59 = t48 * t52 + (t46 * t51 + t47 * t50);
-        let t60 = t39 - t40 * t42;
-        let t61 = t48 * t36 - (t46 * t35 - t47 * t34);
-        let t62 = t61 * t60 - (t59 * t58 + t49 * t43);
-        let t63 = t41 * t57;
-        let t64 = t57 * t63 - (k(2e-6) + (t54 * t56 + t53 * t55));
-        let t65 = t57 - t40 * t63;
-        let t66 = t61 * t65 - (t59 * t64 + t49 * t58);
-        let t67 = t59 * t65 + t49 * t60;
-        let t68 = k(2.0) * (k(0.5) - (t12 + rotor_e1 * rotor_e1));
-        let t69 = k(2.0) * (t8 + t7);
-        let t70 = k(2.0) * (t26 - t25);
-        let t71 = t22 * t70 + (t16 * t69 + t11 * t68);
-        let t72 = inner_ring_wy * (t52 * t70 - (t50 * t69 + t51 * t68))
-            + inner_ring_wx * t71;
-        let t73 = inner_ring_wz * (t36 * t70 - (t34 * t69 - t35 * t68)) - t72;
-        let t74 = rotor_wx + t73;
-        let t75 = inner_ring_wz * t38 - (inner_ring_wy * t54 + inner_ring_wx * t30);
-        let t76 = rotor_wz - t75;
-        let t77 = inner_ring_wz * t37 - (inner_ring_wy * t53 + inner_ring_wx * t23);
-        let t78 = rotor_wy + t77;
-        let t79 = (t78 * t78 + t76 * t76) / t71;
-        let t80 = rotor_wz * t73 + rotor_wx * t75 - (t30 * t79 - t76 * t74);
-        let t81 = k(5e-6) * (rotor_wx * rotor_wz + t80);
-        let t82 = rotor_wx * t77 - rotor_wy * t73 - (t23 * t79 + t78 * t74);
-        let t83 = k(5e-6) * (rotor_wx * rotor_wy - t82);
-        let t84 = k(1e-6) * (inner_ring_wx * inner_ring_wy) - (t38 * t83 + t37 * t81);
-        let t85 = t41 * t84;
-        let t86 = t39 * t85
-            - (k(1e-6) * (inner_ring_wy * inner_ring_wz) - (t30 * t83 + t23 * t81));
-        let t87 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
-        let t88 = k(2.0) * (t45 + t44);
-        let t89 = outer_ring_e0 * outer_ring_e2;
-        let t90 = outer_ring_e1 * outer_ring_e3;
-        let t91 = k(2.0) * (t90 - t89);
-        let t92 = t91 * t36 - (t88 * t34 - t87 * t35);
-        let t93 = k(2.0) * (k(0.5) - (t0 + outer_ring_e3 * outer_ring_e3));
-        let t94 = k(2.0) * (t90 + t89);
-        let t95 = t94 * t35 + t5 * t34 + t93 * t36;
-        let t96 = outer_ring_wz * t95 - (outer_ring_wy * t61 + outer_ring_wx * t92);
-        let t97 = inner_ring_wz - t96;
-        let t98 = t91 * t52 - (t88 * t50 + t87 * t51);
-        let t99 = t93 * t52 - (t94 * t51 - t5 * t50);
-        let t100 = outer_ring_wz * t99 - (outer_ring_wy * t59 + outer_ring_wx * t98);
-        let t101 = inner_ring_wy + t100;
-        let t102 = t91 * t22 + (t88 * t16 + t87 * t11);
-        let t103 = t93 * t22 - (t5 * t16 - t94 * t11);
-        let t104 = outer_ring_wz * t103 - (outer_ring_wy * t49 + outer_ring_wx * t102);
-        let t105 = inner_ring_wx + t104;
-        let t106 = (t105 * t105 + t101 * t101) / t95;
-        let t107 = inner_ring_wy * t96 + inner_ring_wz * t100
-            + (t99 * t106 - t101 * t97);
-        let t108 = inner_ring_wz * t104 + inner_ring_wx * t96
-            + (t103 * t106 - t105 * t97);
-        let t109 = t64 * t108 - t58 * t107 - (t57 * t85 + (t54 * t83 + t53 * t81));
-        let t110 = t59 * t109 + t49 * (t58 * t108 - t43 * t107 - t86);
-        let t111 = t61 * (t65 * t108 - t60 * t107 - (t84 - t40 * t85));
-        let t112 = t59 * (t92 * t65 - (t98 * t64 + t102 * t58))
-            + t49 * (t92 * t60 - (t98 * t58 + t102 * t43));
-        let t113 = outer_ring_wx * outer_ring_wy - t88 * t2;
-        let t114 = (t95 * t67 + (t66 * t99 + t62 * t103)) * t113
-            + t6 * (t61 * (t98 * t65 + t102 * t60) + t112);
-        let t115 = (t114 - (k(1e-6) * (outer_ring_wx * outer_ring_wz) + (t111 - t110)))
-            / (k(1e-6) + (t61 * t67 + (t59 * t66 + t49 * t62)));
-        let t116 = t107 + (t103 * t113 - (t49 * t115 - t102 * t6));
-        let t117 = t108 - (t99 * t113 - (t59 * t115 - t98 * t6));
-        let t118 = t95 * t113 - (t61 * t115 - t92 * t6);
-        let t119 = t41 * (t84 + (t40 * t118 - (t57 * t117 - t39 * t116)));
-        let t120 = t118 - t119;
+        let t56 = t38 * t55 + t37 * t54;
+        let t57 = t56 * t41 - (t53 * t31 + t52 * t24);
+        let t58 = t47 * t51 + (t45 * t50 + t46 * t49);
+        let t59 = t58 * t57 + t48 * t42;
+        let t60 = t56 * (t40 * t56) - (k(2e-6) + (t53 * t55 + t52 * t54));
+        let t61 = t58 * t60 + t48 * t57;
+        let t62 = k(2.0) * (k(0.5) - (t12 + rotor_e1 * rotor_e1));
+        let t63 = k(2.0) * (t8 + t7);
+        let t64 = k(2.0) * (t26 - t25);
+        let t65 = t22 * t64 + (t16 * t63 + t11 * t62);
+        let t66 = inner_ring_wy * (t51 * t64 - (t49 * t63 + t50 * t62))
+            + inner_ring_wx * t65;
+        let t67 = inner_ring_wz * (t36 * t64 - (t34 * t63 - t35 * t62)) - t66;
+        let t68 = rotor_wx + t67;
+        let t69 = inner_ring_wz * t38 - (inner_ring_wy * t53 + inner_ring_wx * t30);
+        let t70 = rotor_wz - t69;
+        let t71 = inner_ring_wz * t37 - (inner_ring_wy * t52 + inner_ring_wx * t23);
+        let t72 = rotor_wy + t71;
+        let t73 = (t72 * t72 + t70 * t70) / t65;
+        let t74 = rotor_wz * t67 + rotor_wx * t69 - (t30 * t73 - t70 * t68);
+        let t75 = k(5e-6) * (rotor_wx * rotor_wz + t74);
+        let t76 = rotor_wx * t71 - rotor_wy * t67 - (t23 * t73 + t72 * t68);
+        let t77 = k(5e-6) * (rotor_wx * rotor_wy - t76);
+        let t78 = k(1e-6) * (inner_ring_wx * inner_ring_wy) - (t38 * t77 + t37 * t75);
+        let t79 = t40 * t78;
+        let t80 = t39 * t79
+            - (k(1e-6) * (inner_ring_wy * inner_ring_wz) - (t30 * t77 + t23 * t75));
+        let t81 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
+        let t82 = k(2.0) * (t44 + t43);
+        let t83 = outer_ring_e0 * outer_ring_e2;
+        let t84 = outer_ring_e1 * outer_ring_e3;
+        let t85 = k(2.0) * (t84 - t83);
+        let t86 = outer_ring_wy * (t47 * t36 - (t45 * t35 - t46 * t34))
+            + outer_ring_wx * (t85 * t36 - (t82 * t34 - t81 * t35));
+        let t87 = k(2.0) * (k(0.5) - (t0 + outer_ring_e3 * outer_ring_e3));
+        let t88 = k(2.0) * (t84 + t83);
+        let t89 = t88 * t35 + t5 * t34 + t87 * t36;
+        let t90 = outer_ring_wz * t89 - t86;
+        let t91 = inner_ring_wz - t90;
+        let t92 = t85 * t51 - (t82 * t49 + t81 * t50);
+        let t93 = t87 * t51 - (t88 * t50 - t5 * t49);
+        let t94 = outer_ring_wz * t93 - (outer_ring_wy * t58 + outer_ring_wx * t92);
+        let t95 = inner_ring_wy + t94;
+        let t96 = t85 * t22 + (t82 * t16 + t81 * t11);
+        let t97 = t87 * t22 - (t5 * t16 - t88 * t11);
+        let t98 = outer_ring_wz * t97 - (outer_ring_wy * t48 + outer_ring_wx * t96);
+        let t99 = inner_ring_wx + t98;
+        let t100 = (t99 * t99 + t95 * t95) / t89;
+        let t101 = inner_ring_wy * t90 + inner_ring_wz * t94 + (t93 * t100 - t95 * t91);
+        let t102 = inner_ring_wz * t98 + inner_ring_wx * t90 + (t97 * t100 - t99 * t91);
+        let t103 = t60 * t102 - t57 * t101 - (t56 * t79 + (t53 * t77 + t52 * t75));
+        let t104 = t58 * t103 + t48 * (t57 * t102 - t42 * t101 - t80);
+        let t105 = t58 * (t92 * t60 + t96 * t57) + t48 * (t92 * t57 + t96 * t42);
+        let t106 = outer_ring_wx * outer_ring_wy - t82 * t2;
+        let t107 = (t61 * t93 + t59 * t97) * t106 + t6 * t105
+            + (k(1e-6) * (outer_ring_wx * outer_ring_wz) - t104);
+        let t108 = t107 / (k(1e-6) - (t58 * t61 + t48 * t59));
+        let t109 = t101 + (t97 * t106 + (t48 * t108 + t96 * t6));
+        let t110 = t102 - (t93 * t106 + (t58 * t108 + t92 * t6));
+        let t111 = t40 * (t78 - (t56 * t110 - t39 * t109));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t6,
-            t115,
-            t113,
+            -t108,
+            t106,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t116,
-            t117,
-            t120,
+            -t109,
+            t110,
+            -t111,
             k(0.0),
             k(0.0),
             k(0.0),
             k(0.0),
-            t80 - (t37 * t120 - (t53 * t117 - t23 * t116)),
-            t82 + (t38 * t120 - (t54 * t117 - t30 * t116)),
+            t74 + (t37 * t111 + (t52 * t110 - t23 * t109)),
+            t76 - (t38 * t111 + (t53 * t110 - t30 * t109)),
         ];
     }
     /// Writes λ: 283 operations (105 ±, 175 ×, 3 ÷).

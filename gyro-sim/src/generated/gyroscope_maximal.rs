@@ -18,7 +18,7 @@
 //! | gamma | γ | 181 | 291 | 0 | 472 | 9 of 21 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 129 | 184 | 0 | 313 | 0 of 21 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 14 of 24 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 283 | 423 | 6 | 712 | 10 of 24 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 260 | 398 | 6 | 664 | 10 of 24 |
 //! | multipliers | λ, the accelerations being known | 180 | 291 | 4 | 475 | 0 of 21 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 32 | 64 | 0 | 96 | 0 of 28 |
 //! | energy | T and V | 26 | 45 | 0 | 71 | 0 of 2 |
@@ -2125,7 +2125,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 712 operations (283 ±, 423 ×, 6 ÷).
+    /// Solves eq. (17): 664 operations (260 ±, 398 ×, 6 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let base_e0 = y[3];
@@ -2156,334 +2156,212 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
         let rotor_wx = y[49];
         let rotor_wy = y[50];
         let rotor_wz = y[51];
-        let (
-            t23,
-            t25,
-            t27,
-            t77,
-            t94,
-            t101,
-            t111,
-            t112,
-            t113,
-            t114,
-            t115,
-            t118,
-            t125,
-            t126,
-            t129,
-            t131,
-            t133,
-            t134,
-            t138,
-            t139,
-            t140,
-            t153,
-            t155,
-            t160,
-            t162,
-            t163,
-            t165,
-            t166,
-            t168,
-            t170,
-            t173,
-            t174,
-            t177,
-            t178,
-            t181,
-            t182,
-            t186,
-            t187,
-            t188,
-            t189,
-            t190,
-            t194,
-            t196,
-            t197,
-            t199,
-        ) = {
-            let t0 = k(0.5) * base_e3;
-            let t1 = k(0.5) * base_e0;
-            let t2 = t1 * t1;
-            let t3 = t2 + t0 * t0;
-            let t4 = k(0.5) * base_e1;
-            let t5 = t4 * t1;
-            let t6 = k(0.5) * base_e2;
-            let t7 = t0 * t6;
-            let t8 = t7 + t5;
-            let t9 = t1 * t6;
-            let t10 = t4 * t0;
-            let t11 = t10 - t9;
-            let t12 = k(1.0) / (t6 * t11 - t4 * t8 - t1 * t3);
-            let t13 = t1 * t0;
-            let t14 = t4 * t6;
-            let t15 = k(0.5)
-                * (base_e2 * base_wx - base_e1 * base_wy - base_e0 * base_wz);
-            let t16 = k(0.5)
-                * (base_e1 * base_wx + base_e2 * base_wy + base_e3 * base_wz);
-            let t17 = k(0.5)
-                * (base_e0 * base_wx - base_e3 * base_wy + base_e2 * base_wz);
-            let t18 = k(0.5) * (base_wz * t17 + (base_wy * t16 + base_wx * t15));
-            let t19 = k(0.5)
-                * (base_e3 * base_wx + base_e0 * base_wy - base_e1 * base_wz);
-            let t20 = k(0.5) * (base_wz * t19 + (base_wy * t15 - base_wx * t16));
-            let t21 = t20 * ((t2 + t4 * t4) * t12) - t18 * ((t14 + t13) * t12);
-            let t22 = k(0.5) * (base_wz * t16 - (base_wy * t17 - base_wx * t19));
-            let t23 = t22 * (t11 * t12) - t21;
-            let t24 = t20 * ((t14 - t13) * t12) - t18 * ((t2 + t6 * t6) * t12);
-            let t25 = t22 * (t8 * t12) - t24;
-            let t26 = t20 * ((t10 + t9) * t12) - t18 * ((t7 - t5) * t12);
-            let t27 = t22 * (t3 * t12) - t26;
-            let t28 = outer_ring_e0 * outer_ring_e3;
-            let t29 = outer_ring_e1 * outer_ring_e2;
-            let t30 = k(2.0) * (t29 - t28);
-            let t31 = base_e0 * base_e0;
-            let t32 = k(2.0) * (k(0.5) - (t31 + base_e1 * base_e1));
-            let t33 = outer_ring_e0 * outer_ring_e0;
-            let t34 = k(2.0) * (k(0.5) - (t33 + outer_ring_e2 * outer_ring_e2));
-            let t35 = base_e0 * base_e3;
-            let t36 = base_e1 * base_e2;
-            let t37 = k(2.0) * (t36 + t35);
-            let t38 = outer_ring_e0 * outer_ring_e1;
-            let t39 = outer_ring_e2 * outer_ring_e3;
-            let t40 = k(2.0) * (t39 + t38);
-            let t41 = base_e0 * base_e2;
-            let t42 = base_e1 * base_e3;
-            let t43 = k(2.0) * (t42 - t41);
-            let t44 = t43 * t40 - (t37 * t34 + t32 * t30);
-            let t45 = k(2.0) * (k(0.5) - (t31 + base_e2 * base_e2));
-            let t46 = k(2.0) * (t36 - t35);
-            let t47 = base_e0 * base_e1;
-            let t48 = base_e2 * base_e3;
-            let t49 = k(2.0) * (t48 + t47);
-            let t50 = t49 * t40 + (t46 * t30 + t45 * t34);
-            let t51 = k(2.0) * (t48 - t47);
-            let t52 = k(2.0) * (t42 + t41);
-            let t53 = k(2.0) * (k(0.5) - (t31 + base_e3 * base_e3));
-            let t54 = t53 * t40 - (t52 * t30 - t51 * t34);
-            let t55 = base_wz * t54 - (base_wy * t50 + base_wx * t44);
-            let t56 = outer_ring_wy + t55;
-            let t57 = outer_ring_e0 * outer_ring_e2;
-            let t58 = outer_ring_e1 * outer_ring_e3;
-            let t59 = k(2.0) * (t58 + t57);
-            let t60 = k(2.0) * (t39 - t38);
-            let t61 = k(2.0) * (k(0.5) - (t33 + outer_ring_e3 * outer_ring_e3));
-            let t62 = t43 * t61 - (t37 * t60 - t32 * t59);
-            let t63 = t49 * t61 - (t46 * t59 - t45 * t60);
-            let t64 = t52 * t59 + t51 * t60 + t53 * t61;
-            let t65 = base_wz * t64 - (base_wy * t63 + base_wx * t62);
-            let t66 = outer_ring_wz - t65;
-            let t67 = k(2.0) * (k(0.5) - (t33 + outer_ring_e1 * outer_ring_e1));
-            let t68 = k(2.0) * (t29 + t28);
-            let t69 = k(2.0) * (t58 - t57);
-            let t70 = t43 * t69 + (t37 * t68 + t32 * t67);
-            let t71 = t49 * t69 - (t45 * t68 + t46 * t67);
-            let t72 = t53 * t69 - (t51 * t68 - t52 * t67);
-            let t73 = base_wz * t72 - (base_wy * t71 + base_wx * t70);
-            let t74 = outer_ring_wx + t73;
-            let t75 = (t74 * t74 + t66 * t66) / t50;
-            let t76 = outer_ring_wy * t65 + outer_ring_wz * t55
-                - (t63 * t75 - t66 * t56);
-            let t77 = t27 * t72 - (t25 * t71 + t23 * t70) - t76;
-            let t78 = rotor_e0 * rotor_e3;
-            let t79 = rotor_e1 * rotor_e2;
-            let t80 = k(2.0) * (t79 - t78);
-            let t81 = inner_ring_e0 * inner_ring_e0;
-            let t82 = k(2.0) * (k(0.5) - (t81 + inner_ring_e1 * inner_ring_e1));
-            let t83 = rotor_e0 * rotor_e0;
-            let t84 = k(2.0) * (k(0.5) - (t83 + rotor_e2 * rotor_e2));
-            let t85 = inner_ring_e0 * inner_ring_e3;
-            let t86 = inner_ring_e1 * inner_ring_e2;
-            let t87 = k(2.0) * (t86 + t85);
-            let t88 = rotor_e0 * rotor_e1;
-            let t89 = rotor_e2 * rotor_e3;
-            let t90 = k(2.0) * (t89 + t88);
-            let t91 = inner_ring_e0 * inner_ring_e2;
-            let t92 = inner_ring_e1 * inner_ring_e3;
-            let t93 = k(2.0) * (t92 - t91);
-            let t94 = t93 * t90 - (t87 * t84 + t82 * t80);
-            let t95 = k(5e-6) * t94;
-            let t96 = rotor_e0 * rotor_e2;
-            let t97 = rotor_e1 * rotor_e3;
-            let t98 = k(2.0) * (t97 + t96);
-            let t99 = k(2.0) * (t89 - t88);
-            let t100 = k(2.0) * (k(0.5) - (t83 + rotor_e3 * rotor_e3));
-            let t101 = t93 * t100 - (t87 * t99 - t82 * t98);
-            let t102 = k(5e-6) * t101;
-            let t103 = inner_ring_e0 * inner_ring_e1;
-            let t104 = inner_ring_e2 * inner_ring_e3;
-            let t105 = t104 - t103;
-            let t106 = k(2.0) * t105;
-            let t107 = t92 + t91;
-            let t108 = k(2.0) * t107;
-            let t109 = k(0.5) - (t81 + inner_ring_e3 * inner_ring_e3);
-            let t110 = k(2.0) * t109;
-            let t111 = t110 * t90 - (t108 * t80 - t106 * t84);
-            let t112 = t108 * t98 + t106 * t99 + t110 * t100;
-            let t113 = t112 * t102 + t111 * t95;
-            let t114 = k(1e-6)
-                + (k(1.25e-9) + (t112 * (k(5e-6) * t112) + t111 * (k(5e-6) * t111)));
-            let t115 = k(1.0) / t114;
-            let t116 = t115 * t113;
-            let t117 = t113 * t116 - (k(1e-6) + (t101 * t102 + t94 * t95));
-            let t118 = t40 * t93 - (t34 * t87 + t30 * t82);
-            let t119 = k(0.5) - (t81 + inner_ring_e2 * inner_ring_e2);
-            let t120 = k(2.0) * t119;
-            let t121 = t86 - t85;
-            let t122 = k(2.0) * t121;
-            let t123 = t104 + t103;
-            let t124 = k(2.0) * t123;
-            let t125 = t124 * t90 + (t122 * t80 + t120 * t84);
-            let t126 = t124 * t100 - (t122 * t98 - t120 * t99);
-            let t127 = k(5e-6) * t125;
-            let t128 = k(5e-6) * t126;
-            let t129 = t112 * t128 + t111 * t127;
-            let t130 = t129 * t116 - (t126 * t102 + t125 * t95);
-            let t131 = t40 * t124 + (t30 * t122 + t34 * t120);
-            let t132 = t113 - t114 * t116;
-            let t133 = t40 * t110 - (t30 * t108 - t34 * t106);
-            let t134 = t133 * t132 - (t131 * t130 + t118 * t117);
-            let t135 = t115 * t129;
-            let t136 = t129 * t135
-                - (k(2e-6) + (k(1.25e-9) + (t126 * t128 + t125 * t127)));
-            let t137 = t129 - t114 * t135;
-            let t138 = t133 * t137 - (t131 * t136 + t118 * t130);
-            let t139 = t131 * t137 + t118 * t132;
-            let t140 = k(1e-6) + (t133 * t139 + (t131 * t138 + t118 * t134));
-            let t141 = k(2.0) * (k(0.5) - (t83 + rotor_e1 * rotor_e1));
-            let t142 = k(2.0) * (t79 + t78);
-            let t143 = k(2.0) * (t97 - t96);
-            let t144 = t93 * t143 + (t87 * t142 + t82 * t141);
-            let t145 = inner_ring_wy * (t124 * t143 - (t120 * t142 + t122 * t141))
-                + inner_ring_wx * t144;
-            let t146 = inner_ring_wz * (t110 * t143 - (t106 * t142 - t108 * t141))
-                - t145;
-            let t147 = rotor_wx + t146;
-            let t148 = inner_ring_wz * t112
-                - (inner_ring_wy * t126 + inner_ring_wx * t101);
-            let t149 = rotor_wz - t148;
-            let t150 = inner_ring_wz * t111
-                - (inner_ring_wy * t125 + inner_ring_wx * t94);
-            let t151 = rotor_wy + t150;
-            let t152 = (t151 * t151 + t149 * t149) / t144;
-            let t153 = rotor_wz * t146 + rotor_wx * t148 - (t101 * t152 - t149 * t147);
-            let t154 = k(5e-6) * (rotor_wx * rotor_wz + t153);
-            let t155 = rotor_wx * t150 - rotor_wy * t146 - (t94 * t152 + t151 * t147);
-            let t156 = k(5e-6) * (rotor_wx * rotor_wy - t155);
-            let t157 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
-            let t158 = inner_ring_wx * inner_ring_wy;
-            let t159 = inner_ring_wx * inner_ring_wz;
-            let t160 = t108 * t159 + (t122 * t158 + t82 * t157);
-            let t161 = k(1e-5) * t160;
-            let t162 = k(0.00025) * t121;
-            let t163 = t106 * t159 - (t120 * t158 + t87 * t157);
-            let t164 = k(0.8) + k(1e-5) * t163;
-            let t165 = k(0.00025) * t119;
-            let t166 = t110 * t159 - (t124 * t158 - t93 * t157);
-            let t167 = k(1e-5) * t166;
-            let t168 = k(0.00025) * t123;
-            let t169 = t168 * t167 + (t165 * t164 - t162 * t161)
-                + (t112 * t156 + t111 * t154);
-            let t170 = k(1e-6) * t158 - t169;
-            let t171 = t115 * t170;
-            let t172 = t113 * t171
-                - (k(1e-6) * (inner_ring_wy * inner_ring_wz)
-                    - (t101 * t156 + t94 * t154));
-            let t173 = t69 * t110 - (t68 * t106 - t67 * t108);
-            let t174 = t59 * t108 + t60 * t106 + t61 * t110;
-            let t175 = outer_ring_wz * t174
-                - (outer_ring_wy * t133 + outer_ring_wx * t173);
-            let t176 = inner_ring_wz - t175;
-            let t177 = t69 * t124 - (t68 * t120 + t67 * t122);
-            let t178 = t61 * t124 - (t59 * t122 - t60 * t120);
-            let t179 = outer_ring_wz * t178
-                - (outer_ring_wy * t131 + outer_ring_wx * t177);
-            let t180 = inner_ring_wy + t179;
-            let t181 = t69 * t93 + (t68 * t87 + t67 * t82);
-            let t182 = t61 * t93 - (t60 * t87 - t59 * t82);
-            let t183 = outer_ring_wz * t182
-                - (outer_ring_wy * t118 + outer_ring_wx * t181);
-            let t184 = inner_ring_wx + t183;
-            let t185 = (t184 * t184 + t180 * t180) / t174;
-            let t186 = inner_ring_wy * t175 + inner_ring_wz * t179
-                + (t178 * t185 - t180 * t176);
-            let t187 = inner_ring_wz * t183 + inner_ring_wx * t175
-                + (t182 * t185 - t184 * t176);
-            let t188 = k(0.00025) * t107;
-            let t189 = k(0.00025) * t105;
-            let t190 = k(0.00025) * t109;
-            let t191 = t190 * t167 + (t189 * t164 + t188 * t161)
-                - (t126 * t156 + t125 * t154);
-            let t192 = t131 * (t136 * t187 - t130 * t186 - (t129 * t171 - t191));
-            let t193 = t133 * (t137 * t187 - t132 * t186 - (t170 - t114 * t171));
-            let t194 = t193 - (t192 + t118 * (t130 * t187 - t117 * t186 - t172));
-            let t195 = t131 * (t173 * t137 - (t177 * t136 + t181 * t130))
-                + t118 * (t173 * t132 - (t177 * t130 + t181 * t117));
-            let t196 = t27 * t54 - (t25 * t50 + t23 * t44);
-            let t197 = t196 * t140 + t77 * (t133 * (t177 * t137 + t181 * t132) + t195);
-            let t198 = outer_ring_wx * t55 - outer_ring_wy * t73
-                + (t71 * t75 + t74 * t56);
-            let t199 = t27 * t64 - (t25 * t63 + t23 * t62) - t198;
-            (
-                t23,
-                t25,
-                t27,
-                t77,
-                t94,
-                t101,
-                t111,
-                t112,
-                t113,
-                t114,
-                t115,
-                t118,
-                t125,
-                t126,
-                t129,
-                t131,
-                t133,
-                t134,
-                t138,
-                t139,
-                t140,
-                t153,
-                t155,
-                t160,
-                t162,
-                t163,
-                t165,
-                t166,
-                t168,
-                t170,
-                t173,
-                t174,
-                t177,
-                t178,
-                t181,
-                t182,
-                t186,
-                t187,
-                t188,
-                t189,
-                t190,
-                t194,
-                t196,
-                t197,
-                t199,
-            )
-        };
-        let (t201, t202, t203, t206) = {
-            let t200 = t199 * (t174 * t139 + (t138 * t178 + t134 * t182)) + t197;
-            let t201 = t196
-                - (t200 + (k(1e-6) * (outer_ring_wx * outer_ring_wz) + t194)) / t140;
-            let t202 = t186 - (t199 * t182 + (t118 * t201 + t181 * t77));
-            let t203 = t187 + (t199 * t178 + (t131 * t201 + t177 * t77));
-            let t204 = t174 * t199 + (t133 * t201 + t173 * t77);
-            let t205 = t115 * (t170 - (t114 * t204 + (t129 * t203 - t113 * t202)));
-            let t206 = t204 + t205;
-            (t201, t202, t203, t206)
-        };
+        let t0 = k(0.5) * base_e3;
+        let t1 = k(0.5) * base_e0;
+        let t2 = t1 * t1;
+        let t3 = t2 + t0 * t0;
+        let t4 = k(0.5) * base_e1;
+        let t5 = t4 * t1;
+        let t6 = k(0.5) * base_e2;
+        let t7 = t0 * t6;
+        let t8 = t7 + t5;
+        let t9 = t1 * t6;
+        let t10 = t4 * t0;
+        let t11 = t10 - t9;
+        let t12 = k(1.0) / (t6 * t11 - t4 * t8 - t1 * t3);
+        let t13 = t1 * t0;
+        let t14 = t4 * t6;
+        let t15 = k(0.5) * (base_e2 * base_wx - base_e1 * base_wy - base_e0 * base_wz);
+        let t16 = k(0.5) * (base_e1 * base_wx + base_e2 * base_wy + base_e3 * base_wz);
+        let t17 = k(0.5) * (base_e0 * base_wx - base_e3 * base_wy + base_e2 * base_wz);
+        let t18 = k(0.5) * (base_wz * t17 + (base_wy * t16 + base_wx * t15));
+        let t19 = k(0.5) * (base_e3 * base_wx + base_e0 * base_wy - base_e1 * base_wz);
+        let t20 = k(0.5) * (base_wz * t19 + (base_wy * t15 - base_wx * t16));
+        let t21 = t20 * ((t2 + t4 * t4) * t12) - t18 * ((t14 + t13) * t12);
+        let t22 = k(0.5) * (base_wz * t16 - (base_wy * t17 - base_wx * t19));
+        let t23 = t22 * (t11 * t12) - t21;
+        let t24 = t20 * ((t14 - t13) * t12) - t18 * ((t2 + t6 * t6) * t12);
+        let t25 = t22 * (t8 * t12) - t24;
+        let t26 = t20 * ((t10 + t9) * t12) - t18 * ((t7 - t5) * t12);
+        let t27 = t22 * (t3 * t12) - t26;
+        let t28 = outer_ring_e0 * outer_ring_e3;
+        let t29 = outer_ring_e1 * outer_ring_e2;
+        let t30 = k(2.0) * (t29 - t28);
+        let t31 = base_e0 * base_e0;
+        let t32 = k(2.0) * (k(0.5) - (t31 + base_e1 * base_e1));
+        let t33 = outer_ring_e0 * outer_ring_e0;
+        let t34 = k(2.0) * (k(0.5) - (t33 + outer_ring_e2 * outer_ring_e2));
+        let t35 = base_e0 * base_e3;
+        let t36 = base_e1 * base_e2;
+        let t37 = k(2.0) * (t36 + t35);
+        let t38 = outer_ring_e0 * outer_ring_e1;
+        let t39 = outer_ring_e2 * outer_ring_e3;
+        let t40 = k(2.0) * (t39 + t38);
+        let t41 = base_e0 * base_e2;
+        let t42 = base_e1 * base_e3;
+        let t43 = k(2.0) * (t42 - t41);
+        let t44 = k(2.0) * (k(0.5) - (t31 + base_e2 * base_e2));
+        let t45 = k(2.0) * (t36 - t35);
+        let t46 = base_e0 * base_e1;
+        let t47 = base_e2 * base_e3;
+        let t48 = k(2.0) * (t47 + t46);
+        let t49 = t48 * t40 + (t45 * t30 + t44 * t34);
+        let t50 = base_wy * t49 + base_wx * (t43 * t40 - (t37 * t34 + t32 * t30));
+        let t51 = k(2.0) * (t47 - t46);
+        let t52 = k(2.0) * (t42 + t41);
+        let t53 = k(2.0) * (k(0.5) - (t31 + base_e3 * base_e3));
+        let t54 = base_wz * (t53 * t40 - (t52 * t30 - t51 * t34)) - t50;
+        let t55 = outer_ring_wy + t54;
+        let t56 = outer_ring_e0 * outer_ring_e2;
+        let t57 = outer_ring_e1 * outer_ring_e3;
+        let t58 = k(2.0) * (t57 + t56);
+        let t59 = k(2.0) * (t39 - t38);
+        let t60 = k(2.0) * (k(0.5) - (t33 + outer_ring_e3 * outer_ring_e3));
+        let t61 = t43 * t60 - (t37 * t59 - t32 * t58);
+        let t62 = t48 * t60 - (t45 * t58 - t44 * t59);
+        let t63 = t52 * t58 + t51 * t59 + t53 * t60;
+        let t64 = base_wz * t63 - (base_wy * t62 + base_wx * t61);
+        let t65 = outer_ring_wz - t64;
+        let t66 = k(2.0) * (k(0.5) - (t33 + outer_ring_e1 * outer_ring_e1));
+        let t67 = k(2.0) * (t29 + t28);
+        let t68 = k(2.0) * (t57 - t56);
+        let t69 = t43 * t68 + (t37 * t67 + t32 * t66);
+        let t70 = t48 * t68 - (t44 * t67 + t45 * t66);
+        let t71 = t53 * t68 - (t51 * t67 - t52 * t66);
+        let t72 = base_wz * t71 - (base_wy * t70 + base_wx * t69);
+        let t73 = outer_ring_wx + t72;
+        let t74 = (t73 * t73 + t65 * t65) / t49;
+        let t75 = outer_ring_wy * t64 + outer_ring_wz * t54 - (t62 * t74 - t65 * t55);
+        let t76 = t27 * t71 - (t25 * t70 + t23 * t69) - t75;
+        let t77 = rotor_e0 * rotor_e3;
+        let t78 = rotor_e1 * rotor_e2;
+        let t79 = k(2.0) * (t78 - t77);
+        let t80 = inner_ring_e0 * inner_ring_e0;
+        let t81 = k(2.0) * (k(0.5) - (t80 + inner_ring_e1 * inner_ring_e1));
+        let t82 = rotor_e0 * rotor_e0;
+        let t83 = k(2.0) * (k(0.5) - (t82 + rotor_e2 * rotor_e2));
+        let t84 = inner_ring_e0 * inner_ring_e3;
+        let t85 = inner_ring_e1 * inner_ring_e2;
+        let t86 = k(2.0) * (t85 + t84);
+        let t87 = rotor_e0 * rotor_e1;
+        let t88 = rotor_e2 * rotor_e3;
+        let t89 = k(2.0) * (t88 + t87);
+        let t90 = inner_ring_e0 * inner_ring_e2;
+        let t91 = inner_ring_e1 * inner_ring_e3;
+        let t92 = k(2.0) * (t91 - t90);
+        let t93 = t92 * t89 - (t86 * t83 + t81 * t79);
+        let t94 = k(5e-6) * t93;
+        let t95 = rotor_e0 * rotor_e2;
+        let t96 = rotor_e1 * rotor_e3;
+        let t97 = k(2.0) * (t96 + t95);
+        let t98 = k(2.0) * (t88 - t87);
+        let t99 = k(2.0) * (k(0.5) - (t82 + rotor_e3 * rotor_e3));
+        let t100 = t92 * t99 - (t86 * t98 - t81 * t97);
+        let t101 = k(5e-6) * t100;
+        let t102 = inner_ring_e0 * inner_ring_e1;
+        let t103 = inner_ring_e2 * inner_ring_e3;
+        let t104 = t103 - t102;
+        let t105 = k(2.0) * t104;
+        let t106 = t91 + t90;
+        let t107 = k(2.0) * t106;
+        let t108 = k(0.5) - (t80 + inner_ring_e3 * inner_ring_e3);
+        let t109 = k(2.0) * t108;
+        let t110 = t109 * t89 - (t107 * t79 - t105 * t83);
+        let t111 = t107 * t97 + t105 * t98 + t109 * t99;
+        let t112 = t111 * t101 + t110 * t94;
+        let t113 = k(1e-6)
+            + (k(1.25e-9) + (t111 * (k(5e-6) * t111) + t110 * (k(5e-6) * t110)));
+        let t114 = k(1.0) / t113;
+        let t115 = t114 * t112;
+        let t116 = t112 * t115 - (k(1e-6) + (t100 * t101 + t93 * t94));
+        let t117 = t40 * t92 - (t34 * t86 + t30 * t81);
+        let t118 = k(0.5) - (t80 + inner_ring_e2 * inner_ring_e2);
+        let t119 = k(2.0) * t118;
+        let t120 = t85 - t84;
+        let t121 = k(2.0) * t120;
+        let t122 = t103 + t102;
+        let t123 = k(2.0) * t122;
+        let t124 = t123 * t89 + (t121 * t79 + t119 * t83);
+        let t125 = t123 * t99 - (t121 * t97 - t119 * t98);
+        let t126 = k(5e-6) * t124;
+        let t127 = k(5e-6) * t125;
+        let t128 = t111 * t127 + t110 * t126;
+        let t129 = t128 * t115 - (t125 * t101 + t124 * t94);
+        let t130 = t40 * t123 + (t30 * t121 + t34 * t119);
+        let t131 = t130 * t129 + t117 * t116;
+        let t132 = t128 * (t114 * t128)
+            - (k(2e-6) + (k(1.25e-9) + (t125 * t127 + t124 * t126)));
+        let t133 = t130 * t132 + t117 * t129;
+        let t134 = k(2.0) * (k(0.5) - (t82 + rotor_e1 * rotor_e1));
+        let t135 = k(2.0) * (t78 + t77);
+        let t136 = k(2.0) * (t96 - t95);
+        let t137 = t92 * t136 + (t86 * t135 + t81 * t134);
+        let t138 = inner_ring_wy * (t123 * t136 - (t119 * t135 + t121 * t134))
+            + inner_ring_wx * t137;
+        let t139 = inner_ring_wz * (t109 * t136 - (t105 * t135 - t107 * t134)) - t138;
+        let t140 = rotor_wx + t139;
+        let t141 = inner_ring_wz * t111 - (inner_ring_wy * t125 + inner_ring_wx * t100);
+        let t142 = rotor_wz - t141;
+        let t143 = inner_ring_wz * t110 - (inner_ring_wy * t124 + inner_ring_wx * t93);
+        let t144 = rotor_wy + t143;
+        let t145 = (t144 * t144 + t142 * t142) / t137;
+        let t146 = rotor_wz * t139 + rotor_wx * t141 - (t100 * t145 - t142 * t140);
+        let t147 = k(5e-6) * (rotor_wx * rotor_wz + t146);
+        let t148 = rotor_wx * t143 - rotor_wy * t139 - (t93 * t145 + t144 * t140);
+        let t149 = k(5e-6) * (rotor_wx * rotor_wy - t148);
+        let t150 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
+        let t151 = inner_ring_wx * inner_ring_wy;
+        let t152 = inner_ring_wx * inner_ring_wz;
+        let t153 = t107 * t152 + (t121 * t151 + t81 * t150);
+        let t154 = k(1e-5) * t153;
+        let t155 = k(0.00025) * t120;
+        let t156 = t105 * t152 - (t119 * t151 + t86 * t150);
+        let t157 = k(0.8) + k(1e-5) * t156;
+        let t158 = k(0.00025) * t118;
+        let t159 = t109 * t152 - (t123 * t151 - t92 * t150);
+        let t160 = k(1e-5) * t159;
+        let t161 = k(0.00025) * t122;
+        let t162 = t161 * t160 + (t158 * t157 - t155 * t154)
+            + (t111 * t149 + t110 * t147);
+        let t163 = k(1e-6) * t151 - t162;
+        let t164 = t114 * t163;
+        let t165 = t112 * t164
+            - (k(1e-6) * (inner_ring_wy * inner_ring_wz) - (t100 * t149 + t93 * t147));
+        let t166 = outer_ring_wy * (t40 * t109 - (t30 * t107 - t34 * t105))
+            + outer_ring_wx * (t68 * t109 - (t67 * t105 - t66 * t107));
+        let t167 = t58 * t107 + t59 * t105 + t60 * t109;
+        let t168 = outer_ring_wz * t167 - t166;
+        let t169 = inner_ring_wz - t168;
+        let t170 = t68 * t123 - (t67 * t119 + t66 * t121);
+        let t171 = t60 * t123 - (t58 * t121 - t59 * t119);
+        let t172 = outer_ring_wz * t171 - (outer_ring_wy * t130 + outer_ring_wx * t170);
+        let t173 = inner_ring_wy + t172;
+        let t174 = t68 * t92 + (t67 * t86 + t66 * t81);
+        let t175 = t60 * t92 - (t59 * t86 - t58 * t81);
+        let t176 = outer_ring_wz * t175 - (outer_ring_wy * t117 + outer_ring_wx * t174);
+        let t177 = inner_ring_wx + t176;
+        let t178 = (t177 * t177 + t173 * t173) / t167;
+        let t179 = inner_ring_wy * t168 + inner_ring_wz * t172
+            + (t171 * t178 - t173 * t169);
+        let t180 = inner_ring_wz * t176 + inner_ring_wx * t168
+            + (t175 * t178 - t177 * t169);
+        let t181 = k(0.00025) * t106;
+        let t182 = k(0.00025) * t104;
+        let t183 = k(0.00025) * t108;
+        let t184 = t183 * t160 + (t182 * t157 + t181 * t154)
+            - (t125 * t149 + t124 * t147);
+        let t185 = t130 * (t132 * t180 - t129 * t179 - (t128 * t164 - t184));
+        let t186 = k(1e-6) * (outer_ring_wx * outer_ring_wz)
+            - (t185 + t117 * (t129 * t180 - t116 * t179 - t165));
+        let t187 = t130 * (t170 * t132 + t174 * t129)
+            + t117 * (t170 * t129 + t174 * t116);
+        let t188 = outer_ring_wx * t54 - outer_ring_wy * t72 + (t70 * t74 + t73 * t55);
+        let t189 = t27 * t63 - (t25 * t62 + t23 * t61) - t188;
+        let t190 = t189 * (t133 * t171 + t131 * t175) + t76 * t187 - t186;
+        let t191 = t190 / (k(1e-6) - (t130 * t133 + t117 * t131));
+        let t192 = t179 - (t189 * t175 + (t117 * t191 + t174 * t76));
+        let t193 = t180 + (t189 * t171 + (t130 * t191 + t170 * t76));
+        let t194 = t114 * (t163 - (t128 * t193 - t112 * t192));
         *out = [
             k(0.0),
             k(0.0),
@@ -2494,21 +2372,21 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
             k(0.0),
             k(0.0),
             k(0.0),
-            t77,
-            t201,
-            -t199,
+            t76,
+            t191,
+            -t189,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t202,
-            t203,
-            -t206,
-            k(0.000125) * t160 - (t162 * t206 + t188 * t203),
-            t165 * t206 - t189 * t203 + k(0.000125) * t163,
-            -(t168 * t206 - t190 * t203 + k(0.000125) * t166),
+            -t192,
+            t193,
+            -t194,
+            k(0.000125) * t153 - (t155 * t194 + t181 * t193),
+            t158 * t194 - t182 * t193 + k(0.000125) * t156,
+            -(t161 * t194 - t183 * t193 + k(0.000125) * t159),
             k(0.0),
-            t153 + (t111 * t206 + (t125 * t203 - t94 * t202)),
-            t155 - (t112 * t206 + (t126 * t203 - t101 * t202)),
+            t146 + (t110 * t194 + (t124 * t193 - t93 * t192)),
+            t148 - (t111 * t194 + (t125 * t193 - t100 * t192)),
         ];
     }
     /// Writes λ: 475 operations (180 ±, 291 ×, 4 ÷).

@@ -19,7 +19,7 @@
 //! | gamma | γ | 122 | 193 | 0 | 315 | 6 of 15 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 90 | 128 | 0 | 218 | 0 of 15 |
 //! | applied_force | (f, n' − w̃'J'w') | 1 | 14 | 0 | 15 | 9 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 200 | 295 | 5 | 500 | 7 of 18 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 181 | 274 | 5 | 460 | 7 of 18 |
 //! | multipliers | λ, the accelerations being known | 115 | 191 | 3 | 309 | 0 of 15 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | energy | T and V | 19 | 36 | 0 | 55 | 0 of 2 |
@@ -1746,7 +1746,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeParameters<T> {
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 500 operations (200 ±, 295 ×, 5 ÷).
+    /// Solves eq. (17): 460 operations (181 ±, 274 ×, 5 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1833,112 +1833,103 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeParameters<T> {
         let t58 = t38 * t57 + t37 * t56;
         let t59 = t58 * t43 - (t55 * t31 + t54 * t24);
         let t60 = t49 * t53 + (t47 * t52 + t48 * t51);
-        let t61 = t39 - t41 * t43;
-        let t62 = t49 * t36 - (t47 * t35 - t48 * t34);
-        let t63 = t62 * t61 - (t60 * t59 + t50 * t44);
-        let t64 = t42 * t58;
-        let t65 = t58 * t64
+        let t61 = t60 * t59 + t50 * t44;
+        let t62 = t58 * (t42 * t58)
             - (self.ring_axial_inertia + (t40 + (t55 * t57 + t54 * t56)));
-        let t66 = t58 - t41 * t64;
-        let t67 = t62 * t66 - (t60 * t65 + t50 * t59);
-        let t68 = t60 * t66 + t50 * t61;
-        let t69 = k(2.0) * (k(0.5) - (t12 + rotor_e1 * rotor_e1));
-        let t70 = k(2.0) * (t8 + t7);
-        let t71 = k(2.0) * (t26 - t25);
-        let t72 = t22 * t71 + (t16 * t70 + t11 * t69);
-        let t73 = inner_ring_wy * (t53 * t71 - (t51 * t70 + t52 * t69))
-            + inner_ring_wx * t72;
-        let t74 = inner_ring_wz * (t36 * t71 - (t34 * t70 - t35 * t69)) - t73;
-        let t75 = rotor_wx + t74;
-        let t76 = inner_ring_wz * t38 - (inner_ring_wy * t55 + inner_ring_wx * t30);
-        let t77 = rotor_wz - t76;
-        let t78 = inner_ring_wz * t37 - (inner_ring_wy * t54 + inner_ring_wx * t23);
-        let t79 = rotor_wy + t78;
-        let t80 = (t79 * t79 + t77 * t77) / t72;
-        let t81 = rotor_wz * t74 + rotor_wx * t76 - (t30 * t80 - t77 * t75);
-        let t82 = k(5e-6) * (rotor_wx * rotor_wz + t81);
-        let t83 = rotor_wx * t78 - rotor_wy * t74 - (t23 * t80 + t79 * t75);
-        let t84 = k(5e-6) * (rotor_wx * rotor_wy - t83);
-        let t85 = self.ring_axial_inertia - self.ring_diametral_inertia;
-        let t86 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
-        let t87 = inner_ring_wx * inner_ring_wy;
-        let t88 = inner_ring_wx * inner_ring_wz;
-        let t89 = self.rotor_offset * (t35 * t88 + (t52 * t87 + t11 * t86));
-        let t90 = self.rotor_mass * t89;
-        let t91 = t52 * self.rotor_offset;
-        let t92 = self.rotor_offset * (t34 * t88 - (t51 * t87 + t16 * t86));
-        let t93 = self.gravity * self.rotor_mass + self.rotor_mass * t92;
-        let t94 = t51 * self.rotor_offset;
-        let t95 = self.rotor_offset * (t36 * t88 - (t53 * t87 - t22 * t86));
-        let t96 = self.rotor_mass * t95;
-        let t97 = t53 * self.rotor_offset;
-        let t98 = t97 * t96 + (t94 * t93 - t91 * t90) + (t38 * t84 + t37 * t82);
-        let t99 = t87 * t85 - t98;
-        let t100 = t42 * t99;
-        let t101 = t39 * t100
-            - (inner_ring_wy * inner_ring_wz * t85 - (t30 * t84 + t23 * t82));
-        let t102 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
-        let t103 = k(2.0) * (t46 + t45);
-        let t104 = outer_ring_e0 * outer_ring_e2;
-        let t105 = outer_ring_e1 * outer_ring_e3;
-        let t106 = k(2.0) * (t105 - t104);
-        let t107 = t106 * t36 - (t103 * t34 - t102 * t35);
-        let t108 = k(2.0) * (k(0.5) - (t0 + outer_ring_e3 * outer_ring_e3));
-        let t109 = k(2.0) * (t105 + t104);
-        let t110 = t109 * t35 + t5 * t34 + t108 * t36;
-        let t111 = outer_ring_wz * t110 - (outer_ring_wy * t62 + outer_ring_wx * t107);
-        let t112 = inner_ring_wz - t111;
-        let t113 = t106 * t53 - (t103 * t51 + t102 * t52);
-        let t114 = t108 * t53 - (t109 * t52 - t5 * t51);
-        let t115 = outer_ring_wz * t114 - (outer_ring_wy * t60 + outer_ring_wx * t113);
-        let t116 = inner_ring_wy + t115;
-        let t117 = t106 * t22 + (t103 * t16 + t102 * t11);
-        let t118 = t108 * t22 - (t5 * t16 - t109 * t11);
-        let t119 = outer_ring_wz * t118 - (outer_ring_wy * t50 + outer_ring_wx * t117);
-        let t120 = inner_ring_wx + t119;
-        let t121 = (t120 * t120 + t116 * t116) / t110;
-        let t122 = inner_ring_wy * t111 + inner_ring_wz * t115
-            + (t114 * t121 - t116 * t112);
-        let t123 = inner_ring_wz * t119 + inner_ring_wx * t111
-            + (t118 * t121 - t120 * t112);
-        let t124 = t35 * self.rotor_offset;
-        let t125 = t34 * self.rotor_offset;
-        let t126 = t36 * self.rotor_offset;
-        let t127 = t126 * t96 + (t125 * t93 + t124 * t90) - (t55 * t84 + t54 * t82);
-        let t128 = t60 * (t65 * t123 - t59 * t122 - (t58 * t100 - t127));
-        let t129 = t62 * (t66 * t123 - t61 * t122 - (t99 - t41 * t100));
-        let t130 = t129 - (t128 + t50 * (t59 * t123 - t44 * t122 - t101));
-        let t131 = t60 * (t107 * t66 - (t113 * t65 + t117 * t59))
-            + t50 * (t107 * t61 - (t113 * t59 + t117 * t44));
-        let t132 = outer_ring_wx * outer_ring_wy - t103 * t2;
-        let t133 = (t110 * t68 + (t67 * t114 + t63 * t118)) * t132
-            + t6 * (t62 * (t113 * t66 + t117 * t61) + t131);
-        let t134 = (t133 - (outer_ring_wx * outer_ring_wz * t85 + t130))
-            / (self.ring_diametral_inertia + (t62 * t68 + (t60 * t67 + t50 * t63)));
-        let t135 = t122 + (t118 * t132 - (t50 * t134 - t117 * t6));
-        let t136 = t123 - (t114 * t132 - (t60 * t134 - t113 * t6));
-        let t137 = t110 * t132 - (t62 * t134 - t107 * t6);
-        let t138 = t42 * (t99 + (t41 * t137 - (t58 * t136 - t39 * t135)));
-        let t139 = t137 - t138;
+        let t63 = t60 * t62 + t50 * t59;
+        let t64 = k(2.0) * (k(0.5) - (t12 + rotor_e1 * rotor_e1));
+        let t65 = k(2.0) * (t8 + t7);
+        let t66 = k(2.0) * (t26 - t25);
+        let t67 = t22 * t66 + (t16 * t65 + t11 * t64);
+        let t68 = inner_ring_wy * (t53 * t66 - (t51 * t65 + t52 * t64))
+            + inner_ring_wx * t67;
+        let t69 = inner_ring_wz * (t36 * t66 - (t34 * t65 - t35 * t64)) - t68;
+        let t70 = rotor_wx + t69;
+        let t71 = inner_ring_wz * t38 - (inner_ring_wy * t55 + inner_ring_wx * t30);
+        let t72 = rotor_wz - t71;
+        let t73 = inner_ring_wz * t37 - (inner_ring_wy * t54 + inner_ring_wx * t23);
+        let t74 = rotor_wy + t73;
+        let t75 = (t74 * t74 + t72 * t72) / t67;
+        let t76 = rotor_wz * t69 + rotor_wx * t71 - (t30 * t75 - t72 * t70);
+        let t77 = k(5e-6) * (rotor_wx * rotor_wz + t76);
+        let t78 = rotor_wx * t73 - rotor_wy * t69 - (t23 * t75 + t74 * t70);
+        let t79 = k(5e-6) * (rotor_wx * rotor_wy - t78);
+        let t80 = self.ring_axial_inertia - self.ring_diametral_inertia;
+        let t81 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
+        let t82 = inner_ring_wx * inner_ring_wy;
+        let t83 = inner_ring_wx * inner_ring_wz;
+        let t84 = self.rotor_offset * (t35 * t83 + (t52 * t82 + t11 * t81));
+        let t85 = self.rotor_mass * t84;
+        let t86 = t52 * self.rotor_offset;
+        let t87 = self.rotor_offset * (t34 * t83 - (t51 * t82 + t16 * t81));
+        let t88 = self.gravity * self.rotor_mass + self.rotor_mass * t87;
+        let t89 = t51 * self.rotor_offset;
+        let t90 = self.rotor_offset * (t36 * t83 - (t53 * t82 - t22 * t81));
+        let t91 = self.rotor_mass * t90;
+        let t92 = t53 * self.rotor_offset;
+        let t93 = t92 * t91 + (t89 * t88 - t86 * t85) + (t38 * t79 + t37 * t77);
+        let t94 = t82 * t80 - t93;
+        let t95 = t42 * t94;
+        let t96 = t39 * t95
+            - (inner_ring_wy * inner_ring_wz * t80 - (t30 * t79 + t23 * t77));
+        let t97 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
+        let t98 = k(2.0) * (t46 + t45);
+        let t99 = outer_ring_e0 * outer_ring_e2;
+        let t100 = outer_ring_e1 * outer_ring_e3;
+        let t101 = k(2.0) * (t100 - t99);
+        let t102 = outer_ring_wy * (t49 * t36 - (t47 * t35 - t48 * t34))
+            + outer_ring_wx * (t101 * t36 - (t98 * t34 - t97 * t35));
+        let t103 = k(2.0) * (k(0.5) - (t0 + outer_ring_e3 * outer_ring_e3));
+        let t104 = k(2.0) * (t100 + t99);
+        let t105 = t104 * t35 + t5 * t34 + t103 * t36;
+        let t106 = outer_ring_wz * t105 - t102;
+        let t107 = inner_ring_wz - t106;
+        let t108 = t101 * t53 - (t98 * t51 + t97 * t52);
+        let t109 = t103 * t53 - (t104 * t52 - t5 * t51);
+        let t110 = outer_ring_wz * t109 - (outer_ring_wy * t60 + outer_ring_wx * t108);
+        let t111 = inner_ring_wy + t110;
+        let t112 = t101 * t22 + (t98 * t16 + t97 * t11);
+        let t113 = t103 * t22 - (t5 * t16 - t104 * t11);
+        let t114 = outer_ring_wz * t113 - (outer_ring_wy * t50 + outer_ring_wx * t112);
+        let t115 = inner_ring_wx + t114;
+        let t116 = (t115 * t115 + t111 * t111) / t105;
+        let t117 = inner_ring_wy * t106 + inner_ring_wz * t110
+            + (t109 * t116 - t111 * t107);
+        let t118 = inner_ring_wz * t114 + inner_ring_wx * t106
+            + (t113 * t116 - t115 * t107);
+        let t119 = t35 * self.rotor_offset;
+        let t120 = t34 * self.rotor_offset;
+        let t121 = t36 * self.rotor_offset;
+        let t122 = t121 * t91 + (t120 * t88 + t119 * t85) - (t55 * t79 + t54 * t77);
+        let t123 = t60 * (t62 * t118 - t59 * t117 - (t58 * t95 - t122));
+        let t124 = outer_ring_wx * outer_ring_wz * t80
+            - (t123 + t50 * (t59 * t118 - t44 * t117 - t96));
+        let t125 = t60 * (t108 * t62 + t112 * t59) + t50 * (t108 * t59 + t112 * t44);
+        let t126 = outer_ring_wx * outer_ring_wy - t98 * t2;
+        let t127 = (t63 * t109 + t61 * t113) * t126 + t6 * t125 + t124;
+        let t128 = t127 / (self.ring_diametral_inertia - (t60 * t63 + t50 * t61));
+        let t129 = t117 + (t113 * t126 + (t50 * t128 + t112 * t6));
+        let t130 = t118 - (t109 * t126 + (t60 * t128 + t108 * t6));
+        let t131 = t42 * (t94 - (t58 * t130 - t39 * t129));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t6,
-            t134,
-            t132,
+            -t128,
+            t126,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t135,
-            t136,
-            t139,
-            t89 + (t91 * t139 - t124 * t136),
-            t92 - (t94 * t139 + t125 * t136),
-            t97 * t139 + t126 * t136 - t95,
+            -t129,
+            t130,
+            -t131,
+            t84 - (t86 * t131 + t119 * t130),
+            t87 + (t89 * t131 - t120 * t130),
+            -(t90 + (t92 * t131 - t121 * t130)),
             k(0.0),
-            t81 - (t37 * t139 - (t54 * t136 - t23 * t135)),
-            t83 + (t38 * t139 - (t55 * t136 - t30 * t135)),
+            t76 + (t37 * t131 + (t54 * t130 - t23 * t129)),
+            t78 - (t38 * t131 + (t55 * t130 - t30 * t129)),
         ];
     }
     /// Writes λ: 309 operations (115 ±, 191 ×, 3 ÷).

@@ -19,7 +19,7 @@
 //! | gamma | γ | 122 | 195 | 0 | 317 | 6 of 15 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 90 | 128 | 0 | 218 | 0 of 15 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 201 | 303 | 5 | 509 | 6 of 18 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 178 | 278 | 5 | 461 | 6 of 18 |
 //! | multipliers | λ, the accelerations being known | 114 | 187 | 3 | 304 | 0 of 15 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
@@ -1719,7 +1719,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 509 operations (201 ±, 303 ×, 5 ÷).
+    /// Solves eq. (17): 461 operations (178 ±, 278 ×, 5 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1787,130 +1787,119 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
         let t40 = t39 * t19 - (t38 * t9 - t37 * t13);
         let t41 = t38 * t28 + t37 * t30 + t39 * t32;
         let t42 = t41 * t34 + t40 * t24;
-        let t43 = k(1e-6) + (t41 * (k(5.0032e-6) * t41) + t40 * (k(5e-6) * t40));
-        let t44 = k(1.0) / t43;
-        let t45 = t44 * t42;
-        let t46 = t42 * t45 - (k(1e-6) + (t33 * t34 + t23 * t24));
-        let t47 = outer_ring_e0 * outer_ring_e3;
-        let t48 = outer_ring_e1 * outer_ring_e2;
-        let t49 = k(2.0) * (t48 - t47);
-        let t50 = k(2.0) * t1;
-        let t51 = k(2.0) * (t4 + t3);
-        let t52 = t51 * t22 - (t50 * t16 + t49 * t11);
-        let t53 = k(2.0) * (k(0.5) - (t10 + inner_ring_e2 * inner_ring_e2));
-        let t54 = k(2.0) * (t15 - t14);
-        let t55 = k(2.0) * (t36 + t35);
-        let t56 = t55 * t19 + (t54 * t9 + t53 * t13);
-        let t57 = t55 * t32 - (t54 * t28 - t53 * t30);
-        let t58 = k(5e-6) * t56;
-        let t59 = k(5.0032e-6) * t57;
-        let t60 = t41 * t59 + t40 * t58;
-        let t61 = t60 * t45 - (t57 * t34 + t56 * t24);
-        let t62 = t51 * t55 + (t49 * t54 + t50 * t53);
-        let t63 = t42 - t43 * t45;
-        let t64 = t51 * t39 - (t49 * t38 - t50 * t37);
-        let t65 = t64 * t63 - (t62 * t61 + t52 * t46);
-        let t66 = t44 * t60;
-        let t67 = t60 * t66 - (k(2e-6) + (t57 * t59 + t56 * t58));
-        let t68 = t60 - t43 * t66;
-        let t69 = t64 * t68 - (t62 * t67 + t52 * t61);
-        let t70 = t62 * t68 + t52 * t63;
-        let t71 = k(0.5) - (t12 + rotor_e1 * rotor_e1);
-        let t72 = k(2.0) * t71;
-        let t73 = t8 + t7;
-        let t74 = k(2.0) * t73;
-        let t75 = t26 - t25;
-        let t76 = k(2.0) * t75;
-        let t77 = t22 * t76 + (t16 * t74 + t11 * t72);
-        let t78 = t55 * t76 - (t53 * t74 + t54 * t72);
-        let t79 = t39 * t76 - (t37 * t74 - t38 * t72);
-        let t80 = inner_ring_wz * t79 - (inner_ring_wy * t78 + inner_ring_wx * t77);
-        let t81 = rotor_wx + t80;
-        let t82 = inner_ring_wz * t41 - (inner_ring_wy * t57 + inner_ring_wx * t33);
-        let t83 = rotor_wz - t82;
-        let t84 = inner_ring_wz * t40 - (inner_ring_wy * t56 + inner_ring_wx * t23);
-        let t85 = rotor_wy + t84;
-        let t86 = (t85 * t85 + t83 * t83) / t77;
-        let t87 = rotor_wz * t80 + rotor_wx * t82 - (t33 * t86 - t83 * t81);
-        let t88 = k(5e-6) * (rotor_wx * rotor_wz + t87);
-        let t89 = rotor_wx * rotor_wy;
-        let t90 = rotor_wz * rotor_wz + rotor_wx * rotor_wx;
-        let t91 = rotor_wy * rotor_wz;
-        let t92 = k(0.0002) * (t28 * t91 - (t9 * t90 + t72 * t89));
-        let t93 = k(0.0002) * (t30 * t91 + (t13 * t90 + t74 * t89));
-        let t94 = k(0.0002) * (t32 * t91 + (t19 * t90 - t76 * t89));
-        let t95 = k(3.2e-5) * t75 * t94
-            - (k(3.2e-5) * t73 * t93 - k(3.2e-5) * t71 * t92);
-        let t96 = rotor_wx * t84 - rotor_wy * t80 - (t23 * t86 + t85 * t81);
-        let t97 = k(5.0032e-6) * t96 + t95 - (k(5e-6) * t89 - k(0.00032) * t73);
-        let t98 = k(1e-6) * (inner_ring_wx * inner_ring_wy) + (t41 * t97 - t40 * t88);
-        let t99 = t44 * t98;
-        let t100 = t42 * t99
-            - (k(1e-6) * (inner_ring_wy * inner_ring_wz) + (t33 * t97 - t23 * t88));
-        let t101 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
-        let t102 = k(2.0) * (t48 + t47);
-        let t103 = outer_ring_e0 * outer_ring_e2;
-        let t104 = outer_ring_e1 * outer_ring_e3;
-        let t105 = k(2.0) * (t104 - t103);
-        let t106 = t105 * t39 - (t102 * t37 - t101 * t38);
-        let t107 = k(2.0) * (k(0.5) - (t0 + outer_ring_e3 * outer_ring_e3));
-        let t108 = k(2.0) * (t104 + t103);
-        let t109 = t108 * t38 + t5 * t37 + t107 * t39;
-        let t110 = outer_ring_wz * t109 - (outer_ring_wy * t64 + outer_ring_wx * t106);
-        let t111 = inner_ring_wz - t110;
-        let t112 = t105 * t55 - (t102 * t53 + t101 * t54);
-        let t113 = t107 * t55 - (t108 * t54 - t5 * t53);
-        let t114 = outer_ring_wz * t113 - (outer_ring_wy * t62 + outer_ring_wx * t112);
-        let t115 = inner_ring_wy + t114;
-        let t116 = t105 * t22 + (t102 * t16 + t101 * t11);
-        let t117 = t107 * t22 - (t5 * t16 - t108 * t11);
-        let t118 = outer_ring_wz * t117 - (outer_ring_wy * t52 + outer_ring_wx * t116);
-        let t119 = inner_ring_wx + t118;
-        let t120 = (t119 * t119 + t115 * t115) / t109;
-        let t121 = inner_ring_wy * t110 + inner_ring_wz * t114
-            + (t113 * t120 - t115 * t111);
-        let t122 = inner_ring_wz * t118 + inner_ring_wx * t110
-            + (t117 * t120 - t119 * t111);
-        let t123 = t67 * t122 - t61 * t121 - (t60 * t99 - (t57 * t97 - t56 * t88));
-        let t124 = t62 * t123 + t52 * (t61 * t122 - t46 * t121 - t100);
-        let t125 = t64 * (t68 * t122 - t63 * t121 - (t98 - t43 * t99));
-        let t126 = t62 * (t106 * t68 - (t112 * t67 + t116 * t61))
-            + t52 * (t106 * t63 - (t112 * t61 + t116 * t46));
-        let t127 = outer_ring_wx * outer_ring_wy - t102 * t2;
-        let t128 = (t109 * t70 + (t69 * t113 + t65 * t117)) * t127
-            + t6 * (t64 * (t112 * t68 + t116 * t63) + t126);
-        let t129 = (t128 - (k(1e-6) * (outer_ring_wx * outer_ring_wz) + (t125 - t124)))
-            / (k(1e-6) + (t64 * t70 + (t62 * t69 + t52 * t65)));
-        let t130 = t121 + (t117 * t127 - (t52 * t129 - t116 * t6));
-        let t131 = t122 - (t113 * t127 - (t62 * t129 - t112 * t6));
-        let t132 = t109 * t127 - (t64 * t129 - t106 * t6);
-        let t133 = t44 * (t98 + (t43 * t132 - (t60 * t131 - t42 * t130)));
-        let t134 = t132 - t133;
-        let t135 = t94 * (k(3.2e-5) * t31)
-            + (t93 * (k(3.2e-5) * t29) + t92 * (k(3.2e-5) * t27));
-        let t136 = t79 * t134 - (t78 * t131 - t77 * t130);
-        let t137 = t136
-            - k(99968.01023672425) * (k(1.00032e-5) * t136 - t135 + k(0.00032) * t29);
-        let t138 = t96 + (t41 * t134 - (t57 * t131 - t33 * t130));
+        let t43 = k(1.0)
+            / (k(1e-6) + (t41 * (k(5.0032e-6) * t41) + t40 * (k(5e-6) * t40)));
+        let t44 = t43 * t42;
+        let t45 = t42 * t44 - (k(1e-6) + (t33 * t34 + t23 * t24));
+        let t46 = outer_ring_e0 * outer_ring_e3;
+        let t47 = outer_ring_e1 * outer_ring_e2;
+        let t48 = k(2.0) * (t47 - t46);
+        let t49 = k(2.0) * t1;
+        let t50 = k(2.0) * (t4 + t3);
+        let t51 = t50 * t22 - (t49 * t16 + t48 * t11);
+        let t52 = k(2.0) * (k(0.5) - (t10 + inner_ring_e2 * inner_ring_e2));
+        let t53 = k(2.0) * (t15 - t14);
+        let t54 = k(2.0) * (t36 + t35);
+        let t55 = t54 * t19 + (t53 * t9 + t52 * t13);
+        let t56 = t54 * t32 - (t53 * t28 - t52 * t30);
+        let t57 = k(5e-6) * t55;
+        let t58 = k(5.0032e-6) * t56;
+        let t59 = t41 * t58 + t40 * t57;
+        let t60 = t59 * t44 - (t56 * t34 + t55 * t24);
+        let t61 = t50 * t54 + (t48 * t53 + t49 * t52);
+        let t62 = t61 * t60 + t51 * t45;
+        let t63 = t59 * (t43 * t59) - (k(2e-6) + (t56 * t58 + t55 * t57));
+        let t64 = t61 * t63 + t51 * t60;
+        let t65 = k(0.5) - (t12 + rotor_e1 * rotor_e1);
+        let t66 = k(2.0) * t65;
+        let t67 = t8 + t7;
+        let t68 = k(2.0) * t67;
+        let t69 = t26 - t25;
+        let t70 = k(2.0) * t69;
+        let t71 = t22 * t70 + (t16 * t68 + t11 * t66);
+        let t72 = inner_ring_wy * (t54 * t70 - (t52 * t68 + t53 * t66))
+            + inner_ring_wx * t71;
+        let t73 = inner_ring_wz * (t39 * t70 - (t37 * t68 - t38 * t66)) - t72;
+        let t74 = rotor_wx + t73;
+        let t75 = inner_ring_wz * t41 - (inner_ring_wy * t56 + inner_ring_wx * t33);
+        let t76 = rotor_wz - t75;
+        let t77 = inner_ring_wz * t40 - (inner_ring_wy * t55 + inner_ring_wx * t23);
+        let t78 = rotor_wy + t77;
+        let t79 = (t78 * t78 + t76 * t76) / t71;
+        let t80 = rotor_wz * t73 + rotor_wx * t75 - (t33 * t79 - t76 * t74);
+        let t81 = k(5e-6) * (rotor_wx * rotor_wz + t80);
+        let t82 = rotor_wx * rotor_wy;
+        let t83 = rotor_wz * rotor_wz + rotor_wx * rotor_wx;
+        let t84 = rotor_wy * rotor_wz;
+        let t85 = k(0.0002) * (t28 * t84 - (t9 * t83 + t66 * t82));
+        let t86 = k(0.0002) * (t30 * t84 + (t13 * t83 + t68 * t82));
+        let t87 = k(0.0002) * (t32 * t84 + (t19 * t83 - t70 * t82));
+        let t88 = k(3.2e-5) * t69 * t87
+            - (k(3.2e-5) * t67 * t86 - k(3.2e-5) * t65 * t85);
+        let t89 = rotor_wx * t77 - rotor_wy * t73 - (t23 * t79 + t78 * t74);
+        let t90 = k(5.0032e-6) * t89 + t88 - (k(5e-6) * t82 - k(0.00032) * t67);
+        let t91 = k(1e-6) * (inner_ring_wx * inner_ring_wy) + (t41 * t90 - t40 * t81);
+        let t92 = t43 * t91;
+        let t93 = t42 * t92
+            - (k(1e-6) * (inner_ring_wy * inner_ring_wz) + (t33 * t90 - t23 * t81));
+        let t94 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
+        let t95 = k(2.0) * (t47 + t46);
+        let t96 = outer_ring_e0 * outer_ring_e2;
+        let t97 = outer_ring_e1 * outer_ring_e3;
+        let t98 = k(2.0) * (t97 - t96);
+        let t99 = outer_ring_wy * (t50 * t39 - (t48 * t38 - t49 * t37))
+            + outer_ring_wx * (t98 * t39 - (t95 * t37 - t94 * t38));
+        let t100 = k(2.0) * (k(0.5) - (t0 + outer_ring_e3 * outer_ring_e3));
+        let t101 = k(2.0) * (t97 + t96);
+        let t102 = t101 * t38 + t5 * t37 + t100 * t39;
+        let t103 = outer_ring_wz * t102 - t99;
+        let t104 = inner_ring_wz - t103;
+        let t105 = t98 * t54 - (t95 * t52 + t94 * t53);
+        let t106 = t100 * t54 - (t101 * t53 - t5 * t52);
+        let t107 = outer_ring_wz * t106 - (outer_ring_wy * t61 + outer_ring_wx * t105);
+        let t108 = inner_ring_wy + t107;
+        let t109 = t98 * t22 + (t95 * t16 + t94 * t11);
+        let t110 = t100 * t22 - (t5 * t16 - t101 * t11);
+        let t111 = outer_ring_wz * t110 - (outer_ring_wy * t51 + outer_ring_wx * t109);
+        let t112 = inner_ring_wx + t111;
+        let t113 = (t112 * t112 + t108 * t108) / t102;
+        let t114 = inner_ring_wy * t103 + inner_ring_wz * t107
+            + (t106 * t113 - t108 * t104);
+        let t115 = inner_ring_wz * t111 + inner_ring_wx * t103
+            + (t110 * t113 - t112 * t104);
+        let t116 = t63 * t115 - t60 * t114 - (t59 * t92 - (t56 * t90 - t55 * t81));
+        let t117 = t61 * t116 + t51 * (t60 * t115 - t45 * t114 - t93);
+        let t118 = t61 * (t105 * t63 + t109 * t60) + t51 * (t105 * t60 + t109 * t45);
+        let t119 = outer_ring_wx * outer_ring_wy - t95 * t2;
+        let t120 = (t64 * t106 + t62 * t110) * t119 + t6 * t118
+            + (k(1e-6) * (outer_ring_wx * outer_ring_wz) - t117);
+        let t121 = t120 / (k(1e-6) - (t61 * t64 + t51 * t62));
+        let t122 = t114 + (t110 * t119 + (t51 * t121 + t109 * t6));
+        let t123 = t115 - (t106 * t119 + (t61 * t121 + t105 * t6));
+        let t124 = t43 * (t91 - (t59 * t123 - t42 * t122));
+        let t125 = t87 * (k(3.2e-5) * t31)
+            + (t86 * (k(3.2e-5) * t29) + t85 * (k(3.2e-5) * t27));
+        let t126 = k(99968.01023672425) * (t125 - k(0.00032) * t29);
+        let t127 = t89 - (t41 * t124 + (t56 * t123 - t33 * t122));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t6,
-            t129,
+            -t121,
+            t119,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t122,
+            t123,
+            -t124,
+            -(t85 + (k(0.0004) * t65 * t127 - k(0.0004) * t27 * t126)),
+            k(0.0004) * t67 * t127 + k(0.0004) * t29 * t126 - t86,
+            t87 + (k(0.0004) * t69 * t127 - k(0.0004) * t31 * t126),
+            -t126,
+            t80 + (t40 * t124 + (t55 * t123 - t23 * t122)),
             t127,
-            k(0.0),
-            k(0.0),
-            k(0.0),
-            -t130,
-            t131,
-            t134,
-            -(t92 + (k(0.0004) * t71 * t138 - k(0.0004) * t27 * t137)),
-            k(0.0004) * t73 * t138 + k(0.0004) * t29 * t137 - t93,
-            t94 + (k(0.0004) * t75 * t138 - k(0.0004) * t31 * t137),
-            -t137,
-            t87 - (t40 * t134 - (t56 * t131 - t23 * t130)),
-            t138,
         ];
     }
     /// Writes λ: 304 operations (114 ±, 187 ×, 3 ÷).

@@ -18,7 +18,7 @@
 //! | gamma | γ | 122 | 193 | 0 | 315 | 6 of 15 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 90 | 128 | 0 | 218 | 0 of 15 |
 //! | applied_force | (f, n' − w̃'J'w') | 6 | 13 | 0 | 19 | 8 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 208 | 298 | 5 | 511 | 6 of 18 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 185 | 272 | 5 | 462 | 6 of 18 |
 //! | multipliers | λ, the accelerations being known | 120 | 188 | 3 | 311 | 0 of 15 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 28 | 54 | 0 | 82 | 0 of 22 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
@@ -1734,7 +1734,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeViscous<T> {
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 511 operations (208 ±, 298 ×, 5 ÷).
+    /// Solves eq. (17): 462 operations (185 ±, 272 ×, 5 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1826,114 +1826,103 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeViscous<T> {
         let t63 = t41 * t62 + t40 * t61;
         let t64 = t63 * t45 - (t60 * t31 + t59 * t24);
         let t65 = t51 * t58 + (t49 * t56 + t50 * t54);
-        let t66 = t42 - t43 * t45;
-        let t67 = t51 * t39 - (t49 * t37 - t50 * t35);
-        let t68 = t67 * t66 - (t65 * t64 + t52 * t46);
-        let t69 = t44 * t63;
-        let t70 = t63 * t69 - (k(2e-6) + (k(1.25e-9) + (t60 * t62 + t59 * t61)));
-        let t71 = t63 - t43 * t69;
-        let t72 = t67 * t71 - (t65 * t70 + t52 * t64);
-        let t73 = t65 * t71 + t52 * t66;
-        let t74 = k(2.0) * (k(0.5) - (t12 + rotor_e1 * rotor_e1));
-        let t75 = k(2.0) * (t8 + t7);
-        let t76 = k(2.0) * (t26 - t25);
-        let t77 = t22 * t76 + (t16 * t75 + t11 * t74);
-        let t78 = t58 * t76 - (t54 * t75 + t56 * t74);
-        let t79 = t39 * t76 - (t35 * t75 - t37 * t74);
-        let t80 = inner_ring_wz * t79 - (inner_ring_wy * t78 + inner_ring_wx * t77);
-        let t81 = rotor_wx + t80;
-        let t82 = inner_ring_wz * t41 - (inner_ring_wy * t60 + inner_ring_wx * t30);
-        let t83 = rotor_wz - t82;
-        let t84 = inner_ring_wz * t40 - (inner_ring_wy * t59 + inner_ring_wx * t23);
-        let t85 = rotor_wy + t84;
-        let t86 = (t85 * t85 + t83 * t83) / t77;
-        let t87 = rotor_wz * t80 + rotor_wx * t82 - (t30 * t86 - t83 * t81);
-        let t88 = k(5e-6) * (rotor_wx * rotor_wz + t87);
-        let t89 = rotor_wx * t84 - rotor_wy * t80 - (t23 * t86 + t85 * t81);
-        let t90 = k(5e-6) * (rotor_wx * rotor_wy - t89);
-        let t91 = inner_ring_wx - rotor_wx;
-        let t92 = k(1e-6) * (inner_ring_wy * inner_ring_wz - t91)
-            - (t30 * t90 + t23 * t88);
-        let t93 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
-        let t94 = inner_ring_wx * inner_ring_wy;
-        let t95 = inner_ring_wx * inner_ring_wz;
-        let t96 = t37 * t95 + (t56 * t94 + t11 * t93);
+        let t66 = t65 * t64 + t52 * t46;
+        let t67 = t63 * (t44 * t63) - (k(2e-6) + (k(1.25e-9) + (t60 * t62 + t59 * t61)));
+        let t68 = t65 * t67 + t52 * t64;
+        let t69 = k(2.0) * (k(0.5) - (t12 + rotor_e1 * rotor_e1));
+        let t70 = k(2.0) * (t8 + t7);
+        let t71 = k(2.0) * (t26 - t25);
+        let t72 = t22 * t71 + (t16 * t70 + t11 * t69);
+        let t73 = inner_ring_wy * (t58 * t71 - (t54 * t70 + t56 * t69))
+            + inner_ring_wx * t72;
+        let t74 = inner_ring_wz * (t39 * t71 - (t35 * t70 - t37 * t69)) - t73;
+        let t75 = rotor_wx + t74;
+        let t76 = inner_ring_wz * t41 - (inner_ring_wy * t60 + inner_ring_wx * t30);
+        let t77 = rotor_wz - t76;
+        let t78 = inner_ring_wz * t40 - (inner_ring_wy * t59 + inner_ring_wx * t23);
+        let t79 = rotor_wy + t78;
+        let t80 = (t79 * t79 + t77 * t77) / t72;
+        let t81 = rotor_wz * t74 + rotor_wx * t76 - (t30 * t80 - t77 * t75);
+        let t82 = k(5e-6) * (rotor_wx * rotor_wz + t81);
+        let t83 = rotor_wx * t78 - rotor_wy * t74 - (t23 * t80 + t79 * t75);
+        let t84 = k(5e-6) * (rotor_wx * rotor_wy - t83);
+        let t85 = inner_ring_wx - rotor_wx;
+        let t86 = k(1e-6) * (inner_ring_wy * inner_ring_wz - t85)
+            - (t30 * t84 + t23 * t82);
+        let t87 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
+        let t88 = inner_ring_wx * inner_ring_wy;
+        let t89 = inner_ring_wx * inner_ring_wz;
+        let t90 = t37 * t89 + (t56 * t88 + t11 * t87);
+        let t91 = k(1e-5) * t90;
+        let t92 = k(0.00025) * t55;
+        let t93 = t35 * t89 - (t54 * t88 + t16 * t87);
+        let t94 = k(0.8) + k(1e-5) * t93;
+        let t95 = k(0.00025) * t53;
+        let t96 = t39 * t89 - (t58 * t88 - t22 * t87);
         let t97 = k(1e-5) * t96;
-        let t98 = k(0.00025) * t55;
-        let t99 = t35 * t95 - (t54 * t94 + t16 * t93);
-        let t100 = k(0.8) + k(1e-5) * t99;
-        let t101 = k(0.00025) * t53;
-        let t102 = t39 * t95 - (t58 * t94 - t22 * t93);
-        let t103 = k(1e-5) * t102;
-        let t104 = k(0.00025) * t57;
-        let t105 = t104 * t103 + (t101 * t100 - t98 * t97) + (t41 * t90 + t40 * t88);
-        let t106 = k(1e-6) * (t94 - (outer_ring_wz - inner_ring_wz)) - t105;
-        let t107 = t44 * t106;
-        let t108 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
-        let t109 = k(2.0) * (t48 + t47);
-        let t110 = outer_ring_e0 * outer_ring_e2;
-        let t111 = outer_ring_e1 * outer_ring_e3;
-        let t112 = k(2.0) * (t111 - t110);
-        let t113 = t112 * t39 - (t109 * t35 - t108 * t37);
-        let t114 = k(2.0) * (k(0.5) - (t0 + outer_ring_e3 * outer_ring_e3));
-        let t115 = k(2.0) * (t111 + t110);
-        let t116 = t115 * t37 + t5 * t35 + t114 * t39;
-        let t117 = outer_ring_wz * t116 - (outer_ring_wy * t67 + outer_ring_wx * t113);
-        let t118 = inner_ring_wz - t117;
-        let t119 = t112 * t58 - (t109 * t54 + t108 * t56);
-        let t120 = t114 * t58 - (t115 * t56 - t5 * t54);
-        let t121 = outer_ring_wz * t120 - (outer_ring_wy * t65 + outer_ring_wx * t119);
-        let t122 = inner_ring_wy + t121;
-        let t123 = t112 * t22 + (t109 * t16 + t108 * t11);
-        let t124 = t114 * t22 - (t5 * t16 - t115 * t11);
-        let t125 = outer_ring_wz * t124 - (outer_ring_wy * t52 + outer_ring_wx * t123);
-        let t126 = inner_ring_wx + t125;
-        let t127 = (t126 * t126 + t122 * t122) / t116;
-        let t128 = inner_ring_wy * t117 + inner_ring_wz * t121
-            + (t120 * t127 - t122 * t118);
-        let t129 = inner_ring_wz * t125 + inner_ring_wx * t117
-            + (t124 * t127 - t126 * t118);
-        let t130 = t52 * (t64 * t129 - t46 * t128 - (t42 * t107 - t92));
-        let t131 = k(0.00025) * t36;
-        let t132 = k(0.00025) * t34;
-        let t133 = k(0.00025) * t38;
-        let t134 = t133 * t103 + (t132 * t100 + t131 * t97) - (t60 * t90 + t59 * t88);
-        let t135 = t65 * (t70 * t129 - t64 * t128 - (t63 * t107 - t134));
-        let t136 = t67 * (t71 * t129 - t66 * t128 - (t106 - t43 * t107));
-        let t137 = t65 * (t113 * t71 - (t119 * t70 + t123 * t64))
-            + t52 * (t113 * t66 - (t119 * t64 + t123 * t46));
-        let t138 = outer_ring_wx * outer_ring_wy - t109 * t2;
-        let t139 = (t116 * t73 + (t72 * t120 + t68 * t124)) * t138
-            + t6 * (t67 * (t119 * t71 + t123 * t66) + t137);
-        let t140 = t139
-            - (k(1e-6) * (outer_ring_wy + outer_ring_wx * outer_ring_wz)
-                + (t136 - (t135 + t130)));
-        let t141 = t140 / (k(1e-6) + (t67 * t73 + (t65 * t72 + t52 * t68)));
-        let t142 = t128 + (t124 * t138 - (t52 * t141 - t123 * t6));
-        let t143 = t129 - (t120 * t138 - (t65 * t141 - t119 * t6));
-        let t144 = t116 * t138 - (t67 * t141 - t113 * t6);
-        let t145 = t44 * (t106 + (t43 * t144 - (t63 * t143 - t42 * t142)));
-        let t146 = t144 - t145;
-        let t147 = t79 * t146 - (t78 * t143 - t77 * t142);
+        let t98 = k(0.00025) * t57;
+        let t99 = t98 * t97 + (t95 * t94 - t92 * t91) + (t41 * t84 + t40 * t82);
+        let t100 = k(1e-6) * (t88 - (outer_ring_wz - inner_ring_wz)) - t99;
+        let t101 = t44 * t100;
+        let t102 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
+        let t103 = k(2.0) * (t48 + t47);
+        let t104 = outer_ring_e0 * outer_ring_e2;
+        let t105 = outer_ring_e1 * outer_ring_e3;
+        let t106 = k(2.0) * (t105 - t104);
+        let t107 = outer_ring_wy * (t51 * t39 - (t49 * t37 - t50 * t35))
+            + outer_ring_wx * (t106 * t39 - (t103 * t35 - t102 * t37));
+        let t108 = k(2.0) * (k(0.5) - (t0 + outer_ring_e3 * outer_ring_e3));
+        let t109 = k(2.0) * (t105 + t104);
+        let t110 = t109 * t37 + t5 * t35 + t108 * t39;
+        let t111 = outer_ring_wz * t110 - t107;
+        let t112 = inner_ring_wz - t111;
+        let t113 = t106 * t58 - (t103 * t54 + t102 * t56);
+        let t114 = t108 * t58 - (t109 * t56 - t5 * t54);
+        let t115 = outer_ring_wz * t114 - (outer_ring_wy * t65 + outer_ring_wx * t113);
+        let t116 = inner_ring_wy + t115;
+        let t117 = t106 * t22 + (t103 * t16 + t102 * t11);
+        let t118 = t108 * t22 - (t5 * t16 - t109 * t11);
+        let t119 = outer_ring_wz * t118 - (outer_ring_wy * t52 + outer_ring_wx * t117);
+        let t120 = inner_ring_wx + t119;
+        let t121 = (t120 * t120 + t116 * t116) / t110;
+        let t122 = inner_ring_wy * t111 + inner_ring_wz * t115
+            + (t114 * t121 - t116 * t112);
+        let t123 = inner_ring_wz * t119 + inner_ring_wx * t111
+            + (t118 * t121 - t120 * t112);
+        let t124 = t52 * (t64 * t123 - t46 * t122 - (t42 * t101 - t86));
+        let t125 = k(0.00025) * t36;
+        let t126 = k(0.00025) * t34;
+        let t127 = k(0.00025) * t38;
+        let t128 = t127 * t97 + (t126 * t94 + t125 * t91) - (t60 * t84 + t59 * t82);
+        let t129 = t65 * (t67 * t123 - t64 * t122 - (t63 * t101 - t128));
+        let t130 = t65 * (t113 * t67 + t117 * t64) + t52 * (t113 * t64 + t117 * t46);
+        let t131 = outer_ring_wx * outer_ring_wy - t103 * t2;
+        let t132 = (t68 * t114 + t66 * t118) * t131 + t6 * t130
+            + (k(1e-6) * (outer_ring_wy + outer_ring_wx * outer_ring_wz)
+                - (t129 + t124));
+        let t133 = t132 / (k(1e-6) - (t65 * t68 + t52 * t66));
+        let t134 = t122 + (t118 * t131 + (t52 * t133 + t117 * t6));
+        let t135 = t123 - (t114 * t131 + (t65 * t133 + t113 * t6));
+        let t136 = t44 * (t100 - (t63 * t135 - t42 * t134));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t6,
-            t141,
-            t138,
+            -t133,
+            t131,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t142,
-            t143,
-            t146,
-            t98 * t146 - t131 * t143 + k(0.000125) * t96,
-            k(0.000125) * t99 - (t101 * t146 + t132 * t143),
-            t104 * t146 + t133 * t143 - k(0.000125) * t102,
-            k(100000.0) * (k(1e-6) * t91 + k(1e-5) * t147) - t147,
-            t87 - (t40 * t146 - (t59 * t143 - t23 * t142)),
-            t89 + (t41 * t146 - (t60 * t143 - t30 * t142)),
+            -t134,
+            t135,
+            -t136,
+            k(0.000125) * t90 - (t92 * t136 + t125 * t135),
+            t95 * t136 - t126 * t135 + k(0.000125) * t93,
+            -(t98 * t136 - t127 * t135 + k(0.000125) * t96),
+            k(0.1) * t85,
+            t81 + (t40 * t136 + (t59 * t135 - t23 * t134)),
+            t83 - (t41 * t136 + (t60 * t135 - t30 * t134)),
         ];
     }
     /// Writes λ: 311 operations (120 ±, 188 ×, 3 ÷).

@@ -18,7 +18,7 @@
 //! | gamma | γ | 157 | 249 | 0 | 406 | 6 of 15 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 101 | 156 | 0 | 257 | 0 of 15 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 235 | 354 | 5 | 594 | 7 of 18 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 216 | 333 | 5 | 554 | 7 of 18 |
 //! | multipliers | λ, the accelerations being known | 120 | 203 | 3 | 326 | 0 of 15 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 132 | 236 | 1 | 369 | 0 of 22 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
@@ -26,14 +26,14 @@
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
 //! | newton_step | dependent positions, one Newton step | 206 | 343 | 3 | 552 | 6 of 21 |
 //! | solve_velocities | dependent velocities, eq. (19) | 113 | 196 | 3 | 312 | 6 of 18 |
-//! | joint_accelerations | u̇ in joint coordinates | 36 | 81 | 1 | 118 | 0 of 3 |
-//! | joint_derivative | ẋ but for u̇ | 192 | 348 | 2 | 542 | 0 of 4 |
+//! | joint_accelerations | u̇ in joint coordinates | 35 | 79 | 1 | 115 | 0 of 3 |
+//! | joint_derivative | ẋ but for u̇ | 192 | 347 | 2 | 541 | 0 of 4 |
 //! | to_maximal | (q, v) of a joint state | 39 | 88 | 0 | 127 | 12 of 39 |
 //! | to_joints | (x, u) of a maximal state | 68 | 86 | 0 | 154 | 0 of 6 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 47 | 100 | 1 | 148 | 0 of 3 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 235 | 354 | 5 | 594 | 7 of 18 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 46 | 98 | 1 | 145 | 0 of 3 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 216 | 333 | 5 | 554 | 7 of 18 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 60 | 96 | 0 | 156 | 0 of 15 |
-//! | corrected_solution | both | 280 | 422 | 5 | 707 | 7 of 33 |
+//! | corrected_solution | both | 261 | 401 | 5 | 667 | 7 of 33 |
 //!
 //! # Proof
 //!
@@ -2123,7 +2123,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for PitchingGyroscope<T> {
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 594 operations (235 ±, 354 ×, 5 ÷) and 8 functions.
+    /// Solves eq. (17): 554 operations (216 ±, 333 ×, 5 ÷) and 8 functions.
     fn accelerations(&self, t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2258,106 +2258,98 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for PitchingGyroscope<T> {
         let t106 = t89 * t105 + t88 * t104;
         let t107 = t106 * t93 - (t103 * t79 + t102 * t72);
         let t108 = t17 * t101 + (t13 * t99 + t1 * t97);
-        let t109 = t90 - t91 * t93;
-        let t110 = t17 * t87 - (t13 * t85 - t1 * t83);
-        let t111 = t110 * t109 - (t108 * t107 + t95 * t94);
-        let t112 = t92 * t106;
-        let t113 = t106 * t112 - (k(2e-6) + (k(1.25e-9) + (t103 * t105 + t102 * t104)));
-        let t114 = t106 - t91 * t112;
-        let t115 = t110 * t114 - (t108 * t113 + t95 * t107);
-        let t116 = t108 * t114 + t95 * t109;
-        let t117 = k(2.0) * (k(0.5) - (t60 + rotor_e1 * rotor_e1));
-        let t118 = k(2.0) * (t56 + t55);
-        let t119 = k(2.0) * (t74 - t73);
-        let t120 = t70 * t119 + (t64 * t118 + t59 * t117);
-        let t121 = inner_ring_wy * (t101 * t119 - (t97 * t118 + t99 * t117))
-            + inner_ring_wx * t120;
-        let t122 = inner_ring_wz * (t87 * t119 - (t83 * t118 - t85 * t117)) - t121;
-        let t123 = rotor_wx + t122;
-        let t124 = inner_ring_wz * t89 - (inner_ring_wy * t103 + inner_ring_wx * t78);
-        let t125 = rotor_wz - t124;
-        let t126 = inner_ring_wz * t88 - (inner_ring_wy * t102 + inner_ring_wx * t71);
-        let t127 = rotor_wy + t126;
-        let t128 = (t127 * t127 + t125 * t125) / t120;
-        let t129 = rotor_wz * t122 + rotor_wx * t124 - (t78 * t128 - t125 * t123);
-        let t130 = k(5e-6) * (rotor_wx * rotor_wz + t129);
-        let t131 = rotor_wx * t126 - rotor_wy * t122 - (t71 * t128 + t127 * t123);
-        let t132 = k(5e-6) * (rotor_wx * rotor_wy - t131);
-        let t133 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
-        let t134 = inner_ring_wx * inner_ring_wy;
-        let t135 = inner_ring_wx * inner_ring_wz;
-        let t136 = t85 * t135 + (t99 * t134 + t59 * t133);
-        let t137 = k(1e-5) * t136;
-        let t138 = k(0.00025) * t98;
-        let t139 = t83 * t135 - (t97 * t134 + t64 * t133);
-        let t140 = k(0.8) + k(1e-5) * t139;
-        let t141 = k(0.00025) * t96;
-        let t142 = t87 * t135 - (t101 * t134 - t70 * t133);
-        let t143 = k(1e-5) * t142;
-        let t144 = k(0.00025) * t100;
-        let t145 = t144 * t143 + (t141 * t140 - t138 * t137) + (t89 * t132 + t88 * t130);
-        let t146 = k(1e-6) * t134 - t145;
-        let t147 = t92 * t146;
-        let t148 = t90 * t147
-            - (k(1e-6) * (inner_ring_wy * inner_ring_wz) - (t78 * t132 + t71 * t130));
-        let t149 = t42 * t87 - (t41 * t83 - t40 * t85);
-        let t150 = t34 * t85 + t31 * t83 + t30 * t87;
-        let t151 = outer_ring_wz * t150 - (outer_ring_wy * t110 + outer_ring_wx * t149);
-        let t152 = inner_ring_wz - t151;
-        let t153 = t42 * t101 - (t41 * t97 + t40 * t99);
-        let t154 = t30 * t101 - (t34 * t99 - t31 * t97);
-        let t155 = outer_ring_wz * t154 - (outer_ring_wy * t108 + outer_ring_wx * t153);
-        let t156 = inner_ring_wy + t155;
-        let t157 = t42 * t70 + (t41 * t64 + t40 * t59);
-        let t158 = t30 * t70 - (t31 * t64 - t34 * t59);
-        let t159 = outer_ring_wz * t158 - (outer_ring_wy * t95 + outer_ring_wx * t157);
-        let t160 = inner_ring_wx + t159;
-        let t161 = (t160 * t160 + t156 * t156) / t150;
-        let t162 = inner_ring_wy * t151 + inner_ring_wz * t155
-            + (t154 * t161 - t156 * t152);
-        let t163 = inner_ring_wz * t159 + inner_ring_wx * t151
-            + (t158 * t161 - t160 * t152);
-        let t164 = k(0.00025) * t84;
-        let t165 = k(0.00025) * t82;
-        let t166 = k(0.00025) * t86;
-        let t167 = t166 * t143 + (t165 * t140 + t164 * t137)
-            - (t103 * t132 + t102 * t130);
-        let t168 = t108 * (t113 * t163 - t107 * t162 - (t106 * t147 - t167));
-        let t169 = t110 * (t114 * t163 - t109 * t162 - (t146 - t91 * t147));
-        let t170 = t169 - (t168 + t95 * (t107 * t163 - t94 * t162 - t148));
-        let t171 = t108 * (t149 * t114 - (t153 * t113 + t157 * t107))
-            + t95 * (t149 * t109 - (t153 * t107 + t157 * t94));
-        let t172 = outer_ring_wx * t28 + outer_ring_wy * t46
+        let t109 = t108 * t107 + t95 * t94;
+        let t110 = t106 * (t92 * t106)
+            - (k(2e-6) + (k(1.25e-9) + (t103 * t105 + t102 * t104)));
+        let t111 = t108 * t110 + t95 * t107;
+        let t112 = k(2.0) * (k(0.5) - (t60 + rotor_e1 * rotor_e1));
+        let t113 = k(2.0) * (t56 + t55);
+        let t114 = k(2.0) * (t74 - t73);
+        let t115 = t70 * t114 + (t64 * t113 + t59 * t112);
+        let t116 = inner_ring_wy * (t101 * t114 - (t97 * t113 + t99 * t112))
+            + inner_ring_wx * t115;
+        let t117 = inner_ring_wz * (t87 * t114 - (t83 * t113 - t85 * t112)) - t116;
+        let t118 = rotor_wx + t117;
+        let t119 = inner_ring_wz * t89 - (inner_ring_wy * t103 + inner_ring_wx * t78);
+        let t120 = rotor_wz - t119;
+        let t121 = inner_ring_wz * t88 - (inner_ring_wy * t102 + inner_ring_wx * t71);
+        let t122 = rotor_wy + t121;
+        let t123 = (t122 * t122 + t120 * t120) / t115;
+        let t124 = rotor_wz * t117 + rotor_wx * t119 - (t78 * t123 - t120 * t118);
+        let t125 = k(5e-6) * (rotor_wx * rotor_wz + t124);
+        let t126 = rotor_wx * t121 - rotor_wy * t117 - (t71 * t123 + t122 * t118);
+        let t127 = k(5e-6) * (rotor_wx * rotor_wy - t126);
+        let t128 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
+        let t129 = inner_ring_wx * inner_ring_wy;
+        let t130 = inner_ring_wx * inner_ring_wz;
+        let t131 = t85 * t130 + (t99 * t129 + t59 * t128);
+        let t132 = k(1e-5) * t131;
+        let t133 = k(0.00025) * t98;
+        let t134 = t83 * t130 - (t97 * t129 + t64 * t128);
+        let t135 = k(0.8) + k(1e-5) * t134;
+        let t136 = k(0.00025) * t96;
+        let t137 = t87 * t130 - (t101 * t129 - t70 * t128);
+        let t138 = k(1e-5) * t137;
+        let t139 = k(0.00025) * t100;
+        let t140 = t139 * t138 + (t136 * t135 - t133 * t132) + (t89 * t127 + t88 * t125);
+        let t141 = k(1e-6) * t129 - t140;
+        let t142 = t92 * t141;
+        let t143 = t90 * t142
+            - (k(1e-6) * (inner_ring_wy * inner_ring_wz) - (t78 * t127 + t71 * t125));
+        let t144 = outer_ring_wy * (t17 * t87 - (t13 * t85 - t1 * t83))
+            + outer_ring_wx * (t42 * t87 - (t41 * t83 - t40 * t85));
+        let t145 = t34 * t85 + t31 * t83 + t30 * t87;
+        let t146 = outer_ring_wz * t145 - t144;
+        let t147 = inner_ring_wz - t146;
+        let t148 = t42 * t101 - (t41 * t97 + t40 * t99);
+        let t149 = t30 * t101 - (t34 * t99 - t31 * t97);
+        let t150 = outer_ring_wz * t149 - (outer_ring_wy * t108 + outer_ring_wx * t148);
+        let t151 = inner_ring_wy + t150;
+        let t152 = t42 * t70 + (t41 * t64 + t40 * t59);
+        let t153 = t30 * t70 - (t31 * t64 - t34 * t59);
+        let t154 = outer_ring_wz * t153 - (outer_ring_wy * t95 + outer_ring_wx * t152);
+        let t155 = inner_ring_wx + t154;
+        let t156 = (t155 * t155 + t151 * t151) / t145;
+        let t157 = inner_ring_wy * t146 + inner_ring_wz * t150
+            + (t149 * t156 - t151 * t147);
+        let t158 = inner_ring_wz * t154 + inner_ring_wx * t146
+            + (t153 * t156 - t155 * t147);
+        let t159 = k(0.00025) * t84;
+        let t160 = k(0.00025) * t82;
+        let t161 = k(0.00025) * t86;
+        let t162 = t161 * t138 + (t160 * t135 + t159 * t132)
+            - (t103 * t127 + t102 * t125);
+        let t163 = t108 * (t110 * t158 - t107 * t157 - (t106 * t142 - t162));
+        let t164 = k(1e-6) * (outer_ring_wx * outer_ring_wz)
+            - (t163 + t95 * (t107 * t158 - t94 * t157 - t143));
+        let t165 = t108 * (t148 * t110 + t152 * t107) + t95 * (t148 * t107 + t152 * t94);
+        let t166 = outer_ring_wx * t28 + outer_ring_wy * t46
             - (t52 * t37 - (t51 * t36 + t50 * t35));
-        let t173 = t172 - (t44 * t48 + t47 * t29);
-        let t174 = (t150 * t116 + (t115 * t154 + t111 * t158)) * t173
-            + t54 * (t110 * (t153 * t114 + t157 * t109) + t171);
-        let t175 = (t174 + (k(1e-6) * (outer_ring_wx * outer_ring_wz) + t170))
-            / (k(1e-6) + (t110 * t116 + (t108 * t115 + t95 * t111)));
-        let t176 = t162 - (t158 * t173 - (t95 * t175 - t157 * t54));
-        let t177 = t163 + (t154 * t173 - (t108 * t175 - t153 * t54));
-        let t178 = t150 * t173 - (t110 * t175 - t149 * t54);
-        let t179 = t92 * (t146 - (t91 * t178 + (t106 * t177 - t90 * t176)));
-        let t180 = t178 + t179;
+        let t167 = t166 - (t44 * t48 + t47 * t29);
+        let t168 = (t111 * t149 + t109 * t153) * t167 + t54 * t165 - t164;
+        let t169 = t168 / (k(1e-6) - (t108 * t111 + t95 * t109));
+        let t170 = t157 - (t153 * t167 + (t95 * t169 + t152 * t54));
+        let t171 = t158 + (t149 * t167 + (t108 * t169 + t148 * t54));
+        let t172 = t92 * (t141 - (t106 * t171 - t90 * t170));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             t54,
-            -t175,
-            -t173,
+            t169,
+            -t167,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t176,
-            t177,
-            -t180,
-            k(0.000125) * t136 - (t138 * t180 + t164 * t177),
-            t141 * t180 - t165 * t177 + k(0.000125) * t139,
-            -(t144 * t180 - t166 * t177 + k(0.000125) * t142),
+            -t170,
+            t171,
+            -t172,
+            k(0.000125) * t131 - (t133 * t172 + t159 * t171),
+            t136 * t172 - t160 * t171 + k(0.000125) * t134,
+            -(t139 * t172 - t161 * t171 + k(0.000125) * t137),
             k(0.0),
-            t129 + (t88 * t180 + (t102 * t177 - t71 * t176)),
-            t131 - (t89 * t180 + (t103 * t177 - t78 * t176)),
+            t124 + (t88 * t172 + (t102 * t171 - t71 * t170)),
+            t126 - (t89 * t172 + (t103 * t171 - t78 * t170)),
         ];
     }
     /// Writes λ: 326 operations (120 ±, 203 ×, 3 ÷) and 6 functions.
@@ -2544,7 +2536,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingGyroscope<T> {
     fn solution(&self) -> Self::Solution {
         [T::constant(0.0); 33]
     }
-    /// Writes u̇: 118 operations (36 ±, 81 ×, 1 ÷) and 12 functions.
+    /// Writes u̇: 115 operations (35 ±, 79 ×, 1 ÷) and 12 functions.
     fn joint_accelerations(&self, t: T, x: &Self::Joints, out: &mut Self::Rates) {
         let k = T::constant;
         let x0 = x[0];
@@ -2554,55 +2546,50 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingGyroscope<T> {
         let u2 = x[5];
         let t0 = x1.sin();
         let t1 = x1.cos();
-        let t2 = k(1e-6) + (t1 * (k(7.00125e-6) * t1) + t0 * (k(1e-6) * t0));
-        let t3 = x0.cos();
-        let t4 = k(18.84955592153876) * t;
-        let t5 = t4.sin();
-        let t6 = k(0.05) * t5;
-        let t7 = t6.cos();
-        let t8 = k(12.566370614359172) * t;
-        let t9 = k(1.2566370614359172) * t8.cos();
-        let t10 = t9 * t7;
-        let t11 = x0.sin();
-        let t12 = k(0.9424777960769379) * t4.cos();
-        let t13 = t12 * t11 - t10 * t3;
-        let t14 = t12 * t3 + t10 * t11;
-        let t15 = t6.sin();
-        let t16 = t9 * t15 - u0;
-        let t17 = t16 * t1 - t0 * t13;
-        let t18 = u1 * t17;
-        let t19 = u1 + t14;
-        let t20 = t16 * t0 + t1 * t13;
-        let t21 = u2 - t20;
-        let t22 = k(1e-5) * (t20 * (k(0.000125) * t19))
-            + k(5e-6) * (t19 * t21 + u2 * t19);
-        let t23 = t1 * (k(7.00125e-6) * (u1 * t20) + t22)
-            + t0 * (k(1e-6) * (t19 * t17 - t18));
-        let t24 = t8.sin();
-        let t25 = k(0.1) * t24;
-        let t26 = t25.cos();
-        let t27 = k(10.0) * (t26 * t15);
-        let t28 = k(10.0) * t25.sin();
-        let t29 = k(15.791367041742975) * t24;
-        let t30 = t7 * t29 + t9 * (t12 * t15);
-        let t31 = k(17.765287921960844) * t5;
-        let t32 = t31 * t11 - t30 * t3 - u0 * t14;
-        let t33 = t15 * t29 - t9 * (t12 * t7);
-        let t34 = t33 * t2 - (t1 * (k(7.00125e-6) * t0) - t0 * (k(1e-6) * t1)) * t32;
-        let t35 = t34 + k(1e-5) * t1 * (t3 * t28 - t11 * t27)
-            + (t23 - k(1e-6) * (t14 * t13));
-        let t36 = t35 / t2;
-        let t37 = k(1e-5) * (t20 * (k(0.000125) * t17))
-            + k(5e-6) * (t21 * t17 + u2 * t17);
-        let t38 = t1 * (k(10.0) * (t26 * t7)) - t0 * (t11 * t28 + t3 * t27);
-        let t39 = k(6.00125e-6) * (t31 * t3 + t30 * t11 + u0 * t13) - k(1e-5) * t38;
-        *out = [
-            -t36,
-            k(166631.95167673402) * (t39 - (t37 + k(1e-6) * (t20 * t17))),
-            t18 - (t0 * (t33 - t36) + t1 * t32),
-        ];
+        let t2 = x0.cos();
+        let t3 = k(18.84955592153876) * t;
+        let t4 = t3.sin();
+        let t5 = k(0.05) * t4;
+        let t6 = t5.cos();
+        let t7 = k(12.566370614359172) * t;
+        let t8 = k(1.2566370614359172) * t7.cos();
+        let t9 = t8 * t6;
+        let t10 = x0.sin();
+        let t11 = k(0.9424777960769379) * t3.cos();
+        let t12 = t11 * t10 - t9 * t2;
+        let t13 = t11 * t2 + t9 * t10;
+        let t14 = t5.sin();
+        let t15 = t8 * t14 - u0;
+        let t16 = t15 * t1 - t0 * t12;
+        let t17 = u1 * t16;
+        let t18 = u1 + t13;
+        let t19 = t15 * t0 + t1 * t12;
+        let t20 = u2 - t19;
+        let t21 = k(1e-5) * (t19 * (k(0.000125) * t18))
+            + k(5e-6) * (t18 * t20 + u2 * t18);
+        let t22 = t1 * (k(7.00125e-6) * (u1 * t19) + t21)
+            + t0 * (k(1e-6) * (t18 * t16 - t17));
+        let t23 = t7.sin();
+        let t24 = k(0.1) * t23;
+        let t25 = t24.cos();
+        let t26 = k(10.0) * (t25 * t14);
+        let t27 = k(10.0) * t24.sin();
+        let t28 = k(15.791367041742975) * t23;
+        let t29 = t6 * t28 + t8 * (t11 * t14);
+        let t30 = k(17.765287921960844) * t4;
+        let t31 = t30 * t10 - t29 * t2 - u0 * t13;
+        let t32 = (t1 * (k(7.00125e-6) * t0) - t0 * (k(1e-6) * t1)) * t31
+            - k(1e-5) * t1 * (t2 * t27 - t10 * t26);
+        let t33 = (t32 - (t22 - k(1e-6) * (t13 * t12)))
+            / (k(1e-6) + (t1 * (k(7.00125e-6) * t1) + t0 * (k(1e-6) * t0)));
+        let t34 = k(1e-5) * (t19 * (k(0.000125) * t16))
+            + k(5e-6) * (t20 * t16 + u2 * t16);
+        let t35 = t1 * (k(10.0) * (t25 * t6)) - t0 * (t10 * t27 + t2 * t26);
+        let t36 = k(166631.95167673402) * (k(1e-5) * t35 + (t34 + k(1e-6) * (t19 * t16)))
+            - (t30 * t2 + t29 * t10 + u0 * t12);
+        *out = [t33 - (t14 * t28 - t8 * (t11 * t6)), -t36, t17 - (t0 * t33 + t1 * t31)];
     }
-    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 542 operations (192 ±, 348 ×, 2 ÷) and 24 functions.
+    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 541 operations (192 ±, 347 ×, 2 ÷) and 24 functions.
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
         let mut rates = gyro_sim::JointSpace::rates(self);
         gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
@@ -2613,26 +2600,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingGyroscope<T> {
         let u0 = x[3];
         let u1 = x[4];
         let u2 = x[5];
-        let (
-            t23,
-            t25,
-            t27,
-            t29,
-            t30,
-            t31,
-            t35,
-            t36,
-            t38,
-            t44,
-            t47,
-            t49,
-            t50,
-            t51,
-            t59,
-            t103,
-            t196,
-            t199,
-        ) = {
+        let (t23, t25, t31, t38, t47, t50, t51, t104, t194, t197, t198, t199) = {
             let t0 = k(0.5) * x0;
             let t1 = t0.sin();
             let t2 = k(18.84955592153876) * t;
@@ -2723,161 +2691,140 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingGyroscope<T> {
             let t87 = t86 * t85 - t84 * t82;
             let t88 = x1.cos();
             let t89 = x1.sin();
-            let t90 = k(1e-6) + (t88 * (k(7.00125e-6) * t88) + t89 * (k(1e-6) * t89));
-            let t91 = t56 * t62 - t54 * t58;
-            let t92 = t56 * t58 + t54 * t62;
-            let t93 = t86 * t88 - t89 * t91;
-            let t94 = u1 * t93;
-            let t95 = u1 + t92;
-            let t96 = t86 * t89 + t88 * t91;
-            let t97 = u2 - t96;
-            let t98 = k(1e-5) * (t96 * (k(0.000125) * t95))
-                + k(5e-6) * (t95 * t97 + u2 * t95);
-            let t99 = t88 * (k(7.00125e-6) * (u1 * t96) + t98)
-                + t89 * (k(1e-6) * (t95 * t93 - t94));
-            let t100 = k(10.0) * t39;
-            let t101 = k(10.0) * t25;
-            let t102 = t64 - u0 * t92;
-            let t103 = t56 * t34;
-            let t104 = t38 * t60 - t26 * t103;
-            let t105 = t104 * t90
-                - (t88 * (k(7.00125e-6) * t89) - t89 * (k(1e-6) * t88)) * t102;
-            let t106 = t105 + k(1e-5) * t88 * (t58 * t101 - t62 * t100)
-                + (t99 - k(1e-6) * (t92 * t91));
-            let t107 = t104 - t106 / t90;
-            let t108 = t89 * t107;
-            let t109 = t108 + t88 * t65 - u1 * t87;
-            let t110 = k(0.5) * x2;
-            let t111 = t110.sin();
-            let t112 = t110.cos();
-            let t113 = t69 * t112 + t70 * t111;
-            let t114 = t70 * t112 - t69 * t111;
-            let t115 = t114 * t114;
-            let t116 = k(2.0) * (k(0.5) - (t115 + t113 * t113));
-            let t117 = t73 * t112 + t75 * t111;
-            let t118 = t114 * t117;
-            let t119 = t75 * t112 - t73 * t111;
-            let t120 = t113 * t119;
-            let t121 = k(2.0) * (t120 - t118);
-            let t122 = t114 * t119;
-            let t123 = t113 * t117;
-            let t124 = k(2.0) * (t123 + t122);
-            let t125 = k(1e-5) * (t94 - (t108 + t88 * t102) + t109);
-            let t126 = k(2.0) * (t120 + t118);
-            let t127 = k(2.0) * (k(0.5) - (t115 + t119 * t119));
-            let t128 = t114 * t113;
-            let t129 = t119 * t117;
-            let t130 = k(2.0) * (t129 - t128);
-            let t131 = k(2.0) * t111;
-            let t132 = t112 * t131;
-            let t133 = k(1.0) - t111 * t131;
-            let t134 = t133 * t81 + t132 * t87;
-            let t135 = t86 * t84 + t85 * t82;
-            let t136 = u2 - t135;
-            let t137 = t88 * t107 - t89 * t65 + u1 * t135;
-            let t138 = x2.cos();
-            let t139 = t63 * t58 + t61 * t62;
-            let t140 = t139 + u0 * t82;
-            let t141 = k(1e-5) * (t96 * (k(0.000125) * t93))
-                + k(5e-6) * (t97 * t93 + u2 * t93);
-            let t142 = t88 * (k(10.0) * (t30 * t34)) - t89 * (t62 * t101 + t58 * t100);
-            let t143 = k(6.00125e-6) * (t139 + u0 * t91) - k(1e-5) * t142
-                - (t141 + k(1e-6) * (t96 * t93));
-            let t144 = k(166631.95167673402) * t143 - t140;
-            let t145 = x2.sin();
-            let t146 = t145 * t144 + t138 * t137 + u2 * t134 + t136 * t134;
-            let t147 = k(5e-6) * t146;
-            let t148 = t147 * (t80 * t130 - (t77 * t127 + t72 * t126))
-                - t125 * (t80 * t124 + (t77 * t121 + t72 * t116));
-            let t149 = k(2.0) * (t123 - t122);
-            let t150 = k(2.0) * (t129 + t128);
-            let t151 = k(2.0) * (k(0.5) - (t115 + t117 * t117));
-            let t152 = t132 * t81 - t133 * t87;
-            let t153 = t138 * t144 - t145 * t137 - u2 * t152 - t136 * t152;
-            let t154 = k(5e-6) * t153;
-            let t155 = t154 * (t80 * t151 - (t77 * t150 - t72 * t149)) + t148;
-            let t156 = t155 - k(1e-6) * (t109 + t87 * t81);
-            let t157 = t76 + t74;
+            let t90 = t56 * t62 - t54 * t58;
+            let t91 = t56 * t58 + t54 * t62;
+            let t92 = t86 * t88 - t89 * t90;
+            let t93 = u1 * t92;
+            let t94 = u1 + t91;
+            let t95 = t86 * t89 + t88 * t90;
+            let t96 = u2 - t95;
+            let t97 = k(1e-5) * (t95 * (k(0.000125) * t94))
+                + k(5e-6) * (t94 * t96 + u2 * t94);
+            let t98 = t88 * (k(7.00125e-6) * (u1 * t95) + t97)
+                + t89 * (k(1e-6) * (t94 * t92 - t93));
+            let t99 = k(10.0) * t39;
+            let t100 = k(10.0) * t25;
+            let t101 = t64 - u0 * t91;
+            let t102 = (t88 * (k(7.00125e-6) * t89) - t89 * (k(1e-6) * t88)) * t101
+                - k(1e-5) * t88 * (t58 * t100 - t62 * t99);
+            let t103 = (t102 - (t98 - k(1e-6) * (t91 * t90)))
+                / (k(1e-6) + (t88 * (k(7.00125e-6) * t88) + t89 * (k(1e-6) * t89)));
+            let t104 = t56 * t34;
+            let t105 = t38 * t60 - t26 * t104;
+            let t106 = t105 - (t105 - t103);
+            let t107 = t89 * t106 + t88 * t65 - u1 * t87;
+            let t108 = k(0.5) * x2;
+            let t109 = t108.sin();
+            let t110 = t108.cos();
+            let t111 = t69 * t110 + t70 * t109;
+            let t112 = t70 * t110 - t69 * t109;
+            let t113 = t112 * t112;
+            let t114 = k(2.0) * (k(0.5) - (t113 + t111 * t111));
+            let t115 = t73 * t110 + t75 * t109;
+            let t116 = t112 * t115;
+            let t117 = t75 * t110 - t73 * t109;
+            let t118 = t111 * t117;
+            let t119 = k(2.0) * (t118 - t116);
+            let t120 = t112 * t117;
+            let t121 = t111 * t115;
+            let t122 = k(2.0) * (t121 + t120);
+            let t123 = k(1e-5) * (t93 - (t89 * t103 + t88 * t101) + t107);
+            let t124 = k(2.0) * (t118 + t116);
+            let t125 = k(2.0) * (k(0.5) - (t113 + t117 * t117));
+            let t126 = t112 * t111;
+            let t127 = t117 * t115;
+            let t128 = k(2.0) * (t127 - t126);
+            let t129 = k(2.0) * t109;
+            let t130 = t110 * t129;
+            let t131 = k(1.0) - t109 * t129;
+            let t132 = t131 * t81 + t130 * t87;
+            let t133 = t86 * t84 + t85 * t82;
+            let t134 = u2 - t133;
+            let t135 = t88 * t106 - t89 * t65 + u1 * t133;
+            let t136 = x2.cos();
+            let t137 = t63 * t58 + t61 * t62;
+            let t138 = t137 + u0 * t82;
+            let t139 = k(1e-5) * (t95 * (k(0.000125) * t92))
+                + k(5e-6) * (t96 * t92 + u2 * t92);
+            let t140 = t88 * (k(10.0) * (t30 * t34)) - t89 * (t62 * t100 + t58 * t99);
+            let t141 = k(166631.95167673402)
+                * (k(1e-5) * t140 + (t139 + k(1e-6) * (t95 * t92))) - (t137 + u0 * t90);
+            let t142 = t141 + t138;
+            let t143 = x2.sin();
+            let t144 = t143 * t142 - t136 * t135 - u2 * t132 - t134 * t132;
+            let t145 = k(5e-6) * t144;
+            let t146 = t145 * (t80 * t128 - (t77 * t125 + t72 * t124))
+                + t123 * (t80 * t122 + (t77 * t119 + t72 * t114));
+            let t147 = k(2.0) * (t121 - t120);
+            let t148 = k(2.0) * (t127 + t126);
+            let t149 = k(2.0) * (k(0.5) - (t113 + t115 * t115));
+            let t150 = t130 * t81 - t131 * t87;
+            let t151 = t136 * t142 + t143 * t135 + u2 * t150 + t134 * t150;
+            let t152 = k(5e-6) * t151;
+            let t153 = t152 * (t80 * t149 - (t77 * t148 - t72 * t147)) + t146;
+            let t154 = t153 + k(1e-6) * (t107 + t87 * t81);
+            let t155 = t76 + t74;
+            let t156 = k(2.0) * t155;
+            let t157 = k(0.5) - (t71 + t75 * t75);
             let t158 = k(2.0) * t157;
-            let t159 = k(0.5) - (t71 + t75 * t75);
-            let t160 = k(2.0) * t159;
-            let t161 = t70 * t69;
-            let t162 = t75 * t73;
-            let t163 = t162 - t161;
-            let t164 = k(2.0) * t163;
-            let t165 = t147 * (t164 * t130 + (t160 * t127 + t158 * t126))
-                - t125 * (t164 * t124 - (t160 * t121 + t158 * t116));
-            let t166 = t154 * (t164 * t151 + (t160 * t150 - t158 * t149)) + t165;
-            let t167 = k(0.000125) * t87;
-            let t168 = k(0.000125) * t81;
-            let t169 = t81 * t168 + t87 * t167;
-            let t170 = t167 * t135;
-            let t171 = t168 * t135;
-            let t172 = t79 - t78;
-            let t173 = k(2.0) * t172;
-            let t174 = k(0.00025) * t172;
-            let t175 = k(0.00025) * t157;
-            let t176 = t144 * t175 + t137 * t174
-                + (t173 * t171 + (t158 * t170 - t72 * t169));
-            let t177 = k(0.08) * t176;
-            let t178 = t162 + t161;
-            let t179 = k(2.0) * t178;
-            let t180 = k(0.00025) * t178;
-            let t181 = k(0.00025) * t159;
-            let t182 = t144 * t181 - t137 * t180
-                - (t179 * t171 - (t160 * t170 - t77 * t169));
-            let t183 = k(0.8) - k(0.08) * t182;
-            let t184 = k(0.5) - (t71 + t73 * t73);
-            let t185 = k(2.0) * t184;
-            let t186 = k(0.00025) * t184;
-            let t187 = k(0.00025) * t163;
-            let t188 = t144 * t187 - t137 * t186
-                - (t185 * t171 - (t164 * t170 + t80 * t169));
-            let t189 = k(0.08) * t188;
-            let t190 = t186 * t189 - (t180 * t183 + t174 * t177) - t166 - k(2e-6) * t137;
-            let t191 = t190 * (t42 * t164 - (t37 * t160 + t32 * t158))
-                - t156 * (t42 * t80 + (t37 * t77 + t32 * t72));
-            let t192 = t147 * (t185 * t130 + (t179 * t127 - t173 * t126))
-                - t125 * (t185 * t124 - (t179 * t121 - t173 * t116));
-            let t193 = t154 * (t185 * t151 + (t179 * t150 + t173 * t149)) + t192;
-            let t194 = t187 * t189 - (t181 * t183 - t175 * t177) + t193
-                + k(1e-6) * (t144 + t87 * t135);
-            let t195 = t194 * (t42 * t185 - (t37 * t179 - t32 * t173)) - t191;
-            let t196 = t195 - k(2e-6) * t65;
-            let t197 = t190 * (t46 * t164 + (t45 * t160 - t48 * t158))
-                - t156 * (t46 * t80 - (t45 * t77 - t48 * t72));
-            let t198 = t194 * (t46 * t185 + (t45 * t179 + t48 * t173)) - t197;
-            let t199 = t198 - k(1e-6) * (t140 + t86 * t82);
-            (
-                t23,
-                t25,
-                t27,
-                t29,
-                t30,
-                t31,
-                t35,
-                t36,
-                t38,
-                t44,
-                t47,
-                t49,
-                t50,
-                t51,
-                t59,
-                t103,
-                t196,
-                t199,
-            )
-        };
-        let (t200, t202) = {
-            let t200 = (t199 * (t49 * t51) + t196 * (t44 * t51))
+            let t159 = t70 * t69;
+            let t160 = t75 * t73;
+            let t161 = t160 - t159;
+            let t162 = k(2.0) * t161;
+            let t163 = t145 * (t162 * t128 + (t158 * t125 + t156 * t124))
+                + t123 * (t162 * t122 - (t158 * t119 + t156 * t114));
+            let t164 = t152 * (t162 * t149 + (t158 * t148 - t156 * t147)) + t163;
+            let t165 = k(0.000125) * t87;
+            let t166 = k(0.000125) * t81;
+            let t167 = t81 * t166 + t87 * t165;
+            let t168 = t165 * t133;
+            let t169 = t166 * t133;
+            let t170 = t79 - t78;
+            let t171 = k(2.0) * t170;
+            let t172 = k(0.00025) * t170;
+            let t173 = k(0.00025) * t155;
+            let t174 = t142 * t173 - t135 * t172
+                - (t171 * t169 + (t156 * t168 - t72 * t167));
+            let t175 = k(0.08) * t174;
+            let t176 = t160 + t159;
+            let t177 = k(2.0) * t176;
+            let t178 = k(0.00025) * t176;
+            let t179 = k(0.00025) * t157;
+            let t180 = t142 * t179 + t135 * t178
+                + (t177 * t169 - (t158 * t168 - t77 * t167));
+            let t181 = k(0.8) + k(0.08) * t180;
+            let t182 = k(0.5) - (t71 + t73 * t73);
+            let t183 = k(2.0) * t182;
+            let t184 = k(0.00025) * t182;
+            let t185 = k(0.00025) * t161;
+            let t186 = t142 * t185 + t135 * t184
+                + (t183 * t169 - (t162 * t168 + t80 * t167));
+            let t187 = k(0.08) * t186;
+            let t188 = t184 * t187 + (t178 * t181 - t172 * t175) - t164 + k(2e-6) * t135;
+            let t189 = t188 * (t42 * t162 - (t37 * t158 + t32 * t156))
+                - t154 * (t42 * t80 + (t37 * t77 + t32 * t72));
+            let t190 = t145 * (t183 * t128 + (t177 * t125 - t171 * t124))
+                + t123 * (t183 * t122 - (t177 * t119 - t171 * t114));
+            let t191 = t152 * (t183 * t149 + (t177 * t148 + t171 * t147)) + t190;
+            let t192 = t185 * t187 + (t179 * t181 + t173 * t175) + t191
+                + k(1e-6) * (t142 - t87 * t133);
+            let t193 = t192 * (t42 * t183 - (t37 * t177 - t32 * t171)) - t189;
+            let t194 = t193 + k(2e-6) * t65;
+            let t195 = t188 * (t46 * t162 + (t45 * t158 - t48 * t156))
+                - t154 * (t46 * t80 - (t45 * t77 - t48 * t72));
+            let t196 = t192 * (t46 * t183 + (t45 * t177 + t48 * t171)) - t195;
+            let t197 = t196 + k(1e-6) * (t138 + t86 * t82);
+            let t198 = (t197 * (t49 * t51) + t194 * (t44 * t51))
                 * (t31 * t29 + t27 * t23);
-            let t201 = t59 * (k(2.0) * (t36 + t35)) + (t38 * t27 - t30 * t103) * t29;
-            let t202 = (t199 * (t47 * t51) + t196 * (t50 * t51))
-                * (t201 - (t38 * t31 + t25 * t103) * t23);
-            (t200, t202)
+            let t199 = t59 * (k(2.0) * (t36 + t35)) + (t38 * t27 - t30 * t104) * t29;
+            (t23, t25, t31, t38, t47, t50, t51, t104, t194, t197, t198, t199)
         };
-        *dx = [u0, u1, u2, rates[0], rates[1], rates[2], t200 - t202];
+        let (t200,) = {
+            let t200 = (t197 * (t47 * t51) + t194 * (t50 * t51))
+                * (t199 - (t38 * t31 + t25 * t104) * t23);
+            (t200,)
+        };
+        *dx = [u0, u1, u2, rates[0], rates[1], rates[2], t200 - t198];
     }
     /// Writes the maximal state of a joint state: 127 operations (39 ±, 88 ×, 0 ÷) and 16 functions.
     fn to_maximal(&self, t: T, x: &Self::Joints, y: &mut Self::State) {
@@ -3086,7 +3033,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingGyroscope<T> {
         x[5] = rotor_wx - inner_ring_wx;
         x[6] = y[39];
     }
-    /// Writes u̇ at a state that satisfies the constraints: 148 operations (47 ±, 100 ×, 1 ÷) and 12 functions.
+    /// Writes u̇ at a state that satisfies the constraints: 145 operations (46 ±, 98 ×, 1 ÷) and 12 functions.
     fn joint_accelerations_at(&self, t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -3150,29 +3097,27 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingGyroscope<T> {
         let t37 = t36 * t30;
         let t38 = k(17.765287921960844) * t12;
         let t39 = t38 * t37 - t35 * t31 - outer_ring_wz * t17;
-        let t40 = k(1e-6) + (t9 * (k(7.00125e-6) * t9) + t5 * (k(1e-6) * t5));
-        let t41 = t14 * t33 - t16 * (t32 * t34);
-        let t42 = t41 * t40 + (t9 * (k(7.00125e-6) * t5) - t5 * (k(1e-6) * t9)) * t39;
-        let t43 = k(0.1) * t20;
-        let t44 = t43.cos();
-        let t45 = k(10.0) * (t44 * t14);
-        let t46 = k(10.0) * t43.sin();
-        let t47 = k(1e-5) * t9 * (t31 * t46 - t37 * t45) + t42
-            + (k(1e-6) * (outer_ring_wx * outer_ring_wz) + t10);
-        let t48 = t47 / t40;
-        let t49 = k(1e-5) * (inner_ring_wx * (k(0.000125) * inner_ring_wy))
+        let t40 = k(0.1) * t20;
+        let t41 = t40.cos();
+        let t42 = k(10.0) * (t41 * t14);
+        let t43 = k(10.0) * t40.sin();
+        let t44 = k(1e-5) * t9 * (t31 * t43 - t37 * t42)
+            + (t9 * (k(7.00125e-6) * t5) - t5 * (k(1e-6) * t9)) * t39;
+        let t45 = (t44 + (k(1e-6) * (outer_ring_wx * outer_ring_wz) + t10))
+            / (k(1e-6) + (t9 * (k(7.00125e-6) * t9) + t5 * (k(1e-6) * t5)));
+        let t46 = k(1e-5) * (inner_ring_wx * (k(0.000125) * inner_ring_wy))
             - k(5e-6) * (inner_ring_wy * t7 - inner_ring_wy * t6);
-        let t50 = t9 * (k(10.0) * (t44 * t34)) + t5 * (t37 * t46 + t31 * t45);
-        let t51 = k(1e-5) * t50
-            - k(6.00125e-6) * (t38 * t31 + t35 * t37 - outer_ring_wx * t17);
+        let t47 = t9 * (k(10.0) * (t41 * t34)) + t5 * (t37 * t43 + t31 * t42);
+        let t48 = k(166631.95167673402)
+            * (k(1e-5) * t47 + (k(1e-6) * (inner_ring_wx * inner_ring_wy) + t46))
+            - (t38 * t31 + t35 * t37 - outer_ring_wx * t17);
         *out = [
+            -(t14 * t33 - t16 * (t32 * t34) + t45),
             -t48,
-            -(k(166631.95167673402)
-                * (t51 + (k(1e-6) * (inner_ring_wx * inner_ring_wy) + t49))),
-            t1 + (t5 * (t41 - t48) - t9 * t39),
+            t1 - (t5 * t45 + t9 * t39),
         ];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 594 operations (235 ±, 354 ×, 5 ÷) and 8 functions.
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 554 operations (216 ±, 333 ×, 5 ÷) and 8 functions.
     fn corrected_accelerations(
         &self,
         t: T,
@@ -3312,106 +3257,98 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingGyroscope<T> {
         let t106 = t89 * t105 + t88 * t104;
         let t107 = t106 * t93 - (t103 * t79 + t102 * t72);
         let t108 = t17 * t101 + (t13 * t99 + t1 * t97);
-        let t109 = t90 - t91 * t93;
-        let t110 = t17 * t87 - (t13 * t85 - t1 * t83);
-        let t111 = t110 * t109 - (t108 * t107 + t95 * t94);
-        let t112 = t92 * t106;
-        let t113 = t106 * t112 - (k(2e-6) + (k(1.25e-9) + (t103 * t105 + t102 * t104)));
-        let t114 = t106 - t91 * t112;
-        let t115 = t110 * t114 - (t108 * t113 + t95 * t107);
-        let t116 = t108 * t114 + t95 * t109;
-        let t117 = k(2.0) * (k(0.5) - (t60 + rotor_e1 * rotor_e1));
-        let t118 = k(2.0) * (t56 + t55);
-        let t119 = k(2.0) * (t74 - t73);
-        let t120 = t70 * t119 + (t64 * t118 + t59 * t117);
-        let t121 = inner_ring_wy * (t101 * t119 - (t97 * t118 + t99 * t117))
-            + inner_ring_wx * t120;
-        let t122 = inner_ring_wz * (t87 * t119 - (t83 * t118 - t85 * t117)) - t121;
-        let t123 = rotor_wx + t122;
-        let t124 = inner_ring_wz * t89 - (inner_ring_wy * t103 + inner_ring_wx * t78);
-        let t125 = rotor_wz - t124;
-        let t126 = inner_ring_wz * t88 - (inner_ring_wy * t102 + inner_ring_wx * t71);
-        let t127 = rotor_wy + t126;
-        let t128 = (t127 * t127 + t125 * t125) / t120;
-        let t129 = rotor_wz * t122 + rotor_wx * t124 - (t78 * t128 - t125 * t123);
-        let t130 = k(5e-6) * (rotor_wx * rotor_wz + t129);
-        let t131 = rotor_wx * t126 - rotor_wy * t122 - (t71 * t128 + t127 * t123);
-        let t132 = k(5e-6) * (rotor_wx * rotor_wy - t131);
-        let t133 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
-        let t134 = inner_ring_wx * inner_ring_wy;
-        let t135 = inner_ring_wx * inner_ring_wz;
-        let t136 = t85 * t135 + (t99 * t134 + t59 * t133);
-        let t137 = k(1e-5) * t136;
-        let t138 = k(0.00025) * t98;
-        let t139 = t83 * t135 - (t97 * t134 + t64 * t133);
-        let t140 = k(0.8) + k(1e-5) * t139;
-        let t141 = k(0.00025) * t96;
-        let t142 = t87 * t135 - (t101 * t134 - t70 * t133);
-        let t143 = k(1e-5) * t142;
-        let t144 = k(0.00025) * t100;
-        let t145 = t144 * t143 + (t141 * t140 - t138 * t137) + (t89 * t132 + t88 * t130);
-        let t146 = k(1e-6) * t134 - t145;
-        let t147 = t92 * t146;
-        let t148 = t90 * t147
-            - (k(1e-6) * (inner_ring_wy * inner_ring_wz) - (t78 * t132 + t71 * t130));
-        let t149 = t42 * t87 - (t41 * t83 - t40 * t85);
-        let t150 = t34 * t85 + t31 * t83 + t30 * t87;
-        let t151 = outer_ring_wz * t150 - (outer_ring_wy * t110 + outer_ring_wx * t149);
-        let t152 = inner_ring_wz - t151;
-        let t153 = t42 * t101 - (t41 * t97 + t40 * t99);
-        let t154 = t30 * t101 - (t34 * t99 - t31 * t97);
-        let t155 = outer_ring_wz * t154 - (outer_ring_wy * t108 + outer_ring_wx * t153);
-        let t156 = inner_ring_wy + t155;
-        let t157 = t42 * t70 + (t41 * t64 + t40 * t59);
-        let t158 = t30 * t70 - (t31 * t64 - t34 * t59);
-        let t159 = outer_ring_wz * t158 - (outer_ring_wy * t95 + outer_ring_wx * t157);
-        let t160 = inner_ring_wx + t159;
-        let t161 = (t160 * t160 + t156 * t156) / t150;
-        let t162 = inner_ring_wy * t151 + inner_ring_wz * t155
-            + (t154 * t161 - t156 * t152);
-        let t163 = inner_ring_wz * t159 + inner_ring_wx * t151
-            + (t158 * t161 - t160 * t152);
-        let t164 = k(0.00025) * t84;
-        let t165 = k(0.00025) * t82;
-        let t166 = k(0.00025) * t86;
-        let t167 = t166 * t143 + (t165 * t140 + t164 * t137)
-            - (t103 * t132 + t102 * t130);
-        let t168 = t108 * (t113 * t163 - t107 * t162 - (t106 * t147 - t167));
-        let t169 = t110 * (t114 * t163 - t109 * t162 - (t146 - t91 * t147));
-        let t170 = t169 - (t168 + t95 * (t107 * t163 - t94 * t162 - t148));
-        let t171 = t108 * (t149 * t114 - (t153 * t113 + t157 * t107))
-            + t95 * (t149 * t109 - (t153 * t107 + t157 * t94));
-        let t172 = outer_ring_wx * t28 + outer_ring_wy * t46
+        let t109 = t108 * t107 + t95 * t94;
+        let t110 = t106 * (t92 * t106)
+            - (k(2e-6) + (k(1.25e-9) + (t103 * t105 + t102 * t104)));
+        let t111 = t108 * t110 + t95 * t107;
+        let t112 = k(2.0) * (k(0.5) - (t60 + rotor_e1 * rotor_e1));
+        let t113 = k(2.0) * (t56 + t55);
+        let t114 = k(2.0) * (t74 - t73);
+        let t115 = t70 * t114 + (t64 * t113 + t59 * t112);
+        let t116 = inner_ring_wy * (t101 * t114 - (t97 * t113 + t99 * t112))
+            + inner_ring_wx * t115;
+        let t117 = inner_ring_wz * (t87 * t114 - (t83 * t113 - t85 * t112)) - t116;
+        let t118 = rotor_wx + t117;
+        let t119 = inner_ring_wz * t89 - (inner_ring_wy * t103 + inner_ring_wx * t78);
+        let t120 = rotor_wz - t119;
+        let t121 = inner_ring_wz * t88 - (inner_ring_wy * t102 + inner_ring_wx * t71);
+        let t122 = rotor_wy + t121;
+        let t123 = (t122 * t122 + t120 * t120) / t115;
+        let t124 = rotor_wz * t117 + rotor_wx * t119 - (t78 * t123 - t120 * t118);
+        let t125 = k(5e-6) * (rotor_wx * rotor_wz + t124);
+        let t126 = rotor_wx * t121 - rotor_wy * t117 - (t71 * t123 + t122 * t118);
+        let t127 = k(5e-6) * (rotor_wx * rotor_wy - t126);
+        let t128 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
+        let t129 = inner_ring_wx * inner_ring_wy;
+        let t130 = inner_ring_wx * inner_ring_wz;
+        let t131 = t85 * t130 + (t99 * t129 + t59 * t128);
+        let t132 = k(1e-5) * t131;
+        let t133 = k(0.00025) * t98;
+        let t134 = t83 * t130 - (t97 * t129 + t64 * t128);
+        let t135 = k(0.8) + k(1e-5) * t134;
+        let t136 = k(0.00025) * t96;
+        let t137 = t87 * t130 - (t101 * t129 - t70 * t128);
+        let t138 = k(1e-5) * t137;
+        let t139 = k(0.00025) * t100;
+        let t140 = t139 * t138 + (t136 * t135 - t133 * t132) + (t89 * t127 + t88 * t125);
+        let t141 = k(1e-6) * t129 - t140;
+        let t142 = t92 * t141;
+        let t143 = t90 * t142
+            - (k(1e-6) * (inner_ring_wy * inner_ring_wz) - (t78 * t127 + t71 * t125));
+        let t144 = outer_ring_wy * (t17 * t87 - (t13 * t85 - t1 * t83))
+            + outer_ring_wx * (t42 * t87 - (t41 * t83 - t40 * t85));
+        let t145 = t34 * t85 + t31 * t83 + t30 * t87;
+        let t146 = outer_ring_wz * t145 - t144;
+        let t147 = inner_ring_wz - t146;
+        let t148 = t42 * t101 - (t41 * t97 + t40 * t99);
+        let t149 = t30 * t101 - (t34 * t99 - t31 * t97);
+        let t150 = outer_ring_wz * t149 - (outer_ring_wy * t108 + outer_ring_wx * t148);
+        let t151 = inner_ring_wy + t150;
+        let t152 = t42 * t70 + (t41 * t64 + t40 * t59);
+        let t153 = t30 * t70 - (t31 * t64 - t34 * t59);
+        let t154 = outer_ring_wz * t153 - (outer_ring_wy * t95 + outer_ring_wx * t152);
+        let t155 = inner_ring_wx + t154;
+        let t156 = (t155 * t155 + t151 * t151) / t145;
+        let t157 = inner_ring_wy * t146 + inner_ring_wz * t150
+            + (t149 * t156 - t151 * t147);
+        let t158 = inner_ring_wz * t154 + inner_ring_wx * t146
+            + (t153 * t156 - t155 * t147);
+        let t159 = k(0.00025) * t84;
+        let t160 = k(0.00025) * t82;
+        let t161 = k(0.00025) * t86;
+        let t162 = t161 * t138 + (t160 * t135 + t159 * t132)
+            - (t103 * t127 + t102 * t125);
+        let t163 = t108 * (t110 * t158 - t107 * t157 - (t106 * t142 - t162));
+        let t164 = k(1e-6) * (outer_ring_wx * outer_ring_wz)
+            - (t163 + t95 * (t107 * t158 - t94 * t157 - t143));
+        let t165 = t108 * (t148 * t110 + t152 * t107) + t95 * (t148 * t107 + t152 * t94);
+        let t166 = outer_ring_wx * t28 + outer_ring_wy * t46
             - (t52 * t37 - (t51 * t36 + t50 * t35));
-        let t173 = t172 - (t44 * t48 + t47 * t29);
-        let t174 = (t150 * t116 + (t115 * t154 + t111 * t158)) * t173
-            + t54 * (t110 * (t153 * t114 + t157 * t109) + t171);
-        let t175 = (t174 + (k(1e-6) * (outer_ring_wx * outer_ring_wz) + t170))
-            / (k(1e-6) + (t110 * t116 + (t108 * t115 + t95 * t111)));
-        let t176 = t162 - (t158 * t173 - (t95 * t175 - t157 * t54));
-        let t177 = t163 + (t154 * t173 - (t108 * t175 - t153 * t54));
-        let t178 = t150 * t173 - (t110 * t175 - t149 * t54);
-        let t179 = t92 * (t146 - (t91 * t178 + (t106 * t177 - t90 * t176)));
-        let t180 = t178 + t179;
+        let t167 = t166 - (t44 * t48 + t47 * t29);
+        let t168 = (t111 * t149 + t109 * t153) * t167 + t54 * t165 - t164;
+        let t169 = t168 / (k(1e-6) - (t108 * t111 + t95 * t109));
+        let t170 = t157 - (t153 * t167 + (t95 * t169 + t152 * t54));
+        let t171 = t158 + (t149 * t167 + (t108 * t169 + t148 * t54));
+        let t172 = t92 * (t141 - (t106 * t171 - t90 * t170));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             t54,
-            -t175,
-            -t173,
+            t169,
+            -t167,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t176,
-            t177,
-            -t180,
-            k(0.000125) * t136 - (t138 * t180 + t164 * t177),
-            t141 * t180 - t165 * t177 + k(0.000125) * t139,
-            -(t144 * t180 - t166 * t177 + k(0.000125) * t142),
+            -t170,
+            t171,
+            -t172,
+            k(0.000125) * t131 - (t133 * t172 + t159 * t171),
+            t136 * t172 - t160 * t171 + k(0.000125) * t134,
+            -(t139 * t172 - t161 * t171 + k(0.000125) * t137),
             k(0.0),
-            t129 + (t88 * t180 + (t102 * t177 - t71 * t176)),
-            t131 - (t89 * t180 + (t103 * t177 - t78 * t176)),
+            t124 + (t88 * t172 + (t102 * t171 - t71 * t170)),
+            t126 - (t89 * t172 + (t103 * t171 - t78 * t170)),
         ];
     }
     /// Writes λ: 156 operations (60 ±, 96 ×, 0 ÷) and 6 functions.
@@ -3541,7 +3478,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingGyroscope<T> {
             -t21,
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 707 operations (280 ±, 422 ×, 5 ÷) and 12 functions.
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 667 operations (261 ±, 401 ×, 5 ÷) and 12 functions.
     fn corrected_solution(&self, t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -3566,34 +3503,35 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingGyroscope<T> {
         let rotor_wy = y[37];
         let rotor_wz = y[38];
         let (
-            t3,
-            t7,
             t54,
-            t135,
-            t137,
-            t141,
-            t144,
-            t147,
-            t167,
-            t168,
-            t169,
+            t130,
+            t162,
+            t163,
+            t164,
+            t170,
+            t172,
+            t173,
+            t174,
+            t175,
             t176,
+            t177,
             t178,
             t179,
             t180,
+            t181,
+            t182,
             t183,
             t184,
             t185,
-            t186,
-            t187,
             t188,
             t189,
-            t190,
             t191,
             t192,
-            t193,
+            t194,
+            t195,
             t196,
             t197,
+            t198,
             t199,
         ) = {
             let t0 = outer_ring_e0 * outer_ring_e0;
@@ -3707,216 +3645,208 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingGyroscope<T> {
             let t106 = t89 * t105 + t88 * t104;
             let t107 = t106 * t93 - (t103 * t79 + t102 * t72);
             let t108 = t17 * t101 + (t13 * t99 + t1 * t97);
-            let t109 = t90 - t91 * t93;
-            let t110 = t17 * t87 - (t13 * t85 - t1 * t83);
-            let t111 = t110 * t109 - (t108 * t107 + t95 * t94);
-            let t112 = t92 * t106;
-            let t113 = t106 * t112
+            let t109 = t108 * t107 + t95 * t94;
+            let t110 = t106 * (t92 * t106)
                 - (k(2e-6) + (k(1.25e-9) + (t103 * t105 + t102 * t104)));
-            let t114 = t106 - t91 * t112;
-            let t115 = t110 * t114 - (t108 * t113 + t95 * t107);
-            let t116 = t108 * t114 + t95 * t109;
-            let t117 = k(2.0) * (k(0.5) - (t60 + rotor_e1 * rotor_e1));
-            let t118 = k(2.0) * (t56 + t55);
-            let t119 = k(2.0) * (t74 - t73);
-            let t120 = t70 * t119 + (t64 * t118 + t59 * t117);
-            let t121 = inner_ring_wy * (t101 * t119 - (t97 * t118 + t99 * t117))
-                + inner_ring_wx * t120;
-            let t122 = inner_ring_wz * (t87 * t119 - (t83 * t118 - t85 * t117)) - t121;
-            let t123 = rotor_wx + t122;
-            let t124 = inner_ring_wz * t89
+            let t111 = t108 * t110 + t95 * t107;
+            let t112 = k(2.0) * (k(0.5) - (t60 + rotor_e1 * rotor_e1));
+            let t113 = k(2.0) * (t56 + t55);
+            let t114 = k(2.0) * (t74 - t73);
+            let t115 = t70 * t114 + (t64 * t113 + t59 * t112);
+            let t116 = inner_ring_wy * (t101 * t114 - (t97 * t113 + t99 * t112))
+                + inner_ring_wx * t115;
+            let t117 = inner_ring_wz * (t87 * t114 - (t83 * t113 - t85 * t112)) - t116;
+            let t118 = rotor_wx + t117;
+            let t119 = inner_ring_wz * t89
                 - (inner_ring_wy * t103 + inner_ring_wx * t78);
-            let t125 = rotor_wz - t124;
-            let t126 = inner_ring_wz * t88
+            let t120 = rotor_wz - t119;
+            let t121 = inner_ring_wz * t88
                 - (inner_ring_wy * t102 + inner_ring_wx * t71);
-            let t127 = rotor_wy + t126;
-            let t128 = (t127 * t127 + t125 * t125) / t120;
-            let t129 = rotor_wz * t122 + rotor_wx * t124 - (t78 * t128 - t125 * t123);
-            let t130 = rotor_wx * rotor_wz;
-            let t131 = k(5e-6) * (t130 + t129);
-            let t132 = rotor_wx * t126 - rotor_wy * t122 - (t71 * t128 + t127 * t123);
-            let t133 = rotor_wx * rotor_wy;
-            let t134 = k(5e-6) * (t133 - t132);
-            let t135 = inner_ring_wy * inner_ring_wz;
-            let t136 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
-            let t137 = inner_ring_wx * inner_ring_wy;
-            let t138 = inner_ring_wx * inner_ring_wz;
-            let t139 = t85 * t138 + (t99 * t137 + t59 * t136);
-            let t140 = k(1e-5) * t139;
-            let t141 = k(0.00025) * t98;
-            let t142 = t83 * t138 - (t97 * t137 + t64 * t136);
-            let t143 = k(0.8) + k(1e-5) * t142;
-            let t144 = k(0.00025) * t96;
-            let t145 = t87 * t138 - (t101 * t137 - t70 * t136);
-            let t146 = k(1e-5) * t145;
-            let t147 = k(0.00025) * t100;
-            let t148 = t147 * t146 + (t144 * t143 - t141 * t140)
-                + (t89 * t134 + t88 * t131);
-            let t149 = k(1e-6) * t137 - t148;
-            let t150 = t92 * t149;
-            let t151 = t90 * t150 - (k(1e-6) * t135 - (t78 * t134 + t71 * t131));
-            let t152 = t42 * t87 - (t41 * t83 - t40 * t85);
-            let t153 = t34 * t85 + t31 * t83 + t30 * t87;
-            let t154 = outer_ring_wz * t153
-                - (outer_ring_wy * t110 + outer_ring_wx * t152);
-            let t155 = inner_ring_wz - t154;
-            let t156 = t42 * t101 - (t41 * t97 + t40 * t99);
-            let t157 = t30 * t101 - (t34 * t99 - t31 * t97);
-            let t158 = outer_ring_wz * t157
-                - (outer_ring_wy * t108 + outer_ring_wx * t156);
-            let t159 = inner_ring_wy + t158;
-            let t160 = t42 * t70 + (t41 * t64 + t40 * t59);
-            let t161 = t30 * t70 - (t31 * t64 - t34 * t59);
-            let t162 = outer_ring_wz * t161
-                - (outer_ring_wy * t95 + outer_ring_wx * t160);
-            let t163 = inner_ring_wx + t162;
-            let t164 = (t163 * t163 + t159 * t159) / t153;
-            let t165 = inner_ring_wy * t154 + inner_ring_wz * t158
-                + (t157 * t164 - t159 * t155);
-            let t166 = inner_ring_wz * t162 + inner_ring_wx * t154
-                + (t161 * t164 - t163 * t155);
-            let t167 = k(0.00025) * t84;
-            let t168 = k(0.00025) * t82;
-            let t169 = k(0.00025) * t86;
-            let t170 = t169 * t146 + (t168 * t143 + t167 * t140)
-                - (t103 * t134 + t102 * t131);
-            let t171 = t108 * (t113 * t166 - t107 * t165 - (t106 * t150 - t170));
-            let t172 = t110 * (t114 * t166 - t109 * t165 - (t149 - t91 * t150));
-            let t173 = t172 - (t171 + t95 * (t107 * t166 - t94 * t165 - t151));
-            let t174 = t108 * (t152 * t114 - (t156 * t113 + t160 * t107))
-                + t95 * (t152 * t109 - (t156 * t107 + t160 * t94));
-            let t175 = outer_ring_wx * t28 + outer_ring_wy * t46
+            let t122 = rotor_wy + t121;
+            let t123 = (t122 * t122 + t120 * t120) / t115;
+            let t124 = rotor_wz * t117 + rotor_wx * t119 - (t78 * t123 - t120 * t118);
+            let t125 = rotor_wx * rotor_wz;
+            let t126 = k(5e-6) * (t125 + t124);
+            let t127 = rotor_wx * t121 - rotor_wy * t117 - (t71 * t123 + t122 * t118);
+            let t128 = rotor_wx * rotor_wy;
+            let t129 = k(5e-6) * (t128 - t127);
+            let t130 = inner_ring_wy * inner_ring_wz;
+            let t131 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
+            let t132 = inner_ring_wx * inner_ring_wy;
+            let t133 = inner_ring_wx * inner_ring_wz;
+            let t134 = t85 * t133 + (t99 * t132 + t59 * t131);
+            let t135 = k(1e-5) * t134;
+            let t136 = k(0.00025) * t98;
+            let t137 = t83 * t133 - (t97 * t132 + t64 * t131);
+            let t138 = k(0.8) + k(1e-5) * t137;
+            let t139 = k(0.00025) * t96;
+            let t140 = t87 * t133 - (t101 * t132 - t70 * t131);
+            let t141 = k(1e-5) * t140;
+            let t142 = k(0.00025) * t100;
+            let t143 = t142 * t141 + (t139 * t138 - t136 * t135)
+                + (t89 * t129 + t88 * t126);
+            let t144 = k(1e-6) * t132 - t143;
+            let t145 = t92 * t144;
+            let t146 = t90 * t145 - (k(1e-6) * t130 - (t78 * t129 + t71 * t126));
+            let t147 = outer_ring_wy * (t17 * t87 - (t13 * t85 - t1 * t83))
+                + outer_ring_wx * (t42 * t87 - (t41 * t83 - t40 * t85));
+            let t148 = t34 * t85 + t31 * t83 + t30 * t87;
+            let t149 = outer_ring_wz * t148 - t147;
+            let t150 = inner_ring_wz - t149;
+            let t151 = t42 * t101 - (t41 * t97 + t40 * t99);
+            let t152 = t30 * t101 - (t34 * t99 - t31 * t97);
+            let t153 = outer_ring_wz * t152
+                - (outer_ring_wy * t108 + outer_ring_wx * t151);
+            let t154 = inner_ring_wy + t153;
+            let t155 = t42 * t70 + (t41 * t64 + t40 * t59);
+            let t156 = t30 * t70 - (t31 * t64 - t34 * t59);
+            let t157 = outer_ring_wz * t156
+                - (outer_ring_wy * t95 + outer_ring_wx * t155);
+            let t158 = inner_ring_wx + t157;
+            let t159 = (t158 * t158 + t154 * t154) / t148;
+            let t160 = inner_ring_wy * t149 + inner_ring_wz * t153
+                + (t152 * t159 - t154 * t150);
+            let t161 = inner_ring_wz * t157 + inner_ring_wx * t149
+                + (t156 * t159 - t158 * t150);
+            let t162 = k(0.00025) * t84;
+            let t163 = k(0.00025) * t82;
+            let t164 = k(0.00025) * t86;
+            let t165 = t164 * t141 + (t163 * t138 + t162 * t135)
+                - (t103 * t129 + t102 * t126);
+            let t166 = t108 * (t110 * t161 - t107 * t160 - (t106 * t145 - t165));
+            let t167 = k(1e-6) * (outer_ring_wx * outer_ring_wz)
+                - (t166 + t95 * (t107 * t161 - t94 * t160 - t146));
+            let t168 = t108 * (t151 * t110 + t155 * t107)
+                + t95 * (t151 * t107 + t155 * t94);
+            let t169 = outer_ring_wx * t28 + outer_ring_wy * t46
                 - (t52 * t37 - (t51 * t36 + t50 * t35));
-            let t176 = t175 - (t44 * t48 + t47 * t29);
-            let t177 = (t153 * t116 + (t115 * t157 + t111 * t161)) * t176
-                + t54 * (t110 * (t156 * t114 + t160 * t109) + t174);
-            let t178 = (t177 + (k(1e-6) * (outer_ring_wx * outer_ring_wz) + t173))
-                / (k(1e-6) + (t110 * t116 + (t108 * t115 + t95 * t111)));
-            let t179 = t165 - (t161 * t176 - (t95 * t178 - t160 * t54));
-            let t180 = t166 + (t157 * t176 - (t108 * t178 - t156 * t54));
-            let t181 = t153 * t176 - (t110 * t178 - t152 * t54);
-            let t182 = t92 * (t149 - (t91 * t181 + (t106 * t180 - t90 * t179)));
-            let t183 = t181 + t182;
-            let t184 = t141 * t183 + t167 * t180 - k(0.000125) * t139;
-            let t185 = t144 * t183 - t168 * t180 + k(0.000125) * t142;
-            let t186 = t147 * t183 - t169 * t180 + k(0.000125) * t145;
-            let t187 = t129 + (t88 * t183 + (t102 * t180 - t71 * t179));
-            let t188 = t132 - (t89 * t183 + (t103 * t180 - t78 * t179));
-            let t189 = k(0.08) * t184;
-            let t190 = k(0.8) + k(0.08) * t185;
-            let t191 = k(0.1) + t190;
-            let t192 = k(0.08) * t186;
-            let t193 = k(5e-6) * (t133 - t188);
-            let t194 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            let t170 = t169 - (t44 * t48 + t47 * t29);
+            let t171 = (t111 * t152 + t109 * t156) * t170 + t54 * t168 - t167;
+            let t172 = t171 / (k(1e-6) - (t108 * t111 + t95 * t109));
+            let t173 = t160 - (t156 * t170 + (t95 * t172 + t155 * t54));
+            let t174 = t161 + (t152 * t170 + (t108 * t172 + t151 * t54));
+            let t175 = t92 * (t144 - (t106 * t174 - t90 * t173));
+            let t176 = t136 * t175 + t162 * t174 - k(0.000125) * t134;
+            let t177 = t139 * t175 - t163 * t174 + k(0.000125) * t137;
+            let t178 = t142 * t175 - t164 * t174 + k(0.000125) * t140;
+            let t179 = t124 + (t88 * t175 + (t102 * t174 - t71 * t173));
+            let t180 = t127 - (t89 * t175 + (t103 * t174 - t78 * t173));
+            let t181 = k(0.08) * t176;
+            let t182 = k(0.8) + k(0.08) * t177;
+            let t183 = k(0.1) + t182;
+            let t184 = k(0.08) * t178;
+            let t185 = k(5e-6) * (t128 - t180);
+            let t186 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
                 - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
-            let t195 = k(2.0) * t194;
-            let t196 = k(1.0) - t194 * t195;
-            let t197 = k(5e-6) * (t130 + t187);
-            let t198 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            let t187 = k(2.0) * t186;
+            let t188 = k(1.0) - t186 * t187;
+            let t189 = k(5e-6) * (t125 + t179);
+            let t190 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
                 + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
-            let t199 = t198 * t195;
+            let t191 = t190 * t187;
+            let t192 = t191 * t189 + t188 * t185;
+            let t193 = t136 * t181 + t139 * t182 + t142 * t184 + t192
+                - k(1e-6) * (t132 - t175);
+            let t194 = t193 + k(1e-6) * (outer_ring_wx * outer_ring_wy + t170);
+            let t195 = k(0.025) * t3;
+            let t196 = t195.cos();
+            let t197 = k(0.05) * t7;
+            let t198 = t197.sin();
+            let t199 = t198 * t196;
             (
-                t3,
-                t7,
                 t54,
-                t135,
-                t137,
-                t141,
-                t144,
-                t147,
-                t167,
-                t168,
-                t169,
+                t130,
+                t162,
+                t163,
+                t164,
+                t170,
+                t172,
+                t173,
+                t174,
+                t175,
                 t176,
+                t177,
                 t178,
                 t179,
                 t180,
+                t181,
+                t182,
                 t183,
                 t184,
                 t185,
-                t186,
-                t187,
                 t188,
                 t189,
-                t190,
                 t191,
                 t192,
-                t193,
+                t194,
+                t195,
                 t196,
                 t197,
+                t198,
                 t199,
             )
         };
-        let (t200, t202, t216, t217, t218, t222, t223, t224, t225, t226, t227) = {
-            let t200 = t199 * t197 + t196 * t193;
-            let t201 = t141 * t189 + t144 * t190 + t147 * t192 + t200
-                - k(1e-6) * (t137 - t183);
-            let t202 = t201 + k(1e-6) * (outer_ring_wx * outer_ring_wy + t176);
-            let t203 = k(0.025) * t3;
-            let t204 = t203.cos();
-            let t205 = k(0.05) * t7;
-            let t206 = t205.sin();
-            let t207 = t206 * t204;
-            let t208 = t205.cos();
-            let t209 = t208 * t204;
-            let t210 = t203.sin();
-            let t211 = t208 * t210;
-            let t212 = t206 * t210;
-            let t213 = t212 * outer_ring_e0 - t211 * outer_ring_e1 + t209 * outer_ring_e2
-                + t207 * outer_ring_e3;
-            let t214 = k(2.0) * t213;
-            let t215 = t209 * outer_ring_e0 + t207 * outer_ring_e1 - t212 * outer_ring_e2
-                + t211 * outer_ring_e3;
-            let t216 = t215 * t214;
-            let t217 = t196 * t197 - t199 * t193;
-            let t218 = t167 * t189 - t168 * t190 - t169 * t192 + t217 + k(2e-6) * t180;
-            let t219 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+        let (t208, t209, t210, t214, t215, t216, t217, t218, t219) = {
+            let t200 = t197.cos();
+            let t201 = t200 * t196;
+            let t202 = t195.sin();
+            let t203 = t200 * t202;
+            let t204 = t198 * t202;
+            let t205 = t204 * outer_ring_e0 - t203 * outer_ring_e1 + t201 * outer_ring_e2
+                + t199 * outer_ring_e3;
+            let t206 = k(2.0) * t205;
+            let t207 = t201 * outer_ring_e0 + t199 * outer_ring_e1 - t204 * outer_ring_e2
+                + t203 * outer_ring_e3;
+            let t208 = t207 * t206;
+            let t209 = t188 * t189 - t191 * t185;
+            let t210 = t162 * t181 - t163 * t182 - t164 * t184 + t209 + k(2e-6) * t174;
+            let t211 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
                 + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
-            let t220 = k(2.0) * t219;
-            let t221 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            let t212 = k(2.0) * t211;
+            let t213 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
                 + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
-            let t222 = t221 * t220;
-            let t223 = k(1e-6) * (t135 + t179);
-            let t224 = k(1.0) - t219 * t220;
-            let t225 = t224 * t223 - t222 * t218;
-            let t226 = t225 - k(2e-6) * t54;
-            let t227 = k(1.0) - t213 * t214;
-            (t200, t202, t216, t217, t218, t222, t223, t224, t225, t226, t227)
+            let t214 = t213 * t212;
+            let t215 = k(1e-6) * (t130 + t173);
+            let t216 = k(1.0) - t211 * t212;
+            let t217 = t216 * t215 - t214 * t210;
+            let t218 = t217 - k(2e-6) * t54;
+            let t219 = k(1.0) - t205 * t206;
+            (t208, t209, t210, t214, t215, t216, t217, t218, t219)
         };
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             t54,
-            -t178,
+            t172,
+            -t170,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t173,
+            t174,
+            -t175,
             -t176,
+            t177,
+            -t178,
             k(0.0),
-            k(0.0),
-            k(0.0),
-            -t179,
+            t179,
             t180,
+            t181,
+            -(k(0.1) + t183),
+            t184,
+            t219 * t218 + t208 * t194,
+            t208 * t218 - t219 * t194,
+            t181,
             -t183,
-            -t184,
-            t185,
-            -t186,
-            k(0.0),
-            t187,
-            t188,
-            t189,
-            -(k(0.1) + t191),
+            t184,
+            -(t214 * t215 + t216 * t210),
+            -t217,
+            t181,
+            -t182,
+            t184,
             t192,
-            t227 * t226 + t216 * t202,
-            t216 * t226 - t227 * t202,
-            t189,
-            -t191,
-            t192,
-            -(t222 * t223 + t224 * t218),
-            -t225,
-            t189,
-            -t190,
-            t192,
-            t200,
-            t217,
+            t209,
         ];
     }
 }

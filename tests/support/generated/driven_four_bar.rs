@@ -18,7 +18,7 @@
 //! | gamma | γ | 111 | 183 | 1 | 295 | 0 of 18 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 87 | 113 | 1 | 201 | 0 of 18 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 584 | 795 | 11 | 1390 | 0 of 22 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 541 | 749 | 11 | 1301 | 0 of 22 |
 //! | multipliers | λ, the accelerations being known | 107 | 170 | 4 | 281 | 0 of 18 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 25 | 51 | 0 | 76 | 0 of 23 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
@@ -34,7 +34,7 @@
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints, outputs: their definitions
 //!
-//! All of it holds but with a probability below 1e-141.
+//! All of it holds but with a probability below 1e-142.
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
 
 /// The mechanism `driven_four_bar`.
@@ -1486,7 +1486,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
             -(k(0.01076) * (rocker_wx * rocker_wy)),
         ];
     }
-    /// Solves eq. (17): 1390 operations (584 ±, 795 ×, 11 ÷) and 1 functions.
+    /// Solves eq. (17): 1301 operations (541 ±, 749 ×, 11 ÷) and 1 functions.
     fn accelerations(&self, t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let crank_e0 = y[3];
@@ -1522,48 +1522,50 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
             t35,
             t40,
             t42,
-            t43,
             t47,
             t48,
             t49,
             t50,
             t51,
-            t53,
             t55,
-            t56,
+            t58,
             t59,
             t60,
             t61,
-            t62,
-            t64,
-            t69,
-            t71,
+            t63,
+            t68,
+            t70,
+            t75,
             t76,
-            t77,
+            t79,
             t80,
             t81,
-            t82,
-            t84,
+            t83,
+            t86,
             t87,
-            t88,
+            t89,
             t90,
-            t91,
+            t93,
             t94,
             t95,
-            t96,
-            t98,
-            t101,
-            t121,
+            t97,
+            t100,
+            t119,
+            t133,
+            t137,
             t141,
-            t145,
-            t149,
-            t162,
+            t154,
+            t176,
+            t177,
+            t179,
+            t182,
+            t183,
+            t185,
             t186,
             t187,
-            t189,
-            t190,
             t192,
             t193,
+            t194,
             t195,
             t196,
             t197,
@@ -1625,168 +1627,171 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
             let t52 = t51 * t43;
             let t53 = t16 - t49 * t52;
             let t54 = t49 * t51;
-            let t55 = k(0.0835) - t49 * t54;
-            let t56 = k(1.0) / t55;
-            let t57 = t56 * t53;
-            let t58 = t48 * t51;
-            let t59 = t49 * t58;
-            let t60 = k(0.5) * t40;
-            let t61 = k(0.5) * t26;
-            let t62 = t61 * t42 + t60 * t32;
-            let t63 = t51 * t62;
-            let t64 = t60 - t49 * t63;
-            let t65 = t56 * t64;
-            let t66 = t59 * t65 - t48 * t63;
-            let t67 = coupler_wz * coupler_wz;
-            let t68 = t67 + coupler_wy * coupler_wy;
-            let t69 = k(0.25) * (t41 * t15 + (t27 * t33 + t44 * t68));
-            let t70 = crank_wz * crank_wz + t2;
-            let t71 = k(2.0) * (k(0.5) - (t0 + crank_e1 * crank_e1));
-            let t72 = crank_wx * crank_wy;
-            let t73 = crank_e0 * crank_e3;
-            let t74 = crank_e1 * crank_e2;
-            let t75 = t74 - t73;
-            let t76 = k(2.0) * t75;
-            let t77 = t28 * t8 + (t76 * t72 + t71 * t70);
-            let t78 = k(0.1) * t77;
-            let t79 = t78 + t69;
-            let t80 = k(0.5) * t14;
-            let t81 = k(0.5) * t18;
-            let t82 = t81 * t42 - t80 * t32;
-            let t83 = t51 * t82;
-            let t84 = t80 + t49 * t83;
-            let t85 = t56 * t84;
-            let t86 = t59 * t85 + t48 * t83;
-            let t87 = k(0.25) * (t37 * t15 - (t19 * t33 + t45 * t68));
-            let t88 = k(2.0) * (t74 + t73);
-            let t89 = k(0.5) - (t0 + crank_e2 * crank_e2);
-            let t90 = k(2.0) * t89;
-            let t91 = t23 * t8 - (t90 * t72 + t88 * t70);
-            let t92 = k(0.1) * t91;
-            let t93 = t92 + t87;
-            let t94 = k(0.5) * t35;
-            let t95 = k(0.5) * t29;
-            let t96 = t95 * t42 - t94 * t32;
-            let t97 = t51 * t96;
-            let t98 = t94 + t49 * t97;
-            let t99 = t56 * t98;
-            let t100 = t59 * t99 + t48 * t97;
-            let t101 = k(0.25) * (t36 * t15 - (t30 * t33 - t46 * t68));
-            let t102 = t21 + t20;
-            let t103 = k(2.0) * t102;
-            let t104 = k(0.1) * (t31 * t8 - (t103 * t72 - t7 * t70));
-            let t105 = t104 + t101;
-            let t106 = k(1.0) / (t47 * t47 + t42 * t42);
-            let t107 = t7 * t30 - (t88 * t19 + t71 * t27);
-            let t108 = t103 * t30 + (t76 * t27 + t90 * t19);
-            let t109 = crank_wy * crank_wz;
-            let t110 = t7 * t46 + (t88 * t45 + t71 * t44);
-            let t111 = t7 * t36 - (t88 * t37 - t71 * t41);
-            let t112 = t103 * t46 - (t90 * t45 + t76 * t44);
-            let t113 = t103 * t36 - (t76 * t41 - t90 * t37);
-            let t114 = crank_wx * (coupler_wx * t113 + coupler_wz * t112)
-                - crank_wy * (coupler_wx * t111 + coupler_wz * t110);
-            let t115 = coupler_wy * coupler_wz * t42
-                + ((t67 + coupler_wx * coupler_wx) * t32 - t33 * t47);
-            let t116 = t115 + k(2.0) * t114 + (t3 * t32 + (t109 * t108 + t8 * t107));
-            let t117 = t116 * (t42 * t106);
-            let t118 = t56 * t59;
-            let t119 = t59 * t118 - (k(5e-5) - t48 * t58);
-            let t120 = t116 * (t47 * t106);
-            let t121 = t50 * t54;
-            let t122 = t121 * t118 + t50 * t58;
-            let t123 = t122 * t120 - t119 * t117
-                + (t105 * t100 + (t93 * t86 + t79 * t66));
-            let t124 = t64 - t55 * t65;
-            let t125 = t84 - t55 * t85;
-            let t126 = t98 - t55 * t99;
-            let t127 = t59 - t55 * t118;
-            let t128 = t127 * t117 - (t105 * t126 + (t93 * t125 + t79 * t124));
-            let t129 = t32 * (t128 - (t53 - t55 * t57))
-                - t47 * (t123 + (t59 * t57 - t48 * t52));
-            let t130 = t121 * t65 + (t61 - t50 * t63);
-            let t131 = t121 * t85 - (t81 - t50 * t83);
-            let t132 = t121 * t99 - (t95 - t50 * t97);
-            let t133 = t121 * (t56 * t121) - (k(0.0835) - t50 * (t50 * t51));
-            let t134 = t133 * t120 - t122 * t117
-                + (t105 * t132 + (t93 * t131 + t79 * t130));
-            let t135 = t42 * (t134 + (t121 * t57 + (t34 - t50 * t52))) - t129;
-            let t136 = t84 * t65 - t82 * t63;
-            let t137 = t84 * t85 + t82 * t83;
-            let t138 = t98 * t85 + t96 * t83;
-            let t139 = t131 * t120 - t86 * t117
-                - (t93 - (t105 * t138 + (t93 * t137 + t79 * t136)));
-            let t140 = t139 + (t84 * t57 - (k(9.81) + t82 * t52));
-            let t141 = k(0.2) * t89;
-            let t142 = t64 * t65 + t62 * t63;
-            let t143 = t98 * t65 - t96 * t63;
-            let t144 = t130 * t120 - t66 * t117
-                - (t79 - (t105 * t143 + (t93 * t136 + t79 * t142)));
-            let t145 = k(0.2) * t75;
-            let t146 = t145 * (t144 + (t64 * t57 + t62 * t52));
-            let t147 = t98 * t99 + t96 * t97;
-            let t148 = t132 * t120 - t100 * t117
-                - (t105 - (t105 * t147 + (t93 * t138 + t79 * t143)));
-            let t149 = k(0.2) * t102;
-            let t150 = t149 * (t148 + (t98 * t57 - t96 * t52));
-            let t151 = t141 * (k(3.924) - t140) + t146 - t150
-                - (k(0.00133) * t72 + (t150 - (t146 - t141 * t140) + t135));
-            let t152 = t149 * t143 + (t141 * t136 - t145 * t142);
-            let t153 = t42 * t130 + (t32 * t124 + t47 * t66);
-            let t154 = t145 + t152 + t153;
-            let t155 = t149 * t138 + (t141 * t137 - t145 * t136);
-            let t156 = t42 * t131 + (t32 * t125 + t47 * t86);
-            let t157 = t141 - t155 - t156;
-            let t158 = t92 * (t157 - (t155 - k(0.28) * t89))
-                - t78 * (t154 + (t152 + k(0.28) * t75));
-            let t159 = t149 * t147 + (t141 * t138 - t145 * t143);
-            let t160 = t42 * t132 + (t32 * t126 + t47 * t100);
-            let t161 = t149 - t159 - t160;
-            let t162 = t109 - t103 * t4;
-            let t163 = t32 * (t110 * t127)
-                + t47 * (t111 * t122 + (t107 * t127 + t110 * t119));
-            let t164 = t141 * (t111 * t131 + (t107 * t125 + t110 * t86))
-                - t145 * (t111 * t130 + (t107 * t124 + t110 * t66));
-            let t165 = t149 * (t111 * t132 + (t107 * t126 + t110 * t100)) + t164;
-            let t166 = t165 + (t165 + (t42 * (t111 * t133 + t110 * t122) + t163));
-            let t167 = t32 * (t112 * t127)
-                + t47 * (t113 * t122 + (t108 * t127 + t112 * t119));
-            let t168 = k(0.2) * t22;
-            let t169 = k(0.2) * t1;
-            let t170 = t113 * t130 + (t108 * t124 + t112 * t66);
-            let t171 = t113 * t131 + (t108 * t125 + t112 * t86);
-            let t172 = t113 * t132 + (t108 * t126 + t112 * t100);
-            let t173 = t149 * t172 + (t141 * t171 - t145 * t170)
-                - (t169 * t160 + (t168 * t156 + t11 * t153));
-            let t174 = t169 * t159 + (t168 * t155 + t11 * t152);
-            let t175 = t174 - t173 - (t42 * (t113 * t133 + t112 * t122) + t167);
-            let t176 = t11 - (t169 * t143 + (t168 * t136 + t11 * t142)) + t170;
-            let t177 = t168 - (t169 * t138 + (t168 * t137 + t11 * t136)) + t171;
-            let t178 = t169 - (t169 * t147 + (t168 * t138 + t11 * t143)) + t172;
-            let t179 = t149 * t178 + (t141 * t177 - t145 * t176)
-                + (t169 * t161 + (t168 * t157 - t11 * t154));
-            let t180 = (t179 - t174 - t175) * t9 - t166 * t162
-                + (t104 * (t161 - (t159 - k(0.28) * t102)) + t158);
-            let t181 = t32 * (t47 * t127)
-                + t47 * (t42 * t122 + (t32 * t127 + t47 * t119));
-            let t182 = t149 * t159 + (t141 * t155 - t145 * t152);
-            let t183 = t182 + k(2.0) * (t149 * t160 + (t141 * t156 - t145 * t153));
-            let t184 = t183 - (k(0.01) - (t42 * (t42 * t133 + t47 * t122) + t181));
-            let t185 = k(2.0) * (t149 * t161 + (t141 * t157 + t145 * t154)) - t182;
-            let t186 = k(1.0) / (t185 + (k(0.014) + (k(0.00135) - t184)));
-            let t187 = t186 * (t180 + t151);
-            let t188 = t145 * t187 + t11 * t9;
-            let t189 = t78 + t188;
-            let t190 = t79 + (t188 + t189);
-            let t191 = t141 * t187 - t168 * t9;
-            let t192 = t92 - t191;
-            let t193 = t93 - (t191 - t192);
-            let t194 = t149 * t187 - t169 * t9;
-            let t195 = t104 - t194;
-            let t196 = t105 - (t194 - t195);
-            let t197 = t117 + (t47 * t187 + (t112 * t9 - t110 * t162));
-            let t198 = t32 * t187 + (t108 * t9 - t107 * t162);
-            let t199 = t120 - (t42 * t187 + (t113 * t9 - t111 * t162));
+            let t55 = k(1.0) / (k(0.0835) - t49 * t54);
+            let t56 = t55 * t53;
+            let t57 = t48 * t51;
+            let t58 = t49 * t57;
+            let t59 = k(0.5) * t40;
+            let t60 = k(0.5) * t26;
+            let t61 = t60 * t42 + t59 * t32;
+            let t62 = t51 * t61;
+            let t63 = t59 - t49 * t62;
+            let t64 = t55 * t63;
+            let t65 = t58 * t64 - t48 * t62;
+            let t66 = coupler_wz * coupler_wz;
+            let t67 = t66 + coupler_wy * coupler_wy;
+            let t68 = k(0.25) * (t41 * t15 + (t27 * t33 + t44 * t67));
+            let t69 = crank_wz * crank_wz + t2;
+            let t70 = k(2.0) * (k(0.5) - (t0 + crank_e1 * crank_e1));
+            let t71 = crank_wx * crank_wy;
+            let t72 = crank_e0 * crank_e3;
+            let t73 = crank_e1 * crank_e2;
+            let t74 = t73 - t72;
+            let t75 = k(2.0) * t74;
+            let t76 = t28 * t8 + (t75 * t71 + t70 * t69);
+            let t77 = k(0.1) * t76;
+            let t78 = t77 + t68;
+            let t79 = k(0.5) * t14;
+            let t80 = k(0.5) * t18;
+            let t81 = t80 * t42 - t79 * t32;
+            let t82 = t51 * t81;
+            let t83 = t79 + t49 * t82;
+            let t84 = t55 * t83;
+            let t85 = t58 * t84 + t48 * t82;
+            let t86 = k(0.25) * (t37 * t15 - (t19 * t33 + t45 * t67));
+            let t87 = k(2.0) * (t73 + t72);
+            let t88 = k(0.5) - (t0 + crank_e2 * crank_e2);
+            let t89 = k(2.0) * t88;
+            let t90 = t23 * t8 - (t89 * t71 + t87 * t69);
+            let t91 = k(0.1) * t90;
+            let t92 = t91 + t86;
+            let t93 = k(0.5) * t35;
+            let t94 = k(0.5) * t29;
+            let t95 = t94 * t42 - t93 * t32;
+            let t96 = t51 * t95;
+            let t97 = t93 + t49 * t96;
+            let t98 = t55 * t97;
+            let t99 = t58 * t98 + t48 * t96;
+            let t100 = k(0.25) * (t36 * t15 - (t30 * t33 - t46 * t67));
+            let t101 = t21 + t20;
+            let t102 = k(2.0) * t101;
+            let t103 = k(0.1) * (t31 * t8 - (t102 * t71 - t7 * t69));
+            let t104 = t103 + t100;
+            let t105 = k(1.0) / (t47 * t47 + t42 * t42);
+            let t106 = crank_wy * crank_wz;
+            let t107 = t106 * (t102 * t30 + (t75 * t27 + t89 * t19))
+                + t8 * (t7 * t30 - (t87 * t19 + t70 * t27));
+            let t108 = t7 * t46 + (t87 * t45 + t70 * t44);
+            let t109 = t7 * t36 - (t87 * t37 - t70 * t41);
+            let t110 = t102 * t46 - (t89 * t45 + t75 * t44);
+            let t111 = t102 * t36 - (t75 * t41 - t89 * t37);
+            let t112 = crank_wx * (coupler_wx * t111 + coupler_wz * t110)
+                - crank_wy * (coupler_wx * t109 + coupler_wz * t108);
+            let t113 = coupler_wy * coupler_wz * t42
+                + ((t66 + coupler_wx * coupler_wx) * t32 - t33 * t47);
+            let t114 = t113 + k(2.0) * t112 + (t3 * t32 + t107);
+            let t115 = t114 * (t42 * t105);
+            let t116 = t55 * t58;
+            let t117 = t58 * t116 - (k(5e-5) - t48 * t57);
+            let t118 = t114 * (t47 * t105);
+            let t119 = t50 * t54;
+            let t120 = t119 * t116 + t50 * t57;
+            let t121 = t120 * t118 - t117 * t115
+                + (t104 * t99 + (t92 * t85 + t78 * t65));
+            let t122 = t119 * t64 + (t60 - t50 * t62);
+            let t123 = t119 * t84 - (t80 - t50 * t82);
+            let t124 = t119 * t98 - (t94 - t50 * t96);
+            let t125 = t119 * (t55 * t119) - (k(0.0835) - t50 * (t50 * t51));
+            let t126 = t125 * t118 - t120 * t115
+                + (t104 * t124 + (t92 * t123 + t78 * t122));
+            let t127 = t42 * (t126 + (t119 * t56 + (t34 - t50 * t52)))
+                + t47 * (t121 + (t58 * t56 - t48 * t52));
+            let t128 = t83 * t64 - t81 * t62;
+            let t129 = t83 * t84 + t81 * t82;
+            let t130 = t97 * t84 + t95 * t82;
+            let t131 = t123 * t118 - t85 * t115
+                - (t92 - (t104 * t130 + (t92 * t129 + t78 * t128)));
+            let t132 = t131 + (t83 * t56 - (k(9.81) + t81 * t52));
+            let t133 = k(0.2) * t88;
+            let t134 = t63 * t64 + t61 * t62;
+            let t135 = t97 * t64 - t95 * t62;
+            let t136 = t122 * t118 - t65 * t115
+                - (t78 - (t104 * t135 + (t92 * t128 + t78 * t134)));
+            let t137 = k(0.2) * t74;
+            let t138 = t137 * (t136 + (t63 * t56 + t61 * t52));
+            let t139 = t97 * t98 + t95 * t96;
+            let t140 = t124 * t118 - t99 * t115
+                - (t104 - (t104 * t139 + (t92 * t130 + t78 * t135)));
+            let t141 = k(0.2) * t101;
+            let t142 = t141 * (t140 + (t97 * t56 - t95 * t52));
+            let t143 = t133 * (k(3.924) - t132) + t138 - t142
+                - (k(0.00133) * t71 + (t142 - (t138 - t133 * t132) + t127));
+            let t144 = t141 * t135 + (t133 * t128 - t137 * t134);
+            let t145 = t42 * t122 + t47 * t65;
+            let t146 = t137 + t144 + t145;
+            let t147 = t141 * t130 + (t133 * t129 - t137 * t128);
+            let t148 = t42 * t123 + t47 * t85;
+            let t149 = t133 - t147 - t148;
+            let t150 = t91 * (t149 - (t147 - k(0.28) * t88))
+                - t77 * (t146 + (t144 + k(0.28) * t74));
+            let t151 = t141 * t139 + (t133 * t130 - t137 * t135);
+            let t152 = t42 * t124 + t47 * t99;
+            let t153 = t141 - t151 - t152;
+            let t154 = t106 - t102 * t4;
+            let t155 = t42 * (t109 * t125 + t108 * t120)
+                + t47 * (t109 * t120 + t108 * t117);
+            let t156 = t133 * (t109 * t123 + t108 * t85)
+                - t137 * (t109 * t122 + t108 * t65);
+            let t157 = t141 * (t109 * t124 + t108 * t99) + t156;
+            let t158 = t42 * (t111 * t125 + t110 * t120)
+                + t47 * (t111 * t120 + t110 * t117);
+            let t159 = k(0.2) * t22;
+            let t160 = k(0.2) * t1;
+            let t161 = t111 * t122 + t110 * t65;
+            let t162 = t111 * t123 + t110 * t85;
+            let t163 = t111 * t124 + t110 * t99;
+            let t164 = t141 * t163 + (t133 * t162 - t137 * t161)
+                - (t160 * t152 + (t159 * t148 + t11 * t145));
+            let t165 = t160 * t151 + (t159 * t147 + t11 * t144);
+            let t166 = t11 - (t160 * t135 + (t159 * t128 + t11 * t134)) + t161;
+            let t167 = t159 - (t160 * t130 + (t159 * t129 + t11 * t128)) + t162;
+            let t168 = t160 - (t160 * t139 + (t159 * t130 + t11 * t135)) + t163;
+            let t169 = t141 * t168 + (t133 * t167 - t137 * t166)
+                + (t160 * t153 + (t159 * t149 - t11 * t146));
+            let t170 = (t169 - t165 - (t165 - t164 - t158)) * t9
+                - (t157 + (t157 + t155)) * t154;
+            let t171 = t170 + (t103 * (t153 - (t151 - k(0.28) * t101)) + t150) + t143;
+            let t172 = t42 * (t42 * t125 + t47 * t120) + t47 * (t42 * t120 + t47 * t117);
+            let t173 = t141 * t151 + (t133 * t147 - t137 * t144);
+            let t174 = t173 + k(2.0) * (t141 * t152 + (t133 * t148 - t137 * t145));
+            let t175 = k(2.0) * (t141 * t153 + (t133 * t149 + t137 * t146)) - t173;
+            let t176 = k(1.0)
+                / (t175 + (k(0.014) + (k(0.00135) - (t174 - (k(0.01) - t172)))));
+            let t177 = t176 * t171;
+            let t178 = t137 * t177 + t11 * t9;
+            let t179 = t77 + t178;
+            let t180 = t78 + (t178 + t179);
+            let t181 = t133 * t177 - t159 * t9;
+            let t182 = t91 - t181;
+            let t183 = t92 - (t181 - t182);
+            let t184 = t141 * t177 - t160 * t9;
+            let t185 = t103 - t184;
+            let t186 = t104 - (t184 - t185);
+            let t187 = t115 + (t47 * t177 + (t110 * t9 - t108 * t154));
+            let t188 = t118 - (t42 * t177 + (t111 * t9 - t109 * t154));
+            let t189 = t119 * t188 - t58 * t187
+                + (t97 * t186 + (t83 * t183 + t63 * t180));
+            let t190 = t55 * (t53 + t189);
+            let t191 = t50 * t188 + (t49 * t190 - t48 * t187)
+                + (t95 * t186 + (t81 * t183 - t61 * t180));
+            let t192 = t51 * (t43 - t191);
+            let t193 = t190 + t32 * t192;
+            let t194 = t188 + t42 * t192;
+            let t195 = t60 * t194 + t59 * t193;
+            let t196 = t180 - t195;
+            let t197 = rocker_e0 * rocker_e0;
+            let t198 = k(0.5) - (t197 + rocker_e3 * rocker_e3);
+            let t199 = rocker_wy * rocker_wy;
             (
                 t9,
                 t14,
@@ -1799,48 +1804,50 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
                 t35,
                 t40,
                 t42,
-                t43,
                 t47,
                 t48,
                 t49,
                 t50,
                 t51,
-                t53,
                 t55,
-                t56,
+                t58,
                 t59,
                 t60,
                 t61,
-                t62,
-                t64,
-                t69,
-                t71,
+                t63,
+                t68,
+                t70,
+                t75,
                 t76,
-                t77,
+                t79,
                 t80,
                 t81,
-                t82,
-                t84,
+                t83,
+                t86,
                 t87,
-                t88,
+                t89,
                 t90,
-                t91,
+                t93,
                 t94,
                 t95,
-                t96,
-                t98,
-                t101,
-                t121,
+                t97,
+                t100,
+                t119,
+                t133,
+                t137,
                 t141,
-                t145,
-                t149,
-                t162,
+                t154,
+                t176,
+                t177,
+                t179,
+                t182,
+                t183,
+                t185,
                 t186,
                 t187,
-                t189,
-                t190,
                 t192,
                 t193,
+                t194,
                 t195,
                 t196,
                 t197,
@@ -1849,369 +1856,311 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
             )
         };
         let (
-            t203,
-            t204,
+            t200,
             t205,
-            t211,
-            t216,
-            t232,
-            t235,
-            t236,
-            t238,
-            t255,
-            t261,
-            t262,
-            t263,
-            t266,
-            t267,
-            t271,
-            t273,
-            t276,
-            t295,
+            t221,
+            t224,
+            t253,
+            t291,
+            t298,
             t301,
-            t302,
-            t303,
-            t306,
             t307,
-            t313,
-            t316,
-            t322,
-            t341,
-            t347,
-            t348,
-            t349,
-            t352,
-            t353,
-            t373,
-            t374,
-            t375,
-            t376,
+            t335,
+            t336,
+            t356,
+            t357,
+            t358,
+            t359,
+            t361,
+            t363,
+            t365,
+            t366,
+            t369,
+            t377,
             t378,
+            t379,
             t380,
-            t382,
+            t381,
             t383,
+            t384,
+            t385,
             t386,
-            t388,
-            t394,
-            t395,
-            t396,
-            t397,
-            t398,
-            t399,
+            t387,
         ) = {
-            let t200 = t121 * t199 + (t55 * t198 - t59 * t197)
-                + (t98 * t196 + (t84 * t193 + t64 * t190));
-            let t201 = t198 - t56 * (t53 + t200);
-            let t202 = t50 * t199 - (t49 * t201 + t48 * t197)
-                + (t96 * t196 + (t82 * t193 - t62 * t190));
-            let t203 = t51 * (t43 - t202);
-            let t204 = t201 - t32 * t203;
-            let t205 = t199 + t42 * t203;
-            let t206 = t61 * t205 - t60 * t204;
-            let t207 = t190 - t206;
-            let t208 = rocker_e0 * rocker_e0;
-            let t209 = k(0.5) - (t208 + rocker_e3 * rocker_e3);
-            let t210 = rocker_wy * rocker_wy;
-            let t211 = (t210 + rocker_wx * rocker_wx) * (k(0.5) / t209);
-            let t212 = rocker_e0 * rocker_e2;
-            let t213 = rocker_e1 * rocker_e3;
-            let t214 = k(2.0) * (t213 - t212);
-            let t215 = rocker_wx * rocker_wz;
-            let t216 = t215 - t214 * t211;
-            let t217 = t213 + t212;
-            let t218 = k(0.5) - (t208 + rocker_e2 * rocker_e2);
-            let t219 = rocker_wx * rocker_wy;
-            let t220 = rocker_e0 * rocker_e3;
-            let t221 = rocker_e1 * rocker_e2;
-            let t222 = t221 - t220;
-            let t223 = rocker_wz * rocker_wz + t210;
-            let t224 = k(2.0) * t222 * t219
-                + k(2.0) * (k(0.5) - (t208 + rocker_e1 * rocker_e1)) * t223;
-            let t225 = k(0.2) * (k(2.0) * t217 * t215 + t224);
-            let t226 = rocker_e0 * rocker_e1;
-            let t227 = rocker_e2 * rocker_e3;
-            let t228 = t227 - t226;
-            let t229 = k(2.0) * t228 * t215
-                - (k(2.0) * t218 * t219 + k(2.0) * (t221 + t220) * t223);
-            let t230 = k(0.2) * t229;
-            let t231 = t227 + t226;
-            let t232 = k(2.0) * t231;
-            let t233 = k(0.2) * (k(2.0) * t209 * t215 - (t232 * t219 - t214 * t223));
-            let t234 = t233 * (k(0.32) * t231)
-                + (t230 * (k(0.32) * t218) - t225 * (k(0.32) * t222));
-            let t235 = k(23.364485981308412)
-                * (t234 - (k(0.01076) * t219 - k(3.1392) * t218));
-            let t236 = k(0.4) * t222;
-            let t237 = t236 * t235 + k(0.4) * t217 * t216;
-            let t238 = t225 + t237;
-            let t239 = t225 - t69 + (t237 + t238 + (t206 - t207));
-            let t240 = t26 * t42 + t40 * t32;
-            let t241 = t240 * t51;
-            let t242 = t40 - t49 * t241;
-            let t243 = t242 * t56;
-            let t244 = t32 * (t242 - t55 * t243) + t47 * (t243 * t59 - t48 * t241);
-            let t245 = t141 * (t243 * t84 - t241 * t82)
-                - t145 * (t243 * t64 - (k(1.0) - t241 * t62));
-            let t246 = t149 * (t243 * t98 - t241 * t96) + t245;
-            let t247 = t246 + (t42 * (t243 * t121 + (t26 - t50 * t241)) + t244);
-            let t248 = (t246 + t247) * t186;
-            let t249 = t145 * t248;
-            let t250 = k(2.0) * t249;
-            let t251 = t141 * t248;
-            let t252 = k(2.0) * t251;
-            let t253 = t149 * t248;
-            let t254 = k(2.0) * t253;
-            let t255 = t47 * t248;
-            let t256 = t32 * t248;
-            let t257 = t42 * t248;
-            let t258 = t121 * t257 - (t55 * t256 - t59 * t255)
-                + (t98 * t254 + (t84 * t252 - t64 * t250));
-            let t259 = t256 + t56 * (t242 + t258);
-            let t260 = t50 * t257 + (t49 * t259 + t48 * t255)
-                + (t96 * t254 + (t82 * t252 + t62 * t250));
-            let t261 = t51 * (t240 - t260);
-            let t262 = t259 + t32 * t261;
-            let t263 = t257 + t42 * t261;
-            let t264 = t61 * t263 + t60 * t262;
-            let t265 = t250 + t264;
-            let t266 = k(18.69158878504673) * t222;
-            let t267 = t236 * t266;
-            let t268 = k(1.0) / (k(2.0) * t267 + (t264 + t265));
-            let t269 = t81 * t205 + t80 * t204;
-            let t270 = t193 + t269;
-            let t271 = k(0.4) * t218;
-            let t272 = t271 * t235 - k(0.4) * t228 * t216;
-            let t273 = t230 - t272;
-            let t274 = t81 * t263 - t80 * t262;
-            let t275 = t252 + t274;
-            let t276 = t271 * t266;
-            let t277 = k(2.0) * t276 + (t274 + t275);
-            let t278 = t268 * t277;
-            let t279 = t278 * t239 + (t230 - t87 - (t272 - t273 + (t269 + t270)));
-            let t280 = t18 * t42 - t14 * t32;
-            let t281 = t51 * t280;
-            let t282 = t14 + t49 * t281;
-            let t283 = t56 * t282;
-            let t284 = t32 * (t282 - t55 * t283) + t47 * (t59 * t283 + t48 * t281);
-            let t285 = t141 * (t84 * t283 - (k(1.0) - t82 * t281))
-                - t145 * (t64 * t283 - t62 * t281);
-            let t286 = t149 * (t98 * t283 + t96 * t281) + t285;
-            let t287 = t286 + (t42 * (t121 * t283 - (t18 - t50 * t281)) + t284);
-            let t288 = t186 * (t286 + t287);
-            let t289 = t145 * t288;
-            let t290 = k(2.0) * t289;
-            let t291 = t141 * t288;
-            let t292 = k(2.0) * t291;
-            let t293 = t149 * t288;
-            let t294 = k(2.0) * t293;
-            let t295 = t47 * t288;
-            let t296 = t32 * t288;
-            let t297 = t42 * t288;
-            let t298 = t121 * t297 - (t55 * t296 - t59 * t295)
-                + (t98 * t294 + (t84 * t292 - t64 * t290));
-            let t299 = t296 + t56 * (t282 + t298);
-            let t300 = t50 * t297 + (t49 * t299 + t48 * t295)
-                + (t96 * t294 + (t82 * t292 + t62 * t290));
-            let t301 = t51 * (t280 + t300);
-            let t302 = t299 - t32 * t301;
-            let t303 = t297 - t42 * t301;
-            let t304 = t81 * t303 - t80 * t302;
-            let t305 = t292 + t304;
-            let t306 = k(18.69158878504673) * t218;
-            let t307 = t271 * t306;
-            let t308 = k(1.0) / (t277 * t278 - (k(2.0) * t307 - (t304 + t305)));
-            let t309 = t95 * t205 + t94 * t204;
-            let t310 = t196 + t309;
-            let t311 = k(0.4) * t231;
-            let t312 = t311 * t235 - k(0.4) * t209 * t216;
-            let t313 = t233 - t312;
-            let t314 = t95 * t263 - t94 * t262;
-            let t315 = t254 + t314;
-            let t316 = t311 * t266;
-            let t317 = k(2.0) * t316 + (t314 + t315);
-            let t318 = t268 * t317;
-            let t319 = t318 * t239 + (t233 - t101 - (t312 - t313 + (t309 + t310)));
-            let t320 = t95 * t303 - t94 * t302;
-            let t321 = t294 + t320;
-            let t322 = t311 * t306;
-            let t323 = t277 * t318 - (k(2.0) * t322 - (t320 + t321));
-            let t324 = t308 * t323;
-            let t325 = t324 * t279 - t319;
-            let t326 = t29 * t42 - t35 * t32;
-            let t327 = t51 * t326;
-            let t328 = t35 + t49 * t327;
-            let t329 = t56 * t328;
-            let t330 = t32 * (t328 - t55 * t329) + t47 * (t59 * t329 + t48 * t327);
-            let t331 = t141 * (t84 * t329 + t82 * t327)
-                - t145 * (t64 * t329 - t62 * t327);
-            let t332 = t149 * (t98 * t329 - (k(1.0) - t96 * t327)) + t331;
-            let t333 = t332 + (t42 * (t121 * t329 - (t29 - t50 * t327)) + t330);
-            let t334 = t186 * (t332 + t333);
-            let t335 = t145 * t334;
-            let t336 = k(2.0) * t335;
-            let t337 = t141 * t334;
-            let t338 = k(2.0) * t337;
-            let t339 = t149 * t334;
-            let t340 = k(2.0) * t339;
-            let t341 = t47 * t334;
-            let t342 = t32 * t334;
-            let t343 = t42 * t334;
-            let t344 = t121 * t343 - (t55 * t342 - t59 * t341)
-                + (t98 * t340 + (t84 * t338 - t64 * t336));
-            let t345 = t342 + t56 * (t328 + t344);
-            let t346 = t50 * t343 + (t49 * t345 + t48 * t341)
-                + (t96 * t340 + (t82 * t338 + t62 * t336));
-            let t347 = t51 * (t326 + t346);
-            let t348 = t345 - t32 * t347;
-            let t349 = t343 - t42 * t347;
-            let t350 = t95 * t349 - t94 * t348;
-            let t351 = t340 + t350;
-            let t352 = k(18.69158878504673) * t231;
-            let t353 = t311 * t352;
-            let t354 = t323 * t324 - (t317 * t318 - (k(2.0) * t353 - (t350 + t351)));
-            let t355 = k(1.0) / t354;
-            let t356 = k(1.0) / (t88 * t88 + t71 * t71);
-            let t357 = t356 * (t76 * t88 - t71 * t90);
-            let t358 = t357 * t187 + (t28 * t88 + t71 * t23) * t356 * t9;
-            let t359 = t23 * crank_wy + t90 * crank_wz;
-            let t360 = t28 * crank_wy - t76 * crank_wz;
-            let t361 = t356 * t356 * (k(2.0) * (t71 * t360 - t88 * t359))
-                * (t88 * t360 + t71 * t359);
-            let t362 = t359 * t360;
-            let t363 = t356 * (t71 * t91 - t362 + (t362 + t88 * t77)) + t361;
-            let t364 = t357 * t248;
-            let t365 = t268 * t364;
-            let t366 = t365 * t239 - (k(1.8) * (k(3.0) * t).sin() - t363 - t358);
-            let t367 = t277 * t365 + t357 * t288;
-            let t368 = t308 * t367;
-            let t369 = t323 * t368 - (t317 * t365 + t357 * t334);
-            let t370 = t355 * t369;
-            let t371 = t357 * t186;
-            let t372 = t369 * t370 - (t367 * t368 - (t364 * t365 - t357 * t371));
-            let t373 = (t370 * t325 - (t368 * t279 - t366)) / t372;
-            let t374 = t370 * t373 - t355 * t325;
-            let t375 = t368 * t373 - (t324 * t374 + t308 * t279);
-            let t376 = t365 * t373 - (t318 * t374 + (t278 * t375 + t268 * t239));
-            let t377 = t145 * t371;
-            let t378 = t373 * t377
-                + (t335 * t374 + (t289 * t375 + (t189 - t249 * t376)));
-            let t379 = t141 * t371;
-            let t380 = t373 * t379
-                + (t337 * t374 + (t291 * t375 - (t192 + t251 * t376)));
-            let t381 = t149 * t371;
-            let t382 = t373 * t381
-                + (t339 * t374 + (t293 * t375 - (t195 + t253 * t376)));
-            let t383 = t371 * t373
-                + (t334 * t374 + (t288 * t375 + (t187 - t248 * t376)));
-            let t384 = t375 * (t290 + (t61 * t303 + t60 * t302)) + (t207 - t265 * t376);
-            let t385 = k(2.0) * t377;
-            let t386 = k(2.0) * t379;
-            let t387 = k(2.0) * t381;
-            let t388 = t47 * t371;
-            let t389 = t32 * t371;
-            let t390 = t42 * t371;
-            let t391 = t121 * t390 - (t55 * t389 - t59 * t388)
-                + (t98 * t387 + (t84 * t386 - t64 * t385));
-            let t392 = t389 + t56 * t391;
-            let t393 = t50 * t390 + (t49 * t392 + t48 * t388)
-                + (t96 * t387 + (t82 * t386 + t62 * t385));
-            let t394 = t51 * t393;
-            let t395 = t392 - t32 * t394;
-            let t396 = t390 - t42 * t394;
-            let t397 = t373 * (t385 + (t61 * t396 + t60 * t395))
-                + (t374 * (t336 + (t61 * t349 + t60 * t348)) + t384);
-            let t398 = t374 * (t338 + (t81 * t349 - t80 * t348))
-                + (t305 * t375 - (t270 + t275 * t376));
-            let t399 = t373 * (t387 + (t95 * t396 - t94 * t395))
-                + (t351 * t374 + (t321 * t375 - (t310 + t315 * t376)));
+            let t200 = (t199 + rocker_wx * rocker_wx) * (k(0.5) / t198);
+            let t201 = rocker_e0 * rocker_e2;
+            let t202 = rocker_e1 * rocker_e3;
+            let t203 = k(2.0) * (t202 - t201);
+            let t204 = rocker_wx * rocker_wz;
+            let t205 = t204 - t203 * t200;
+            let t206 = t202 + t201;
+            let t207 = k(0.5) - (t197 + rocker_e2 * rocker_e2);
+            let t208 = rocker_wx * rocker_wy;
+            let t209 = rocker_e0 * rocker_e3;
+            let t210 = rocker_e1 * rocker_e2;
+            let t211 = t210 - t209;
+            let t212 = rocker_wz * rocker_wz + t199;
+            let t213 = k(2.0) * t211 * t208
+                + k(2.0) * (k(0.5) - (t197 + rocker_e1 * rocker_e1)) * t212;
+            let t214 = k(0.2) * (k(2.0) * t206 * t204 + t213);
+            let t215 = rocker_e0 * rocker_e1;
+            let t216 = rocker_e2 * rocker_e3;
+            let t217 = t216 - t215;
+            let t218 = k(2.0) * t217 * t204
+                - (k(2.0) * t207 * t208 + k(2.0) * (t210 + t209) * t212);
+            let t219 = k(0.2) * t218;
+            let t220 = t216 + t215;
+            let t221 = k(2.0) * t220;
+            let t222 = k(0.2) * (k(2.0) * t198 * t204 - (t221 * t208 - t203 * t212));
+            let t223 = t222 * (k(0.32) * t220)
+                + (t219 * (k(0.32) * t207) - t214 * (k(0.32) * t211));
+            let t224 = k(23.364485981308412)
+                * (t223 - (k(0.01076) * t208 - k(3.1392) * t207));
+            let t225 = k(0.4) * t211;
+            let t226 = t225 * t224 + k(0.4) * t206 * t205;
+            let t227 = t214 + t226;
+            let t228 = t214 - t68 + (t226 + t227 + (t195 - t196));
+            let t229 = t26 * t42 + t40 * t32;
+            let t230 = t229 * t51;
+            let t231 = t40 - t49 * t230;
+            let t232 = t231 * t55;
+            let t233 = t42 * (t232 * t119 + (t26 - t50 * t230))
+                + t47 * (t232 * t58 - t48 * t230);
+            let t234 = t133 * (t232 * t83 - t230 * t81)
+                - t137 * (t232 * t63 - (k(1.0) - t230 * t61));
+            let t235 = t141 * (t232 * t97 - t230 * t95) + t234;
+            let t236 = (t235 + (t235 + t233)) * t176;
+            let t237 = t137 * t236;
+            let t238 = k(2.0) * t237;
+            let t239 = t133 * t236;
+            let t240 = k(2.0) * t239;
+            let t241 = t141 * t236;
+            let t242 = k(2.0) * t241;
+            let t243 = t47 * t236;
+            let t244 = t42 * t236;
+            let t245 = t119 * t244 + t58 * t243
+                + (t97 * t242 + (t83 * t240 - t63 * t238));
+            let t246 = t55 * (t231 + t245);
+            let t247 = t50 * t244 + (t49 * t246 + t48 * t243)
+                + (t95 * t242 + (t81 * t240 + t61 * t238));
+            let t248 = t51 * (t229 - t247);
+            let t249 = t246 + t32 * t248;
+            let t250 = t244 + t42 * t248;
+            let t251 = t60 * t250 + t59 * t249;
+            let t252 = t238 + t251;
+            let t253 = k(18.69158878504673) * t211;
+            let t254 = t225 * t253;
+            let t255 = k(1.0) / (k(2.0) * t254 + (t251 + t252));
+            let t256 = t80 * t194 - t79 * t193;
+            let t257 = t183 + t256;
+            let t258 = k(0.4) * t207;
+            let t259 = t258 * t224 - k(0.4) * t217 * t205;
+            let t260 = t219 - t259;
+            let t261 = t80 * t250 - t79 * t249;
+            let t262 = t240 + t261;
+            let t263 = t258 * t253;
+            let t264 = k(2.0) * t263 + (t261 + t262);
+            let t265 = t255 * t264;
+            let t266 = t265 * t228 + (t219 - t86 - (t259 - t260 + (t256 + t257)));
+            let t267 = t18 * t42 - t14 * t32;
+            let t268 = t51 * t267;
+            let t269 = t14 + t49 * t268;
+            let t270 = t55 * t269;
+            let t271 = t42 * (t119 * t270 - (t18 - t50 * t268))
+                + t47 * (t58 * t270 + t48 * t268);
+            let t272 = t133 * (t83 * t270 - (k(1.0) - t81 * t268))
+                - t137 * (t63 * t270 - t61 * t268);
+            let t273 = t141 * (t97 * t270 + t95 * t268) + t272;
+            let t274 = t176 * (t273 + (t273 + t271));
+            let t275 = t137 * t274;
+            let t276 = k(2.0) * t275;
+            let t277 = t133 * t274;
+            let t278 = k(2.0) * t277;
+            let t279 = t141 * t274;
+            let t280 = k(2.0) * t279;
+            let t281 = t47 * t274;
+            let t282 = t42 * t274;
+            let t283 = t119 * t282 + t58 * t281
+                + (t97 * t280 + (t83 * t278 - t63 * t276));
+            let t284 = t55 * (t269 + t283);
+            let t285 = t50 * t282 + (t49 * t284 + t48 * t281)
+                + (t95 * t280 + (t81 * t278 + t61 * t276));
+            let t286 = t51 * (t267 + t285);
+            let t287 = t284 - t32 * t286;
+            let t288 = t282 - t42 * t286;
+            let t289 = t80 * t288 - t79 * t287;
+            let t290 = t278 + t289;
+            let t291 = k(18.69158878504673) * t207;
+            let t292 = t258 * t291;
+            let t293 = k(1.0) / (t264 * t265 - (k(2.0) * t292 - (t289 + t290)));
+            let t294 = t94 * t194 - t93 * t193;
+            let t295 = t186 + t294;
+            let t296 = k(0.4) * t220;
+            let t297 = t296 * t224 - k(0.4) * t198 * t205;
+            let t298 = t222 - t297;
+            let t299 = t94 * t250 - t93 * t249;
+            let t300 = t242 + t299;
+            let t301 = t296 * t253;
+            let t302 = k(2.0) * t301 + (t299 + t300);
+            let t303 = t255 * t302;
+            let t304 = t303 * t228 + (t222 - t100 - (t297 - t298 + (t294 + t295)));
+            let t305 = t94 * t288 - t93 * t287;
+            let t306 = t280 + t305;
+            let t307 = t296 * t291;
+            let t308 = t264 * t303 - (k(2.0) * t307 - (t305 + t306));
+            let t309 = t293 * t308;
+            let t310 = t309 * t266 - t304;
+            let t311 = t29 * t42 - t35 * t32;
+            let t312 = t51 * t311;
+            let t313 = t35 + t49 * t312;
+            let t314 = t55 * t313;
+            let t315 = t42 * (t119 * t314 - (t29 - t50 * t312))
+                + t47 * (t58 * t314 + t48 * t312);
+            let t316 = t133 * (t83 * t314 + t81 * t312)
+                - t137 * (t63 * t314 - t61 * t312);
+            let t317 = t141 * (t97 * t314 - (k(1.0) - t95 * t312)) + t316;
+            let t318 = t176 * (t317 + (t317 + t315));
+            let t319 = t137 * t318;
+            let t320 = k(2.0) * t319;
+            let t321 = t133 * t318;
+            let t322 = k(2.0) * t321;
+            let t323 = t141 * t318;
+            let t324 = k(2.0) * t323;
+            let t325 = t47 * t318;
+            let t326 = t42 * t318;
+            let t327 = t119 * t326 + t58 * t325
+                + (t97 * t324 + (t83 * t322 - t63 * t320));
+            let t328 = t55 * (t313 + t327);
+            let t329 = t50 * t326 + (t49 * t328 + t48 * t325)
+                + (t95 * t324 + (t81 * t322 + t61 * t320));
+            let t330 = t51 * (t311 + t329);
+            let t331 = t328 - t32 * t330;
+            let t332 = t326 - t42 * t330;
+            let t333 = t94 * t332 - t93 * t331;
+            let t334 = t324 + t333;
+            let t335 = k(18.69158878504673) * t220;
+            let t336 = t296 * t335;
+            let t337 = t308 * t309 - (t302 * t303 - (k(2.0) * t336 - (t333 + t334)));
+            let t338 = k(1.0) / t337;
+            let t339 = k(1.0) / (t87 * t87 + t70 * t70);
+            let t340 = t339 * (t75 * t87 - t70 * t89);
+            let t341 = t340 * t177 + (t28 * t87 + t70 * t23) * t339 * t9;
+            let t342 = t23 * crank_wy + t89 * crank_wz;
+            let t343 = t28 * crank_wy - t75 * crank_wz;
+            let t344 = t339 * t339 * (k(2.0) * (t70 * t343 - t87 * t342))
+                * (t87 * t343 + t70 * t342);
+            let t345 = t342 * t343;
+            let t346 = t339 * (t70 * t90 - t345 + (t345 + t87 * t76)) + t344;
+            let t347 = t340 * t236;
+            let t348 = t255 * t347;
+            let t349 = t348 * t228 - (k(1.8) * (k(3.0) * t).sin() - t346 - t341);
+            let t350 = t264 * t348 + t340 * t274;
+            let t351 = t293 * t350;
+            let t352 = t308 * t351 - (t302 * t348 + t340 * t318);
+            let t353 = t338 * t352;
+            let t354 = t340 * t176;
+            let t355 = t352 * t353 - (t350 * t351 - (t347 * t348 - t340 * t354));
+            let t356 = (t353 * t310 - (t351 * t266 - t349)) / t355;
+            let t357 = t353 * t356 - t338 * t310;
+            let t358 = t351 * t356 - (t309 * t357 + t293 * t266);
+            let t359 = t348 * t356 - (t303 * t357 + (t265 * t358 + t255 * t228));
+            let t360 = t137 * t354;
+            let t361 = t356 * t360
+                + (t319 * t357 + (t275 * t358 + (t179 - t237 * t359)));
+            let t362 = t133 * t354;
+            let t363 = t356 * t362
+                + (t321 * t357 + (t277 * t358 - (t182 + t239 * t359)));
+            let t364 = t141 * t354;
+            let t365 = t356 * t364
+                + (t323 * t357 + (t279 * t358 - (t185 + t241 * t359)));
+            let t366 = t354 * t356
+                + (t318 * t357 + (t274 * t358 + (t177 - t236 * t359)));
+            let t367 = t358 * (t276 + (t60 * t288 + t59 * t287)) + (t196 - t252 * t359);
+            let t368 = k(2.0) * t360;
+            let t369 = k(2.0) * t362;
+            let t370 = k(2.0) * t364;
+            let t371 = t47 * t354;
+            let t372 = t42 * t354;
+            let t373 = t119 * t372 + t58 * t371
+                + (t97 * t370 + (t83 * t369 - t63 * t368));
+            let t374 = t55 * t373;
+            let t375 = t50 * t372 + (t49 * t374 + t48 * t371)
+                + (t95 * t370 + (t81 * t369 + t61 * t368));
+            let t376 = t51 * t375;
+            let t377 = t374 - t32 * t376;
+            let t378 = t372 - t42 * t376;
+            let t379 = t356 * (t368 + (t60 * t378 + t59 * t377))
+                + (t357 * (t320 + (t60 * t332 + t59 * t331)) + t367);
+            let t380 = t357 * (t322 + (t80 * t332 - t79 * t331))
+                + (t290 * t358 - (t257 + t262 * t359));
+            let t381 = t356 * (t370 + (t94 * t378 - t93 * t377))
+                + (t334 * t357 + (t306 * t358 - (t295 + t300 * t359)));
+            let t382 = t358 * (t281 - t47 * t286)
+                - (t359 * (t243 + t47 * t248) - (t187 - t47 * t192));
+            let t383 = t356 * (t371 - t47 * t376) + (t357 * (t325 - t47 * t330) + t382);
+            let t384 = t356 * t377
+                + (t331 * t357 + (t287 * t358 - (t193 + t249 * t359)));
+            let t385 = t356 * t378
+                + (t332 * t357 + (t288 * t358 - (t194 + t250 * t359)));
+            let t386 = t357 * (t225 * t335)
+                + (t358 * (t225 * t291) + (t227 + t254 * t359));
+            let t387 = t357 * (t258 * t335) + (t292 * t358 - (t260 - t263 * t359));
             (
-                t203,
-                t204,
+                t200,
                 t205,
-                t211,
-                t216,
-                t232,
-                t235,
-                t236,
-                t238,
-                t255,
-                t261,
-                t262,
-                t263,
-                t266,
-                t267,
-                t271,
-                t273,
-                t276,
-                t295,
+                t221,
+                t224,
+                t253,
+                t291,
+                t298,
                 t301,
-                t302,
-                t303,
-                t306,
                 t307,
-                t313,
-                t316,
-                t322,
-                t341,
-                t347,
-                t348,
-                t349,
-                t352,
-                t353,
-                t373,
-                t374,
-                t375,
-                t376,
+                t335,
+                t336,
+                t356,
+                t357,
+                t358,
+                t359,
+                t361,
+                t363,
+                t365,
+                t366,
+                t369,
+                t377,
                 t378,
+                t379,
                 t380,
-                t382,
+                t381,
                 t383,
+                t384,
+                t385,
                 t386,
-                t388,
-                t394,
-                t395,
-                t396,
-                t397,
-                t398,
-                t399,
+                t387,
             )
         };
-        let (t401, t402, t403, t404, t405) = {
-            let t400 = t375 * (t295 - t47 * t301)
-                - (t376 * (t255 + t47 * t261) - (t197 - t47 * t203));
-            let t401 = t373 * (t388 - t47 * t394) + (t374 * (t341 - t47 * t347) + t400);
-            let t402 = t373 * t395
-                + (t348 * t374 + (t302 * t375 + (t204 - t262 * t376)));
-            let t403 = t373 * t396
-                + (t349 * t374 + (t303 * t375 - (t205 + t263 * t376)));
-            let t404 = t374 * (t236 * t352)
-                + (t375 * (t236 * t306) + (t238 + t267 * t376));
-            let t405 = t374 * (t271 * t352) + (t307 * t375 - (t273 - t276 * t376));
-            (t401, t402, t403, t404, t405)
-        };
         *out = [
-            t378,
-            -t380,
-            t382,
-            t162,
+            t361,
+            -t363,
+            t365,
+            t154,
             -t9,
-            t383,
-            t397,
-            -(t373 * (t386 + (t81 * t396 - t80 * t395)) + t398),
-            t399,
-            -t401,
-            -t402,
-            t403,
-            t404,
-            -t405,
-            t353 * t374 + (t322 * t375 - (t313 - t316 * t376)),
-            rocker_wy * rocker_wz - t232 * t211,
-            -t216,
-            t352 * t374 + (t306 * t375 + (t235 + t266 * t376)),
-            -t376,
-            t375,
-            -t374,
-            t373,
+            t366,
+            t379,
+            -(t356 * (t369 + (t80 * t378 - t79 * t377)) + t380),
+            t381,
+            -t383,
+            -t384,
+            t385,
+            t386,
+            -t387,
+            t336 * t357 + (t307 * t358 - (t298 - t301 * t359)),
+            rocker_wy * rocker_wz - t221 * t200,
+            -t205,
+            t335 * t357 + (t291 * t358 + (t224 + t253 * t359)),
+            -t359,
+            t358,
+            -t357,
+            t356,
         ];
     }
     /// Writes λ: 281 operations (107 ±, 170 ×, 4 ÷).

@@ -19,7 +19,7 @@
 //! | gamma | γ | 122 | 193 | 0 | 315 | 6 of 15 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 90 | 128 | 0 | 218 | 0 of 15 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 199 | 292 | 5 | 496 | 7 of 18 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 180 | 271 | 5 | 456 | 7 of 18 |
 //! | multipliers | λ, the accelerations being known | 114 | 187 | 3 | 304 | 0 of 15 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
@@ -1723,7 +1723,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeBearings<T> {
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 496 operations (199 ±, 292 ×, 5 ÷).
+    /// Solves eq. (17): 456 operations (180 ±, 271 ×, 5 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1815,110 +1815,101 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeBearings<T> {
         let t63 = t41 * t62 + t40 * t61;
         let t64 = t63 * t45 - (t60 * t31 + t59 * t24);
         let t65 = t51 * t58 + (t49 * t56 + t50 * t54);
-        let t66 = t42 - t43 * t45;
-        let t67 = t51 * t39 - (t49 * t37 - t50 * t35);
-        let t68 = t67 * t66 - (t65 * t64 + t52 * t46);
-        let t69 = t44 * t63;
-        let t70 = t63 * t69 - (k(2e-6) + (k(1.25e-9) + (t60 * t62 + t59 * t61)));
-        let t71 = t63 - t43 * t69;
-        let t72 = t67 * t71 - (t65 * t70 + t52 * t64);
-        let t73 = t65 * t71 + t52 * t66;
-        let t74 = k(2.0) * (k(0.5) - (t12 + rotor_e1 * rotor_e1));
-        let t75 = k(2.0) * (t8 + t7);
-        let t76 = k(2.0) * (t26 - t25);
-        let t77 = t22 * t76 + (t16 * t75 + t11 * t74);
-        let t78 = inner_ring_wy * (t58 * t76 - (t54 * t75 + t56 * t74))
-            + inner_ring_wx * t77;
-        let t79 = inner_ring_wz * (t39 * t76 - (t35 * t75 - t37 * t74)) - t78;
-        let t80 = rotor_wx + t79;
-        let t81 = inner_ring_wz * t41 - (inner_ring_wy * t60 + inner_ring_wx * t30);
-        let t82 = rotor_wz - t81;
-        let t83 = inner_ring_wz * t40 - (inner_ring_wy * t59 + inner_ring_wx * t23);
-        let t84 = rotor_wy + t83;
-        let t85 = (t84 * t84 + t82 * t82) / t77;
-        let t86 = rotor_wz * t79 + rotor_wx * t81 - (t30 * t85 - t82 * t80);
-        let t87 = k(5e-6) * (rotor_wx * rotor_wz + t86);
-        let t88 = rotor_wx * t83 - rotor_wy * t79 - (t23 * t85 + t84 * t80);
-        let t89 = k(5e-6) * (rotor_wx * rotor_wy - t88);
-        let t90 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
-        let t91 = inner_ring_wx * inner_ring_wy;
-        let t92 = inner_ring_wx * inner_ring_wz;
-        let t93 = t37 * t92 + (t56 * t91 + t11 * t90);
-        let t94 = k(1e-5) * t93;
-        let t95 = k(0.00025) * t55;
-        let t96 = t35 * t92 - (t54 * t91 + t16 * t90);
-        let t97 = k(0.8) + k(1e-5) * t96;
-        let t98 = k(0.00025) * t53;
-        let t99 = t39 * t92 - (t58 * t91 - t22 * t90);
-        let t100 = k(1e-5) * t99;
-        let t101 = k(0.00025) * t57;
-        let t102 = t101 * t100 + (t98 * t97 - t95 * t94) + (t41 * t89 + t40 * t87);
-        let t103 = k(1e-6) * t91 - t102;
-        let t104 = t44 * t103;
-        let t105 = t42 * t104
-            - (k(1e-6) * (inner_ring_wy * inner_ring_wz) - (t30 * t89 + t23 * t87));
-        let t106 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
-        let t107 = k(2.0) * (t48 + t47);
-        let t108 = outer_ring_e0 * outer_ring_e2;
-        let t109 = outer_ring_e1 * outer_ring_e3;
-        let t110 = k(2.0) * (t109 - t108);
-        let t111 = t110 * t39 - (t107 * t35 - t106 * t37);
-        let t112 = k(2.0) * (k(0.5) - (t0 + outer_ring_e3 * outer_ring_e3));
-        let t113 = k(2.0) * (t109 + t108);
-        let t114 = t113 * t37 + t5 * t35 + t112 * t39;
-        let t115 = outer_ring_wz * t114 - (outer_ring_wy * t67 + outer_ring_wx * t111);
-        let t116 = inner_ring_wz - t115;
-        let t117 = t110 * t58 - (t107 * t54 + t106 * t56);
-        let t118 = t112 * t58 - (t113 * t56 - t5 * t54);
-        let t119 = outer_ring_wz * t118 - (outer_ring_wy * t65 + outer_ring_wx * t117);
-        let t120 = inner_ring_wy + t119;
-        let t121 = t110 * t22 + (t107 * t16 + t106 * t11);
-        let t122 = t112 * t22 - (t5 * t16 - t113 * t11);
-        let t123 = outer_ring_wz * t122 - (outer_ring_wy * t52 + outer_ring_wx * t121);
-        let t124 = inner_ring_wx + t123;
-        let t125 = (t124 * t124 + t120 * t120) / t114;
-        let t126 = inner_ring_wy * t115 + inner_ring_wz * t119
-            + (t118 * t125 - t120 * t116);
-        let t127 = inner_ring_wz * t123 + inner_ring_wx * t115
-            + (t122 * t125 - t124 * t116);
-        let t128 = k(0.00025) * t36;
-        let t129 = k(0.00025) * t34;
-        let t130 = k(0.00025) * t38;
-        let t131 = t130 * t100 + (t129 * t97 + t128 * t94) - (t60 * t89 + t59 * t87);
-        let t132 = t65 * (t70 * t127 - t64 * t126 - (t63 * t104 - t131));
-        let t133 = t67 * (t71 * t127 - t66 * t126 - (t103 - t43 * t104));
-        let t134 = t133 - (t132 + t52 * (t64 * t127 - t46 * t126 - t105));
-        let t135 = t65 * (t111 * t71 - (t117 * t70 + t121 * t64))
-            + t52 * (t111 * t66 - (t117 * t64 + t121 * t46));
-        let t136 = outer_ring_wx * outer_ring_wy - t107 * t2;
-        let t137 = (t114 * t73 + (t72 * t118 + t68 * t122)) * t136
-            + t6 * (t67 * (t117 * t71 + t121 * t66) + t135);
-        let t138 = (t137 - (k(1e-6) * (outer_ring_wx * outer_ring_wz) + t134))
-            / (k(1e-6) + (t67 * t73 + (t65 * t72 + t52 * t68)));
-        let t139 = t126 + (t122 * t136 - (t52 * t138 - t121 * t6));
-        let t140 = t127 - (t118 * t136 - (t65 * t138 - t117 * t6));
-        let t141 = t114 * t136 - (t67 * t138 - t111 * t6);
-        let t142 = t44 * (t103 + (t43 * t141 - (t63 * t140 - t42 * t139)));
-        let t143 = t141 - t142;
+        let t66 = t65 * t64 + t52 * t46;
+        let t67 = t63 * (t44 * t63) - (k(2e-6) + (k(1.25e-9) + (t60 * t62 + t59 * t61)));
+        let t68 = t65 * t67 + t52 * t64;
+        let t69 = k(2.0) * (k(0.5) - (t12 + rotor_e1 * rotor_e1));
+        let t70 = k(2.0) * (t8 + t7);
+        let t71 = k(2.0) * (t26 - t25);
+        let t72 = t22 * t71 + (t16 * t70 + t11 * t69);
+        let t73 = inner_ring_wy * (t58 * t71 - (t54 * t70 + t56 * t69))
+            + inner_ring_wx * t72;
+        let t74 = inner_ring_wz * (t39 * t71 - (t35 * t70 - t37 * t69)) - t73;
+        let t75 = rotor_wx + t74;
+        let t76 = inner_ring_wz * t41 - (inner_ring_wy * t60 + inner_ring_wx * t30);
+        let t77 = rotor_wz - t76;
+        let t78 = inner_ring_wz * t40 - (inner_ring_wy * t59 + inner_ring_wx * t23);
+        let t79 = rotor_wy + t78;
+        let t80 = (t79 * t79 + t77 * t77) / t72;
+        let t81 = rotor_wz * t74 + rotor_wx * t76 - (t30 * t80 - t77 * t75);
+        let t82 = k(5e-6) * (rotor_wx * rotor_wz + t81);
+        let t83 = rotor_wx * t78 - rotor_wy * t74 - (t23 * t80 + t79 * t75);
+        let t84 = k(5e-6) * (rotor_wx * rotor_wy - t83);
+        let t85 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
+        let t86 = inner_ring_wx * inner_ring_wy;
+        let t87 = inner_ring_wx * inner_ring_wz;
+        let t88 = t37 * t87 + (t56 * t86 + t11 * t85);
+        let t89 = k(1e-5) * t88;
+        let t90 = k(0.00025) * t55;
+        let t91 = t35 * t87 - (t54 * t86 + t16 * t85);
+        let t92 = k(0.8) + k(1e-5) * t91;
+        let t93 = k(0.00025) * t53;
+        let t94 = t39 * t87 - (t58 * t86 - t22 * t85);
+        let t95 = k(1e-5) * t94;
+        let t96 = k(0.00025) * t57;
+        let t97 = t96 * t95 + (t93 * t92 - t90 * t89) + (t41 * t84 + t40 * t82);
+        let t98 = k(1e-6) * t86 - t97;
+        let t99 = t44 * t98;
+        let t100 = t42 * t99
+            - (k(1e-6) * (inner_ring_wy * inner_ring_wz) - (t30 * t84 + t23 * t82));
+        let t101 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
+        let t102 = k(2.0) * (t48 + t47);
+        let t103 = outer_ring_e0 * outer_ring_e2;
+        let t104 = outer_ring_e1 * outer_ring_e3;
+        let t105 = k(2.0) * (t104 - t103);
+        let t106 = outer_ring_wy * (t51 * t39 - (t49 * t37 - t50 * t35))
+            + outer_ring_wx * (t105 * t39 - (t102 * t35 - t101 * t37));
+        let t107 = k(2.0) * (k(0.5) - (t0 + outer_ring_e3 * outer_ring_e3));
+        let t108 = k(2.0) * (t104 + t103);
+        let t109 = t108 * t37 + t5 * t35 + t107 * t39;
+        let t110 = outer_ring_wz * t109 - t106;
+        let t111 = inner_ring_wz - t110;
+        let t112 = t105 * t58 - (t102 * t54 + t101 * t56);
+        let t113 = t107 * t58 - (t108 * t56 - t5 * t54);
+        let t114 = outer_ring_wz * t113 - (outer_ring_wy * t65 + outer_ring_wx * t112);
+        let t115 = inner_ring_wy + t114;
+        let t116 = t105 * t22 + (t102 * t16 + t101 * t11);
+        let t117 = t107 * t22 - (t5 * t16 - t108 * t11);
+        let t118 = outer_ring_wz * t117 - (outer_ring_wy * t52 + outer_ring_wx * t116);
+        let t119 = inner_ring_wx + t118;
+        let t120 = (t119 * t119 + t115 * t115) / t109;
+        let t121 = inner_ring_wy * t110 + inner_ring_wz * t114
+            + (t113 * t120 - t115 * t111);
+        let t122 = inner_ring_wz * t118 + inner_ring_wx * t110
+            + (t117 * t120 - t119 * t111);
+        let t123 = k(0.00025) * t36;
+        let t124 = k(0.00025) * t34;
+        let t125 = k(0.00025) * t38;
+        let t126 = t125 * t95 + (t124 * t92 + t123 * t89) - (t60 * t84 + t59 * t82);
+        let t127 = t65 * (t67 * t122 - t64 * t121 - (t63 * t99 - t126));
+        let t128 = k(1e-6) * (outer_ring_wx * outer_ring_wz)
+            - (t127 + t52 * (t64 * t122 - t46 * t121 - t100));
+        let t129 = t65 * (t112 * t67 + t116 * t64) + t52 * (t112 * t64 + t116 * t46);
+        let t130 = outer_ring_wx * outer_ring_wy - t102 * t2;
+        let t131 = (t68 * t113 + t66 * t117) * t130 + t6 * t129 + t128;
+        let t132 = t131 / (k(1e-6) - (t65 * t68 + t52 * t66));
+        let t133 = t121 + (t117 * t130 + (t52 * t132 + t116 * t6));
+        let t134 = t122 - (t113 * t130 + (t65 * t132 + t112 * t6));
+        let t135 = t44 * (t98 - (t63 * t134 - t42 * t133));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t6,
-            t138,
-            t136,
+            -t132,
+            t130,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t139,
-            t140,
-            t143,
-            t95 * t143 - t128 * t140 + k(0.000125) * t93,
-            k(0.000125) * t96 - (t98 * t143 + t129 * t140),
-            t101 * t143 + t130 * t140 - k(0.000125) * t99,
+            -t133,
+            t134,
+            -t135,
+            k(0.000125) * t88 - (t90 * t135 + t123 * t134),
+            t93 * t135 - t124 * t134 + k(0.000125) * t91,
+            -(t96 * t135 - t125 * t134 + k(0.000125) * t94),
             k(0.0),
-            t86 - (t40 * t143 - (t59 * t140 - t23 * t139)),
-            t88 + (t41 * t143 - (t60 * t140 - t30 * t139)),
+            t81 + (t40 * t135 + (t59 * t134 - t23 * t133)),
+            t83 - (t41 * t135 + (t60 * t134 - t30 * t133)),
         ];
     }
     /// Writes λ: 304 operations (114 ±, 187 ×, 3 ÷).

@@ -1006,7 +1006,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Stops<T> {
         let t7 = (k(0.0025) + t6 * t6).sqrt();
         let t8 = k(25.0) * (t6 - t7) - u1 * (k(0.05) * (k(1.0) - t6 / t7));
         let t9 = k(50.0) * (t8 - k(20.0) * (t5 - (k(0.0025) + t5 * t5).sqrt()));
-        *out = [-(k(2.0) * (k(4.905) + (t4 - t2))), t9];
+        *out = [-(k(9.81) + k(2.0) * (t4 - t2)), t9];
     }
     /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 40 operations (20 ±, 17 ×, 3 ÷) and 4 functions.
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
@@ -1121,7 +1121,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Stops<T> {
         let t13 = disc_wz * (k(0.05) * (k(1.0) - t11 / t12)) - k(25.0) * (t11 - t12);
         let t14 = k(9.5) + t10;
         let t15 = k(50.0) * (k(20.0) * (t14 - (k(0.0025) + t14 * t14).sqrt()) + t13);
-        *out = [-(k(2.0) * (t4 + t2 + k(4.905))), -t15];
+        *out = [-(k(9.81) + k(2.0) * (t4 + t2)), -t15];
     }
     /// Writes (s̈, ẇ') at a state that satisfies the constraints: 72 operations (30 ±, 39 ×, 3 ÷) and 7 functions.
     fn corrected_accelerations(
@@ -1151,7 +1151,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Stops<T> {
         let t3 = (hammer_rz * hammer_rz + k(0.0001)).sqrt();
         let t4 = k(2000.0) * (hammer_rz - t3)
             + hammer_sz * (k(2.5) * (k(1.0) - hammer_rz / t3));
-        let t5 = k(2.0) * (t4 + t2 + k(4.905));
+        let t5 = k(9.81) + k(2.0) * (t4 + t2);
         let t6 = turn0.cos();
         let t7 = k(2.0) * (k(0.5) - (disc_e0 * disc_e0 + disc_e1 * disc_e1));
         let t8 = turn0.sin();
@@ -1243,7 +1243,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Stops<T> {
         let t3 = (hammer_rz * hammer_rz + k(0.0001)).sqrt();
         let t4 = k(2000.0) * (hammer_rz - t3)
             + hammer_sz * (k(2.5) * (k(1.0) - hammer_rz / t3));
-        let t5 = k(2.0) * (t4 + t2 + k(4.905));
+        let t5 = k(9.81) + k(2.0) * (t4 + t2);
         let t6 = k(2.0) * (hammer_e1 * hammer_e3 + hammer_e0 * hammer_e2) * t5;
         let t7 = k(2.0) * (hammer_e2 * hammer_e3 - hammer_e0 * hammer_e1) * t5;
         let t8 = disc_wy * disc_wz;
