@@ -22,7 +22,7 @@ use crate::graph::{ExprId, Graph};
 use crate::kinematics::Kinematics;
 use crate::linear::{UNIT3, Vec3, ZERO3, transposed};
 use crate::null_space::Arm;
-use crate::schedule::Operations;
+use crate::schedule::cheapest;
 use crate::symbol::Symbol;
 use crate::system::System;
 use carriage::Carriage;
@@ -245,15 +245,6 @@ fn accelerations_by_symbol(accelerations: &[ExprId]) -> Values {
 
 fn expanded(system: &mut System, values: &Values, roots: &[ExprId]) -> Vec<ExprId> {
     Expansion::with_values(&system.definitions, values.clone()).all(&mut system.graph, roots)
-}
-
-/// The set of roots that takes the fewest operations.
-fn cheapest(graph: &Graph, candidates: Vec<Vec<ExprId>>) -> Vec<ExprId> {
-    let cost = |roots: &Vec<ExprId>| {
-        let operations = Operations::count(graph, roots);
-        (operations.functions, operations.total())
-    };
-    candidates.into_iter().min_by_key(cost).expect("there is a recursion")
 }
 
 /// (s̈, ẇ') of each slot from the rates' rates: translations in each body's own frame, or in the global one.

@@ -18,7 +18,7 @@
 //! | gamma | γ | 135 | 216 | 0 | 351 | 6 of 15 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 94 | 139 | 0 | 233 | 0 of 15 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 192 | 289 | 5 | 486 | 7 of 18 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 192 | 288 | 5 | 485 | 7 of 18 |
 //! | multipliers | λ, the accelerations being known | 116 | 193 | 3 | 312 | 0 of 15 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 121 | 210 | 1 | 332 | 0 of 22 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
@@ -1995,7 +1995,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenGyroscope<T> {
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 486 operations (192 ±, 289 ×, 5 ÷) and 4 functions.
+    /// Solves eq. (17): 485 operations (192 ±, 288 ×, 5 ÷) and 4 functions.
     fn accelerations(&self, t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2021,180 +2021,192 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenGyroscope<T> {
         let rotor_wz = y[38];
         let t0 = outer_ring_e0 * outer_ring_e3;
         let t1 = outer_ring_e1 * outer_ring_e2;
-        let t2 = k(2.0) * (t1 - t0);
-        let t3 = k(12.566370614359172) * t;
-        let t4 = k(1.2566370614359172) * t3.cos();
-        let t5 = t4 * t2;
-        let t6 = outer_ring_wy - t5;
-        let t7 = outer_ring_e0 * outer_ring_e2;
-        let t8 = outer_ring_e1 * outer_ring_e3;
-        let t9 = k(2.0) * (t8 + t7);
-        let t10 = t4 * t9;
-        let t11 = outer_ring_wz - t10;
-        let t12 = outer_ring_e0 * outer_ring_e0;
-        let t13 = k(2.0) * (k(0.5) - (t12 + outer_ring_e3 * outer_ring_e3));
-        let t14 = t3.sin();
-        let t15 = k(0.1) * t14;
-        let t16 = t15.sin();
-        let t17 = outer_ring_e0 * outer_ring_e1;
-        let t18 = outer_ring_e2 * outer_ring_e3;
-        let t19 = k(2.0) * (t18 - t17);
-        let t20 = t15.cos();
-        let t21 = k(2.0) * (k(0.5) - (t12 + outer_ring_e1 * outer_ring_e1));
-        let t22 = t4 * t21;
-        let t23 = outer_ring_wx + t22;
-        let t24 = k(2.0) * (k(0.5) - (t12 + outer_ring_e2 * outer_ring_e2));
-        let t25 = k(2.0) * (t18 + t17);
-        let t26 = (t23 * t23 + t11 * t11) / (t16 * t25 - t20 * t24);
-        let t27 = k(15.791367041742975) * t14;
-        let t28 = outer_ring_wy * t10 - outer_ring_wz * t5 - t21 * t27
-            + (t26 * (t20 * t19 - t16 * t13) + t11 * t6);
-        let t29 = rotor_e0 * rotor_e3;
-        let t30 = rotor_e1 * rotor_e2;
-        let t31 = k(2.0) * (t30 - t29);
-        let t32 = inner_ring_e0 * inner_ring_e0;
-        let t33 = k(2.0) * (k(0.5) - (t32 + inner_ring_e1 * inner_ring_e1));
-        let t34 = rotor_e0 * rotor_e0;
-        let t35 = k(2.0) * (k(0.5) - (t34 + rotor_e2 * rotor_e2));
-        let t36 = inner_ring_e0 * inner_ring_e3;
-        let t37 = inner_ring_e1 * inner_ring_e2;
-        let t38 = k(2.0) * (t37 + t36);
-        let t39 = rotor_e0 * rotor_e1;
-        let t40 = rotor_e2 * rotor_e3;
-        let t41 = k(2.0) * (t40 + t39);
-        let t42 = inner_ring_e0 * inner_ring_e2;
-        let t43 = inner_ring_e1 * inner_ring_e3;
-        let t44 = k(2.0) * (t43 - t42);
-        let t45 = t44 * t41 - (t38 * t35 + t33 * t31);
-        let t46 = k(5e-6) * t45;
-        let t47 = rotor_e0 * rotor_e2;
-        let t48 = rotor_e1 * rotor_e3;
-        let t49 = k(2.0) * (t48 + t47);
-        let t50 = k(2.0) * (t40 - t39);
-        let t51 = k(2.0) * (k(0.5) - (t34 + rotor_e3 * rotor_e3));
-        let t52 = t44 * t51 - (t38 * t50 - t33 * t49);
-        let t53 = k(5e-6) * t52;
-        let t54 = inner_ring_e0 * inner_ring_e1;
-        let t55 = inner_ring_e2 * inner_ring_e3;
-        let t56 = t55 - t54;
-        let t57 = k(2.0) * t56;
-        let t58 = t43 + t42;
-        let t59 = k(2.0) * t58;
-        let t60 = k(0.5) - (t32 + inner_ring_e3 * inner_ring_e3);
-        let t61 = k(2.0) * t60;
-        let t62 = t61 * t41 - (t59 * t31 - t57 * t35);
-        let t63 = t59 * t49 + t57 * t50 + t61 * t51;
-        let t64 = t63 * t53 + t62 * t46;
-        let t65 = k(1e-6)
-            + (k(1.25e-9) + (t63 * (k(5e-6) * t63) + t62 * (k(5e-6) * t62)));
-        let t66 = k(1.0) / t65;
-        let t67 = t66 * t64;
-        let t68 = t64 * t67 - (k(1e-6) + (t52 * t53 + t45 * t46));
-        let t69 = t25 * t44 - (t24 * t38 + t2 * t33);
-        let t70 = k(0.5) - (t32 + inner_ring_e2 * inner_ring_e2);
-        let t71 = k(2.0) * t70;
-        let t72 = t37 - t36;
-        let t73 = k(2.0) * t72;
-        let t74 = t55 + t54;
-        let t75 = k(2.0) * t74;
-        let t76 = t75 * t41 + (t73 * t31 + t71 * t35);
-        let t77 = t75 * t51 - (t73 * t49 - t71 * t50);
-        let t78 = k(5e-6) * t76;
-        let t79 = k(5e-6) * t77;
-        let t80 = t63 * t79 + t62 * t78;
-        let t81 = t80 * t67 - (t77 * t53 + t76 * t46);
-        let t82 = t25 * t75 + (t2 * t73 + t24 * t71);
-        let t83 = t82 * t81 + t69 * t68;
-        let t84 = t80 * (t66 * t80) - (k(2e-6) + (k(1.25e-9) + (t77 * t79 + t76 * t78)));
-        let t85 = t82 * t84 + t69 * t81;
-        let t86 = k(2.0) * (k(0.5) - (t34 + rotor_e1 * rotor_e1));
-        let t87 = k(2.0) * (t30 + t29);
-        let t88 = k(2.0) * (t48 - t47);
-        let t89 = t44 * t88 + (t38 * t87 + t33 * t86);
-        let t90 = inner_ring_wy * (t75 * t88 - (t71 * t87 + t73 * t86))
-            + inner_ring_wx * t89;
-        let t91 = inner_ring_wz * (t61 * t88 - (t57 * t87 - t59 * t86)) - t90;
-        let t92 = rotor_wx + t91;
-        let t93 = inner_ring_wz * t63 - (inner_ring_wy * t77 + inner_ring_wx * t52);
-        let t94 = rotor_wz - t93;
-        let t95 = inner_ring_wz * t62 - (inner_ring_wy * t76 + inner_ring_wx * t45);
-        let t96 = rotor_wy + t95;
-        let t97 = (t96 * t96 + t94 * t94) / t89;
-        let t98 = rotor_wz * t91 + rotor_wx * t93 - (t52 * t97 - t94 * t92);
-        let t99 = k(5e-6) * (rotor_wx * rotor_wz + t98);
-        let t100 = rotor_wx * t95 - rotor_wy * t91 - (t45 * t97 + t96 * t92);
-        let t101 = k(5e-6) * (rotor_wx * rotor_wy - t100);
-        let t102 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
-        let t103 = inner_ring_wx * inner_ring_wy;
-        let t104 = inner_ring_wx * inner_ring_wz;
-        let t105 = t59 * t104 + (t73 * t103 + t33 * t102);
-        let t106 = k(1e-5) * t105;
-        let t107 = k(0.00025) * t72;
-        let t108 = t57 * t104 - (t71 * t103 + t38 * t102);
-        let t109 = k(0.8) + k(1e-5) * t108;
-        let t110 = k(0.00025) * t70;
-        let t111 = t61 * t104 - (t75 * t103 - t44 * t102);
-        let t112 = k(1e-5) * t111;
-        let t113 = k(0.00025) * t74;
-        let t114 = t113 * t112 + (t110 * t109 - t107 * t106) + (t63 * t101 + t62 * t99);
-        let t115 = k(1e-6) * t103 - t114;
-        let t116 = t66 * t115;
-        let t117 = t64 * t116
-            - (k(1e-6) * (inner_ring_wy * inner_ring_wz) - (t52 * t101 + t45 * t99));
-        let t118 = k(2.0) * (t1 + t0);
-        let t119 = k(2.0) * (t8 - t7);
-        let t120 = outer_ring_wy * (t25 * t61 - (t2 * t59 - t24 * t57))
-            + outer_ring_wx * (t119 * t61 - (t118 * t57 - t21 * t59));
-        let t121 = t9 * t59 + t19 * t57 + t13 * t61;
-        let t122 = outer_ring_wz * t121 - t120;
-        let t123 = inner_ring_wz - t122;
-        let t124 = t119 * t75 - (t118 * t71 + t21 * t73);
-        let t125 = t13 * t75 - (t9 * t73 - t19 * t71);
-        let t126 = outer_ring_wz * t125 - (outer_ring_wy * t82 + outer_ring_wx * t124);
-        let t127 = inner_ring_wy + t126;
-        let t128 = t119 * t44 + (t118 * t38 + t21 * t33);
-        let t129 = t13 * t44 - (t19 * t38 - t9 * t33);
-        let t130 = outer_ring_wz * t129 - (outer_ring_wy * t69 + outer_ring_wx * t128);
-        let t131 = inner_ring_wx + t130;
-        let t132 = (t131 * t131 + t127 * t127) / t121;
-        let t133 = inner_ring_wy * t122 + inner_ring_wz * t126
-            + (t125 * t132 - t127 * t123);
-        let t134 = inner_ring_wz * t130 + inner_ring_wx * t122
-            + (t129 * t132 - t131 * t123);
-        let t135 = k(0.00025) * t58;
-        let t136 = k(0.00025) * t56;
-        let t137 = k(0.00025) * t60;
-        let t138 = t137 * t112 + (t136 * t109 + t135 * t106) - (t77 * t101 + t76 * t99);
-        let t139 = t82 * (t84 * t134 - t81 * t133 - (t80 * t116 - t138));
-        let t140 = k(1e-6) * (outer_ring_wx * outer_ring_wz)
-            - (t139 + t69 * (t81 * t134 - t68 * t133 - t117));
-        let t141 = t82 * (t124 * t84 + t128 * t81) + t69 * (t124 * t81 + t128 * t68);
-        let t142 = outer_ring_wx * t5 + outer_ring_wy * t22 + t9 * t27
-            - ((t20 * t118 + t16 * t119) * t26 + t23 * t6);
-        let t143 = (t85 * t125 + t83 * t129) * t142 - t28 * t141 - t140;
-        let t144 = t143 / (k(1e-6) - (t82 * t85 + t69 * t83));
-        let t145 = t133 - (t129 * t142 + (t69 * t144 - t128 * t28));
-        let t146 = t134 + (t125 * t142 + (t82 * t144 - t124 * t28));
-        let t147 = t66 * (t115 - (t80 * t146 - t64 * t145));
+        let t2 = k(12.566370614359172) * t;
+        let t3 = k(1.2566370614359172) * t2.cos();
+        let t4 = t3 * (k(2.0) * (t1 - t0));
+        let t5 = outer_ring_wy - t4;
+        let t6 = outer_ring_e0 * outer_ring_e2;
+        let t7 = outer_ring_e1 * outer_ring_e3;
+        let t8 = k(2.0) * (t7 + t6);
+        let t9 = t3 * t8;
+        let t10 = outer_ring_wz - t9;
+        let t11 = outer_ring_e0 * outer_ring_e0;
+        let t12 = t2.sin();
+        let t13 = k(0.1) * t12;
+        let t14 = t13.sin();
+        let t15 = outer_ring_e0 * outer_ring_e1;
+        let t16 = outer_ring_e2 * outer_ring_e3;
+        let t17 = t13.cos();
+        let t18 = t17 * (k(2.0) * (t16 - t15))
+            - t14 * (k(2.0) * (k(0.5) - (t11 + outer_ring_e3 * outer_ring_e3)));
+        let t19 = k(2.0) * (k(0.5) - (t11 + outer_ring_e1 * outer_ring_e1));
+        let t20 = t3 * t19;
+        let t21 = outer_ring_wx + t20;
+        let t22 = t14 * (k(2.0) * (t16 + t15))
+            - t17 * (k(2.0) * (k(0.5) - (t11 + outer_ring_e2 * outer_ring_e2)));
+        let t23 = (t21 * t21 + t10 * t10) / t22;
+        let t24 = k(15.791367041742975) * t12;
+        let t25 = outer_ring_wy * t9 - outer_ring_wz * t4 - t19 * t24
+            + (t23 * t18 + t10 * t5);
+        let t26 = inner_ring_e3 * rotor_e0 - inner_ring_e2 * rotor_e1
+            + inner_ring_e1 * rotor_e2 - inner_ring_e0 * rotor_e3;
+        let t27 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t28 = t27 * t26;
+        let t29 = inner_ring_e2 * rotor_e0 + inner_ring_e3 * rotor_e1
+            - inner_ring_e0 * rotor_e2 - inner_ring_e1 * rotor_e3;
+        let t30 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t31 = t30 * t29;
+        let t32 = t31 + t28;
+        let t33 = k(1e-5) * t32;
+        let t34 = k(2.0) * t32;
+        let t35 = t27 * t29;
+        let t36 = t30 * t26;
+        let t37 = t36 - t35;
+        let t38 = k(1e-5) * t37;
+        let t39 = k(2.0) * t37;
+        let t40 = t27 * t30;
+        let t41 = t29 * t26;
+        let t42 = t41 - t40;
+        let t43 = k(2.0) * t42;
+        let t44 = t27 * t27;
+        let t45 = k(0.5) - (t44 + t26 * t26);
+        let t46 = k(2.0) * t45;
+        let t47 = t46 * t38 - t43 * t33;
+        let t48 = k(1e-6)
+            + (k(1.25e-9) + (t46 * (k(1e-5) * t45) + t43 * (k(1e-5) * t42)));
+        let t49 = k(1.0) / t48;
+        let t50 = t49 * t47;
+        let t51 = t47 * t50 - (k(1e-6) + (t39 * t38 + t34 * t33));
+        let t52 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t53 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t54 = t53 * t52;
+        let t55 = outer_ring_e2 * inner_ring_e0 + outer_ring_e3 * inner_ring_e1
+            - outer_ring_e0 * inner_ring_e2 - outer_ring_e1 * inner_ring_e3;
+        let t56 = outer_ring_e1 * inner_ring_e0 - outer_ring_e0 * inner_ring_e1
+            - outer_ring_e3 * inner_ring_e2 + outer_ring_e2 * inner_ring_e3;
+        let t57 = t56 * t55;
+        let t58 = k(2.0) * (t57 - t54);
+        let t59 = k(0.5) - (t44 + t29 * t29);
+        let t60 = k(2.0) * t59;
+        let t61 = t41 + t40;
+        let t62 = k(2.0) * t61;
+        let t63 = k(1e-5) * t59;
+        let t64 = k(1e-5) * t61;
+        let t65 = t46 * t64 + t43 * t63;
+        let t66 = t65 * t50 - (t62 * t38 - t60 * t33);
+        let t67 = t53 * t53;
+        let t68 = k(2.0) * (k(0.5) - (t67 + t55 * t55));
+        let t69 = t68 * t66 - t58 * t51;
+        let t70 = t65 * (t49 * t65) - (k(2e-6) + (k(1.25e-9) + (t62 * t64 + t60 * t63)));
+        let t71 = t68 * t70 - t58 * t66;
+        let t72 = k(0.5) - (t44 + t30 * t30);
+        let t73 = inner_ring_wz * (k(2.0) * (t36 + t35))
+            + (inner_ring_wy * (k(2.0) * (t31 - t28)) - inner_ring_wx * (k(2.0) * t72));
+        let t74 = rotor_wx - t73;
+        let t75 = inner_ring_wz * t46 - (inner_ring_wy * t62 + inner_ring_wx * t39);
+        let t76 = rotor_wz + t75;
+        let t77 = inner_ring_wz * t43 - (inner_ring_wy * t60 - inner_ring_wx * t34);
+        let t78 = rotor_wy - t77;
+        let t79 = k(0.5) / t72 * (t78 * t78 + t76 * t76);
+        let t80 = rotor_wz * t73 + rotor_wx * t75 + (t39 * t79 - t76 * t74);
+        let t81 = k(5e-6) * (rotor_wx * rotor_wz - t80);
+        let t82 = rotor_wx * t77 - rotor_wy * t73 - (t34 * t79 - t78 * t74);
+        let t83 = k(5e-6) * (rotor_wx * rotor_wy + t82);
+        let t84 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
+        let t85 = inner_ring_e0 * inner_ring_e0;
+        let t86 = inner_ring_wx * inner_ring_wy;
+        let t87 = inner_ring_e0 * inner_ring_e3;
+        let t88 = inner_ring_e1 * inner_ring_e2;
+        let t89 = t88 - t87;
+        let t90 = k(2.0) * t89 * t86
+            + k(2.0) * (k(0.5) - (t85 + inner_ring_e1 * inner_ring_e1)) * t84;
+        let t91 = inner_ring_wx * inner_ring_wz;
+        let t92 = inner_ring_e0 * inner_ring_e2;
+        let t93 = inner_ring_e1 * inner_ring_e3;
+        let t94 = t93 + t92;
+        let t95 = k(2.0) * t94 * t91 + t90;
+        let t96 = k(1e-5) * t95;
+        let t97 = k(0.00025) * t89;
+        let t98 = k(0.5) - (t85 + inner_ring_e2 * inner_ring_e2);
+        let t99 = inner_ring_e0 * inner_ring_e1;
+        let t100 = inner_ring_e2 * inner_ring_e3;
+        let t101 = t100 - t99;
+        let t102 = k(2.0) * t101 * t91
+            - (k(2.0) * t98 * t86 + k(2.0) * (t88 + t87) * t84);
+        let t103 = k(0.8) + k(1e-5) * t102;
+        let t104 = k(0.00025) * t98;
+        let t105 = t100 + t99;
+        let t106 = k(0.5) - (t85 + inner_ring_e3 * inner_ring_e3);
+        let t107 = k(2.0) * t106 * t91
+            - (k(2.0) * t105 * t86 - k(2.0) * (t93 - t92) * t84);
+        let t108 = k(1e-5) * t107;
+        let t109 = k(0.00025) * t105;
+        let t110 = t109 * t108 + (t104 * t103 - t97 * t96) - (t46 * t83 + t43 * t81);
+        let t111 = k(1e-6) * t86 - t110;
+        let t112 = t49 * t111;
+        let t113 = t47 * t112
+            - (k(1e-6) * (inner_ring_wy * inner_ring_wz) + (t39 * t83 - t34 * t81));
+        let t114 = t53 * t55;
+        let t115 = t56 * t52;
+        let t116 = t53 * t56;
+        let t117 = t55 * t52;
+        let t118 = outer_ring_wy * (k(2.0) * (t117 + t116))
+            + outer_ring_wx * (k(2.0) * (t115 - t114));
+        let t119 = k(0.5) - (t67 + t52 * t52);
+        let t120 = outer_ring_wz * (k(2.0) * t119) - t118;
+        let t121 = inner_ring_wz + t120;
+        let t122 = k(2.0) * (t57 + t54);
+        let t123 = k(2.0) * (t117 - t116);
+        let t124 = outer_ring_wz * t123 - (outer_ring_wy * t68 - outer_ring_wx * t122);
+        let t125 = inner_ring_wy - t124;
+        let t126 = k(2.0) * (k(0.5) - (t67 + t56 * t56));
+        let t127 = k(2.0) * (t115 + t114);
+        let t128 = outer_ring_wz * t127 + (outer_ring_wy * t58 - outer_ring_wx * t126);
+        let t129 = inner_ring_wx - t128;
+        let t130 = k(0.5) / t119 * (t129 * t129 + t125 * t125);
+        let t131 = inner_ring_wy * t120 + inner_ring_wz * t124
+            - (t123 * t130 - t125 * t121);
+        let t132 = inner_ring_wz * t128 + inner_ring_wx * t120
+            - (t127 * t130 - t129 * t121);
+        let t133 = k(0.00025) * t94;
+        let t134 = k(0.00025) * t101;
+        let t135 = k(0.00025) * t106;
+        let t136 = t135 * t108 + (t134 * t103 + t133 * t96) + (t62 * t83 + t60 * t81);
+        let t137 = t68 * (t70 * t132 - t66 * t131 + (t65 * t112 - t136));
+        let t138 = k(1e-6) * (outer_ring_wx * outer_ring_wz)
+            - (t137 - t58 * (t66 * t132 - t51 * t131 + t113));
+        let t139 = t68 * (t122 * t70 - t126 * t66) - t58 * (t122 * t66 - t126 * t51);
+        let t140 = t17 * (k(2.0) * (t1 + t0)) + t14 * (k(2.0) * (t7 - t6));
+        let t141 = outer_ring_wx * t4 + outer_ring_wy * t20 + t8 * t24
+            - (t140 * t23 + t21 * t5);
+        let t142 = t141 * (t123 * t71 + t127 * t69) + t25 * t139 - t138;
+        let t143 = t142 / (k(1e-6) - (t68 * t71 - t58 * t69));
+        let t144 = t131 - (t141 * t127 - (t58 * t143 + t25 * t126));
+        let t145 = t132 + (t141 * t123 + (t68 * t143 + t25 * t122));
+        let t146 = t49 * (t111 + (t65 * t145 - t47 * t144));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -t28,
+            -t25,
+            t143,
+            -t141,
+            k(0.0),
+            k(0.0),
+            k(0.0),
             t144,
-            -t142,
-            k(0.0),
-            k(0.0),
-            k(0.0),
             -t145,
-            t146,
-            -t147,
-            k(0.000125) * t105 - (t107 * t147 + t135 * t146),
-            t110 * t147 - t136 * t146 + k(0.000125) * t108,
-            -(t113 * t147 - t137 * t146 + k(0.000125) * t111),
+            -t146,
+            k(0.000125) * t95 - (t97 * t146 - t133 * t145),
+            k(0.000125) * t102 + (t104 * t146 + t134 * t145),
+            -(k(0.000125) * t107 + (t109 * t146 + t135 * t145)),
             k(0.0),
-            t98 + (t62 * t147 + (t76 * t146 - t45 * t145)),
-            t100 - (t63 * t147 + (t77 * t146 - t52 * t145)),
+            -(t80 + (t43 * t146 - (t60 * t145 + t34 * t144))),
+            t46 * t146 - (t62 * t145 - t39 * t144) - t82,
         ];
     }
     /// Writes λ: 312 operations (116 ±, 193 ×, 3 ÷) and 3 functions.

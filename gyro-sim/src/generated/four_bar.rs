@@ -1460,332 +1460,343 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
         let rocker_wy = y[37];
         let rocker_wz = y[38];
         let (
-            t9,
+            t7,
+            t12,
             t14,
+            t15,
+            t16,
+            t17,
             t18,
+            t19,
+            t20,
+            t21,
+            t23,
+            t24,
+            t25,
             t26,
-            t29,
-            t32,
-            t35,
-            t40,
+            t27,
+            t37,
             t42,
-            t47,
-            t48,
-            t49,
-            t50,
+            t44,
             t51,
-            t55,
-            t58,
+            t54,
+            t56,
             t59,
             t60,
-            t61,
             t63,
-            t68,
-            t78,
-            t79,
-            t80,
-            t82,
+            t64,
+            t65,
+            t66,
+            t67,
+            t69,
+            t71,
+            t74,
+            t84,
             t85,
+            t86,
+            t88,
             t91,
-            t92,
-            t93,
-            t95,
+            t97,
             t98,
-            t117,
-            t131,
-            t135,
-            t139,
+            t99,
+            t101,
+            t104,
+            t109,
+            t110,
+            t111,
+            t113,
+            t130,
+            t144,
+            t148,
             t152,
-            t174,
-            t175,
-            t177,
-            t180,
-            t181,
-            t183,
-            t184,
-            t185,
+            t165,
+            t187,
+            t188,
             t190,
             t191,
-            t192,
             t193,
             t194,
-            t195,
             t196,
             t197,
             t198,
             t199,
         ) = {
-            let t0 = crank_e0 * crank_e0;
-            let t1 = k(0.5) - (t0 + crank_e3 * crank_e3);
-            let t2 = crank_wy * crank_wy;
-            let t3 = t2 + crank_wx * crank_wx;
-            let t4 = t3 * (k(0.5) / t1);
-            let t5 = crank_e0 * crank_e2;
-            let t6 = crank_e1 * crank_e3;
-            let t7 = k(2.0) * (t6 - t5);
-            let t8 = crank_wx * crank_wz;
-            let t9 = t8 - t7 * t4;
-            let t10 = t6 + t5;
-            let t11 = k(0.2) * t10;
-            let t12 = coupler_e0 * coupler_e1;
-            let t13 = coupler_e2 * coupler_e3;
-            let t14 = t13 - t12;
-            let t15 = coupler_wx * coupler_wz;
-            let t16 = k(0.02095) * t15 + k(4.905) * t14;
-            let t17 = coupler_e0 * coupler_e0;
-            let t18 = k(0.5) - (t17 + coupler_e2 * coupler_e2);
-            let t19 = k(2.0) * t18;
-            let t20 = crank_e0 * crank_e1;
-            let t21 = crank_e2 * crank_e3;
-            let t22 = t21 - t20;
-            let t23 = k(2.0) * t22;
-            let t24 = coupler_e0 * coupler_e3;
-            let t25 = coupler_e1 * coupler_e2;
-            let t26 = t25 - t24;
-            let t27 = k(2.0) * t26;
-            let t28 = k(2.0) * t10;
-            let t29 = t13 + t12;
-            let t30 = k(2.0) * t29;
-            let t31 = k(2.0) * t1;
-            let t32 = t31 * t30 - (t28 * t27 - t23 * t19);
-            let t33 = coupler_wx * coupler_wy;
-            let t34 = k(0.02095) * t33 - k(4.905) * t18;
-            let t35 = k(0.5) - (t17 + coupler_e3 * coupler_e3);
-            let t36 = k(2.0) * t35;
-            let t37 = k(2.0) * t14;
-            let t38 = coupler_e0 * coupler_e2;
-            let t39 = coupler_e1 * coupler_e3;
-            let t40 = t39 + t38;
-            let t41 = k(2.0) * t40;
-            let t42 = t28 * t41 + t23 * t37 + t31 * t36;
-            let t43 = t42 * t34 + t32 * t16;
-            let t44 = k(2.0) * (k(0.5) - (t17 + coupler_e1 * coupler_e1));
-            let t45 = k(2.0) * (t25 + t24);
-            let t46 = k(2.0) * (t39 - t38);
-            let t47 = t31 * t46 - (t23 * t45 - t28 * t44);
-            let t48 = k(5e-5) * t47;
-            let t49 = k(0.0835) * t32;
-            let t50 = k(0.0835) * t42;
-            let t51 = k(1.0) / (t42 * t50 + (t32 * t49 + t47 * t48));
-            let t52 = t51 * t43;
-            let t53 = t16 - t49 * t52;
-            let t54 = t49 * t51;
-            let t55 = k(1.0) / (k(0.0835) - t49 * t54);
-            let t56 = t55 * t53;
-            let t57 = t48 * t51;
-            let t58 = t49 * t57;
-            let t59 = k(0.5) * t40;
-            let t60 = k(0.5) * t26;
-            let t61 = t60 * t42 + t59 * t32;
-            let t62 = t51 * t61;
-            let t63 = t59 - t49 * t62;
-            let t64 = t55 * t63;
-            let t65 = t58 * t64 - t48 * t62;
-            let t66 = coupler_wz * coupler_wz;
-            let t67 = t66 + coupler_wy * coupler_wy;
-            let t68 = k(0.25) * (t41 * t15 + (t27 * t33 + t44 * t67));
-            let t69 = crank_wz * crank_wz + t2;
-            let t70 = k(2.0) * (k(0.5) - (t0 + crank_e1 * crank_e1));
-            let t71 = crank_wx * crank_wy;
-            let t72 = crank_e0 * crank_e3;
-            let t73 = crank_e1 * crank_e2;
-            let t74 = t73 - t72;
-            let t75 = k(2.0) * t74;
-            let t76 = k(0.1) * (t28 * t8 + (t75 * t71 + t70 * t69));
-            let t77 = t76 + t68;
-            let t78 = k(0.5) * t14;
-            let t79 = k(0.5) * t18;
-            let t80 = t79 * t42 - t78 * t32;
-            let t81 = t51 * t80;
-            let t82 = t78 + t49 * t81;
-            let t83 = t55 * t82;
-            let t84 = t58 * t83 + t48 * t81;
-            let t85 = k(0.25) * (t37 * t15 - (t19 * t33 + t45 * t67));
-            let t86 = k(2.0) * (t73 + t72);
-            let t87 = k(0.5) - (t0 + crank_e2 * crank_e2);
-            let t88 = k(2.0) * t87;
-            let t89 = k(0.1) * (t23 * t8 - (t88 * t71 + t86 * t69));
-            let t90 = t89 + t85;
-            let t91 = k(0.5) * t35;
-            let t92 = k(0.5) * t29;
-            let t93 = t92 * t42 - t91 * t32;
-            let t94 = t51 * t93;
-            let t95 = t91 + t49 * t94;
-            let t96 = t55 * t95;
-            let t97 = t58 * t96 + t48 * t94;
-            let t98 = k(0.25) * (t36 * t15 - (t30 * t33 - t46 * t67));
-            let t99 = t21 + t20;
-            let t100 = k(2.0) * t99;
-            let t101 = k(0.1) * (t31 * t8 - (t100 * t71 - t7 * t69));
-            let t102 = t101 + t98;
-            let t103 = k(1.0) / (t47 * t47 + t42 * t42);
-            let t104 = crank_wy * crank_wz;
-            let t105 = t104 * (t100 * t30 + (t75 * t27 + t88 * t19))
-                + t8 * (t7 * t30 - (t86 * t19 + t70 * t27));
-            let t106 = t7 * t46 + (t86 * t45 + t70 * t44);
-            let t107 = t7 * t36 - (t86 * t37 - t70 * t41);
-            let t108 = t100 * t46 - (t88 * t45 + t75 * t44);
-            let t109 = t100 * t36 - (t75 * t41 - t88 * t37);
-            let t110 = crank_wx * (coupler_wx * t109 + coupler_wz * t108)
-                - crank_wy * (coupler_wx * t107 + coupler_wz * t106);
-            let t111 = coupler_wy * coupler_wz * t42
-                + ((t66 + coupler_wx * coupler_wx) * t32 - t33 * t47);
-            let t112 = t111 + k(2.0) * t110 + (t3 * t32 + t105);
-            let t113 = t112 * (t42 * t103);
-            let t114 = t55 * t58;
-            let t115 = t58 * t114 - (k(5e-5) - t48 * t57);
-            let t116 = t112 * (t47 * t103);
-            let t117 = t50 * t54;
-            let t118 = t117 * t114 + t50 * t57;
-            let t119 = t118 * t116 - t115 * t113
-                + (t102 * t97 + (t90 * t84 + t77 * t65));
-            let t120 = t117 * t64 + (t60 - t50 * t62);
-            let t121 = t117 * t83 - (t79 - t50 * t81);
-            let t122 = t117 * t96 - (t92 - t50 * t94);
-            let t123 = t117 * (t55 * t117) - (k(0.0835) - t50 * (t50 * t51));
-            let t124 = t123 * t116 - t118 * t113
-                + (t102 * t122 + (t90 * t121 + t77 * t120));
-            let t125 = t42 * (t124 + (t117 * t56 + (t34 - t50 * t52)))
-                + t47 * (t119 + (t58 * t56 - t48 * t52));
-            let t126 = t82 * t64 - t80 * t62;
-            let t127 = t82 * t83 + t80 * t81;
-            let t128 = t95 * t83 + t93 * t81;
-            let t129 = t121 * t116 - t84 * t113
-                - (t90 - (t102 * t128 + (t90 * t127 + t77 * t126)));
-            let t130 = t129 + (t82 * t56 - (k(9.81) + t80 * t52));
-            let t131 = k(0.2) * t87;
-            let t132 = t63 * t64 + t61 * t62;
-            let t133 = t95 * t64 - t93 * t62;
-            let t134 = t120 * t116 - t65 * t113
-                - (t77 - (t102 * t133 + (t90 * t126 + t77 * t132)));
-            let t135 = k(0.2) * t74;
-            let t136 = t135 * (t134 + (t63 * t56 + t61 * t52));
-            let t137 = t95 * t96 + t93 * t94;
-            let t138 = t122 * t116 - t97 * t113
-                - (t102 - (t102 * t137 + (t90 * t128 + t77 * t133)));
-            let t139 = k(0.2) * t99;
-            let t140 = t139 * (t138 + (t95 * t56 - t93 * t52));
-            let t141 = t131 * (k(3.924) - t130) + t136 - t140
-                - (k(0.00133) * t71 + (t140 - (t136 - t131 * t130) + t125));
-            let t142 = t139 * t133 + (t131 * t126 - t135 * t132);
-            let t143 = t42 * t120 + t47 * t65;
-            let t144 = t135 + t142 + t143;
-            let t145 = t139 * t128 + (t131 * t127 - t135 * t126);
-            let t146 = t42 * t121 + t47 * t84;
-            let t147 = t131 - t145 - t146;
-            let t148 = t89 * (t147 - (t145 - k(0.28) * t87))
-                - t76 * (t144 + (t142 + k(0.28) * t74));
-            let t149 = t139 * t137 + (t131 * t128 - t135 * t133);
-            let t150 = t42 * t122 + t47 * t97;
-            let t151 = t139 - t149 - t150;
-            let t152 = t104 - t100 * t4;
-            let t153 = t42 * (t107 * t123 + t106 * t118)
-                + t47 * (t107 * t118 + t106 * t115);
-            let t154 = t131 * (t107 * t121 + t106 * t84)
-                - t135 * (t107 * t120 + t106 * t65);
-            let t155 = t139 * (t107 * t122 + t106 * t97) + t154;
-            let t156 = t42 * (t109 * t123 + t108 * t118)
-                + t47 * (t109 * t118 + t108 * t115);
-            let t157 = k(0.2) * t22;
-            let t158 = k(0.2) * t1;
-            let t159 = t109 * t120 + t108 * t65;
-            let t160 = t109 * t121 + t108 * t84;
-            let t161 = t109 * t122 + t108 * t97;
-            let t162 = t139 * t161 + (t131 * t160 - t135 * t159)
-                - (t158 * t150 + (t157 * t146 + t11 * t143));
-            let t163 = t158 * t149 + (t157 * t145 + t11 * t142);
-            let t164 = t11 - (t158 * t133 + (t157 * t126 + t11 * t132)) + t159;
-            let t165 = t157 - (t158 * t128 + (t157 * t127 + t11 * t126)) + t160;
-            let t166 = t158 - (t158 * t137 + (t157 * t128 + t11 * t133)) + t161;
-            let t167 = t139 * t166 + (t131 * t165 - t135 * t164)
-                + (t158 * t151 + (t157 * t147 - t11 * t144));
-            let t168 = (t167 - t163 - (t163 - t162 - t156)) * t9
-                - (t155 + (t155 + t153)) * t152;
-            let t169 = t168 + (t101 * (t151 - (t149 - k(0.28) * t99)) + t148) + t141;
-            let t170 = t42 * (t42 * t123 + t47 * t118) + t47 * (t42 * t118 + t47 * t115);
-            let t171 = t139 * t149 + (t131 * t145 - t135 * t142);
-            let t172 = t171 + k(2.0) * (t139 * t150 + (t131 * t146 - t135 * t143));
-            let t173 = k(2.0) * (t139 * t151 + (t131 * t147 + t135 * t144)) - t171;
-            let t174 = k(1.0)
-                / (t173 + (k(0.014) + (k(0.00135) - (t172 - (k(0.01) - t170)))));
-            let t175 = t174 * t169;
-            let t176 = t135 * t175 + t11 * t9;
-            let t177 = t76 + t176;
-            let t178 = t77 + (t176 + t177);
-            let t179 = t131 * t175 - t157 * t9;
-            let t180 = t89 - t179;
-            let t181 = t90 - (t179 - t180);
-            let t182 = t139 * t175 - t158 * t9;
-            let t183 = t101 - t182;
-            let t184 = t102 - (t182 - t183);
-            let t185 = t113 + (t47 * t175 + (t108 * t9 - t106 * t152));
-            let t186 = t116 - (t42 * t175 + (t109 * t9 - t107 * t152));
-            let t187 = t117 * t186 - t58 * t185
-                + (t95 * t184 + (t82 * t181 + t63 * t178));
-            let t188 = t55 * (t53 + t187);
-            let t189 = t50 * t186 + (t49 * t188 - t48 * t185)
-                + (t93 * t184 + (t80 * t181 - t61 * t178));
-            let t190 = t51 * (t43 - t189);
-            let t191 = t188 + t32 * t190;
-            let t192 = t186 + t42 * t190;
-            let t193 = t60 * t192 + t59 * t191;
-            let t194 = t178 - t193;
-            let t195 = rocker_e0 * rocker_e0;
-            let t196 = k(0.5) - (t195 + rocker_e3 * rocker_e3);
-            let t197 = rocker_wy * rocker_wy;
-            let t198 = (t197 + rocker_wx * rocker_wx) * (k(0.5) / t196);
-            let t199 = rocker_e0 * rocker_e2;
+            let t0 = coupler_wz * coupler_wz;
+            let t1 = t0 + coupler_wy * coupler_wy;
+            let t2 = coupler_e0 * coupler_e0;
+            let t3 = k(2.0) * (k(0.5) - (t2 + coupler_e1 * coupler_e1));
+            let t4 = coupler_wx * coupler_wy;
+            let t5 = coupler_e0 * coupler_e3;
+            let t6 = coupler_e1 * coupler_e2;
+            let t7 = t6 - t5;
+            let t8 = k(2.0) * t7;
+            let t9 = coupler_wx * coupler_wz;
+            let t10 = coupler_e0 * coupler_e2;
+            let t11 = coupler_e1 * coupler_e3;
+            let t12 = t11 + t10;
+            let t13 = k(2.0) * t12;
+            let t14 = k(0.25) * (t13 * t9 + (t8 * t4 + t3 * t1));
+            let t15 = rocker_wy * rocker_wy;
+            let t16 = rocker_wz * rocker_wz + t15;
+            let t17 = rocker_e0 * rocker_e0;
+            let t18 = rocker_wx * rocker_wy;
+            let t19 = rocker_e0 * rocker_e3;
+            let t20 = rocker_e1 * rocker_e2;
+            let t21 = t20 - t19;
+            let t22 = k(2.0) * t21 * t18
+                + k(2.0) * (k(0.5) - (t17 + rocker_e1 * rocker_e1)) * t16;
+            let t23 = rocker_wx * rocker_wz;
+            let t24 = rocker_e0 * rocker_e2;
+            let t25 = rocker_e1 * rocker_e3;
+            let t26 = t25 + t24;
+            let t27 = k(0.2) * (k(2.0) * t26 * t23 + t22);
+            let t28 = crank_e0 * crank_e0;
+            let t29 = k(0.5) - (t28 + crank_e3 * crank_e3);
+            let t30 = crank_wy * crank_wy;
+            let t31 = t30 + crank_wx * crank_wx;
+            let t32 = t31 * (k(0.5) / t29);
+            let t33 = crank_e0 * crank_e2;
+            let t34 = crank_e1 * crank_e3;
+            let t35 = k(2.0) * (t34 - t33);
+            let t36 = crank_wx * crank_wz;
+            let t37 = t36 - t35 * t32;
+            let t38 = t34 + t33;
+            let t39 = k(0.2) * t38;
+            let t40 = coupler_e0 * coupler_e1;
+            let t41 = coupler_e2 * coupler_e3;
+            let t42 = t41 - t40;
+            let t43 = k(0.02095) * t9 + k(4.905) * t42;
+            let t44 = k(0.5) - (t2 + coupler_e2 * coupler_e2);
+            let t45 = k(2.0) * t44;
+            let t46 = crank_e0 * crank_e1;
+            let t47 = crank_e2 * crank_e3;
+            let t48 = t47 - t46;
+            let t49 = k(2.0) * t48;
+            let t50 = k(2.0) * t38;
+            let t51 = t41 + t40;
+            let t52 = k(2.0) * t51;
+            let t53 = k(2.0) * t29;
+            let t54 = t53 * t52 - (t50 * t8 - t49 * t45);
+            let t55 = k(0.02095) * t4 - k(4.905) * t44;
+            let t56 = k(0.5) - (t2 + coupler_e3 * coupler_e3);
+            let t57 = k(2.0) * t56;
+            let t58 = k(2.0) * t42;
+            let t59 = t50 * t13 + t49 * t58 + t53 * t57;
+            let t60 = t59 * t55 + t54 * t43;
+            let t61 = k(2.0) * (t6 + t5);
+            let t62 = k(2.0) * (t11 - t10);
+            let t63 = t53 * t62 - (t49 * t61 - t50 * t3);
+            let t64 = k(5e-5) * t63;
+            let t65 = k(0.0835) * t54;
+            let t66 = k(0.0835) * t59;
+            let t67 = k(1.0) / (t59 * t66 + (t54 * t65 + t63 * t64));
+            let t68 = t67 * t60;
+            let t69 = t43 - t65 * t68;
+            let t70 = t65 * t67;
+            let t71 = k(1.0) / (k(0.0835) - t65 * t70);
+            let t72 = t71 * t69;
+            let t73 = t64 * t67;
+            let t74 = t65 * t73;
+            let t75 = crank_wz * crank_wz + t30;
+            let t76 = k(2.0) * (k(0.5) - (t28 + crank_e1 * crank_e1));
+            let t77 = crank_wx * crank_wy;
+            let t78 = crank_e0 * crank_e3;
+            let t79 = crank_e1 * crank_e2;
+            let t80 = t79 - t78;
+            let t81 = k(2.0) * t80;
+            let t82 = k(0.1) * (t50 * t36 + (t81 * t77 + t76 * t75));
+            let t83 = t82 + t14;
+            let t84 = k(0.5) * t12;
+            let t85 = k(0.5) * t7;
+            let t86 = t85 * t59 + t84 * t54;
+            let t87 = t67 * t86;
+            let t88 = t84 - t65 * t87;
+            let t89 = t71 * t88;
+            let t90 = t74 * t89 - t64 * t87;
+            let t91 = k(0.25) * (t58 * t9 - (t45 * t4 + t61 * t1));
+            let t92 = k(2.0) * (t79 + t78);
+            let t93 = k(0.5) - (t28 + crank_e2 * crank_e2);
+            let t94 = k(2.0) * t93;
+            let t95 = k(0.1) * (t49 * t36 - (t94 * t77 + t92 * t75));
+            let t96 = t95 + t91;
+            let t97 = k(0.5) * t42;
+            let t98 = k(0.5) * t44;
+            let t99 = t98 * t59 - t97 * t54;
+            let t100 = t67 * t99;
+            let t101 = t97 + t65 * t100;
+            let t102 = t71 * t101;
+            let t103 = t74 * t102 + t64 * t100;
+            let t104 = k(0.25) * (t57 * t9 - (t52 * t4 - t62 * t1));
+            let t105 = t47 + t46;
+            let t106 = k(2.0) * t105;
+            let t107 = k(0.1) * (t53 * t36 - (t106 * t77 - t35 * t75));
+            let t108 = t107 + t104;
+            let t109 = k(0.5) * t56;
+            let t110 = k(0.5) * t51;
+            let t111 = t110 * t59 - t109 * t54;
+            let t112 = t67 * t111;
+            let t113 = t109 + t65 * t112;
+            let t114 = t71 * t113;
+            let t115 = t74 * t114 + t64 * t112;
+            let t116 = k(1.0) / (t63 * t63 + t59 * t59);
+            let t117 = crank_wy * crank_wz;
+            let t118 = t117 * (t106 * t52 + (t81 * t8 + t94 * t45))
+                + t36 * (t35 * t52 - (t92 * t45 + t76 * t8));
+            let t119 = t35 * t62 + (t92 * t61 + t76 * t3);
+            let t120 = t35 * t57 - (t92 * t58 - t76 * t13);
+            let t121 = t106 * t62 - (t94 * t61 + t81 * t3);
+            let t122 = t106 * t57 - (t81 * t13 - t94 * t58);
+            let t123 = crank_wx * (coupler_wx * t122 + coupler_wz * t121)
+                - crank_wy * (coupler_wx * t120 + coupler_wz * t119);
+            let t124 = coupler_wy * coupler_wz * t59
+                + ((t0 + coupler_wx * coupler_wx) * t54 - t4 * t63);
+            let t125 = t124 + k(2.0) * t123 + (t31 * t54 + t118);
+            let t126 = t125 * (t59 * t116);
+            let t127 = t71 * t74;
+            let t128 = t74 * t127 - (k(5e-5) - t64 * t73);
+            let t129 = t63 * t116 * t125;
+            let t130 = t66 * t70;
+            let t131 = t130 * t127 + t66 * t73;
+            let t132 = t131 * t129 - t128 * t126
+                + (t115 * t108 + (t103 * t96 + t90 * t83));
+            let t133 = t130 * t89 + (t85 - t66 * t87);
+            let t134 = t130 * t102 - (t98 - t66 * t100);
+            let t135 = t130 * t114 - (t110 - t66 * t112);
+            let t136 = t130 * (t71 * t130) - (k(0.0835) - t66 * (t66 * t67));
+            let t137 = t136 * t129 - t131 * t126
+                + (t135 * t108 + (t134 * t96 + t133 * t83));
+            let t138 = t59 * (t137 + (t130 * t72 + (t55 - t66 * t68)))
+                + t63 * (t132 + (t74 * t72 - t64 * t68));
+            let t139 = t101 * t89 - t99 * t87;
+            let t140 = t101 * t102 + t99 * t100;
+            let t141 = t113 * t102 + t111 * t100;
+            let t142 = t134 * t129 - t103 * t126
+                - (t96 - (t141 * t108 + (t140 * t96 + t139 * t83)));
+            let t143 = t142 + (t101 * t72 - (k(9.81) + t99 * t68));
+            let t144 = k(0.2) * t93;
+            let t145 = t88 * t89 + t86 * t87;
+            let t146 = t113 * t89 - t111 * t87;
+            let t147 = t133 * t129 - t90 * t126
+                - (t83 - (t146 * t108 + (t139 * t96 + t145 * t83)));
+            let t148 = k(0.2) * t80;
+            let t149 = t148 * (t147 + (t88 * t72 + t86 * t68));
+            let t150 = t113 * t114 + t111 * t112;
+            let t151 = t135 * t129 - t115 * t126
+                - (t108 - (t150 * t108 + (t141 * t96 + t146 * t83)));
+            let t152 = k(0.2) * t105;
+            let t153 = t152 * (t151 + (t113 * t72 - t111 * t68));
+            let t154 = t144 * (k(3.924) - t143) + t149 - t153
+                - (k(0.00133) * t77 + (t153 - (t149 - t144 * t143) + t138));
+            let t155 = t152 * t146 + (t144 * t139 - t148 * t145);
+            let t156 = t59 * t133 + t63 * t90;
+            let t157 = t148 + t155 + t156;
+            let t158 = t152 * t141 + (t144 * t140 - t148 * t139);
+            let t159 = t59 * t134 + t63 * t103;
+            let t160 = t144 - t158 - t159;
+            let t161 = (t160 - (t158 - k(0.28) * t93)) * t95
+                - (t157 + (t155 + k(0.28) * t80)) * t82;
+            let t162 = t152 * t150 + (t144 * t141 - t148 * t146);
+            let t163 = t59 * t135 + t63 * t115;
+            let t164 = t152 - t162 - t163;
+            let t165 = t117 - t106 * t32;
+            let t166 = t59 * (t136 * t120 + t131 * t119)
+                + t63 * (t131 * t120 + t128 * t119);
+            let t167 = t144 * (t134 * t120 + t103 * t119)
+                - t148 * (t133 * t120 + t90 * t119);
+            let t168 = t152 * (t135 * t120 + t115 * t119) + t167;
+            let t169 = t59 * (t136 * t122 + t131 * t121)
+                + t63 * (t131 * t122 + t128 * t121);
+            let t170 = k(0.2) * t48;
+            let t171 = k(0.2) * t29;
+            let t172 = t133 * t122 + t90 * t121;
+            let t173 = t134 * t122 + t103 * t121;
+            let t174 = t135 * t122 + t115 * t121;
+            let t175 = t152 * t174 + (t144 * t173 - t148 * t172)
+                - (t171 * t163 + (t170 * t159 + t39 * t156));
+            let t176 = t171 * t162 + (t170 * t158 + t39 * t155);
+            let t177 = t39 - (t171 * t146 + (t170 * t139 + t39 * t145)) + t172;
+            let t178 = t170 - (t171 * t141 + (t170 * t140 + t39 * t139)) + t173;
+            let t179 = t171 - (t171 * t150 + (t170 * t141 + t39 * t146)) + t174;
+            let t180 = t152 * t179 + (t144 * t178 - t148 * t177)
+                + (t171 * t164 + (t170 * t160 - t39 * t157));
+            let t181 = (t180 - t176 - (t176 - t175 - t169)) * t37
+                - (t168 + (t168 + t166)) * t165;
+            let t182 = t181 + ((t164 - (t162 - k(0.28) * t105)) * t107 + t161) + t154;
+            let t183 = t59 * (t59 * t136 + t63 * t131) + t63 * (t59 * t131 + t63 * t128);
+            let t184 = t152 * t162 + (t144 * t158 - t148 * t155);
+            let t185 = t184 + k(2.0) * (t152 * t163 + (t144 * t159 - t148 * t156));
+            let t186 = k(2.0) * (t152 * t164 + (t144 * t160 + t148 * t157)) - t184;
+            let t187 = k(1.0)
+                / (t186 + (k(0.014) + (k(0.00135) - (t185 - (k(0.01) - t183)))));
+            let t188 = t187 * t182;
+            let t189 = t148 * t188 + t39 * t37;
+            let t190 = t82 + t189;
+            let t191 = t83 + (t189 + t190);
+            let t192 = t144 * t188 - t170 * t37;
+            let t193 = t95 - t192;
+            let t194 = t96 - (t192 - t193);
+            let t195 = t152 * t188 - t171 * t37;
+            let t196 = t107 - t195;
+            let t197 = t108 - (t195 - t196);
+            let t198 = t126 + (t63 * t188 + (t121 * t37 - t119 * t165));
+            let t199 = t129 - (t59 * t188 + (t122 * t37 - t120 * t165));
             (
-                t9,
+                t7,
+                t12,
                 t14,
+                t15,
+                t16,
+                t17,
                 t18,
+                t19,
+                t20,
+                t21,
+                t23,
+                t24,
+                t25,
                 t26,
-                t29,
-                t32,
-                t35,
-                t40,
+                t27,
+                t37,
                 t42,
-                t47,
-                t48,
-                t49,
-                t50,
+                t44,
                 t51,
-                t55,
-                t58,
+                t54,
+                t56,
                 t59,
                 t60,
-                t61,
                 t63,
-                t68,
-                t78,
-                t79,
-                t80,
-                t82,
+                t64,
+                t65,
+                t66,
+                t67,
+                t69,
+                t71,
+                t74,
+                t84,
                 t85,
+                t86,
+                t88,
                 t91,
-                t92,
-                t93,
-                t95,
+                t97,
                 t98,
-                t117,
-                t131,
-                t135,
-                t139,
+                t99,
+                t101,
+                t104,
+                t109,
+                t110,
+                t111,
+                t113,
+                t130,
+                t144,
+                t148,
                 t152,
-                t174,
-                t175,
-                t177,
-                t180,
-                t181,
-                t183,
-                t184,
-                t185,
+                t165,
+                t187,
+                t188,
                 t190,
                 t191,
-                t192,
                 t193,
                 t194,
-                t195,
                 t196,
                 t197,
                 t198,
@@ -1793,7 +1804,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
             )
         };
         let (
-            t203,
+            t204,
+            t205,
+            t209,
+            t211,
             t219,
             t222,
             t234,
@@ -1837,153 +1851,154 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
             t341,
             t342,
         ) = {
-            let t200 = rocker_e1 * rocker_e3;
-            let t201 = k(2.0) * (t200 - t199);
-            let t202 = rocker_wx * rocker_wz;
-            let t203 = t202 - t201 * t198;
-            let t204 = t200 + t199;
-            let t205 = k(0.5) - (t195 + rocker_e2 * rocker_e2);
-            let t206 = rocker_wx * rocker_wy;
-            let t207 = rocker_e0 * rocker_e3;
-            let t208 = rocker_e1 * rocker_e2;
-            let t209 = t208 - t207;
-            let t210 = rocker_wz * rocker_wz + t197;
-            let t211 = k(2.0) * t209 * t206
-                + k(2.0) * (k(0.5) - (t195 + rocker_e1 * rocker_e1)) * t210;
-            let t212 = k(0.2) * (k(2.0) * t204 * t202 + t211);
+            let t200 = t130 * t199 - t74 * t198
+                + (t113 * t197 + (t101 * t194 + t88 * t191));
+            let t201 = t71 * (t69 + t200);
+            let t202 = t66 * t199 + (t65 * t201 - t64 * t198)
+                + (t111 * t197 + (t99 * t194 - t86 * t191));
+            let t203 = t67 * (t60 - t202);
+            let t204 = t201 + t54 * t203;
+            let t205 = t199 + t59 * t203;
+            let t206 = t85 * t205 + t84 * t204;
+            let t207 = t191 - t206;
+            let t208 = k(0.5) - (t17 + rocker_e3 * rocker_e3);
+            let t209 = (t15 + rocker_wx * rocker_wx) * (k(0.5) / t208);
+            let t210 = k(2.0) * (t25 - t24);
+            let t211 = t23 - t210 * t209;
+            let t212 = k(0.5) - (t17 + rocker_e2 * rocker_e2);
             let t213 = rocker_e0 * rocker_e1;
             let t214 = rocker_e2 * rocker_e3;
             let t215 = t214 - t213;
-            let t216 = k(2.0) * t215 * t202
-                - (k(2.0) * t205 * t206 + k(2.0) * (t208 + t207) * t210);
+            let t216 = k(2.0) * t215 * t23
+                - (k(2.0) * t212 * t18 + k(2.0) * (t20 + t19) * t16);
             let t217 = k(0.2) * t216;
             let t218 = t214 + t213;
             let t219 = k(2.0) * t218;
-            let t220 = k(0.2) * (k(2.0) * t196 * t202 - (t219 * t206 - t201 * t210));
-            let t221 = t220 * (k(0.32) * t218)
-                + (t217 * (k(0.32) * t205) - t212 * (k(0.32) * t209));
+            let t220 = k(0.2) * (k(2.0) * t208 * t23 - (t219 * t18 - t210 * t16));
+            let t221 = k(0.32) * t218 * t220
+                + (k(0.32) * t212 * t217 - k(0.32) * t21 * t27);
             let t222 = k(23.364485981308412)
-                * (t221 - (k(0.01076) * t206 - k(3.1392) * t205));
-            let t223 = k(0.4) * t209;
-            let t224 = t223 * t222 + k(0.4) * t204 * t203;
-            let t225 = t212 + t224;
-            let t226 = t212 - t68 + (t224 + t225 + (t193 - t194));
-            let t227 = t26 * t42 + t40 * t32;
-            let t228 = t227 * t51;
-            let t229 = t40 - t49 * t228;
-            let t230 = t229 * t55;
-            let t231 = t42 * (t230 * t117 + (t26 - t50 * t228))
-                + t47 * (t230 * t58 - t48 * t228);
-            let t232 = t131 * (t230 * t82 - t228 * t80)
-                - t135 * (t230 * t63 - (k(1.0) - t228 * t61));
-            let t233 = t139 * (t230 * t95 - t228 * t93) + t232;
-            let t234 = (t233 + (t233 + t231)) * t174;
-            let t235 = t135 * t234;
+                * (t221 - (k(0.01076) * t18 - k(3.1392) * t212));
+            let t223 = k(0.4) * t21;
+            let t224 = t223 * t222 + k(0.4) * t26 * t211;
+            let t225 = t27 + t224;
+            let t226 = t224 + t225 + (t206 - t207) + (t27 - t14);
+            let t227 = t7 * t59 + t12 * t54;
+            let t228 = t227 * t67;
+            let t229 = t12 - t65 * t228;
+            let t230 = t229 * t71;
+            let t231 = t59 * (t230 * t130 + (t7 - t66 * t228))
+                + t63 * (t230 * t74 - t64 * t228);
+            let t232 = t144 * (t230 * t101 - t228 * t99)
+                - t148 * (t230 * t88 - (k(1.0) - t228 * t86));
+            let t233 = t152 * (t230 * t113 - t228 * t111) + t232;
+            let t234 = (t233 + (t233 + t231)) * t187;
+            let t235 = t148 * t234;
             let t236 = k(2.0) * t235;
-            let t237 = t131 * t234;
+            let t237 = t144 * t234;
             let t238 = k(2.0) * t237;
-            let t239 = t139 * t234;
+            let t239 = t152 * t234;
             let t240 = k(2.0) * t239;
-            let t241 = t47 * t234;
-            let t242 = t42 * t234;
-            let t243 = t117 * t242 + t58 * t241
-                + (t95 * t240 + (t82 * t238 - t63 * t236));
-            let t244 = t55 * (t229 + t243);
-            let t245 = t50 * t242 + (t49 * t244 + t48 * t241)
-                + (t93 * t240 + (t80 * t238 + t61 * t236));
-            let t246 = t51 * (t227 - t245);
-            let t247 = t244 + t32 * t246;
-            let t248 = t242 + t42 * t246;
-            let t249 = t60 * t248 + t59 * t247;
+            let t241 = t63 * t234;
+            let t242 = t59 * t234;
+            let t243 = t130 * t242 + t74 * t241
+                + (t113 * t240 + (t101 * t238 - t88 * t236));
+            let t244 = t71 * (t229 + t243);
+            let t245 = t66 * t242 + (t65 * t244 + t64 * t241)
+                + (t111 * t240 + (t99 * t238 + t86 * t236));
+            let t246 = t67 * (t227 - t245);
+            let t247 = t244 + t54 * t246;
+            let t248 = t242 + t59 * t246;
+            let t249 = t85 * t248 + t84 * t247;
             let t250 = t236 + t249;
-            let t251 = k(18.69158878504673) * t209;
+            let t251 = k(18.69158878504673) * t21;
             let t252 = t223 * t251;
             let t253 = k(1.0) / (k(2.0) * t252 + (t249 + t250));
-            let t254 = t79 * t192 - t78 * t191;
-            let t255 = t181 + t254;
-            let t256 = k(0.4) * t205;
-            let t257 = t256 * t222 - k(0.4) * t215 * t203;
+            let t254 = t98 * t205 - t97 * t204;
+            let t255 = t194 + t254;
+            let t256 = k(0.4) * t212;
+            let t257 = t256 * t222 - k(0.4) * t215 * t211;
             let t258 = t217 - t257;
-            let t259 = t79 * t248 - t78 * t247;
+            let t259 = t98 * t248 - t97 * t247;
             let t260 = t238 + t259;
             let t261 = t256 * t251;
             let t262 = k(2.0) * t261 + (t259 + t260);
             let t263 = t253 * t262;
-            let t264 = t263 * t226 + (t217 - t85 - (t257 - t258 + (t254 + t255)));
-            let t265 = t18 * t42 - t14 * t32;
-            let t266 = t51 * t265;
-            let t267 = t14 + t49 * t266;
-            let t268 = t55 * t267;
-            let t269 = t42 * (t117 * t268 - (t18 - t50 * t266))
-                + t47 * (t58 * t268 + t48 * t266);
-            let t270 = t131 * (t82 * t268 - (k(1.0) - t80 * t266))
-                - t135 * (t63 * t268 - t61 * t266);
-            let t271 = t139 * (t95 * t268 + t93 * t266) + t270;
-            let t272 = t174 * (t271 + (t271 + t269));
-            let t273 = t135 * t272;
+            let t264 = t263 * t226 - (t257 - t258 + (t254 + t255) - (t217 - t91));
+            let t265 = t44 * t59 - t42 * t54;
+            let t266 = t67 * t265;
+            let t267 = t42 + t65 * t266;
+            let t268 = t71 * t267;
+            let t269 = t59 * (t130 * t268 - (t44 - t66 * t266))
+                + t63 * (t74 * t268 + t64 * t266);
+            let t270 = t144 * (t101 * t268 - (k(1.0) - t99 * t266))
+                - t148 * (t88 * t268 - t86 * t266);
+            let t271 = t152 * (t113 * t268 + t111 * t266) + t270;
+            let t272 = t187 * (t271 + (t271 + t269));
+            let t273 = t148 * t272;
             let t274 = k(2.0) * t273;
-            let t275 = t131 * t272;
+            let t275 = t144 * t272;
             let t276 = k(2.0) * t275;
-            let t277 = t139 * t272;
+            let t277 = t152 * t272;
             let t278 = k(2.0) * t277;
-            let t279 = t47 * t272;
-            let t280 = t42 * t272;
-            let t281 = t117 * t280 + t58 * t279
-                + (t95 * t278 + (t82 * t276 - t63 * t274));
-            let t282 = t55 * (t267 + t281);
-            let t283 = t50 * t280 + (t49 * t282 + t48 * t279)
-                + (t93 * t278 + (t80 * t276 + t61 * t274));
-            let t284 = t51 * (t265 + t283);
-            let t285 = t282 - t32 * t284;
-            let t286 = t280 - t42 * t284;
-            let t287 = t79 * t286 - t78 * t285;
+            let t279 = t63 * t272;
+            let t280 = t59 * t272;
+            let t281 = t130 * t280 + t74 * t279
+                + (t113 * t278 + (t101 * t276 - t88 * t274));
+            let t282 = t71 * (t267 + t281);
+            let t283 = t66 * t280 + (t65 * t282 + t64 * t279)
+                + (t111 * t278 + (t99 * t276 + t86 * t274));
+            let t284 = t67 * (t265 + t283);
+            let t285 = t282 - t54 * t284;
+            let t286 = t280 - t59 * t284;
+            let t287 = t98 * t286 - t97 * t285;
             let t288 = t276 + t287;
-            let t289 = k(18.69158878504673) * t205;
+            let t289 = k(18.69158878504673) * t212;
             let t290 = t256 * t289;
             let t291 = k(1.0) / (t262 * t263 - (k(2.0) * t290 - (t287 + t288)));
-            let t292 = t92 * t192 - t91 * t191;
-            let t293 = t184 + t292;
+            let t292 = t110 * t205 - t109 * t204;
+            let t293 = t197 + t292;
             let t294 = k(0.4) * t218;
-            let t295 = t294 * t222 - k(0.4) * t196 * t203;
+            let t295 = t294 * t222 - k(0.4) * t208 * t211;
             let t296 = t220 - t295;
-            let t297 = t92 * t248 - t91 * t247;
+            let t297 = t110 * t248 - t109 * t247;
             let t298 = t240 + t297;
             let t299 = t294 * t251;
             let t300 = k(2.0) * t299 + (t297 + t298);
             let t301 = t253 * t300;
-            let t302 = t301 * t226 + (t220 - t98 - (t295 - t296 + (t292 + t293)));
-            let t303 = t92 * t286 - t91 * t285;
+            let t302 = t301 * t226 - (t295 - t296 + (t292 + t293) - (t220 - t104));
+            let t303 = t110 * t286 - t109 * t285;
             let t304 = t278 + t303;
             let t305 = t294 * t289;
             let t306 = t262 * t301 - (k(2.0) * t305 - (t303 + t304));
             let t307 = t291 * t306;
-            let t308 = t29 * t42 - t35 * t32;
-            let t309 = t51 * t308;
-            let t310 = t35 + t49 * t309;
-            let t311 = t55 * t310;
-            let t312 = t42 * (t117 * t311 - (t29 - t50 * t309))
-                + t47 * (t58 * t311 + t48 * t309);
-            let t313 = t131 * (t82 * t311 + t80 * t309)
-                - t135 * (t63 * t311 - t61 * t309);
-            let t314 = t139 * (t95 * t311 - (k(1.0) - t93 * t309)) + t313;
-            let t315 = t174 * (t314 + (t314 + t312));
-            let t316 = t135 * t315;
+            let t308 = t51 * t59 - t56 * t54;
+            let t309 = t67 * t308;
+            let t310 = t56 + t65 * t309;
+            let t311 = t71 * t310;
+            let t312 = t59 * (t130 * t311 - (t51 - t66 * t309))
+                + t63 * (t74 * t311 + t64 * t309);
+            let t313 = t144 * (t101 * t311 + t99 * t309)
+                - t148 * (t88 * t311 - t86 * t309);
+            let t314 = t152 * (t113 * t311 - (k(1.0) - t111 * t309)) + t313;
+            let t315 = t187 * (t314 + (t314 + t312));
+            let t316 = t148 * t315;
             let t317 = k(2.0) * t316;
-            let t318 = t131 * t315;
+            let t318 = t144 * t315;
             let t319 = k(2.0) * t318;
-            let t320 = t139 * t315;
+            let t320 = t152 * t315;
             let t321 = k(2.0) * t320;
-            let t322 = t47 * t315;
-            let t323 = t42 * t315;
-            let t324 = t117 * t323 + t58 * t322
-                + (t95 * t321 + (t82 * t319 - t63 * t317));
-            let t325 = t55 * (t310 + t324);
-            let t326 = t50 * t323 + (t49 * t325 + t48 * t322)
-                + (t93 * t321 + (t80 * t319 + t61 * t317));
-            let t327 = t51 * (t308 + t326);
-            let t328 = t325 - t32 * t327;
-            let t329 = t323 - t42 * t327;
-            let t330 = t92 * t329 - t91 * t328;
+            let t322 = t63 * t315;
+            let t323 = t59 * t315;
+            let t324 = t130 * t323 + t74 * t322
+                + (t113 * t321 + (t101 * t319 - t88 * t317));
+            let t325 = t71 * (t310 + t324);
+            let t326 = t66 * t323 + (t65 * t325 + t64 * t322)
+                + (t111 * t321 + (t99 * t319 + t86 * t317));
+            let t327 = t67 * (t308 + t326);
+            let t328 = t325 - t54 * t327;
+            let t329 = t323 - t59 * t327;
+            let t330 = t110 * t329 - t109 * t328;
             let t331 = t321 + t330;
             let t332 = k(18.69158878504673) * t218;
             let t333 = t294 * t332;
@@ -1991,16 +2006,19 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
             let t335 = (t307 * t264 - t302) / t334;
             let t336 = t307 * t335 - t291 * t264;
             let t337 = t301 * t335 - (t263 * t336 + t253 * t226);
-            let t338 = t336 * (t274 + (t60 * t286 + t59 * t285)) + (t194 - t250 * t337);
-            let t339 = t335 * (t319 + (t79 * t329 - t78 * t328))
+            let t338 = t336 * (t274 + (t85 * t286 + t84 * t285)) + (t207 - t250 * t337);
+            let t339 = t335 * (t319 + (t98 * t329 - t97 * t328))
                 - (t288 * t336 - (t255 + t260 * t337));
-            let t340 = t336 * (t279 - t47 * t284)
-                - (t337 * (t241 + t47 * t246) - (t185 - t47 * t190));
+            let t340 = t336 * (t279 - t63 * t284)
+                - (t337 * (t241 + t63 * t246) - (t198 - t63 * t203));
             let t341 = t335 * (t223 * t332)
                 - (t336 * (t223 * t289) + (t225 + t252 * t337));
             let t342 = t335 * (t256 * t332) - (t290 * t336 - (t258 - t261 * t337));
             (
-                t203,
+                t204,
+                t205,
+                t209,
+                t211,
                 t219,
                 t222,
                 t234,
@@ -2046,23 +2064,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
             )
         };
         *out = [
-            t273 * t336 + (t177 - t235 * t337) - t316 * t335,
-            t318 * t335 - (t275 * t336 - (t180 + t237 * t337)),
-            t277 * t336 - (t183 + t239 * t337) - t320 * t335,
-            t152,
-            -t9,
-            t272 * t336 + (t175 - t234 * t337) - t315 * t335,
-            t338 - t335 * (t317 + (t60 * t329 + t59 * t328)),
+            t273 * t336 + (t190 - t235 * t337) - t316 * t335,
+            t318 * t335 - (t275 * t336 - (t193 + t237 * t337)),
+            t277 * t336 - (t196 + t239 * t337) - t320 * t335,
+            t165,
+            -t37,
+            t272 * t336 + (t188 - t234 * t337) - t315 * t335,
+            t338 - t335 * (t317 + (t85 * t329 + t84 * t328)),
             t339,
             t304 * t336 - (t293 + t298 * t337) - t331 * t335,
-            t335 * (t322 - t47 * t327) - t340,
-            t328 * t335 - (t285 * t336 - (t191 + t247 * t337)),
-            t286 * t336 - (t192 + t248 * t337) - t329 * t335,
+            t335 * (t322 - t63 * t327) - t340,
+            t328 * t335 - (t285 * t336 - (t204 + t247 * t337)),
+            t286 * t336 - (t205 + t248 * t337) - t329 * t335,
             -t341,
             t342,
             t305 * t336 - (t296 - t299 * t337) - t333 * t335,
-            rocker_wy * rocker_wz - t219 * t198,
-            -t203,
+            rocker_wy * rocker_wz - t219 * t209,
+            -t211,
             t289 * t336 + (t222 + t251 * t337) - t332 * t335,
             -t337,
             t336,

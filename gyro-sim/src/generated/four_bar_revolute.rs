@@ -1414,39 +1414,39 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
         let rocker_wy = y[37];
         let rocker_wz = y[38];
         let (
-            t8,
-            t15,
-            t29,
-            t39,
-            t52,
-            t58,
-            t59,
-            t60,
-            t64,
-            t73,
-            t74,
+            t35,
+            t37,
+            t51,
+            t57,
+            t70,
+            t75,
+            t76,
             t77,
-            t80,
+            t81,
             t86,
-            t91,
-            t95,
-            t96,
-            t100,
+            t87,
+            t90,
+            t93,
+            t99,
             t104,
-            t137,
-            t138,
-            t139,
-            t141,
-            t144,
-            t145,
-            t147,
-            t148,
-            t149,
+            t108,
+            t109,
+            t113,
+            t117,
+            t150,
             t151,
-            t153,
-            t155,
+            t152,
+            t154,
+            t157,
+            t158,
             t160,
+            t161,
             t162,
+            t164,
+            t165,
+            t166,
+            t168,
+            t169,
             t172,
             t174,
             t175,
@@ -1469,255 +1469,255 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
             t198,
             t199,
         ) = {
-            let t0 = crank_e0 * crank_e0;
-            let t1 = k(0.5) - (t0 + crank_e3 * crank_e3);
-            let t2 = crank_wy * crank_wy;
-            let t3 = (t2 + crank_wx * crank_wx) * (k(0.5) / t1);
-            let t4 = crank_e0 * crank_e1;
-            let t5 = crank_e2 * crank_e3;
-            let t6 = t5 + t4;
+            let t0 = coupler_wz * coupler_wz + coupler_wy * coupler_wy;
+            let t1 = coupler_e0 * coupler_e0;
+            let t2 = k(2.0) * (k(0.5) - (t1 + coupler_e1 * coupler_e1));
+            let t3 = coupler_wx * coupler_wy;
+            let t4 = coupler_e0 * coupler_e3;
+            let t5 = coupler_e1 * coupler_e2;
+            let t6 = t5 - t4;
             let t7 = k(2.0) * t6;
-            let t8 = crank_wy * crank_wz - t7 * t3;
-            let t9 = coupler_e0 * coupler_e3;
-            let t10 = coupler_e1 * coupler_e2;
-            let t11 = t10 - t9;
+            let t8 = coupler_wx * coupler_wz;
+            let t9 = coupler_e0 * coupler_e2;
+            let t10 = coupler_e1 * coupler_e3;
+            let t11 = t10 + t9;
             let t12 = k(2.0) * t11;
-            let t13 = k(2.0) * (k(0.5) - (t0 + crank_e1 * crank_e1));
-            let t14 = coupler_e0 * coupler_e0;
-            let t15 = k(0.5) - (t14 + coupler_e2 * coupler_e2);
-            let t16 = k(2.0) * t15;
-            let t17 = crank_e0 * crank_e3;
-            let t18 = crank_e1 * crank_e2;
-            let t19 = k(2.0) * (t18 + t17);
-            let t20 = coupler_e0 * coupler_e1;
-            let t21 = coupler_e2 * coupler_e3;
-            let t22 = t21 + t20;
-            let t23 = k(2.0) * t22;
-            let t24 = crank_e0 * crank_e2;
-            let t25 = crank_e1 * crank_e3;
-            let t26 = k(2.0) * (t25 - t24);
-            let t27 = t26 * t23 - (t19 * t16 + t13 * t12);
-            let t28 = crank_wx * crank_wz;
-            let t29 = t28 - t26 * t3;
-            let t30 = k(0.5) - (t0 + crank_e2 * crank_e2);
-            let t31 = k(2.0) * t30;
-            let t32 = t18 - t17;
-            let t33 = k(2.0) * t32;
-            let t34 = t7 * t23 + (t33 * t12 + t31 * t16);
-            let t35 = coupler_e0 * coupler_e2;
-            let t36 = coupler_e1 * coupler_e3;
-            let t37 = t36 + t35;
+            let t13 = k(0.25) * (t12 * t8 + (t7 * t3 + t2 * t0));
+            let t14 = rocker_wy * rocker_wy;
+            let t15 = rocker_wz * rocker_wz + t14;
+            let t16 = rocker_e0 * rocker_e0;
+            let t17 = rocker_wx * rocker_wy;
+            let t18 = rocker_e0 * rocker_e3;
+            let t19 = rocker_e1 * rocker_e2;
+            let t20 = t19 - t18;
+            let t21 = k(2.0) * t20 * t17
+                + k(2.0) * (k(0.5) - (t16 + rocker_e1 * rocker_e1)) * t15;
+            let t22 = rocker_wx * rocker_wz;
+            let t23 = rocker_e0 * rocker_e2;
+            let t24 = rocker_e1 * rocker_e3;
+            let t25 = t24 + t23;
+            let t26 = k(0.2) * (k(2.0) * t25 * t22 + t21);
+            let t27 = crank_e0 * crank_e0;
+            let t28 = k(0.5) - (t27 + crank_e3 * crank_e3);
+            let t29 = crank_wy * crank_wy;
+            let t30 = (t29 + crank_wx * crank_wx) * (k(0.5) / t28);
+            let t31 = crank_e0 * crank_e1;
+            let t32 = crank_e2 * crank_e3;
+            let t33 = t32 + t31;
+            let t34 = k(2.0) * t33;
+            let t35 = crank_wy * crank_wz - t34 * t30;
+            let t36 = k(2.0) * (k(0.5) - (t27 + crank_e1 * crank_e1));
+            let t37 = k(0.5) - (t1 + coupler_e2 * coupler_e2);
             let t38 = k(2.0) * t37;
-            let t39 = t21 - t20;
-            let t40 = k(2.0) * t39;
-            let t41 = k(0.5) - (t14 + coupler_e3 * coupler_e3);
-            let t42 = k(2.0) * t41;
-            let t43 = crank_wy * (t7 * t42 - (t33 * t38 - t31 * t40))
-                + crank_wx * (t26 * t42 - (t19 * t40 - t13 * t38));
-            let t44 = k(2.0) * t1;
-            let t45 = t5 - t4;
-            let t46 = k(2.0) * t45;
-            let t47 = t25 + t24;
-            let t48 = k(2.0) * t47;
-            let t49 = t48 * t38 + t46 * t40 + t44 * t42;
-            let t50 = crank_wz * t49 - t43;
-            let t51 = coupler_wz - t50;
-            let t52 = t44 * t23 - (t48 * t12 - t46 * t16);
-            let t53 = crank_wz * t52 - (crank_wy * t34 + crank_wx * t27);
-            let t54 = coupler_wy + t53;
-            let t55 = k(2.0) * (k(0.5) - (t14 + coupler_e1 * coupler_e1));
-            let t56 = k(2.0) * (t10 + t9);
-            let t57 = k(2.0) * (t36 - t35);
-            let t58 = t26 * t57 + (t19 * t56 + t13 * t55);
-            let t59 = t7 * t57 - (t31 * t56 + t33 * t55);
-            let t60 = t44 * t57 - (t46 * t56 - t48 * t55);
-            let t61 = crank_wz * t60 - (crank_wy * t59 + crank_wx * t58);
-            let t62 = coupler_wx + t61;
-            let t63 = (t62 * t62 + t54 * t54) / t49;
-            let t64 = coupler_wy * t50 + coupler_wz * t53 + (t52 * t63 - t54 * t51);
-            let t65 = coupler_wx * coupler_wz;
-            let t66 = coupler_wz * coupler_wz + coupler_wy * coupler_wy;
-            let t67 = coupler_wx * coupler_wy;
-            let t68 = k(0.25) * (t38 * t65 + (t12 * t67 + t55 * t66));
-            let t69 = crank_wz * crank_wz + t2;
-            let t70 = crank_wx * crank_wy;
-            let t71 = k(0.1) * (t48 * t28 + (t33 * t70 + t13 * t69));
-            let t72 = t71 + t68;
-            let t73 = k(0.5) * t37;
-            let t74 = k(0.25) * (t40 * t65 - (t16 * t67 + t56 * t66));
-            let t75 = k(0.1) * (t46 * t28 - (t31 * t70 + t19 * t69));
-            let t76 = t75 + t74;
-            let t77 = k(0.5) * t39;
-            let t78 = k(0.1) * (t44 * t28 - (t7 * t70 - t26 * t69));
-            let t79 = t78 + k(0.25) * (t42 * t65 - (t23 * t67 - t57 * t66));
-            let t80 = k(0.5) * t41;
-            let t81 = coupler_wz * t61 + coupler_wx * t50 + (t60 * t63 - t62 * t51);
-            let t82 = k(0.0835) * t81 - (t80 * t79 + (t77 * t76 + t73 * t72));
-            let t83 = t52 * (t82 - (k(0.02095) * t65 + k(4.905) * t39))
-                - t60 * (k(5e-5) * t64);
-            let t84 = k(0.02095) * t67 - k(4.905) * t15;
-            let t85 = k(11.976047904191617) * t84;
-            let t86 = k(0.5) * t15;
-            let t87 = k(5.9880239520958085) * t11;
-            let t88 = t86 * t87;
-            let t89 = k(5.9880239520958085) * t15;
-            let t90 = t86 * t89;
-            let t91 = k(0.5) * t22;
-            let t92 = t91 * t89;
-            let t93 = t77 * t81 - (t76 - (t79 * t92 + (t76 * t90 - t72 * t88)));
-            let t94 = t93 - (k(9.81) + t86 * t85);
-            let t95 = k(0.2) * t30;
-            let t96 = k(0.5) * t11;
-            let t97 = t96 * t87;
-            let t98 = t91 * t87;
-            let t99 = t73 * t81 - (t72 + (t79 * t98 + (t76 * t88 - t72 * t97)));
-            let t100 = k(0.2) * t32;
-            let t101 = t100 * (t99 + t96 * t85);
-            let t102 = t91 * (k(5.9880239520958085) * t22);
-            let t103 = t80 * t81 - (t79 - (t79 * t102 + (t76 * t92 - t72 * t98)));
-            let t104 = k(0.2) * t6;
-            let t105 = t104 * (t103 - t91 * t85);
-            let t106 = t95 * (k(3.924) - t94) + t101 - t105
-                - (k(0.00133) * t70 + (t105 - (t101 - t95 * t94) - t83));
-            let t107 = t104 * t98 + (t95 * t88 + t100 * t97);
-            let t108 = t73 * t52;
-            let t109 = t100 - t107 + t108;
-            let t110 = t104 * t92 + (t95 * t90 + t100 * t88);
-            let t111 = t77 * t52;
-            let t112 = t95 - t110 - t111;
-            let t113 = t75 * (t112 - (t110 - k(0.28) * t30))
-                - t71 * (t109 - (t107 - k(0.28) * t32));
-            let t114 = t104 * t102 + (t95 * t92 + t100 * t98);
-            let t115 = t80 * t52;
-            let t116 = t104 - t114 - t115;
-            let t117 = t104 * (t80 * t27) + (t95 * (t77 * t27) - t100 * (t73 * t27));
-            let t118 = t117 + (t117 - (t52 * (k(0.0835) * t27) + t60 * (k(5e-5) * t58)));
-            let t119 = k(0.2) * t47;
-            let t120 = k(0.2) * t45;
-            let t121 = k(0.2) * t1;
-            let t122 = t73 * t34;
-            let t123 = t77 * t34;
-            let t124 = t80 * t34;
-            let t125 = t104 * t124 + (t95 * t123 - t100 * t122)
-                - (t121 * t115 + (t120 * t111 + t119 * t108));
-            let t126 = t121 * t114 + (t120 * t110 - t119 * t107);
-            let t127 = t126 - t125 + (t52 * (k(0.0835) * t34) + t60 * (k(5e-5) * t59));
-            let t128 = t119 + (t121 * t98 + (t120 * t88 - t119 * t97)) + t122;
-            let t129 = t120 - (t121 * t92 + (t120 * t90 - t119 * t88)) + t123;
-            let t130 = t121 - (t121 * t102 + (t120 * t92 - t119 * t98)) + t124;
-            let t131 = t104 * t130 + (t95 * t129 - t100 * t128)
-                + (t121 * t116 + (t120 * t112 - t119 * t109));
-            let t132 = (t131 - t126 - t127) * t29 - t118 * t8
-                + (t78 * (t116 - (t114 - k(0.28) * t6)) + t113);
-            let t133 = t104 * t114 + (t95 * t110 + t100 * t107);
-            let t134 = t133 + k(2.0) * (t104 * t115 + (t95 * t111 - t100 * t108));
-            let t135 = t134
-                - (k(0.01) + (t52 * (k(0.0835) * t52) + t60 * (k(5e-5) * t60)));
-            let t136 = k(2.0) * (t104 * t116 + (t95 * t112 + t100 * t109)) - t133;
-            let t137 = k(1.0) / (t136 + (k(0.014) + (k(0.00135) - t135)));
-            let t138 = t137 * (t132 + t106);
-            let t139 = t81 - (t52 * t138 + (t34 * t29 - t27 * t8));
-            let t140 = t100 * t138 + t119 * t29;
-            let t141 = t71 + t140;
-            let t142 = t72 + (t140 + t141);
-            let t143 = t95 * t138 - t120 * t29;
-            let t144 = t75 - t143;
-            let t145 = t76 - (t143 - t144);
-            let t146 = t104 * t138 - t121 * t29;
-            let t147 = t78 - t146;
-            let t148 = t79 - (t146 - t147);
-            let t149 = k(11.976047904191617)
-                * (t84 - (t91 * t148 + (t86 * t145 - t96 * t142)));
-            let t150 = t96 * t149 + t73 * t139;
-            let t151 = t142 - t150;
-            let t152 = rocker_e0 * rocker_e0;
-            let t153 = k(0.5) - (t152 + rocker_e3 * rocker_e3);
-            let t154 = rocker_wy * rocker_wy;
-            let t155 = (t154 + rocker_wx * rocker_wx) * (k(0.5) / t153);
-            let t156 = rocker_e0 * rocker_e2;
-            let t157 = rocker_e1 * rocker_e3;
-            let t158 = k(2.0) * (t157 - t156);
-            let t159 = rocker_wx * rocker_wz;
-            let t160 = t159 - t158 * t155;
-            let t161 = t157 + t156;
-            let t162 = k(0.5) - (t152 + rocker_e2 * rocker_e2);
-            let t163 = rocker_wx * rocker_wy;
-            let t164 = rocker_e0 * rocker_e3;
-            let t165 = rocker_e1 * rocker_e2;
-            let t166 = t165 - t164;
-            let t167 = rocker_wz * rocker_wz + t154;
-            let t168 = k(2.0) * t166 * t163
-                + k(2.0) * (k(0.5) - (t152 + rocker_e1 * rocker_e1)) * t167;
-            let t169 = k(0.2) * (k(2.0) * t161 * t159 + t168);
+            let t39 = crank_e0 * crank_e3;
+            let t40 = crank_e1 * crank_e2;
+            let t41 = k(2.0) * (t40 + t39);
+            let t42 = coupler_e0 * coupler_e1;
+            let t43 = coupler_e2 * coupler_e3;
+            let t44 = t43 + t42;
+            let t45 = k(2.0) * t44;
+            let t46 = crank_e0 * crank_e2;
+            let t47 = crank_e1 * crank_e3;
+            let t48 = k(2.0) * (t47 - t46);
+            let t49 = t48 * t45 - (t41 * t38 + t36 * t7);
+            let t50 = crank_wx * crank_wz;
+            let t51 = t50 - t48 * t30;
+            let t52 = k(0.5) - (t27 + crank_e2 * crank_e2);
+            let t53 = k(2.0) * t52;
+            let t54 = t40 - t39;
+            let t55 = k(2.0) * t54;
+            let t56 = t34 * t45 + (t55 * t7 + t53 * t38);
+            let t57 = t43 - t42;
+            let t58 = k(2.0) * t57;
+            let t59 = k(0.5) - (t1 + coupler_e3 * coupler_e3);
+            let t60 = k(2.0) * t59;
+            let t61 = crank_wy * (t34 * t60 - (t55 * t12 - t53 * t58))
+                + crank_wx * (t48 * t60 - (t41 * t58 - t36 * t12));
+            let t62 = k(2.0) * t28;
+            let t63 = t32 - t31;
+            let t64 = k(2.0) * t63;
+            let t65 = t47 + t46;
+            let t66 = k(2.0) * t65;
+            let t67 = t66 * t12 + t64 * t58 + t62 * t60;
+            let t68 = crank_wz * t67 - t61;
+            let t69 = coupler_wz - t68;
+            let t70 = t62 * t45 - (t66 * t7 - t64 * t38);
+            let t71 = crank_wz * t70 - (crank_wy * t56 + crank_wx * t49);
+            let t72 = coupler_wy + t71;
+            let t73 = k(2.0) * (t5 + t4);
+            let t74 = k(2.0) * (t10 - t9);
+            let t75 = t48 * t74 + (t41 * t73 + t36 * t2);
+            let t76 = t34 * t74 - (t53 * t73 + t55 * t2);
+            let t77 = t62 * t74 - (t64 * t73 - t66 * t2);
+            let t78 = crank_wz * t77 - (crank_wy * t76 + crank_wx * t75);
+            let t79 = coupler_wx + t78;
+            let t80 = (t79 * t79 + t72 * t72) / t67;
+            let t81 = coupler_wy * t68 + coupler_wz * t71 + (t70 * t80 - t72 * t69);
+            let t82 = crank_wz * crank_wz + t29;
+            let t83 = crank_wx * crank_wy;
+            let t84 = k(0.1) * (t66 * t50 + (t55 * t83 + t36 * t82));
+            let t85 = t84 + t13;
+            let t86 = k(0.5) * t11;
+            let t87 = k(0.25) * (t58 * t8 - (t38 * t3 + t73 * t0));
+            let t88 = k(0.1) * (t64 * t50 - (t53 * t83 + t41 * t82));
+            let t89 = t88 + t87;
+            let t90 = k(0.5) * t57;
+            let t91 = k(0.1) * (t62 * t50 - (t34 * t83 - t48 * t82));
+            let t92 = t91 + k(0.25) * (t60 * t8 - (t45 * t3 - t74 * t0));
+            let t93 = k(0.5) * t59;
+            let t94 = coupler_wz * t78 + coupler_wx * t68 + (t77 * t80 - t79 * t69);
+            let t95 = k(0.0835) * t94 - (t93 * t92 + (t90 * t89 + t86 * t85));
+            let t96 = t70 * (t95 - (k(0.02095) * t8 + k(4.905) * t57))
+                - t77 * (k(5e-5) * t81);
+            let t97 = k(0.02095) * t3 - k(4.905) * t37;
+            let t98 = k(11.976047904191617) * t97;
+            let t99 = k(0.5) * t37;
+            let t100 = k(5.9880239520958085) * t6;
+            let t101 = t99 * t100;
+            let t102 = k(5.9880239520958085) * t37;
+            let t103 = t99 * t102;
+            let t104 = k(0.5) * t44;
+            let t105 = t104 * t102;
+            let t106 = t90 * t94 - (t89 - (t105 * t92 + (t103 * t89 - t101 * t85)));
+            let t107 = t106 - (k(9.81) + t99 * t98);
+            let t108 = k(0.2) * t52;
+            let t109 = k(0.5) * t6;
+            let t110 = t109 * t100;
+            let t111 = t104 * t100;
+            let t112 = t86 * t94 - (t85 + (t111 * t92 + (t101 * t89 - t110 * t85)));
+            let t113 = k(0.2) * t54;
+            let t114 = t113 * (t112 + t109 * t98);
+            let t115 = t104 * (k(5.9880239520958085) * t44);
+            let t116 = t93 * t94 - (t92 - (t115 * t92 + (t105 * t89 - t111 * t85)));
+            let t117 = k(0.2) * t33;
+            let t118 = t117 * (t116 - t104 * t98);
+            let t119 = t108 * (k(3.924) - t107) + t114 - t118
+                - (k(0.00133) * t83 + (t118 - (t114 - t108 * t107) - t96));
+            let t120 = t117 * t111 + (t108 * t101 + t113 * t110);
+            let t121 = t86 * t70;
+            let t122 = t113 - t120 + t121;
+            let t123 = t117 * t105 + (t108 * t103 + t113 * t101);
+            let t124 = t90 * t70;
+            let t125 = t108 - t123 - t124;
+            let t126 = (t125 - (t123 - k(0.28) * t52)) * t88
+                - (t122 - (t120 - k(0.28) * t54)) * t84;
+            let t127 = t117 * t115 + (t108 * t105 + t113 * t111);
+            let t128 = t93 * t70;
+            let t129 = t117 - t127 - t128;
+            let t130 = t117 * (t93 * t49) + (t108 * (t90 * t49) - t113 * (t86 * t49));
+            let t131 = t130 + (t130 - (t70 * (k(0.0835) * t49) + t77 * (k(5e-5) * t75)));
+            let t132 = k(0.2) * t65;
+            let t133 = k(0.2) * t63;
+            let t134 = k(0.2) * t28;
+            let t135 = t86 * t56;
+            let t136 = t90 * t56;
+            let t137 = t93 * t56;
+            let t138 = t117 * t137 + (t108 * t136 - t113 * t135)
+                - (t134 * t128 + (t133 * t124 + t132 * t121));
+            let t139 = t134 * t127 + (t133 * t123 - t132 * t120);
+            let t140 = t139 - t138 + (t70 * (k(0.0835) * t56) + t77 * (k(5e-5) * t76));
+            let t141 = t132 + (t134 * t111 + (t133 * t101 - t132 * t110)) + t135;
+            let t142 = t133 - (t134 * t105 + (t133 * t103 - t132 * t101)) + t136;
+            let t143 = t134 - (t134 * t115 + (t133 * t105 - t132 * t111)) + t137;
+            let t144 = t117 * t143 + (t108 * t142 - t113 * t141)
+                + (t134 * t129 + (t133 * t125 - t132 * t122));
+            let t145 = (t144 - t139 - t140) * t51 - t131 * t35
+                + ((t129 - (t127 - k(0.28) * t33)) * t91 + t126);
+            let t146 = t117 * t127 + (t108 * t123 + t113 * t120);
+            let t147 = t146 + k(2.0) * (t117 * t128 + (t108 * t124 - t113 * t121));
+            let t148 = t147
+                - (k(0.01) + (t70 * (k(0.0835) * t70) + t77 * (k(5e-5) * t77)));
+            let t149 = k(2.0) * (t117 * t129 + (t108 * t125 + t113 * t122)) - t146;
+            let t150 = k(1.0) / (t149 + (k(0.014) + (k(0.00135) - t148)));
+            let t151 = t150 * (t145 + t119);
+            let t152 = t94 - (t70 * t151 + (t56 * t51 - t49 * t35));
+            let t153 = t113 * t151 + t132 * t51;
+            let t154 = t84 + t153;
+            let t155 = t85 + (t153 + t154);
+            let t156 = t108 * t151 - t133 * t51;
+            let t157 = t88 - t156;
+            let t158 = t89 - (t156 - t157);
+            let t159 = t117 * t151 - t134 * t51;
+            let t160 = t91 - t159;
+            let t161 = t92 - (t159 - t160);
+            let t162 = k(11.976047904191617)
+                * (t97 - (t104 * t161 + (t99 * t158 - t109 * t155)));
+            let t163 = t109 * t162 + t86 * t152;
+            let t164 = t155 - t163;
+            let t165 = k(0.5) - (t16 + rocker_e3 * rocker_e3);
+            let t166 = (t14 + rocker_wx * rocker_wx) * (k(0.5) / t165);
+            let t167 = k(2.0) * (t24 - t23);
+            let t168 = t22 - t167 * t166;
+            let t169 = k(0.5) - (t16 + rocker_e2 * rocker_e2);
             let t170 = rocker_e0 * rocker_e1;
             let t171 = rocker_e2 * rocker_e3;
             let t172 = t171 - t170;
-            let t173 = k(2.0) * t172 * t159
-                - (k(2.0) * t162 * t163 + k(2.0) * (t165 + t164) * t167);
+            let t173 = k(2.0) * t172 * t22
+                - (k(2.0) * t169 * t17 + k(2.0) * (t19 + t18) * t15);
             let t174 = k(0.2) * t173;
             let t175 = t171 + t170;
             let t176 = k(2.0) * t175;
-            let t177 = k(0.2) * (k(2.0) * t153 * t159 - (t176 * t163 - t158 * t167));
-            let t178 = t177 * (k(0.32) * t175)
-                + (t174 * (k(0.32) * t162) - t169 * (k(0.32) * t166));
+            let t177 = k(0.2) * (k(2.0) * t165 * t22 - (t176 * t17 - t167 * t15));
+            let t178 = k(0.32) * t175 * t177
+                + (k(0.32) * t169 * t174 - k(0.32) * t20 * t26);
             let t179 = k(23.364485981308412)
-                * (t178 - (k(0.01076) * t163 - k(3.1392) * t162));
-            let t180 = k(0.4) * t166;
-            let t181 = t180 * t179 + k(0.4) * t161 * t160;
-            let t182 = t169 + t181;
-            let t183 = t169 - t68 + (t181 + t182 + (t150 - t151));
-            let t184 = k(11.976047904191617) * t11;
-            let t185 = t104 * (t91 * t184)
-                + (t95 * (t86 * t184) - t100 * (k(1.0) - t96 * t184));
-            let t186 = (t185 + (t185 - t37 * t52)) * t137;
-            let t187 = t52 * t186;
-            let t188 = t100 * t186;
+                * (t178 - (k(0.01076) * t17 - k(3.1392) * t169));
+            let t180 = k(0.4) * t20;
+            let t181 = t180 * t179 + k(0.4) * t25 * t168;
+            let t182 = t26 + t181;
+            let t183 = t181 + t182 + (t163 - t164) + (t26 - t13);
+            let t184 = k(11.976047904191617) * t6;
+            let t185 = t117 * (t104 * t184)
+                + (t108 * (t99 * t184) - t113 * (k(1.0) - t109 * t184));
+            let t186 = (t185 + (t185 - t11 * t70)) * t150;
+            let t187 = t70 * t186;
+            let t188 = t113 * t186;
             let t189 = k(2.0) * t188;
-            let t190 = t95 * t186;
+            let t190 = t108 * t186;
             let t191 = k(2.0) * t190;
-            let t192 = t104 * t186;
+            let t192 = t117 * t186;
             let t193 = k(2.0) * t192;
             let t194 = k(11.976047904191617)
-                * (t11 + (t91 * t193 + (t86 * t191 + t96 * t189)));
-            let t195 = t96 * t194 - t73 * t187;
+                * (t6 + (t104 * t193 + (t99 * t191 + t109 * t189)));
+            let t195 = t109 * t194 - t86 * t187;
             let t196 = t189 - t195;
-            let t197 = k(18.69158878504673) * t166;
+            let t197 = k(18.69158878504673) * t20;
             let t198 = t180 * t197;
             let t199 = k(1.0) / (k(2.0) * t198 + (t195 - t196));
             (
-                t8,
-                t15,
-                t29,
-                t39,
-                t52,
-                t58,
-                t59,
-                t60,
-                t64,
-                t73,
-                t74,
+                t35,
+                t37,
+                t51,
+                t57,
+                t70,
+                t75,
+                t76,
                 t77,
-                t80,
+                t81,
                 t86,
-                t91,
-                t95,
-                t96,
-                t100,
+                t87,
+                t90,
+                t93,
+                t99,
                 t104,
-                t137,
-                t138,
-                t139,
-                t141,
-                t144,
-                t145,
-                t147,
-                t148,
-                t149,
+                t108,
+                t109,
+                t113,
+                t117,
+                t150,
                 t151,
-                t153,
-                t155,
+                t152,
+                t154,
+                t157,
+                t158,
                 t160,
+                t161,
                 t162,
+                t164,
+                t165,
+                t166,
+                t168,
+                t169,
                 t172,
                 t174,
                 t175,
@@ -1764,44 +1764,44 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
             t231,
             t232,
         ) = {
-            let t200 = t86 * t149 - t77 * t139;
-            let t201 = t145 + t200;
-            let t202 = k(0.4) * t162;
-            let t203 = t202 * t179 - k(0.4) * t172 * t160;
+            let t200 = t99 * t162 - t90 * t152;
+            let t201 = t158 + t200;
+            let t202 = k(0.4) * t169;
+            let t203 = t202 * t179 - k(0.4) * t172 * t168;
             let t204 = t174 - t203;
-            let t205 = t86 * t194 + t77 * t187;
+            let t205 = t99 * t194 + t90 * t187;
             let t206 = t191 - t205;
             let t207 = t202 * t197;
             let t208 = k(2.0) * t207 + (t205 - t206);
             let t209 = t199 * t208;
-            let t210 = t209 * t183 + (t174 - t74 - (t203 - t204 + (t200 + t201)));
-            let t211 = k(11.976047904191617) * t15;
-            let t212 = t104 * (t91 * t211)
-                - (t95 * (k(1.0) - t86 * t211) - t100 * (t96 * t211));
-            let t213 = t137 * (t212 + (t212 + t39 * t52));
-            let t214 = t52 * t213;
-            let t215 = t100 * t213;
+            let t210 = t209 * t183 - (t203 - t204 + (t200 + t201) - (t174 - t87));
+            let t211 = k(11.976047904191617) * t37;
+            let t212 = t117 * (t104 * t211)
+                - (t108 * (k(1.0) - t99 * t211) - t113 * (t109 * t211));
+            let t213 = t150 * (t212 + (t212 + t57 * t70));
+            let t214 = t70 * t213;
+            let t215 = t113 * t213;
             let t216 = k(2.0) * t215;
-            let t217 = t95 * t213;
+            let t217 = t108 * t213;
             let t218 = k(2.0) * t217;
-            let t219 = t104 * t213;
+            let t219 = t117 * t213;
             let t220 = k(2.0) * t219;
             let t221 = k(11.976047904191617)
-                * (t15 + (t91 * t220 + (t86 * t218 + t96 * t216)));
-            let t222 = t86 * t221 + t77 * t214;
+                * (t37 + (t104 * t220 + (t99 * t218 + t109 * t216)));
+            let t222 = t99 * t221 + t90 * t214;
             let t223 = t218 - t222;
-            let t224 = k(18.69158878504673) * t162;
+            let t224 = k(18.69158878504673) * t169;
             let t225 = t202 * t224;
             let t226 = t210 / (t208 * t209 - (k(2.0) * t225 + (t222 - t223)));
             let t227 = t209 * t226 - t199 * t183;
-            let t228 = t226 * (t216 - (t96 * t221 - t73 * t214)) - (t151 + t196 * t227);
-            let t229 = t227 * (t193 - (t91 * t194 + t80 * t187))
-                - (t148 + (t91 * t149 - t80 * t139));
-            let t230 = t227 * (t60 * t186)
-                + (t64 + (t60 * t138 + (t59 * t29 - t58 * t8)));
+            let t228 = t226 * (t216 - (t109 * t221 - t86 * t214)) - (t164 + t196 * t227);
+            let t229 = t227 * (t193 - (t104 * t194 + t93 * t187))
+                - (t161 + (t104 * t162 - t93 * t152));
+            let t230 = t227 * (t77 * t186)
+                + (t81 + (t77 * t151 + (t76 * t51 - t75 * t35)));
             let t231 = k(0.4) * t175;
             let t232 = t227 * (t231 * t197)
-                - (t177 - (t231 * t179 - k(0.4) * t153 * t160));
+                - (t177 - (t231 * t179 - k(0.4) * t165 * t168));
             (
                 t201,
                 t204,
@@ -1827,23 +1827,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
             )
         };
         *out = [
-            t141 + t188 * t227 - t215 * t226,
-            t217 * t226 + (t144 - t190 * t227),
-            -(t219 * t226 + (t147 - t192 * t227)),
-            t8,
-            -t29,
-            t138 + t186 * t227 - t213 * t226,
+            t154 + t188 * t227 - t215 * t226,
+            t217 * t226 + (t157 - t190 * t227),
+            -(t219 * t226 + (t160 - t192 * t227)),
+            t35,
+            -t51,
+            t151 + t186 * t227 - t213 * t226,
             -t228,
             t223 * t226 + (t201 - t206 * t227),
-            t229 - t226 * (t220 - (t91 * t221 + t80 * t214)),
-            t226 * (t60 * t213) - t230,
-            t214 * t226 + (t139 - t187 * t227),
-            t221 * t226 - (t149 + t194 * t227),
+            t229 - t226 * (t220 - (t104 * t221 + t93 * t214)),
+            t226 * (t77 * t213) - t230,
+            t214 * t226 + (t152 - t187 * t227),
+            t221 * t226 - (t162 + t194 * t227),
             t182 + t198 * t227 - t226 * (t180 * t224),
             t225 * t226 + (t204 - t207 * t227),
             t232 - t226 * (t231 * t224),
-            rocker_wy * rocker_wz - t176 * t155,
-            -t160,
+            rocker_wy * rocker_wz - t176 * t166,
+            -t168,
             t179 + t197 * t227 - t224 * t226,
             -t227,
             -t226,

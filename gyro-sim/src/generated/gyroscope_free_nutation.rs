@@ -20,7 +20,7 @@
 //! | gamma | γ | 115 | 181 | 0 | 296 | 9 of 15 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 84 | 119 | 0 | 203 | 0 of 15 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 12 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 158 | 235 | 5 | 398 | 10 of 18 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 138 | 204 | 5 | 347 | 10 of 18 |
 //! | multipliers | λ, the accelerations being known | 105 | 175 | 3 | 283 | 0 of 15 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | energy | T and V | 17 | 31 | 0 | 48 | 1 of 2 |
@@ -1664,7 +1664,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 398 operations (158 ±, 235 ×, 5 ÷).
+    /// Solves eq. (17): 347 operations (138 ±, 204 ×, 5 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1688,142 +1688,134 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = outer_ring_e0 * outer_ring_e0;
-        let t1 = k(0.5) - (t0 + outer_ring_e2 * outer_ring_e2);
-        let t2 = (outer_ring_wz * outer_ring_wz + outer_ring_wx * outer_ring_wx)
-            * (k(0.5) / t1);
-        let t3 = outer_ring_e0 * outer_ring_e1;
-        let t4 = outer_ring_e2 * outer_ring_e3;
-        let t5 = k(2.0) * (t4 - t3);
-        let t6 = outer_ring_wy * outer_ring_wz - t5 * t2;
-        let t7 = rotor_e0 * rotor_e3;
-        let t8 = rotor_e1 * rotor_e2;
-        let t9 = k(2.0) * (t8 - t7);
-        let t10 = inner_ring_e0 * inner_ring_e0;
-        let t11 = k(2.0) * (k(0.5) - (t10 + inner_ring_e1 * inner_ring_e1));
-        let t12 = rotor_e0 * rotor_e0;
-        let t13 = k(2.0) * (k(0.5) - (t12 + rotor_e2 * rotor_e2));
-        let t14 = inner_ring_e0 * inner_ring_e3;
-        let t15 = inner_ring_e1 * inner_ring_e2;
-        let t16 = k(2.0) * (t15 + t14);
-        let t17 = rotor_e0 * rotor_e1;
-        let t18 = rotor_e2 * rotor_e3;
-        let t19 = k(2.0) * (t18 + t17);
-        let t20 = inner_ring_e0 * inner_ring_e2;
-        let t21 = inner_ring_e1 * inner_ring_e3;
-        let t22 = k(2.0) * (t21 - t20);
-        let t23 = t22 * t19 - (t16 * t13 + t11 * t9);
-        let t24 = k(5e-6) * t23;
-        let t25 = rotor_e0 * rotor_e2;
-        let t26 = rotor_e1 * rotor_e3;
-        let t27 = k(2.0) * (t26 + t25);
-        let t28 = k(2.0) * (t18 - t17);
-        let t29 = k(2.0) * (k(0.5) - (t12 + rotor_e3 * rotor_e3));
-        let t30 = t22 * t29 - (t16 * t28 - t11 * t27);
-        let t31 = k(5e-6) * t30;
-        let t32 = inner_ring_e0 * inner_ring_e1;
-        let t33 = inner_ring_e2 * inner_ring_e3;
-        let t34 = k(2.0) * (t33 - t32);
-        let t35 = k(2.0) * (t21 + t20);
-        let t36 = k(2.0) * (k(0.5) - (t10 + inner_ring_e3 * inner_ring_e3));
-        let t37 = t36 * t19 - (t35 * t9 - t34 * t13);
-        let t38 = t35 * t27 + t34 * t28 + t36 * t29;
-        let t39 = t38 * t31 + t37 * t24;
-        let t40 = k(1.0) / (k(1e-6) + (t38 * (k(5e-6) * t38) + t37 * (k(5e-6) * t37)));
-        let t41 = t40 * t39;
-        let t42 = t39 * t41 - (k(1e-6) + (t30 * t31 + t23 * t24));
-        let t43 = outer_ring_e0 * outer_ring_e3;
-        let t44 = outer_ring_e1 * outer_ring_e2;
-        let t45 = k(2.0) * (t44 - t43);
-        let t46 = k(2.0) * t1;
-        let t47 = k(2.0) * (t4 + t3);
-        let t48 = t47 * t22 - (t46 * t16 + t45 * t11);
-        let t49 = k(2.0) * (k(0.5) - (t10 + inner_ring_e2 * inner_ring_e2));
-        let t50 = k(2.0) * (t15 - t14);
-        let t51 = k(2.0) * (t33 + t32);
-        let t52 = t51 * t19 + (t50 * t9 + t49 * t13);
-        let t53 = t51 * t29 - (t50 * t27 - t49 * t28);
-        let t54 = k(5e-6) * t52;
-        let t55 = k(5e-6) * t53;
-        let t56 = t38 * t55 + t37 * t54;
-        let t57 = t56 * t41 - (t53 * t31 + t52 * t24);
-        let t58 = t47 * t51 + (t45 * t50 + t46 * t49);
-        let t59 = t58 * t57 + t48 * t42;
-        let t60 = t56 * (t40 * t56) - (k(2e-6) + (t53 * t55 + t52 * t54));
-        let t61 = t58 * t60 + t48 * t57;
-        let t62 = k(2.0) * (k(0.5) - (t12 + rotor_e1 * rotor_e1));
-        let t63 = k(2.0) * (t8 + t7);
-        let t64 = k(2.0) * (t26 - t25);
-        let t65 = t22 * t64 + (t16 * t63 + t11 * t62);
-        let t66 = inner_ring_wy * (t51 * t64 - (t49 * t63 + t50 * t62))
-            + inner_ring_wx * t65;
-        let t67 = inner_ring_wz * (t36 * t64 - (t34 * t63 - t35 * t62)) - t66;
-        let t68 = rotor_wx + t67;
-        let t69 = inner_ring_wz * t38 - (inner_ring_wy * t53 + inner_ring_wx * t30);
-        let t70 = rotor_wz - t69;
-        let t71 = inner_ring_wz * t37 - (inner_ring_wy * t52 + inner_ring_wx * t23);
-        let t72 = rotor_wy + t71;
-        let t73 = (t72 * t72 + t70 * t70) / t65;
-        let t74 = rotor_wz * t67 + rotor_wx * t69 - (t30 * t73 - t70 * t68);
-        let t75 = k(5e-6) * (rotor_wx * rotor_wz + t74);
-        let t76 = rotor_wx * t71 - rotor_wy * t67 - (t23 * t73 + t72 * t68);
-        let t77 = k(5e-6) * (rotor_wx * rotor_wy - t76);
-        let t78 = k(1e-6) * (inner_ring_wx * inner_ring_wy) - (t38 * t77 + t37 * t75);
-        let t79 = t40 * t78;
-        let t80 = t39 * t79
-            - (k(1e-6) * (inner_ring_wy * inner_ring_wz) - (t30 * t77 + t23 * t75));
-        let t81 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
-        let t82 = k(2.0) * (t44 + t43);
-        let t83 = outer_ring_e0 * outer_ring_e2;
-        let t84 = outer_ring_e1 * outer_ring_e3;
-        let t85 = k(2.0) * (t84 - t83);
-        let t86 = outer_ring_wy * (t47 * t36 - (t45 * t35 - t46 * t34))
-            + outer_ring_wx * (t85 * t36 - (t82 * t34 - t81 * t35));
-        let t87 = k(2.0) * (k(0.5) - (t0 + outer_ring_e3 * outer_ring_e3));
-        let t88 = k(2.0) * (t84 + t83);
-        let t89 = t88 * t35 + t5 * t34 + t87 * t36;
-        let t90 = outer_ring_wz * t89 - t86;
-        let t91 = inner_ring_wz - t90;
-        let t92 = t85 * t51 - (t82 * t49 + t81 * t50);
-        let t93 = t87 * t51 - (t88 * t50 - t5 * t49);
-        let t94 = outer_ring_wz * t93 - (outer_ring_wy * t58 + outer_ring_wx * t92);
-        let t95 = inner_ring_wy + t94;
-        let t96 = t85 * t22 + (t82 * t16 + t81 * t11);
-        let t97 = t87 * t22 - (t5 * t16 - t88 * t11);
-        let t98 = outer_ring_wz * t97 - (outer_ring_wy * t48 + outer_ring_wx * t96);
-        let t99 = inner_ring_wx + t98;
-        let t100 = (t99 * t99 + t95 * t95) / t89;
-        let t101 = inner_ring_wy * t90 + inner_ring_wz * t94 + (t93 * t100 - t95 * t91);
-        let t102 = inner_ring_wz * t98 + inner_ring_wx * t90 + (t97 * t100 - t99 * t91);
-        let t103 = t60 * t102 - t57 * t101 - (t56 * t79 + (t53 * t77 + t52 * t75));
-        let t104 = t58 * t103 + t48 * (t57 * t102 - t42 * t101 - t80);
-        let t105 = t58 * (t92 * t60 + t96 * t57) + t48 * (t92 * t57 + t96 * t42);
-        let t106 = outer_ring_wx * outer_ring_wy - t82 * t2;
-        let t107 = (t61 * t93 + t59 * t97) * t106 + t6 * t105
-            + (k(1e-6) * (outer_ring_wx * outer_ring_wz) - t104);
-        let t108 = t107 / (k(1e-6) - (t58 * t61 + t48 * t59));
-        let t109 = t101 + (t97 * t106 + (t48 * t108 + t96 * t6));
-        let t110 = t102 - (t93 * t106 + (t58 * t108 + t92 * t6));
-        let t111 = t40 * (t78 - (t56 * t110 - t39 * t109));
+        let t0 = (outer_ring_wz * outer_ring_wz + outer_ring_wx * outer_ring_wx)
+            * (k(0.5)
+                / (k(0.5)
+                    - (outer_ring_e0 * outer_ring_e0 + outer_ring_e2 * outer_ring_e2)));
+        let t1 = outer_ring_wy * outer_ring_wz
+            - k(2.0) * (outer_ring_e2 * outer_ring_e3 - outer_ring_e0 * outer_ring_e1)
+                * t0;
+        let t2 = inner_ring_e3 * rotor_e0 - inner_ring_e2 * rotor_e1
+            + inner_ring_e1 * rotor_e2 - inner_ring_e0 * rotor_e3;
+        let t3 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t4 = t3 * t2;
+        let t5 = inner_ring_e2 * rotor_e0 + inner_ring_e3 * rotor_e1
+            - inner_ring_e0 * rotor_e2 - inner_ring_e1 * rotor_e3;
+        let t6 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t7 = t6 * t5;
+        let t8 = t7 + t4;
+        let t9 = k(1e-5) * t8;
+        let t10 = k(2.0) * t8;
+        let t11 = t3 * t5;
+        let t12 = t6 * t2;
+        let t13 = t12 - t11;
+        let t14 = k(1e-5) * t13;
+        let t15 = k(2.0) * t13;
+        let t16 = t3 * t6;
+        let t17 = t5 * t2;
+        let t18 = t17 - t16;
+        let t19 = k(2.0) * t18;
+        let t20 = t3 * t3;
+        let t21 = k(0.5) - (t20 + t2 * t2);
+        let t22 = k(2.0) * t21;
+        let t23 = t22 * t14 - t19 * t9;
+        let t24 = k(1.0) / (k(1e-6) + (t22 * (k(1e-5) * t21) + t19 * (k(1e-5) * t18)));
+        let t25 = t24 * t23;
+        let t26 = t23 * t25 - (k(1e-6) + (t15 * t14 + t10 * t9));
+        let t27 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t28 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t29 = t28 * t27;
+        let t30 = outer_ring_e2 * inner_ring_e0 + outer_ring_e3 * inner_ring_e1
+            - outer_ring_e0 * inner_ring_e2 - outer_ring_e1 * inner_ring_e3;
+        let t31 = outer_ring_e1 * inner_ring_e0 - outer_ring_e0 * inner_ring_e1
+            - outer_ring_e3 * inner_ring_e2 + outer_ring_e2 * inner_ring_e3;
+        let t32 = t31 * t30;
+        let t33 = k(2.0) * (t32 - t29);
+        let t34 = k(0.5) - (t20 + t5 * t5);
+        let t35 = k(2.0) * t34;
+        let t36 = t17 + t16;
+        let t37 = k(2.0) * t36;
+        let t38 = k(1e-5) * t34;
+        let t39 = k(1e-5) * t36;
+        let t40 = t22 * t39 + t19 * t38;
+        let t41 = t40 * t25 - (t37 * t14 - t35 * t9);
+        let t42 = t28 * t28;
+        let t43 = k(2.0) * (k(0.5) - (t42 + t30 * t30));
+        let t44 = t43 * t41 - t33 * t26;
+        let t45 = t40 * (t24 * t40) - (k(2e-6) + (t37 * t39 + t35 * t38));
+        let t46 = t43 * t45 - t33 * t41;
+        let t47 = k(0.5) - (t20 + t6 * t6);
+        let t48 = inner_ring_wz * (k(2.0) * (t12 + t11))
+            + (inner_ring_wy * (k(2.0) * (t7 - t4)) - inner_ring_wx * (k(2.0) * t47));
+        let t49 = rotor_wx - t48;
+        let t50 = inner_ring_wz * t22 - (inner_ring_wy * t37 + inner_ring_wx * t15);
+        let t51 = rotor_wz + t50;
+        let t52 = inner_ring_wz * t19 - (inner_ring_wy * t35 - inner_ring_wx * t10);
+        let t53 = rotor_wy - t52;
+        let t54 = k(0.5) / t47 * (t53 * t53 + t51 * t51);
+        let t55 = rotor_wz * t48 + rotor_wx * t50 + (t15 * t54 - t51 * t49);
+        let t56 = k(5e-6) * (rotor_wx * rotor_wz - t55);
+        let t57 = rotor_wx * t52 - rotor_wy * t48 - (t10 * t54 - t53 * t49);
+        let t58 = k(5e-6) * (rotor_wx * rotor_wy + t57);
+        let t59 = k(1e-6) * (inner_ring_wx * inner_ring_wy) + (t22 * t58 + t19 * t56);
+        let t60 = t24 * t59;
+        let t61 = t23 * t60
+            - (k(1e-6) * (inner_ring_wy * inner_ring_wz) + (t15 * t58 - t10 * t56));
+        let t62 = t28 * t30;
+        let t63 = t31 * t27;
+        let t64 = t28 * t31;
+        let t65 = t30 * t27;
+        let t66 = outer_ring_wy * (k(2.0) * (t65 + t64))
+            + outer_ring_wx * (k(2.0) * (t63 - t62));
+        let t67 = k(0.5) - (t42 + t27 * t27);
+        let t68 = outer_ring_wz * (k(2.0) * t67) - t66;
+        let t69 = inner_ring_wz + t68;
+        let t70 = k(2.0) * (t32 + t29);
+        let t71 = k(2.0) * (t65 - t64);
+        let t72 = outer_ring_wz * t71 - (outer_ring_wy * t43 - outer_ring_wx * t70);
+        let t73 = inner_ring_wy - t72;
+        let t74 = k(2.0) * (k(0.5) - (t42 + t31 * t31));
+        let t75 = k(2.0) * (t63 + t62);
+        let t76 = outer_ring_wz * t75 + (outer_ring_wy * t33 - outer_ring_wx * t74);
+        let t77 = inner_ring_wx - t76;
+        let t78 = k(0.5) / t67 * (t77 * t77 + t73 * t73);
+        let t79 = inner_ring_wy * t68 + inner_ring_wz * t72 - (t71 * t78 - t73 * t69);
+        let t80 = inner_ring_wz * t76 + inner_ring_wx * t68 - (t75 * t78 - t77 * t69);
+        let t81 = t45 * t80 - t41 * t79 + (t40 * t60 - (t37 * t58 + t35 * t56));
+        let t82 = t43 * t81 - t33 * (t41 * t80 - t26 * t79 + t61);
+        let t83 = t43 * (t70 * t45 - t74 * t41) - t33 * (t70 * t41 - t74 * t26);
+        let t84 = outer_ring_wx * outer_ring_wy
+            - k(2.0) * (outer_ring_e1 * outer_ring_e2 + outer_ring_e0 * outer_ring_e3)
+                * t0;
+        let t85 = t84 * (t71 * t46 + t75 * t44) - t1 * t83
+            + (k(1e-6) * (outer_ring_wx * outer_ring_wz) - t82);
+        let t86 = t85 / (k(1e-6) - (t43 * t46 - t33 * t44));
+        let t87 = t79 + (t84 * t75 - (t33 * t86 - t1 * t74));
+        let t88 = t80 - (t84 * t71 + (t43 * t86 - t1 * t70));
+        let t89 = t24 * (t59 + (t40 * t88 - t23 * t87));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -t6,
-            -t108,
-            t106,
+            -t1,
+            -t86,
+            t84,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t109,
-            t110,
-            -t111,
+            t87,
+            -t88,
+            -t89,
             k(0.0),
             k(0.0),
             k(0.0),
             k(0.0),
-            t74 + (t37 * t111 + (t52 * t110 - t23 * t109)),
-            t76 - (t38 * t111 + (t53 * t110 - t30 * t109)),
+            -(t55 + (t19 * t89 - (t35 * t88 + t10 * t87))),
+            t22 * t89 - (t37 * t88 - t15 * t87) - t57,
         ];
     }
     /// Writes λ: 283 operations (105 ±, 175 ×, 3 ÷).

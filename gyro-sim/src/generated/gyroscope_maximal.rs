@@ -18,7 +18,7 @@
 //! | gamma | γ | 181 | 291 | 0 | 472 | 9 of 21 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 129 | 184 | 0 | 313 | 0 of 21 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 14 of 24 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 260 | 398 | 6 | 664 | 10 of 24 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 242 | 368 | 6 | 616 | 10 of 24 |
 //! | multipliers | λ, the accelerations being known | 180 | 291 | 4 | 475 | 0 of 21 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 32 | 64 | 0 | 96 | 0 of 28 |
 //! | energy | T and V | 26 | 45 | 0 | 71 | 0 of 2 |
@@ -2125,7 +2125,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 664 operations (260 ±, 398 ×, 6 ÷).
+    /// Solves eq. (17): 616 operations (242 ±, 368 ×, 6 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let base_e0 = y[3];
@@ -2184,184 +2184,177 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
         let t25 = t22 * (t8 * t12) - t24;
         let t26 = t20 * ((t10 + t9) * t12) - t18 * ((t7 - t5) * t12);
         let t27 = t22 * (t3 * t12) - t26;
-        let t28 = outer_ring_e0 * outer_ring_e3;
-        let t29 = outer_ring_e1 * outer_ring_e2;
-        let t30 = k(2.0) * (t29 - t28);
-        let t31 = base_e0 * base_e0;
-        let t32 = k(2.0) * (k(0.5) - (t31 + base_e1 * base_e1));
-        let t33 = outer_ring_e0 * outer_ring_e0;
-        let t34 = k(2.0) * (k(0.5) - (t33 + outer_ring_e2 * outer_ring_e2));
-        let t35 = base_e0 * base_e3;
-        let t36 = base_e1 * base_e2;
-        let t37 = k(2.0) * (t36 + t35);
-        let t38 = outer_ring_e0 * outer_ring_e1;
-        let t39 = outer_ring_e2 * outer_ring_e3;
-        let t40 = k(2.0) * (t39 + t38);
-        let t41 = base_e0 * base_e2;
-        let t42 = base_e1 * base_e3;
-        let t43 = k(2.0) * (t42 - t41);
-        let t44 = k(2.0) * (k(0.5) - (t31 + base_e2 * base_e2));
-        let t45 = k(2.0) * (t36 - t35);
-        let t46 = base_e0 * base_e1;
-        let t47 = base_e2 * base_e3;
-        let t48 = k(2.0) * (t47 + t46);
-        let t49 = t48 * t40 + (t45 * t30 + t44 * t34);
-        let t50 = base_wy * t49 + base_wx * (t43 * t40 - (t37 * t34 + t32 * t30));
-        let t51 = k(2.0) * (t47 - t46);
-        let t52 = k(2.0) * (t42 + t41);
-        let t53 = k(2.0) * (k(0.5) - (t31 + base_e3 * base_e3));
-        let t54 = base_wz * (t53 * t40 - (t52 * t30 - t51 * t34)) - t50;
-        let t55 = outer_ring_wy + t54;
-        let t56 = outer_ring_e0 * outer_ring_e2;
-        let t57 = outer_ring_e1 * outer_ring_e3;
-        let t58 = k(2.0) * (t57 + t56);
-        let t59 = k(2.0) * (t39 - t38);
-        let t60 = k(2.0) * (k(0.5) - (t33 + outer_ring_e3 * outer_ring_e3));
-        let t61 = t43 * t60 - (t37 * t59 - t32 * t58);
-        let t62 = t48 * t60 - (t45 * t58 - t44 * t59);
-        let t63 = t52 * t58 + t51 * t59 + t53 * t60;
-        let t64 = base_wz * t63 - (base_wy * t62 + base_wx * t61);
-        let t65 = outer_ring_wz - t64;
-        let t66 = k(2.0) * (k(0.5) - (t33 + outer_ring_e1 * outer_ring_e1));
-        let t67 = k(2.0) * (t29 + t28);
-        let t68 = k(2.0) * (t57 - t56);
-        let t69 = t43 * t68 + (t37 * t67 + t32 * t66);
-        let t70 = t48 * t68 - (t44 * t67 + t45 * t66);
-        let t71 = t53 * t68 - (t51 * t67 - t52 * t66);
-        let t72 = base_wz * t71 - (base_wy * t70 + base_wx * t69);
-        let t73 = outer_ring_wx + t72;
-        let t74 = (t73 * t73 + t65 * t65) / t49;
-        let t75 = outer_ring_wy * t64 + outer_ring_wz * t54 - (t62 * t74 - t65 * t55);
-        let t76 = t27 * t71 - (t25 * t70 + t23 * t69) - t75;
-        let t77 = rotor_e0 * rotor_e3;
-        let t78 = rotor_e1 * rotor_e2;
-        let t79 = k(2.0) * (t78 - t77);
-        let t80 = inner_ring_e0 * inner_ring_e0;
-        let t81 = k(2.0) * (k(0.5) - (t80 + inner_ring_e1 * inner_ring_e1));
-        let t82 = rotor_e0 * rotor_e0;
-        let t83 = k(2.0) * (k(0.5) - (t82 + rotor_e2 * rotor_e2));
-        let t84 = inner_ring_e0 * inner_ring_e3;
-        let t85 = inner_ring_e1 * inner_ring_e2;
-        let t86 = k(2.0) * (t85 + t84);
-        let t87 = rotor_e0 * rotor_e1;
-        let t88 = rotor_e2 * rotor_e3;
-        let t89 = k(2.0) * (t88 + t87);
-        let t90 = inner_ring_e0 * inner_ring_e2;
-        let t91 = inner_ring_e1 * inner_ring_e3;
-        let t92 = k(2.0) * (t91 - t90);
-        let t93 = t92 * t89 - (t86 * t83 + t81 * t79);
-        let t94 = k(5e-6) * t93;
-        let t95 = rotor_e0 * rotor_e2;
-        let t96 = rotor_e1 * rotor_e3;
-        let t97 = k(2.0) * (t96 + t95);
-        let t98 = k(2.0) * (t88 - t87);
-        let t99 = k(2.0) * (k(0.5) - (t82 + rotor_e3 * rotor_e3));
-        let t100 = t92 * t99 - (t86 * t98 - t81 * t97);
-        let t101 = k(5e-6) * t100;
-        let t102 = inner_ring_e0 * inner_ring_e1;
-        let t103 = inner_ring_e2 * inner_ring_e3;
-        let t104 = t103 - t102;
-        let t105 = k(2.0) * t104;
-        let t106 = t91 + t90;
-        let t107 = k(2.0) * t106;
-        let t108 = k(0.5) - (t80 + inner_ring_e3 * inner_ring_e3);
-        let t109 = k(2.0) * t108;
-        let t110 = t109 * t89 - (t107 * t79 - t105 * t83);
-        let t111 = t107 * t97 + t105 * t98 + t109 * t99;
-        let t112 = t111 * t101 + t110 * t94;
-        let t113 = k(1e-6)
-            + (k(1.25e-9) + (t111 * (k(5e-6) * t111) + t110 * (k(5e-6) * t110)));
-        let t114 = k(1.0) / t113;
-        let t115 = t114 * t112;
-        let t116 = t112 * t115 - (k(1e-6) + (t100 * t101 + t93 * t94));
-        let t117 = t40 * t92 - (t34 * t86 + t30 * t81);
-        let t118 = k(0.5) - (t80 + inner_ring_e2 * inner_ring_e2);
-        let t119 = k(2.0) * t118;
-        let t120 = t85 - t84;
-        let t121 = k(2.0) * t120;
-        let t122 = t103 + t102;
-        let t123 = k(2.0) * t122;
-        let t124 = t123 * t89 + (t121 * t79 + t119 * t83);
-        let t125 = t123 * t99 - (t121 * t97 - t119 * t98);
-        let t126 = k(5e-6) * t124;
-        let t127 = k(5e-6) * t125;
-        let t128 = t111 * t127 + t110 * t126;
-        let t129 = t128 * t115 - (t125 * t101 + t124 * t94);
-        let t130 = t40 * t123 + (t30 * t121 + t34 * t119);
-        let t131 = t130 * t129 + t117 * t116;
-        let t132 = t128 * (t114 * t128)
-            - (k(2e-6) + (k(1.25e-9) + (t125 * t127 + t124 * t126)));
-        let t133 = t130 * t132 + t117 * t129;
-        let t134 = k(2.0) * (k(0.5) - (t82 + rotor_e1 * rotor_e1));
-        let t135 = k(2.0) * (t78 + t77);
-        let t136 = k(2.0) * (t96 - t95);
-        let t137 = t92 * t136 + (t86 * t135 + t81 * t134);
-        let t138 = inner_ring_wy * (t123 * t136 - (t119 * t135 + t121 * t134))
-            + inner_ring_wx * t137;
-        let t139 = inner_ring_wz * (t109 * t136 - (t105 * t135 - t107 * t134)) - t138;
-        let t140 = rotor_wx + t139;
-        let t141 = inner_ring_wz * t111 - (inner_ring_wy * t125 + inner_ring_wx * t100);
-        let t142 = rotor_wz - t141;
-        let t143 = inner_ring_wz * t110 - (inner_ring_wy * t124 + inner_ring_wx * t93);
-        let t144 = rotor_wy + t143;
-        let t145 = (t144 * t144 + t142 * t142) / t137;
-        let t146 = rotor_wz * t139 + rotor_wx * t141 - (t100 * t145 - t142 * t140);
-        let t147 = k(5e-6) * (rotor_wx * rotor_wz + t146);
-        let t148 = rotor_wx * t143 - rotor_wy * t139 - (t93 * t145 + t144 * t140);
-        let t149 = k(5e-6) * (rotor_wx * rotor_wy - t148);
-        let t150 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
-        let t151 = inner_ring_wx * inner_ring_wy;
-        let t152 = inner_ring_wx * inner_ring_wz;
-        let t153 = t107 * t152 + (t121 * t151 + t81 * t150);
-        let t154 = k(1e-5) * t153;
-        let t155 = k(0.00025) * t120;
-        let t156 = t105 * t152 - (t119 * t151 + t86 * t150);
-        let t157 = k(0.8) + k(1e-5) * t156;
-        let t158 = k(0.00025) * t118;
-        let t159 = t109 * t152 - (t123 * t151 - t92 * t150);
-        let t160 = k(1e-5) * t159;
-        let t161 = k(0.00025) * t122;
-        let t162 = t161 * t160 + (t158 * t157 - t155 * t154)
-            + (t111 * t149 + t110 * t147);
-        let t163 = k(1e-6) * t151 - t162;
-        let t164 = t114 * t163;
-        let t165 = t112 * t164
-            - (k(1e-6) * (inner_ring_wy * inner_ring_wz) - (t100 * t149 + t93 * t147));
-        let t166 = outer_ring_wy * (t40 * t109 - (t30 * t107 - t34 * t105))
-            + outer_ring_wx * (t68 * t109 - (t67 * t105 - t66 * t107));
-        let t167 = t58 * t107 + t59 * t105 + t60 * t109;
-        let t168 = outer_ring_wz * t167 - t166;
-        let t169 = inner_ring_wz - t168;
-        let t170 = t68 * t123 - (t67 * t119 + t66 * t121);
-        let t171 = t60 * t123 - (t58 * t121 - t59 * t119);
-        let t172 = outer_ring_wz * t171 - (outer_ring_wy * t130 + outer_ring_wx * t170);
-        let t173 = inner_ring_wy + t172;
-        let t174 = t68 * t92 + (t67 * t86 + t66 * t81);
-        let t175 = t60 * t92 - (t59 * t86 - t58 * t81);
-        let t176 = outer_ring_wz * t175 - (outer_ring_wy * t117 + outer_ring_wx * t174);
-        let t177 = inner_ring_wx + t176;
-        let t178 = (t177 * t177 + t173 * t173) / t167;
-        let t179 = inner_ring_wy * t168 + inner_ring_wz * t172
-            + (t171 * t178 - t173 * t169);
-        let t180 = inner_ring_wz * t176 + inner_ring_wx * t168
-            + (t175 * t178 - t177 * t169);
-        let t181 = k(0.00025) * t106;
-        let t182 = k(0.00025) * t104;
-        let t183 = k(0.00025) * t108;
-        let t184 = t183 * t160 + (t182 * t157 + t181 * t154)
-            - (t125 * t149 + t124 * t147);
-        let t185 = t130 * (t132 * t180 - t129 * t179 - (t128 * t164 - t184));
-        let t186 = k(1e-6) * (outer_ring_wx * outer_ring_wz)
-            - (t185 + t117 * (t129 * t180 - t116 * t179 - t165));
-        let t187 = t130 * (t170 * t132 + t174 * t129)
-            + t117 * (t170 * t129 + t174 * t116);
-        let t188 = outer_ring_wx * t54 - outer_ring_wy * t72 + (t70 * t74 + t73 * t55);
-        let t189 = t27 * t63 - (t25 * t62 + t23 * t61) - t188;
-        let t190 = t189 * (t133 * t171 + t131 * t175) + t76 * t187 - t186;
-        let t191 = t190 / (k(1e-6) - (t130 * t133 + t117 * t131));
-        let t192 = t179 - (t189 * t175 + (t117 * t191 + t174 * t76));
-        let t193 = t180 + (t189 * t171 + (t130 * t191 + t170 * t76));
-        let t194 = t114 * (t163 - (t128 * t193 - t112 * t192));
+        let t28 = base_e3 * outer_ring_e0 - base_e2 * outer_ring_e1
+            + base_e1 * outer_ring_e2 - base_e0 * outer_ring_e3;
+        let t29 = base_e0 * outer_ring_e0 + base_e1 * outer_ring_e1
+            + base_e2 * outer_ring_e2 + base_e3 * outer_ring_e3;
+        let t30 = t29 * t28;
+        let t31 = base_e2 * outer_ring_e0 + base_e3 * outer_ring_e1
+            - base_e0 * outer_ring_e2 - base_e1 * outer_ring_e3;
+        let t32 = base_e1 * outer_ring_e0 - base_e0 * outer_ring_e1
+            - base_e3 * outer_ring_e2 + base_e2 * outer_ring_e3;
+        let t33 = t32 * t31;
+        let t34 = t29 * t29;
+        let t35 = k(0.5) - (t34 + t31 * t31);
+        let t36 = t29 * t32;
+        let t37 = t31 * t28;
+        let t38 = base_wz * (k(2.0) * (t37 - t36))
+            - (base_wy * (k(2.0) * t35) - base_wx * (k(2.0) * (t33 + t30)));
+        let t39 = outer_ring_wy - t38;
+        let t40 = t29 * t31;
+        let t41 = t32 * t28;
+        let t42 = k(2.0) * (t41 - t40);
+        let t43 = k(2.0) * (t37 + t36);
+        let t44 = k(2.0) * (k(0.5) - (t34 + t28 * t28));
+        let t45 = base_wz * t44 - (base_wy * t43 + base_wx * t42);
+        let t46 = outer_ring_wz + t45;
+        let t47 = k(2.0) * (k(0.5) - (t34 + t32 * t32));
+        let t48 = k(2.0) * (t33 - t30);
+        let t49 = k(2.0) * (t41 + t40);
+        let t50 = base_wz * t49 + (base_wy * t48 - base_wx * t47);
+        let t51 = outer_ring_wx - t50;
+        let t52 = k(0.5) / t35 * (t51 * t51 + t46 * t46);
+        let t53 = outer_ring_wy * t45 + outer_ring_wz * t38 + (t43 * t52 - t46 * t39);
+        let t54 = t27 * t49 + (t25 * t48 - t23 * t47) - t53;
+        let t55 = inner_ring_e3 * rotor_e0 - inner_ring_e2 * rotor_e1
+            + inner_ring_e1 * rotor_e2 - inner_ring_e0 * rotor_e3;
+        let t56 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t57 = t56 * t55;
+        let t58 = inner_ring_e2 * rotor_e0 + inner_ring_e3 * rotor_e1
+            - inner_ring_e0 * rotor_e2 - inner_ring_e1 * rotor_e3;
+        let t59 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t60 = t59 * t58;
+        let t61 = t60 + t57;
+        let t62 = k(1e-5) * t61;
+        let t63 = k(2.0) * t61;
+        let t64 = t56 * t58;
+        let t65 = t59 * t55;
+        let t66 = t65 - t64;
+        let t67 = k(1e-5) * t66;
+        let t68 = k(2.0) * t66;
+        let t69 = t56 * t59;
+        let t70 = t58 * t55;
+        let t71 = t70 - t69;
+        let t72 = k(2.0) * t71;
+        let t73 = t56 * t56;
+        let t74 = k(0.5) - (t73 + t55 * t55);
+        let t75 = k(2.0) * t74;
+        let t76 = t75 * t67 - t72 * t62;
+        let t77 = k(1e-6)
+            + (k(1.25e-9) + (t75 * (k(1e-5) * t74) + t72 * (k(1e-5) * t71)));
+        let t78 = k(1.0) / t77;
+        let t79 = t78 * t76;
+        let t80 = t76 * t79 - (k(1e-6) + (t68 * t67 + t63 * t62));
+        let t81 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t82 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t83 = t82 * t81;
+        let t84 = outer_ring_e2 * inner_ring_e0 + outer_ring_e3 * inner_ring_e1
+            - outer_ring_e0 * inner_ring_e2 - outer_ring_e1 * inner_ring_e3;
+        let t85 = outer_ring_e1 * inner_ring_e0 - outer_ring_e0 * inner_ring_e1
+            - outer_ring_e3 * inner_ring_e2 + outer_ring_e2 * inner_ring_e3;
+        let t86 = t85 * t84;
+        let t87 = k(2.0) * (t86 - t83);
+        let t88 = k(0.5) - (t73 + t58 * t58);
+        let t89 = k(2.0) * t88;
+        let t90 = t70 + t69;
+        let t91 = k(2.0) * t90;
+        let t92 = k(1e-5) * t88;
+        let t93 = k(1e-5) * t90;
+        let t94 = t75 * t93 + t72 * t92;
+        let t95 = t94 * t79 - (t91 * t67 - t89 * t62);
+        let t96 = t82 * t82;
+        let t97 = k(2.0) * (k(0.5) - (t96 + t84 * t84));
+        let t98 = t97 * t95 - t87 * t80;
+        let t99 = t94 * (t78 * t94) - (k(2e-6) + (k(1.25e-9) + (t91 * t93 + t89 * t92)));
+        let t100 = t97 * t99 - t87 * t95;
+        let t101 = k(0.5) - (t73 + t59 * t59);
+        let t102 = inner_ring_wz * (k(2.0) * (t65 + t64))
+            + (inner_ring_wy * (k(2.0) * (t60 - t57)) - inner_ring_wx * (k(2.0) * t101));
+        let t103 = rotor_wx - t102;
+        let t104 = inner_ring_wz * t75 - (inner_ring_wy * t91 + inner_ring_wx * t68);
+        let t105 = rotor_wz + t104;
+        let t106 = inner_ring_wz * t72 - (inner_ring_wy * t89 - inner_ring_wx * t63);
+        let t107 = rotor_wy - t106;
+        let t108 = k(0.5) / t101 * (t107 * t107 + t105 * t105);
+        let t109 = rotor_wz * t102 + rotor_wx * t104 + (t68 * t108 - t105 * t103);
+        let t110 = k(5e-6) * (rotor_wx * rotor_wz - t109);
+        let t111 = rotor_wx * t106 - rotor_wy * t102 - (t63 * t108 - t107 * t103);
+        let t112 = k(5e-6) * (rotor_wx * rotor_wy + t111);
+        let t113 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
+        let t114 = inner_ring_e0 * inner_ring_e0;
+        let t115 = inner_ring_wx * inner_ring_wy;
+        let t116 = inner_ring_e0 * inner_ring_e3;
+        let t117 = inner_ring_e1 * inner_ring_e2;
+        let t118 = t117 - t116;
+        let t119 = k(2.0) * t118 * t115
+            + k(2.0) * (k(0.5) - (t114 + inner_ring_e1 * inner_ring_e1)) * t113;
+        let t120 = inner_ring_wx * inner_ring_wz;
+        let t121 = inner_ring_e0 * inner_ring_e2;
+        let t122 = inner_ring_e1 * inner_ring_e3;
+        let t123 = t122 + t121;
+        let t124 = k(2.0) * t123 * t120 + t119;
+        let t125 = k(1e-5) * t124;
+        let t126 = k(0.00025) * t118;
+        let t127 = k(0.5) - (t114 + inner_ring_e2 * inner_ring_e2);
+        let t128 = inner_ring_e0 * inner_ring_e1;
+        let t129 = inner_ring_e2 * inner_ring_e3;
+        let t130 = t129 - t128;
+        let t131 = k(2.0) * t130 * t120
+            - (k(2.0) * t127 * t115 + k(2.0) * (t117 + t116) * t113);
+        let t132 = k(0.8) + k(1e-5) * t131;
+        let t133 = k(0.00025) * t127;
+        let t134 = t129 + t128;
+        let t135 = k(0.5) - (t114 + inner_ring_e3 * inner_ring_e3);
+        let t136 = k(2.0) * t135 * t120
+            - (k(2.0) * t134 * t115 - k(2.0) * (t122 - t121) * t113);
+        let t137 = k(1e-5) * t136;
+        let t138 = k(0.00025) * t134;
+        let t139 = t138 * t137 + (t133 * t132 - t126 * t125) - (t75 * t112 + t72 * t110);
+        let t140 = k(1e-6) * t115 - t139;
+        let t141 = t78 * t140;
+        let t142 = t76 * t141
+            - (k(1e-6) * (inner_ring_wy * inner_ring_wz) + (t68 * t112 - t63 * t110));
+        let t143 = t82 * t84;
+        let t144 = t85 * t81;
+        let t145 = t82 * t85;
+        let t146 = t84 * t81;
+        let t147 = outer_ring_wy * (k(2.0) * (t146 + t145))
+            + outer_ring_wx * (k(2.0) * (t144 - t143));
+        let t148 = k(0.5) - (t96 + t81 * t81);
+        let t149 = outer_ring_wz * (k(2.0) * t148) - t147;
+        let t150 = inner_ring_wz + t149;
+        let t151 = k(2.0) * (t86 + t83);
+        let t152 = k(2.0) * (t146 - t145);
+        let t153 = outer_ring_wz * t152 - (outer_ring_wy * t97 - outer_ring_wx * t151);
+        let t154 = inner_ring_wy - t153;
+        let t155 = k(2.0) * (k(0.5) - (t96 + t85 * t85));
+        let t156 = k(2.0) * (t144 + t143);
+        let t157 = outer_ring_wz * t156 + (outer_ring_wy * t87 - outer_ring_wx * t155);
+        let t158 = inner_ring_wx - t157;
+        let t159 = k(0.5) / t148 * (t158 * t158 + t154 * t154);
+        let t160 = inner_ring_wy * t149 + inner_ring_wz * t153
+            - (t152 * t159 - t154 * t150);
+        let t161 = inner_ring_wz * t157 + inner_ring_wx * t149
+            - (t156 * t159 - t158 * t150);
+        let t162 = k(0.00025) * t123;
+        let t163 = k(0.00025) * t130;
+        let t164 = k(0.00025) * t135;
+        let t165 = t164 * t137 + (t163 * t132 + t162 * t125) + (t91 * t112 + t89 * t110);
+        let t166 = t97 * (t99 * t161 - t95 * t160 + (t94 * t141 - t165));
+        let t167 = k(1e-6) * (outer_ring_wx * outer_ring_wz)
+            - (t166 - t87 * (t95 * t161 - t80 * t160 + t142));
+        let t168 = t97 * (t151 * t99 - t155 * t95) - t87 * (t151 * t95 - t155 * t80);
+        let t169 = outer_ring_wx * t38 - outer_ring_wy * t50 + (t48 * t52 - t51 * t39);
+        let t170 = t27 * t44 - (t25 * t43 + t23 * t42) - t169;
+        let t171 = t170 * (t152 * t100 + t156 * t98) - t54 * t168 + t167;
+        let t172 = t171 / (k(1e-6) - (t97 * t100 - t87 * t98));
+        let t173 = t160 + (t156 * t170 - (t87 * t172 - t155 * t54));
+        let t174 = t161 - (t152 * t170 + (t97 * t172 - t151 * t54));
+        let t175 = t78 * (t140 + (t94 * t174 - t76 * t173));
         *out = [
             k(0.0),
             k(0.0),
@@ -2372,21 +2365,21 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
             k(0.0),
             k(0.0),
             k(0.0),
-            t76,
-            t191,
-            -t189,
+            -t54,
+            -t172,
+            t170,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t192,
-            t193,
-            -t194,
-            k(0.000125) * t153 - (t155 * t194 + t181 * t193),
-            t158 * t194 - t182 * t193 + k(0.000125) * t156,
-            -(t161 * t194 - t183 * t193 + k(0.000125) * t159),
+            t173,
+            -t174,
+            -t175,
+            k(0.000125) * t124 - (t126 * t175 - t162 * t174),
+            k(0.000125) * t131 + (t133 * t175 + t163 * t174),
+            -(k(0.000125) * t136 + (t138 * t175 + t164 * t174)),
             k(0.0),
-            t146 + (t110 * t194 + (t124 * t193 - t93 * t192)),
-            t148 - (t111 * t194 + (t125 * t193 - t100 * t192)),
+            -(t109 + (t72 * t175 - (t89 * t174 + t63 * t173))),
+            t75 * t175 - (t91 * t174 - t68 * t173) - t111,
         ];
     }
     /// Writes λ: 475 operations (180 ±, 291 ×, 4 ÷).

@@ -19,7 +19,7 @@
 //! | gamma | γ | 122 | 193 | 0 | 315 | 6 of 15 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 90 | 128 | 0 | 218 | 0 of 15 |
 //! | applied_force | (f, n' − w̃'J'w') | 1 | 14 | 0 | 15 | 9 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 181 | 274 | 5 | 460 | 7 of 18 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 173 | 262 | 5 | 440 | 7 of 18 |
 //! | multipliers | λ, the accelerations being known | 115 | 191 | 3 | 309 | 0 of 15 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | energy | T and V | 19 | 36 | 0 | 55 | 0 of 2 |
@@ -1746,7 +1746,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeParameters<T> {
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 460 operations (181 ±, 274 ×, 5 ÷).
+    /// Solves eq. (17): 440 operations (173 ±, 262 ×, 5 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1770,166 +1770,175 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeParameters<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = outer_ring_e0 * outer_ring_e0;
-        let t1 = k(0.5) - (t0 + outer_ring_e2 * outer_ring_e2);
-        let t2 = (outer_ring_wz * outer_ring_wz + outer_ring_wx * outer_ring_wx)
-            * (k(0.5) / t1);
-        let t3 = outer_ring_e0 * outer_ring_e1;
-        let t4 = outer_ring_e2 * outer_ring_e3;
-        let t5 = k(2.0) * (t4 - t3);
-        let t6 = outer_ring_wy * outer_ring_wz - t5 * t2;
-        let t7 = rotor_e0 * rotor_e3;
-        let t8 = rotor_e1 * rotor_e2;
-        let t9 = k(2.0) * (t8 - t7);
-        let t10 = inner_ring_e0 * inner_ring_e0;
-        let t11 = k(2.0) * (k(0.5) - (t10 + inner_ring_e1 * inner_ring_e1));
-        let t12 = rotor_e0 * rotor_e0;
-        let t13 = k(2.0) * (k(0.5) - (t12 + rotor_e2 * rotor_e2));
-        let t14 = inner_ring_e0 * inner_ring_e3;
-        let t15 = inner_ring_e1 * inner_ring_e2;
-        let t16 = k(2.0) * (t15 + t14);
-        let t17 = rotor_e0 * rotor_e1;
-        let t18 = rotor_e2 * rotor_e3;
-        let t19 = k(2.0) * (t18 + t17);
-        let t20 = inner_ring_e0 * inner_ring_e2;
-        let t21 = inner_ring_e1 * inner_ring_e3;
-        let t22 = k(2.0) * (t21 - t20);
-        let t23 = t22 * t19 - (t16 * t13 + t11 * t9);
-        let t24 = k(5e-6) * t23;
-        let t25 = rotor_e0 * rotor_e2;
-        let t26 = rotor_e1 * rotor_e3;
-        let t27 = k(2.0) * (t26 + t25);
-        let t28 = k(2.0) * (t18 - t17);
-        let t29 = k(2.0) * (k(0.5) - (t12 + rotor_e3 * rotor_e3));
-        let t30 = t22 * t29 - (t16 * t28 - t11 * t27);
-        let t31 = k(5e-6) * t30;
-        let t32 = inner_ring_e0 * inner_ring_e1;
-        let t33 = inner_ring_e2 * inner_ring_e3;
-        let t34 = k(2.0) * (t33 - t32);
-        let t35 = k(2.0) * (t21 + t20);
-        let t36 = k(2.0) * (k(0.5) - (t10 + inner_ring_e3 * inner_ring_e3));
-        let t37 = t36 * t19 - (t35 * t9 - t34 * t13);
-        let t38 = t35 * t27 + t34 * t28 + t36 * t29;
-        let t39 = t38 * t31 + t37 * t24;
-        let t40 = self.rotor_mass * (self.rotor_offset * self.rotor_offset);
-        let t41 = self.ring_diametral_inertia
-            + (t40 + (t38 * (k(5e-6) * t38) + t37 * (k(5e-6) * t37)));
-        let t42 = k(1.0) / t41;
-        let t43 = t42 * t39;
-        let t44 = t39 * t43 - (self.ring_diametral_inertia + (t30 * t31 + t23 * t24));
-        let t45 = outer_ring_e0 * outer_ring_e3;
-        let t46 = outer_ring_e1 * outer_ring_e2;
-        let t47 = k(2.0) * (t46 - t45);
-        let t48 = k(2.0) * t1;
-        let t49 = k(2.0) * (t4 + t3);
-        let t50 = t49 * t22 - (t48 * t16 + t47 * t11);
-        let t51 = k(2.0) * (k(0.5) - (t10 + inner_ring_e2 * inner_ring_e2));
-        let t52 = k(2.0) * (t15 - t14);
-        let t53 = k(2.0) * (t33 + t32);
-        let t54 = t53 * t19 + (t52 * t9 + t51 * t13);
-        let t55 = t53 * t29 - (t52 * t27 - t51 * t28);
-        let t56 = k(5e-6) * t54;
-        let t57 = k(5e-6) * t55;
-        let t58 = t38 * t57 + t37 * t56;
-        let t59 = t58 * t43 - (t55 * t31 + t54 * t24);
-        let t60 = t49 * t53 + (t47 * t52 + t48 * t51);
-        let t61 = t60 * t59 + t50 * t44;
-        let t62 = t58 * (t42 * t58)
-            - (self.ring_axial_inertia + (t40 + (t55 * t57 + t54 * t56)));
-        let t63 = t60 * t62 + t50 * t59;
-        let t64 = k(2.0) * (k(0.5) - (t12 + rotor_e1 * rotor_e1));
-        let t65 = k(2.0) * (t8 + t7);
-        let t66 = k(2.0) * (t26 - t25);
-        let t67 = t22 * t66 + (t16 * t65 + t11 * t64);
-        let t68 = inner_ring_wy * (t53 * t66 - (t51 * t65 + t52 * t64))
-            + inner_ring_wx * t67;
-        let t69 = inner_ring_wz * (t36 * t66 - (t34 * t65 - t35 * t64)) - t68;
-        let t70 = rotor_wx + t69;
-        let t71 = inner_ring_wz * t38 - (inner_ring_wy * t55 + inner_ring_wx * t30);
-        let t72 = rotor_wz - t71;
-        let t73 = inner_ring_wz * t37 - (inner_ring_wy * t54 + inner_ring_wx * t23);
-        let t74 = rotor_wy + t73;
-        let t75 = (t74 * t74 + t72 * t72) / t67;
-        let t76 = rotor_wz * t69 + rotor_wx * t71 - (t30 * t75 - t72 * t70);
-        let t77 = k(5e-6) * (rotor_wx * rotor_wz + t76);
-        let t78 = rotor_wx * t73 - rotor_wy * t69 - (t23 * t75 + t74 * t70);
-        let t79 = k(5e-6) * (rotor_wx * rotor_wy - t78);
-        let t80 = self.ring_axial_inertia - self.ring_diametral_inertia;
-        let t81 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
-        let t82 = inner_ring_wx * inner_ring_wy;
-        let t83 = inner_ring_wx * inner_ring_wz;
-        let t84 = self.rotor_offset * (t35 * t83 + (t52 * t82 + t11 * t81));
-        let t85 = self.rotor_mass * t84;
-        let t86 = t52 * self.rotor_offset;
-        let t87 = self.rotor_offset * (t34 * t83 - (t51 * t82 + t16 * t81));
-        let t88 = self.gravity * self.rotor_mass + self.rotor_mass * t87;
-        let t89 = t51 * self.rotor_offset;
-        let t90 = self.rotor_offset * (t36 * t83 - (t53 * t82 - t22 * t81));
-        let t91 = self.rotor_mass * t90;
-        let t92 = t53 * self.rotor_offset;
-        let t93 = t92 * t91 + (t89 * t88 - t86 * t85) + (t38 * t79 + t37 * t77);
-        let t94 = t82 * t80 - t93;
-        let t95 = t42 * t94;
-        let t96 = t39 * t95
-            - (inner_ring_wy * inner_ring_wz * t80 - (t30 * t79 + t23 * t77));
-        let t97 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
-        let t98 = k(2.0) * (t46 + t45);
-        let t99 = outer_ring_e0 * outer_ring_e2;
-        let t100 = outer_ring_e1 * outer_ring_e3;
-        let t101 = k(2.0) * (t100 - t99);
-        let t102 = outer_ring_wy * (t49 * t36 - (t47 * t35 - t48 * t34))
-            + outer_ring_wx * (t101 * t36 - (t98 * t34 - t97 * t35));
-        let t103 = k(2.0) * (k(0.5) - (t0 + outer_ring_e3 * outer_ring_e3));
-        let t104 = k(2.0) * (t100 + t99);
-        let t105 = t104 * t35 + t5 * t34 + t103 * t36;
-        let t106 = outer_ring_wz * t105 - t102;
-        let t107 = inner_ring_wz - t106;
-        let t108 = t101 * t53 - (t98 * t51 + t97 * t52);
-        let t109 = t103 * t53 - (t104 * t52 - t5 * t51);
-        let t110 = outer_ring_wz * t109 - (outer_ring_wy * t60 + outer_ring_wx * t108);
-        let t111 = inner_ring_wy + t110;
-        let t112 = t101 * t22 + (t98 * t16 + t97 * t11);
-        let t113 = t103 * t22 - (t5 * t16 - t104 * t11);
-        let t114 = outer_ring_wz * t113 - (outer_ring_wy * t50 + outer_ring_wx * t112);
-        let t115 = inner_ring_wx + t114;
-        let t116 = (t115 * t115 + t111 * t111) / t105;
-        let t117 = inner_ring_wy * t106 + inner_ring_wz * t110
-            + (t109 * t116 - t111 * t107);
-        let t118 = inner_ring_wz * t114 + inner_ring_wx * t106
-            + (t113 * t116 - t115 * t107);
-        let t119 = t35 * self.rotor_offset;
-        let t120 = t34 * self.rotor_offset;
-        let t121 = t36 * self.rotor_offset;
-        let t122 = t121 * t91 + (t120 * t88 + t119 * t85) - (t55 * t79 + t54 * t77);
-        let t123 = t60 * (t62 * t118 - t59 * t117 - (t58 * t95 - t122));
-        let t124 = outer_ring_wx * outer_ring_wz * t80
-            - (t123 + t50 * (t59 * t118 - t44 * t117 - t96));
-        let t125 = t60 * (t108 * t62 + t112 * t59) + t50 * (t108 * t59 + t112 * t44);
-        let t126 = outer_ring_wx * outer_ring_wy - t98 * t2;
-        let t127 = (t63 * t109 + t61 * t113) * t126 + t6 * t125 + t124;
-        let t128 = t127 / (self.ring_diametral_inertia - (t60 * t63 + t50 * t61));
-        let t129 = t117 + (t113 * t126 + (t50 * t128 + t112 * t6));
-        let t130 = t118 - (t109 * t126 + (t60 * t128 + t108 * t6));
-        let t131 = t42 * (t94 - (t58 * t130 - t39 * t129));
+        let t0 = (outer_ring_wz * outer_ring_wz + outer_ring_wx * outer_ring_wx)
+            * (k(0.5)
+                / (k(0.5)
+                    - (outer_ring_e0 * outer_ring_e0 + outer_ring_e2 * outer_ring_e2)));
+        let t1 = outer_ring_wy * outer_ring_wz
+            - k(2.0) * (outer_ring_e2 * outer_ring_e3 - outer_ring_e0 * outer_ring_e1)
+                * t0;
+        let t2 = inner_ring_e3 * rotor_e0 - inner_ring_e2 * rotor_e1
+            + inner_ring_e1 * rotor_e2 - inner_ring_e0 * rotor_e3;
+        let t3 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t4 = t3 * t2;
+        let t5 = inner_ring_e2 * rotor_e0 + inner_ring_e3 * rotor_e1
+            - inner_ring_e0 * rotor_e2 - inner_ring_e1 * rotor_e3;
+        let t6 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t7 = t6 * t5;
+        let t8 = t7 + t4;
+        let t9 = k(1e-5) * t8;
+        let t10 = k(2.0) * t8;
+        let t11 = t3 * t5;
+        let t12 = t6 * t2;
+        let t13 = t12 - t11;
+        let t14 = k(1e-5) * t13;
+        let t15 = k(2.0) * t13;
+        let t16 = t3 * t6;
+        let t17 = t5 * t2;
+        let t18 = t17 - t16;
+        let t19 = k(2.0) * t18;
+        let t20 = t3 * t3;
+        let t21 = k(0.5) - (t20 + t2 * t2);
+        let t22 = k(2.0) * t21;
+        let t23 = t22 * t14 - t19 * t9;
+        let t24 = self.rotor_mass * (self.rotor_offset * self.rotor_offset);
+        let t25 = self.ring_diametral_inertia
+            + (t24 + (t22 * (k(1e-5) * t21) + t19 * (k(1e-5) * t18)));
+        let t26 = k(1.0) / t25;
+        let t27 = t26 * t23;
+        let t28 = t23 * t27 - (self.ring_diametral_inertia + (t15 * t14 + t10 * t9));
+        let t29 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t30 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t31 = t30 * t29;
+        let t32 = outer_ring_e2 * inner_ring_e0 + outer_ring_e3 * inner_ring_e1
+            - outer_ring_e0 * inner_ring_e2 - outer_ring_e1 * inner_ring_e3;
+        let t33 = outer_ring_e1 * inner_ring_e0 - outer_ring_e0 * inner_ring_e1
+            - outer_ring_e3 * inner_ring_e2 + outer_ring_e2 * inner_ring_e3;
+        let t34 = t33 * t32;
+        let t35 = k(2.0) * (t34 - t31);
+        let t36 = k(0.5) - (t20 + t5 * t5);
+        let t37 = k(2.0) * t36;
+        let t38 = t17 + t16;
+        let t39 = k(2.0) * t38;
+        let t40 = k(1e-5) * t36;
+        let t41 = k(1e-5) * t38;
+        let t42 = t22 * t41 + t19 * t40;
+        let t43 = t42 * t27 - (t39 * t14 - t37 * t9);
+        let t44 = t30 * t30;
+        let t45 = k(2.0) * (k(0.5) - (t44 + t32 * t32));
+        let t46 = t45 * t43 - t35 * t28;
+        let t47 = t42 * (t26 * t42)
+            - (self.ring_axial_inertia + (t24 + (t39 * t41 + t37 * t40)));
+        let t48 = t45 * t47 - t35 * t43;
+        let t49 = k(0.5) - (t20 + t6 * t6);
+        let t50 = inner_ring_wz * (k(2.0) * (t12 + t11))
+            + (inner_ring_wy * (k(2.0) * (t7 - t4)) - inner_ring_wx * (k(2.0) * t49));
+        let t51 = rotor_wx - t50;
+        let t52 = inner_ring_wz * t22 - (inner_ring_wy * t39 + inner_ring_wx * t15);
+        let t53 = rotor_wz + t52;
+        let t54 = inner_ring_wz * t19 - (inner_ring_wy * t37 - inner_ring_wx * t10);
+        let t55 = rotor_wy - t54;
+        let t56 = k(0.5) / t49 * (t55 * t55 + t53 * t53);
+        let t57 = rotor_wz * t50 + rotor_wx * t52 + (t15 * t56 - t53 * t51);
+        let t58 = k(5e-6) * (rotor_wx * rotor_wz - t57);
+        let t59 = rotor_wx * t54 - rotor_wy * t50 - (t10 * t56 - t55 * t51);
+        let t60 = k(5e-6) * (rotor_wx * rotor_wy + t59);
+        let t61 = self.ring_axial_inertia - self.ring_diametral_inertia;
+        let t62 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
+        let t63 = inner_ring_e0 * inner_ring_e0;
+        let t64 = inner_ring_wx * inner_ring_wy;
+        let t65 = inner_ring_e0 * inner_ring_e3;
+        let t66 = inner_ring_e1 * inner_ring_e2;
+        let t67 = k(2.0) * (t66 - t65);
+        let t68 = t67 * t64
+            + k(2.0) * (k(0.5) - (t63 + inner_ring_e1 * inner_ring_e1)) * t62;
+        let t69 = inner_ring_wx * inner_ring_wz;
+        let t70 = inner_ring_e0 * inner_ring_e2;
+        let t71 = inner_ring_e1 * inner_ring_e3;
+        let t72 = k(2.0) * (t71 + t70);
+        let t73 = self.rotor_offset * (t72 * t69 + t68);
+        let t74 = self.rotor_mass * t73;
+        let t75 = t67 * self.rotor_offset;
+        let t76 = k(2.0) * (k(0.5) - (t63 + inner_ring_e2 * inner_ring_e2));
+        let t77 = inner_ring_e0 * inner_ring_e1;
+        let t78 = inner_ring_e2 * inner_ring_e3;
+        let t79 = k(2.0) * (t78 - t77);
+        let t80 = t79 * t69 - (t76 * t64 + k(2.0) * (t66 + t65) * t62);
+        let t81 = self.rotor_offset * t80;
+        let t82 = self.gravity * self.rotor_mass + self.rotor_mass * t81;
+        let t83 = t76 * self.rotor_offset;
+        let t84 = k(2.0) * (t78 + t77);
+        let t85 = k(2.0) * (k(0.5) - (t63 + inner_ring_e3 * inner_ring_e3));
+        let t86 = t85 * t69 - (t84 * t64 - k(2.0) * (t71 - t70) * t62);
+        let t87 = self.rotor_offset * t86;
+        let t88 = self.rotor_mass * t87;
+        let t89 = t84 * self.rotor_offset;
+        let t90 = t89 * t88 + (t83 * t82 - t75 * t74) - (t22 * t60 + t19 * t58);
+        let t91 = t64 * t61 - t90;
+        let t92 = t26 * t91;
+        let t93 = t23 * t92
+            - (inner_ring_wy * inner_ring_wz * t61 + (t15 * t60 - t10 * t58));
+        let t94 = t30 * t32;
+        let t95 = t33 * t29;
+        let t96 = t30 * t33;
+        let t97 = t32 * t29;
+        let t98 = outer_ring_wy * (k(2.0) * (t97 + t96))
+            + outer_ring_wx * (k(2.0) * (t95 - t94));
+        let t99 = k(0.5) - (t44 + t29 * t29);
+        let t100 = outer_ring_wz * (k(2.0) * t99) - t98;
+        let t101 = inner_ring_wz + t100;
+        let t102 = k(2.0) * (t34 + t31);
+        let t103 = k(2.0) * (t97 - t96);
+        let t104 = outer_ring_wz * t103 - (outer_ring_wy * t45 - outer_ring_wx * t102);
+        let t105 = inner_ring_wy - t104;
+        let t106 = k(2.0) * (k(0.5) - (t44 + t33 * t33));
+        let t107 = k(2.0) * (t95 + t94);
+        let t108 = outer_ring_wz * t107 + (outer_ring_wy * t35 - outer_ring_wx * t106);
+        let t109 = inner_ring_wx - t108;
+        let t110 = k(0.5) / t99 * (t109 * t109 + t105 * t105);
+        let t111 = inner_ring_wy * t100 + inner_ring_wz * t104
+            - (t103 * t110 - t105 * t101);
+        let t112 = inner_ring_wz * t108 + inner_ring_wx * t100
+            - (t107 * t110 - t109 * t101);
+        let t113 = t72 * self.rotor_offset;
+        let t114 = t79 * self.rotor_offset;
+        let t115 = t85 * self.rotor_offset;
+        let t116 = t115 * t88 + (t114 * t82 + t113 * t74) + (t39 * t60 + t37 * t58);
+        let t117 = t45 * (t47 * t112 - t43 * t111 + (t42 * t92 - t116));
+        let t118 = outer_ring_wx * outer_ring_wz * t61
+            - (t117 - t35 * (t43 * t112 - t28 * t111 + t93));
+        let t119 = t45 * (t102 * t47 - t106 * t43) - t35 * (t102 * t43 - t106 * t28);
+        let t120 = outer_ring_wx * outer_ring_wy
+            - k(2.0) * (outer_ring_e1 * outer_ring_e2 + outer_ring_e0 * outer_ring_e3)
+                * t0;
+        let t121 = t120 * (t103 * t48 + t107 * t46) - t1 * t119 + t118;
+        let t122 = t121 / (self.ring_diametral_inertia - (t45 * t48 - t35 * t46));
+        let t123 = t111 + (t120 * t107 - (t35 * t122 - t1 * t106));
+        let t124 = t112 - (t120 * t103 + (t45 * t122 - t1 * t102));
+        let t125 = t26 * (t91 + (t42 * t124 - t23 * t123));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -t6,
-            -t128,
-            t126,
+            -t1,
+            -t122,
+            t120,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t129,
-            t130,
-            -t131,
-            t84 - (t86 * t131 + t119 * t130),
-            t87 + (t89 * t131 - t120 * t130),
-            -(t90 + (t92 * t131 - t121 * t130)),
+            t123,
+            -t124,
+            -t125,
+            t73 - (t75 * t125 - t113 * t124),
+            t81 + (t83 * t125 + t114 * t124),
+            -(t87 + (t89 * t125 + t115 * t124)),
             k(0.0),
-            t76 + (t37 * t131 + (t54 * t130 - t23 * t129)),
-            t78 - (t38 * t131 + (t55 * t130 - t30 * t129)),
+            -(t57 + (t19 * t125 - (t37 * t124 + t10 * t123))),
+            t22 * t125 - (t39 * t124 - t15 * t123) - t59,
         ];
     }
     /// Writes λ: 309 operations (115 ±, 191 ×, 3 ÷).

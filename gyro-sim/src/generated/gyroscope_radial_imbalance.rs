@@ -19,7 +19,7 @@
 //! | gamma | γ | 122 | 195 | 0 | 317 | 6 of 15 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 90 | 128 | 0 | 218 | 0 of 15 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 178 | 278 | 5 | 461 | 6 of 18 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 170 | 266 | 5 | 441 | 6 of 18 |
 //! | multipliers | λ, the accelerations being known | 114 | 187 | 3 | 304 | 0 of 15 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
@@ -1719,7 +1719,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 461 operations (178 ±, 278 ×, 5 ÷).
+    /// Solves eq. (17): 441 operations (170 ±, 266 ×, 5 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1743,163 +1743,164 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = outer_ring_e0 * outer_ring_e0;
-        let t1 = k(0.5) - (t0 + outer_ring_e2 * outer_ring_e2);
-        let t2 = (outer_ring_wz * outer_ring_wz + outer_ring_wx * outer_ring_wx)
-            * (k(0.5) / t1);
-        let t3 = outer_ring_e0 * outer_ring_e1;
-        let t4 = outer_ring_e2 * outer_ring_e3;
-        let t5 = k(2.0) * (t4 - t3);
-        let t6 = outer_ring_wy * outer_ring_wz - t5 * t2;
-        let t7 = rotor_e0 * rotor_e3;
-        let t8 = rotor_e1 * rotor_e2;
-        let t9 = k(2.0) * (t8 - t7);
-        let t10 = inner_ring_e0 * inner_ring_e0;
-        let t11 = k(2.0) * (k(0.5) - (t10 + inner_ring_e1 * inner_ring_e1));
-        let t12 = rotor_e0 * rotor_e0;
-        let t13 = k(2.0) * (k(0.5) - (t12 + rotor_e2 * rotor_e2));
-        let t14 = inner_ring_e0 * inner_ring_e3;
-        let t15 = inner_ring_e1 * inner_ring_e2;
-        let t16 = k(2.0) * (t15 + t14);
-        let t17 = rotor_e0 * rotor_e1;
-        let t18 = rotor_e2 * rotor_e3;
-        let t19 = k(2.0) * (t18 + t17);
-        let t20 = inner_ring_e0 * inner_ring_e2;
-        let t21 = inner_ring_e1 * inner_ring_e3;
-        let t22 = k(2.0) * (t21 - t20);
-        let t23 = t22 * t19 - (t16 * t13 + t11 * t9);
-        let t24 = k(5e-6) * t23;
-        let t25 = rotor_e0 * rotor_e2;
-        let t26 = rotor_e1 * rotor_e3;
-        let t27 = t26 + t25;
-        let t28 = k(2.0) * t27;
-        let t29 = t18 - t17;
-        let t30 = k(2.0) * t29;
-        let t31 = k(0.5) - (t12 + rotor_e3 * rotor_e3);
-        let t32 = k(2.0) * t31;
-        let t33 = t22 * t32 - (t16 * t30 - t11 * t28);
-        let t34 = k(5.0032e-6) * t33;
-        let t35 = inner_ring_e0 * inner_ring_e1;
-        let t36 = inner_ring_e2 * inner_ring_e3;
-        let t37 = k(2.0) * (t36 - t35);
-        let t38 = k(2.0) * (t21 + t20);
-        let t39 = k(2.0) * (k(0.5) - (t10 + inner_ring_e3 * inner_ring_e3));
-        let t40 = t39 * t19 - (t38 * t9 - t37 * t13);
-        let t41 = t38 * t28 + t37 * t30 + t39 * t32;
-        let t42 = t41 * t34 + t40 * t24;
-        let t43 = k(1.0)
-            / (k(1e-6) + (t41 * (k(5.0032e-6) * t41) + t40 * (k(5e-6) * t40)));
-        let t44 = t43 * t42;
-        let t45 = t42 * t44 - (k(1e-6) + (t33 * t34 + t23 * t24));
-        let t46 = outer_ring_e0 * outer_ring_e3;
-        let t47 = outer_ring_e1 * outer_ring_e2;
-        let t48 = k(2.0) * (t47 - t46);
-        let t49 = k(2.0) * t1;
-        let t50 = k(2.0) * (t4 + t3);
-        let t51 = t50 * t22 - (t49 * t16 + t48 * t11);
-        let t52 = k(2.0) * (k(0.5) - (t10 + inner_ring_e2 * inner_ring_e2));
-        let t53 = k(2.0) * (t15 - t14);
-        let t54 = k(2.0) * (t36 + t35);
-        let t55 = t54 * t19 + (t53 * t9 + t52 * t13);
-        let t56 = t54 * t32 - (t53 * t28 - t52 * t30);
-        let t57 = k(5e-6) * t55;
-        let t58 = k(5.0032e-6) * t56;
-        let t59 = t41 * t58 + t40 * t57;
-        let t60 = t59 * t44 - (t56 * t34 + t55 * t24);
-        let t61 = t50 * t54 + (t48 * t53 + t49 * t52);
-        let t62 = t61 * t60 + t51 * t45;
-        let t63 = t59 * (t43 * t59) - (k(2e-6) + (t56 * t58 + t55 * t57));
-        let t64 = t61 * t63 + t51 * t60;
-        let t65 = k(0.5) - (t12 + rotor_e1 * rotor_e1);
-        let t66 = k(2.0) * t65;
-        let t67 = t8 + t7;
-        let t68 = k(2.0) * t67;
-        let t69 = t26 - t25;
-        let t70 = k(2.0) * t69;
-        let t71 = t22 * t70 + (t16 * t68 + t11 * t66);
-        let t72 = inner_ring_wy * (t54 * t70 - (t52 * t68 + t53 * t66))
-            + inner_ring_wx * t71;
-        let t73 = inner_ring_wz * (t39 * t70 - (t37 * t68 - t38 * t66)) - t72;
-        let t74 = rotor_wx + t73;
-        let t75 = inner_ring_wz * t41 - (inner_ring_wy * t56 + inner_ring_wx * t33);
-        let t76 = rotor_wz - t75;
-        let t77 = inner_ring_wz * t40 - (inner_ring_wy * t55 + inner_ring_wx * t23);
-        let t78 = rotor_wy + t77;
-        let t79 = (t78 * t78 + t76 * t76) / t71;
-        let t80 = rotor_wz * t73 + rotor_wx * t75 - (t33 * t79 - t76 * t74);
-        let t81 = k(5e-6) * (rotor_wx * rotor_wz + t80);
-        let t82 = rotor_wx * rotor_wy;
-        let t83 = rotor_wz * rotor_wz + rotor_wx * rotor_wx;
-        let t84 = rotor_wy * rotor_wz;
-        let t85 = k(0.0002) * (t28 * t84 - (t9 * t83 + t66 * t82));
-        let t86 = k(0.0002) * (t30 * t84 + (t13 * t83 + t68 * t82));
-        let t87 = k(0.0002) * (t32 * t84 + (t19 * t83 - t70 * t82));
-        let t88 = k(3.2e-5) * t69 * t87
-            - (k(3.2e-5) * t67 * t86 - k(3.2e-5) * t65 * t85);
-        let t89 = rotor_wx * t77 - rotor_wy * t73 - (t23 * t79 + t78 * t74);
-        let t90 = k(5.0032e-6) * t89 + t88 - (k(5e-6) * t82 - k(0.00032) * t67);
-        let t91 = k(1e-6) * (inner_ring_wx * inner_ring_wy) + (t41 * t90 - t40 * t81);
-        let t92 = t43 * t91;
-        let t93 = t42 * t92
-            - (k(1e-6) * (inner_ring_wy * inner_ring_wz) + (t33 * t90 - t23 * t81));
-        let t94 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
-        let t95 = k(2.0) * (t47 + t46);
-        let t96 = outer_ring_e0 * outer_ring_e2;
-        let t97 = outer_ring_e1 * outer_ring_e3;
-        let t98 = k(2.0) * (t97 - t96);
-        let t99 = outer_ring_wy * (t50 * t39 - (t48 * t38 - t49 * t37))
-            + outer_ring_wx * (t98 * t39 - (t95 * t37 - t94 * t38));
-        let t100 = k(2.0) * (k(0.5) - (t0 + outer_ring_e3 * outer_ring_e3));
-        let t101 = k(2.0) * (t97 + t96);
-        let t102 = t101 * t38 + t5 * t37 + t100 * t39;
-        let t103 = outer_ring_wz * t102 - t99;
-        let t104 = inner_ring_wz - t103;
-        let t105 = t98 * t54 - (t95 * t52 + t94 * t53);
-        let t106 = t100 * t54 - (t101 * t53 - t5 * t52);
-        let t107 = outer_ring_wz * t106 - (outer_ring_wy * t61 + outer_ring_wx * t105);
-        let t108 = inner_ring_wy + t107;
-        let t109 = t98 * t22 + (t95 * t16 + t94 * t11);
-        let t110 = t100 * t22 - (t5 * t16 - t101 * t11);
-        let t111 = outer_ring_wz * t110 - (outer_ring_wy * t51 + outer_ring_wx * t109);
-        let t112 = inner_ring_wx + t111;
-        let t113 = (t112 * t112 + t108 * t108) / t102;
-        let t114 = inner_ring_wy * t103 + inner_ring_wz * t107
-            + (t106 * t113 - t108 * t104);
-        let t115 = inner_ring_wz * t111 + inner_ring_wx * t103
-            + (t110 * t113 - t112 * t104);
-        let t116 = t63 * t115 - t60 * t114 - (t59 * t92 - (t56 * t90 - t55 * t81));
-        let t117 = t61 * t116 + t51 * (t60 * t115 - t45 * t114 - t93);
-        let t118 = t61 * (t105 * t63 + t109 * t60) + t51 * (t105 * t60 + t109 * t45);
-        let t119 = outer_ring_wx * outer_ring_wy - t95 * t2;
-        let t120 = (t64 * t106 + t62 * t110) * t119 + t6 * t118
-            + (k(1e-6) * (outer_ring_wx * outer_ring_wz) - t117);
-        let t121 = t120 / (k(1e-6) - (t61 * t64 + t51 * t62));
-        let t122 = t114 + (t110 * t119 + (t51 * t121 + t109 * t6));
-        let t123 = t115 - (t106 * t119 + (t61 * t121 + t105 * t6));
-        let t124 = t43 * (t91 - (t59 * t123 - t42 * t122));
-        let t125 = t87 * (k(3.2e-5) * t31)
-            + (t86 * (k(3.2e-5) * t29) + t85 * (k(3.2e-5) * t27));
-        let t126 = k(99968.01023672425) * (t125 - k(0.00032) * t29);
-        let t127 = t89 - (t41 * t124 + (t56 * t123 - t33 * t122));
+        let t0 = (outer_ring_wz * outer_ring_wz + outer_ring_wx * outer_ring_wx)
+            * (k(0.5)
+                / (k(0.5)
+                    - (outer_ring_e0 * outer_ring_e0 + outer_ring_e2 * outer_ring_e2)));
+        let t1 = outer_ring_wy * outer_ring_wz
+            - k(2.0) * (outer_ring_e2 * outer_ring_e3 - outer_ring_e0 * outer_ring_e1)
+                * t0;
+        let t2 = inner_ring_e3 * rotor_e0 - inner_ring_e2 * rotor_e1
+            + inner_ring_e1 * rotor_e2 - inner_ring_e0 * rotor_e3;
+        let t3 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t4 = t3 * t2;
+        let t5 = inner_ring_e2 * rotor_e0 + inner_ring_e3 * rotor_e1
+            - inner_ring_e0 * rotor_e2 - inner_ring_e1 * rotor_e3;
+        let t6 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t7 = t6 * t5;
+        let t8 = t7 + t4;
+        let t9 = k(1e-5) * t8;
+        let t10 = k(2.0) * t8;
+        let t11 = t3 * t5;
+        let t12 = t6 * t2;
+        let t13 = t12 - t11;
+        let t14 = k(1.00064e-5) * t13;
+        let t15 = k(2.0) * t13;
+        let t16 = t3 * t6;
+        let t17 = t5 * t2;
+        let t18 = t17 - t16;
+        let t19 = k(2.0) * t18;
+        let t20 = t3 * t3;
+        let t21 = k(0.5) - (t20 + t2 * t2);
+        let t22 = k(2.0) * t21;
+        let t23 = t22 * t14 - t19 * t9;
+        let t24 = k(1.0)
+            / (k(1e-6) + (t22 * (k(1.00064e-5) * t21) + t19 * (k(1e-5) * t18)));
+        let t25 = t24 * t23;
+        let t26 = t23 * t25 - (k(1e-6) + (t15 * t14 + t10 * t9));
+        let t27 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t28 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t29 = t28 * t27;
+        let t30 = outer_ring_e2 * inner_ring_e0 + outer_ring_e3 * inner_ring_e1
+            - outer_ring_e0 * inner_ring_e2 - outer_ring_e1 * inner_ring_e3;
+        let t31 = outer_ring_e1 * inner_ring_e0 - outer_ring_e0 * inner_ring_e1
+            - outer_ring_e3 * inner_ring_e2 + outer_ring_e2 * inner_ring_e3;
+        let t32 = t31 * t30;
+        let t33 = k(2.0) * (t32 - t29);
+        let t34 = k(0.5) - (t20 + t5 * t5);
+        let t35 = k(2.0) * t34;
+        let t36 = t17 + t16;
+        let t37 = k(2.0) * t36;
+        let t38 = k(1e-5) * t34;
+        let t39 = k(1.00064e-5) * t36;
+        let t40 = t22 * t39 + t19 * t38;
+        let t41 = t40 * t25 - (t37 * t14 - t35 * t9);
+        let t42 = t28 * t28;
+        let t43 = k(2.0) * (k(0.5) - (t42 + t30 * t30));
+        let t44 = t43 * t41 - t33 * t26;
+        let t45 = t40 * (t24 * t40) - (k(2e-6) + (t37 * t39 + t35 * t38));
+        let t46 = t43 * t45 - t33 * t41;
+        let t47 = k(0.5) - (t20 + t6 * t6);
+        let t48 = inner_ring_wz * (k(2.0) * (t12 + t11))
+            + (inner_ring_wy * (k(2.0) * (t7 - t4)) - inner_ring_wx * (k(2.0) * t47));
+        let t49 = rotor_wx - t48;
+        let t50 = inner_ring_wz * t22 - (inner_ring_wy * t37 + inner_ring_wx * t15);
+        let t51 = rotor_wz + t50;
+        let t52 = inner_ring_wz * t19 - (inner_ring_wy * t35 - inner_ring_wx * t10);
+        let t53 = rotor_wy - t52;
+        let t54 = k(0.5) / t47 * (t53 * t53 + t51 * t51);
+        let t55 = rotor_wz * t48 + rotor_wx * t50 + (t15 * t54 - t51 * t49);
+        let t56 = k(5e-6) * (rotor_wx * rotor_wz - t55);
+        let t57 = rotor_wx * t52 - rotor_wy * t48 - (t10 * t54 - t53 * t49);
+        let t58 = rotor_wx * rotor_wy;
+        let t59 = rotor_e0 * rotor_e0;
+        let t60 = k(0.5) - (t59 + rotor_e1 * rotor_e1);
+        let t61 = rotor_wz * rotor_wz + rotor_wx * rotor_wx;
+        let t62 = rotor_e0 * rotor_e3;
+        let t63 = rotor_e1 * rotor_e2;
+        let t64 = rotor_wy * rotor_wz;
+        let t65 = rotor_e0 * rotor_e2;
+        let t66 = rotor_e1 * rotor_e3;
+        let t67 = t66 + t65;
+        let t68 = k(2.0) * t67 * t64 - (k(2.0) * (t63 - t62) * t61 + k(2.0) * t60 * t58);
+        let t69 = k(0.0002) * t68;
+        let t70 = t63 + t62;
+        let t71 = k(2.0) * (k(0.5) - (t59 + rotor_e2 * rotor_e2)) * t61
+            + k(2.0) * t70 * t58;
+        let t72 = rotor_e0 * rotor_e1;
+        let t73 = rotor_e2 * rotor_e3;
+        let t74 = t73 - t72;
+        let t75 = k(0.0002) * (k(2.0) * t74 * t64 + t71);
+        let t76 = t66 - t65;
+        let t77 = k(0.5) - (t59 + rotor_e3 * rotor_e3);
+        let t78 = k(2.0) * t77 * t64 + (k(2.0) * (t73 + t72) * t61 - k(2.0) * t76 * t58);
+        let t79 = k(0.0002) * t78;
+        let t80 = k(3.2e-5) * t76 * t79
+            - (k(3.2e-5) * t70 * t75 - k(3.2e-5) * t60 * t69);
+        let t81 = k(5e-6) * t58 - k(0.00032) * t70 - (t80 - k(5.0032e-6) * t57);
+        let t82 = k(1e-6) * (inner_ring_wx * inner_ring_wy) + (t22 * t81 + t19 * t56);
+        let t83 = t24 * t82;
+        let t84 = t23 * t83
+            - (k(1e-6) * (inner_ring_wy * inner_ring_wz) + (t15 * t81 - t10 * t56));
+        let t85 = t28 * t30;
+        let t86 = t31 * t27;
+        let t87 = t28 * t31;
+        let t88 = t30 * t27;
+        let t89 = outer_ring_wy * (k(2.0) * (t88 + t87))
+            + outer_ring_wx * (k(2.0) * (t86 - t85));
+        let t90 = k(0.5) - (t42 + t27 * t27);
+        let t91 = outer_ring_wz * (k(2.0) * t90) - t89;
+        let t92 = inner_ring_wz + t91;
+        let t93 = k(2.0) * (t32 + t29);
+        let t94 = k(2.0) * (t88 - t87);
+        let t95 = outer_ring_wz * t94 - (outer_ring_wy * t43 - outer_ring_wx * t93);
+        let t96 = inner_ring_wy - t95;
+        let t97 = k(2.0) * (k(0.5) - (t42 + t31 * t31));
+        let t98 = k(2.0) * (t86 + t85);
+        let t99 = outer_ring_wz * t98 + (outer_ring_wy * t33 - outer_ring_wx * t97);
+        let t100 = inner_ring_wx - t99;
+        let t101 = k(0.5) / t90 * (t100 * t100 + t96 * t96);
+        let t102 = inner_ring_wy * t91 + inner_ring_wz * t95 - (t94 * t101 - t96 * t92);
+        let t103 = inner_ring_wz * t99 + inner_ring_wx * t91 - (t98 * t101 - t100 * t92);
+        let t104 = t45 * t103 - t41 * t102 + (t40 * t83 - (t37 * t81 + t35 * t56));
+        let t105 = t43 * t104 - t33 * (t41 * t103 - t26 * t102 + t84);
+        let t106 = t43 * (t93 * t45 - t97 * t41) - t33 * (t93 * t41 - t97 * t26);
+        let t107 = outer_ring_wx * outer_ring_wy
+            - k(2.0) * (outer_ring_e1 * outer_ring_e2 + outer_ring_e0 * outer_ring_e3)
+                * t0;
+        let t108 = t107 * (t94 * t46 + t98 * t44) - t1 * t106
+            + (k(1e-6) * (outer_ring_wx * outer_ring_wz) - t105);
+        let t109 = t108 / (k(1e-6) - (t43 * t46 - t33 * t44));
+        let t110 = t102 + (t107 * t98 - (t33 * t109 - t1 * t97));
+        let t111 = t103 - (t107 * t94 + (t43 * t109 - t1 * t93));
+        let t112 = t24 * (t82 + (t40 * t111 - t23 * t110));
+        let t113 = t57 - (t22 * t112 - (t37 * t111 - t15 * t110));
+        let t114 = t79 * (k(3.2e-5) * t77)
+            + (t75 * (k(3.2e-5) * t74) + t69 * (k(3.2e-5) * t67));
+        let t115 = k(99968.01023672425) * (t114 - k(0.00032) * t74);
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -t6,
-            -t121,
-            t119,
+            -t1,
+            -t109,
+            t107,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t122,
-            t123,
-            -t124,
-            -(t85 + (k(0.0004) * t65 * t127 - k(0.0004) * t27 * t126)),
-            k(0.0004) * t67 * t127 + k(0.0004) * t29 * t126 - t86,
-            t87 + (k(0.0004) * t69 * t127 - k(0.0004) * t31 * t126),
-            -t126,
-            t80 + (t40 * t124 + (t55 * t123 - t23 * t122)),
-            t127,
+            t110,
+            -t111,
+            -t112,
+            k(0.0004) * t67 * t115 + k(0.0004) * t60 * t113 - t69,
+            k(0.0004) * t74 * t115 - k(0.0004) * t70 * t113 - t75,
+            t79 - (k(0.0004) * t77 * t115 + k(0.0004) * t76 * t113),
+            -t115,
+            -(t55 + (t19 * t112 - (t35 * t111 + t10 * t110))),
+            -t113,
         ];
     }
     /// Writes λ: 304 operations (114 ±, 187 ×, 3 ÷).

@@ -18,7 +18,7 @@
 //! | gamma | γ | 122 | 193 | 0 | 315 | 6 of 15 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 90 | 128 | 0 | 218 | 0 of 15 |
 //! | applied_force | (f, n' − w̃'J'w') | 6 | 13 | 0 | 19 | 8 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 185 | 272 | 5 | 462 | 6 of 18 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 177 | 260 | 5 | 442 | 6 of 18 |
 //! | multipliers | λ, the accelerations being known | 120 | 188 | 3 | 311 | 0 of 15 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 28 | 54 | 0 | 82 | 0 of 22 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
@@ -1734,7 +1734,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeViscous<T> {
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 462 operations (185 ±, 272 ×, 5 ÷).
+    /// Solves eq. (17): 442 operations (177 ±, 260 ×, 5 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1758,171 +1758,172 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeViscous<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = outer_ring_e0 * outer_ring_e0;
-        let t1 = k(0.5) - (t0 + outer_ring_e2 * outer_ring_e2);
-        let t2 = (outer_ring_wz * outer_ring_wz + outer_ring_wx * outer_ring_wx)
-            * (k(0.5) / t1);
-        let t3 = outer_ring_e0 * outer_ring_e1;
-        let t4 = outer_ring_e2 * outer_ring_e3;
-        let t5 = k(2.0) * (t4 - t3);
-        let t6 = outer_ring_wy * outer_ring_wz - t5 * t2;
-        let t7 = rotor_e0 * rotor_e3;
-        let t8 = rotor_e1 * rotor_e2;
-        let t9 = k(2.0) * (t8 - t7);
-        let t10 = inner_ring_e0 * inner_ring_e0;
-        let t11 = k(2.0) * (k(0.5) - (t10 + inner_ring_e1 * inner_ring_e1));
-        let t12 = rotor_e0 * rotor_e0;
-        let t13 = k(2.0) * (k(0.5) - (t12 + rotor_e2 * rotor_e2));
-        let t14 = inner_ring_e0 * inner_ring_e3;
-        let t15 = inner_ring_e1 * inner_ring_e2;
-        let t16 = k(2.0) * (t15 + t14);
-        let t17 = rotor_e0 * rotor_e1;
-        let t18 = rotor_e2 * rotor_e3;
-        let t19 = k(2.0) * (t18 + t17);
-        let t20 = inner_ring_e0 * inner_ring_e2;
-        let t21 = inner_ring_e1 * inner_ring_e3;
-        let t22 = k(2.0) * (t21 - t20);
-        let t23 = t22 * t19 - (t16 * t13 + t11 * t9);
-        let t24 = k(5e-6) * t23;
-        let t25 = rotor_e0 * rotor_e2;
-        let t26 = rotor_e1 * rotor_e3;
-        let t27 = k(2.0) * (t26 + t25);
-        let t28 = k(2.0) * (t18 - t17);
-        let t29 = k(2.0) * (k(0.5) - (t12 + rotor_e3 * rotor_e3));
-        let t30 = t22 * t29 - (t16 * t28 - t11 * t27);
-        let t31 = k(5e-6) * t30;
-        let t32 = inner_ring_e0 * inner_ring_e1;
-        let t33 = inner_ring_e2 * inner_ring_e3;
-        let t34 = t33 - t32;
-        let t35 = k(2.0) * t34;
-        let t36 = t21 + t20;
-        let t37 = k(2.0) * t36;
-        let t38 = k(0.5) - (t10 + inner_ring_e3 * inner_ring_e3);
-        let t39 = k(2.0) * t38;
-        let t40 = t39 * t19 - (t37 * t9 - t35 * t13);
-        let t41 = t37 * t27 + t35 * t28 + t39 * t29;
-        let t42 = t41 * t31 + t40 * t24;
-        let t43 = k(1e-6)
-            + (k(1.25e-9) + (t41 * (k(5e-6) * t41) + t40 * (k(5e-6) * t40)));
-        let t44 = k(1.0) / t43;
-        let t45 = t44 * t42;
-        let t46 = t42 * t45 - (k(1e-6) + (t30 * t31 + t23 * t24));
-        let t47 = outer_ring_e0 * outer_ring_e3;
-        let t48 = outer_ring_e1 * outer_ring_e2;
-        let t49 = k(2.0) * (t48 - t47);
-        let t50 = k(2.0) * t1;
-        let t51 = k(2.0) * (t4 + t3);
-        let t52 = t51 * t22 - (t50 * t16 + t49 * t11);
-        let t53 = k(0.5) - (t10 + inner_ring_e2 * inner_ring_e2);
-        let t54 = k(2.0) * t53;
-        let t55 = t15 - t14;
-        let t56 = k(2.0) * t55;
-        let t57 = t33 + t32;
-        let t58 = k(2.0) * t57;
-        let t59 = t58 * t19 + (t56 * t9 + t54 * t13);
-        let t60 = t58 * t29 - (t56 * t27 - t54 * t28);
-        let t61 = k(5e-6) * t59;
-        let t62 = k(5e-6) * t60;
-        let t63 = t41 * t62 + t40 * t61;
-        let t64 = t63 * t45 - (t60 * t31 + t59 * t24);
-        let t65 = t51 * t58 + (t49 * t56 + t50 * t54);
-        let t66 = t65 * t64 + t52 * t46;
-        let t67 = t63 * (t44 * t63) - (k(2e-6) + (k(1.25e-9) + (t60 * t62 + t59 * t61)));
-        let t68 = t65 * t67 + t52 * t64;
-        let t69 = k(2.0) * (k(0.5) - (t12 + rotor_e1 * rotor_e1));
-        let t70 = k(2.0) * (t8 + t7);
-        let t71 = k(2.0) * (t26 - t25);
-        let t72 = t22 * t71 + (t16 * t70 + t11 * t69);
-        let t73 = inner_ring_wy * (t58 * t71 - (t54 * t70 + t56 * t69))
-            + inner_ring_wx * t72;
-        let t74 = inner_ring_wz * (t39 * t71 - (t35 * t70 - t37 * t69)) - t73;
-        let t75 = rotor_wx + t74;
-        let t76 = inner_ring_wz * t41 - (inner_ring_wy * t60 + inner_ring_wx * t30);
-        let t77 = rotor_wz - t76;
-        let t78 = inner_ring_wz * t40 - (inner_ring_wy * t59 + inner_ring_wx * t23);
-        let t79 = rotor_wy + t78;
-        let t80 = (t79 * t79 + t77 * t77) / t72;
-        let t81 = rotor_wz * t74 + rotor_wx * t76 - (t30 * t80 - t77 * t75);
-        let t82 = k(5e-6) * (rotor_wx * rotor_wz + t81);
-        let t83 = rotor_wx * t78 - rotor_wy * t74 - (t23 * t80 + t79 * t75);
-        let t84 = k(5e-6) * (rotor_wx * rotor_wy - t83);
-        let t85 = inner_ring_wx - rotor_wx;
-        let t86 = k(1e-6) * (inner_ring_wy * inner_ring_wz - t85)
-            - (t30 * t84 + t23 * t82);
-        let t87 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
-        let t88 = inner_ring_wx * inner_ring_wy;
-        let t89 = inner_ring_wx * inner_ring_wz;
-        let t90 = t37 * t89 + (t56 * t88 + t11 * t87);
-        let t91 = k(1e-5) * t90;
-        let t92 = k(0.00025) * t55;
-        let t93 = t35 * t89 - (t54 * t88 + t16 * t87);
-        let t94 = k(0.8) + k(1e-5) * t93;
-        let t95 = k(0.00025) * t53;
-        let t96 = t39 * t89 - (t58 * t88 - t22 * t87);
-        let t97 = k(1e-5) * t96;
-        let t98 = k(0.00025) * t57;
-        let t99 = t98 * t97 + (t95 * t94 - t92 * t91) + (t41 * t84 + t40 * t82);
-        let t100 = k(1e-6) * (t88 - (outer_ring_wz - inner_ring_wz)) - t99;
-        let t101 = t44 * t100;
-        let t102 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
-        let t103 = k(2.0) * (t48 + t47);
-        let t104 = outer_ring_e0 * outer_ring_e2;
-        let t105 = outer_ring_e1 * outer_ring_e3;
-        let t106 = k(2.0) * (t105 - t104);
-        let t107 = outer_ring_wy * (t51 * t39 - (t49 * t37 - t50 * t35))
-            + outer_ring_wx * (t106 * t39 - (t103 * t35 - t102 * t37));
-        let t108 = k(2.0) * (k(0.5) - (t0 + outer_ring_e3 * outer_ring_e3));
-        let t109 = k(2.0) * (t105 + t104);
-        let t110 = t109 * t37 + t5 * t35 + t108 * t39;
-        let t111 = outer_ring_wz * t110 - t107;
-        let t112 = inner_ring_wz - t111;
-        let t113 = t106 * t58 - (t103 * t54 + t102 * t56);
-        let t114 = t108 * t58 - (t109 * t56 - t5 * t54);
-        let t115 = outer_ring_wz * t114 - (outer_ring_wy * t65 + outer_ring_wx * t113);
-        let t116 = inner_ring_wy + t115;
-        let t117 = t106 * t22 + (t103 * t16 + t102 * t11);
-        let t118 = t108 * t22 - (t5 * t16 - t109 * t11);
-        let t119 = outer_ring_wz * t118 - (outer_ring_wy * t52 + outer_ring_wx * t117);
-        let t120 = inner_ring_wx + t119;
-        let t121 = (t120 * t120 + t116 * t116) / t110;
-        let t122 = inner_ring_wy * t111 + inner_ring_wz * t115
-            + (t114 * t121 - t116 * t112);
-        let t123 = inner_ring_wz * t119 + inner_ring_wx * t111
-            + (t118 * t121 - t120 * t112);
-        let t124 = t52 * (t64 * t123 - t46 * t122 - (t42 * t101 - t86));
-        let t125 = k(0.00025) * t36;
-        let t126 = k(0.00025) * t34;
-        let t127 = k(0.00025) * t38;
-        let t128 = t127 * t97 + (t126 * t94 + t125 * t91) - (t60 * t84 + t59 * t82);
-        let t129 = t65 * (t67 * t123 - t64 * t122 - (t63 * t101 - t128));
-        let t130 = t65 * (t113 * t67 + t117 * t64) + t52 * (t113 * t64 + t117 * t46);
-        let t131 = outer_ring_wx * outer_ring_wy - t103 * t2;
-        let t132 = (t68 * t114 + t66 * t118) * t131 + t6 * t130
+        let t0 = (outer_ring_wz * outer_ring_wz + outer_ring_wx * outer_ring_wx)
+            * (k(0.5)
+                / (k(0.5)
+                    - (outer_ring_e0 * outer_ring_e0 + outer_ring_e2 * outer_ring_e2)));
+        let t1 = outer_ring_wy * outer_ring_wz
+            - k(2.0) * (outer_ring_e2 * outer_ring_e3 - outer_ring_e0 * outer_ring_e1)
+                * t0;
+        let t2 = inner_ring_e3 * rotor_e0 - inner_ring_e2 * rotor_e1
+            + inner_ring_e1 * rotor_e2 - inner_ring_e0 * rotor_e3;
+        let t3 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t4 = t3 * t2;
+        let t5 = inner_ring_e2 * rotor_e0 + inner_ring_e3 * rotor_e1
+            - inner_ring_e0 * rotor_e2 - inner_ring_e1 * rotor_e3;
+        let t6 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t7 = t6 * t5;
+        let t8 = t7 + t4;
+        let t9 = k(1e-5) * t8;
+        let t10 = k(2.0) * t8;
+        let t11 = t3 * t5;
+        let t12 = t6 * t2;
+        let t13 = t12 - t11;
+        let t14 = k(1e-5) * t13;
+        let t15 = k(2.0) * t13;
+        let t16 = t3 * t6;
+        let t17 = t5 * t2;
+        let t18 = t17 - t16;
+        let t19 = k(2.0) * t18;
+        let t20 = t3 * t3;
+        let t21 = k(0.5) - (t20 + t2 * t2);
+        let t22 = k(2.0) * t21;
+        let t23 = t22 * t14 - t19 * t9;
+        let t24 = k(1e-6)
+            + (k(1.25e-9) + (t22 * (k(1e-5) * t21) + t19 * (k(1e-5) * t18)));
+        let t25 = k(1.0) / t24;
+        let t26 = t25 * t23;
+        let t27 = t23 * t26 - (k(1e-6) + (t15 * t14 + t10 * t9));
+        let t28 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t29 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t30 = t29 * t28;
+        let t31 = outer_ring_e2 * inner_ring_e0 + outer_ring_e3 * inner_ring_e1
+            - outer_ring_e0 * inner_ring_e2 - outer_ring_e1 * inner_ring_e3;
+        let t32 = outer_ring_e1 * inner_ring_e0 - outer_ring_e0 * inner_ring_e1
+            - outer_ring_e3 * inner_ring_e2 + outer_ring_e2 * inner_ring_e3;
+        let t33 = t32 * t31;
+        let t34 = k(2.0) * (t33 - t30);
+        let t35 = k(0.5) - (t20 + t5 * t5);
+        let t36 = k(2.0) * t35;
+        let t37 = t17 + t16;
+        let t38 = k(2.0) * t37;
+        let t39 = k(1e-5) * t35;
+        let t40 = k(1e-5) * t37;
+        let t41 = t22 * t40 + t19 * t39;
+        let t42 = t41 * t26 - (t38 * t14 - t36 * t9);
+        let t43 = t29 * t29;
+        let t44 = k(2.0) * (k(0.5) - (t43 + t31 * t31));
+        let t45 = t44 * t42 - t34 * t27;
+        let t46 = t41 * (t25 * t41) - (k(2e-6) + (k(1.25e-9) + (t38 * t40 + t36 * t39)));
+        let t47 = t44 * t46 - t34 * t42;
+        let t48 = k(0.5) - (t20 + t6 * t6);
+        let t49 = inner_ring_wz * (k(2.0) * (t12 + t11))
+            + (inner_ring_wy * (k(2.0) * (t7 - t4)) - inner_ring_wx * (k(2.0) * t48));
+        let t50 = rotor_wx - t49;
+        let t51 = inner_ring_wz * t22 - (inner_ring_wy * t38 + inner_ring_wx * t15);
+        let t52 = rotor_wz + t51;
+        let t53 = inner_ring_wz * t19 - (inner_ring_wy * t36 - inner_ring_wx * t10);
+        let t54 = rotor_wy - t53;
+        let t55 = k(0.5) / t48 * (t54 * t54 + t52 * t52);
+        let t56 = rotor_wz * t49 + rotor_wx * t51 + (t15 * t55 - t52 * t50);
+        let t57 = k(5e-6) * (rotor_wx * rotor_wz - t56);
+        let t58 = rotor_wx * t53 - rotor_wy * t49 - (t10 * t55 - t54 * t50);
+        let t59 = k(5e-6) * (rotor_wx * rotor_wy + t58);
+        let t60 = inner_ring_wx - rotor_wx;
+        let t61 = k(1e-6) * (inner_ring_wy * inner_ring_wz - t60)
+            + (t15 * t59 - t10 * t57);
+        let t62 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
+        let t63 = inner_ring_e0 * inner_ring_e0;
+        let t64 = inner_ring_wx * inner_ring_wy;
+        let t65 = inner_ring_e0 * inner_ring_e3;
+        let t66 = inner_ring_e1 * inner_ring_e2;
+        let t67 = t66 - t65;
+        let t68 = k(2.0) * t67 * t64
+            + k(2.0) * (k(0.5) - (t63 + inner_ring_e1 * inner_ring_e1)) * t62;
+        let t69 = inner_ring_wx * inner_ring_wz;
+        let t70 = inner_ring_e0 * inner_ring_e2;
+        let t71 = inner_ring_e1 * inner_ring_e3;
+        let t72 = t71 + t70;
+        let t73 = k(2.0) * t72 * t69 + t68;
+        let t74 = k(1e-5) * t73;
+        let t75 = k(0.00025) * t67;
+        let t76 = k(0.5) - (t63 + inner_ring_e2 * inner_ring_e2);
+        let t77 = inner_ring_e0 * inner_ring_e1;
+        let t78 = inner_ring_e2 * inner_ring_e3;
+        let t79 = t78 - t77;
+        let t80 = k(2.0) * t79 * t69 - (k(2.0) * t76 * t64 + k(2.0) * (t66 + t65) * t62);
+        let t81 = k(0.8) + k(1e-5) * t80;
+        let t82 = k(0.00025) * t76;
+        let t83 = t78 + t77;
+        let t84 = k(0.5) - (t63 + inner_ring_e3 * inner_ring_e3);
+        let t85 = k(2.0) * t84 * t69 - (k(2.0) * t83 * t64 - k(2.0) * (t71 - t70) * t62);
+        let t86 = k(1e-5) * t85;
+        let t87 = k(0.00025) * t83;
+        let t88 = t87 * t86 + (t82 * t81 - t75 * t74) - (t22 * t59 + t19 * t57);
+        let t89 = k(1e-6) * (t64 - (outer_ring_wz - inner_ring_wz)) - t88;
+        let t90 = t25 * t89;
+        let t91 = t29 * t31;
+        let t92 = t32 * t28;
+        let t93 = t29 * t32;
+        let t94 = t31 * t28;
+        let t95 = outer_ring_wy * (k(2.0) * (t94 + t93))
+            + outer_ring_wx * (k(2.0) * (t92 - t91));
+        let t96 = k(0.5) - (t43 + t28 * t28);
+        let t97 = outer_ring_wz * (k(2.0) * t96) - t95;
+        let t98 = inner_ring_wz + t97;
+        let t99 = k(2.0) * (t33 + t30);
+        let t100 = k(2.0) * (t94 - t93);
+        let t101 = outer_ring_wz * t100 - (outer_ring_wy * t44 - outer_ring_wx * t99);
+        let t102 = inner_ring_wy - t101;
+        let t103 = k(2.0) * (k(0.5) - (t43 + t32 * t32));
+        let t104 = k(2.0) * (t92 + t91);
+        let t105 = outer_ring_wz * t104 + (outer_ring_wy * t34 - outer_ring_wx * t103);
+        let t106 = inner_ring_wx - t105;
+        let t107 = k(0.5) / t96 * (t106 * t106 + t102 * t102);
+        let t108 = inner_ring_wy * t97 + inner_ring_wz * t101
+            - (t100 * t107 - t102 * t98);
+        let t109 = inner_ring_wz * t105 + inner_ring_wx * t97
+            - (t104 * t107 - t106 * t98);
+        let t110 = t34 * (t42 * t109 - t27 * t108 + (t23 * t90 - t61));
+        let t111 = k(0.00025) * t72;
+        let t112 = k(0.00025) * t79;
+        let t113 = k(0.00025) * t84;
+        let t114 = t113 * t86 + (t112 * t81 + t111 * t74) + (t38 * t59 + t36 * t57);
+        let t115 = t44 * (t46 * t109 - t42 * t108 + (t41 * t90 - t114));
+        let t116 = t44 * (t99 * t46 - t103 * t42) - t34 * (t99 * t42 - t103 * t27);
+        let t117 = outer_ring_wx * outer_ring_wy
+            - k(2.0) * (outer_ring_e1 * outer_ring_e2 + outer_ring_e0 * outer_ring_e3)
+                * t0;
+        let t118 = t117 * (t100 * t47 + t104 * t45) - t1 * t116
             + (k(1e-6) * (outer_ring_wy + outer_ring_wx * outer_ring_wz)
-                - (t129 + t124));
-        let t133 = t132 / (k(1e-6) - (t65 * t68 + t52 * t66));
-        let t134 = t122 + (t118 * t131 + (t52 * t133 + t117 * t6));
-        let t135 = t123 - (t114 * t131 + (t65 * t133 + t113 * t6));
-        let t136 = t44 * (t100 - (t63 * t135 - t42 * t134));
+                - (t115 - t110));
+        let t119 = t118 / (k(1e-6) - (t44 * t47 - t34 * t45));
+        let t120 = t108 + (t117 * t104 - (t34 * t119 - t1 * t103));
+        let t121 = t109 - (t117 * t100 + (t44 * t119 - t1 * t99));
+        let t122 = t25 * (t89 + (t41 * t121 - t23 * t120));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -t6,
-            -t133,
-            t131,
+            -t1,
+            -t119,
+            t117,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t134,
-            t135,
-            -t136,
-            k(0.000125) * t90 - (t92 * t136 + t125 * t135),
-            t95 * t136 - t126 * t135 + k(0.000125) * t93,
-            -(t98 * t136 - t127 * t135 + k(0.000125) * t96),
-            k(0.1) * t85,
-            t81 + (t40 * t136 + (t59 * t135 - t23 * t134)),
-            t83 - (t41 * t136 + (t60 * t135 - t30 * t134)),
+            t120,
+            -t121,
+            -t122,
+            k(0.000125) * t73 - (t75 * t122 - t111 * t121),
+            k(0.000125) * t80 + (t82 * t122 + t112 * t121),
+            -(k(0.000125) * t85 + (t87 * t122 + t113 * t121)),
+            k(0.1) * t60,
+            -(t56 + (t19 * t122 - (t36 * t121 + t10 * t120))),
+            t22 * t122 - (t38 * t121 - t15 * t120) - t58,
         ];
     }
     /// Writes λ: 311 operations (120 ±, 188 ×, 3 ÷).

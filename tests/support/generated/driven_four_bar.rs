@@ -1511,353 +1511,376 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
         let rocker_wy = y[37];
         let rocker_wz = y[38];
         let (
-            t9,
+            t7,
+            t12,
             t14,
+            t15,
+            t16,
+            t17,
             t18,
+            t19,
+            t20,
+            t21,
             t23,
+            t24,
+            t25,
             t26,
-            t28,
-            t29,
-            t32,
-            t35,
-            t40,
+            t27,
+            t37,
             t42,
-            t47,
-            t48,
+            t44,
             t49,
             t50,
             t51,
-            t55,
-            t58,
+            t54,
+            t56,
             t59,
             t60,
-            t61,
             t63,
-            t68,
-            t70,
-            t75,
+            t64,
+            t65,
+            t66,
+            t67,
+            t69,
+            t71,
+            t74,
             t76,
-            t79,
-            t80,
             t81,
-            t83,
+            t82,
+            t85,
             t86,
             t87,
             t89,
-            t90,
+            t92,
             t93,
-            t94,
             t95,
-            t97,
+            t96,
+            t99,
             t100,
-            t119,
-            t133,
-            t137,
-            t141,
+            t101,
+            t103,
+            t106,
+            t111,
+            t112,
+            t113,
+            t115,
+            t121,
+            t122,
+            t123,
+            t124,
+            t128,
+            t131,
+            t132,
+            t146,
+            t150,
             t154,
-            t176,
-            t177,
-            t179,
-            t182,
-            t183,
-            t185,
-            t186,
-            t187,
+            t167,
+            t189,
+            t190,
             t192,
             t193,
-            t194,
             t195,
             t196,
-            t197,
             t198,
             t199,
         ) = {
-            let t0 = crank_e0 * crank_e0;
-            let t1 = k(0.5) - (t0 + crank_e3 * crank_e3);
-            let t2 = crank_wy * crank_wy;
-            let t3 = t2 + crank_wx * crank_wx;
-            let t4 = t3 * (k(0.5) / t1);
-            let t5 = crank_e0 * crank_e2;
-            let t6 = crank_e1 * crank_e3;
-            let t7 = k(2.0) * (t6 - t5);
-            let t8 = crank_wx * crank_wz;
-            let t9 = t8 - t7 * t4;
-            let t10 = t6 + t5;
-            let t11 = k(0.2) * t10;
-            let t12 = coupler_e0 * coupler_e1;
-            let t13 = coupler_e2 * coupler_e3;
-            let t14 = t13 - t12;
-            let t15 = coupler_wx * coupler_wz;
-            let t16 = k(0.02095) * t15 + k(4.905) * t14;
-            let t17 = coupler_e0 * coupler_e0;
-            let t18 = k(0.5) - (t17 + coupler_e2 * coupler_e2);
-            let t19 = k(2.0) * t18;
-            let t20 = crank_e0 * crank_e1;
-            let t21 = crank_e2 * crank_e3;
-            let t22 = t21 - t20;
-            let t23 = k(2.0) * t22;
-            let t24 = coupler_e0 * coupler_e3;
-            let t25 = coupler_e1 * coupler_e2;
-            let t26 = t25 - t24;
-            let t27 = k(2.0) * t26;
-            let t28 = k(2.0) * t10;
-            let t29 = t13 + t12;
-            let t30 = k(2.0) * t29;
-            let t31 = k(2.0) * t1;
-            let t32 = t31 * t30 - (t28 * t27 - t23 * t19);
-            let t33 = coupler_wx * coupler_wy;
-            let t34 = k(0.02095) * t33 - k(4.905) * t18;
-            let t35 = k(0.5) - (t17 + coupler_e3 * coupler_e3);
-            let t36 = k(2.0) * t35;
-            let t37 = k(2.0) * t14;
-            let t38 = coupler_e0 * coupler_e2;
-            let t39 = coupler_e1 * coupler_e3;
-            let t40 = t39 + t38;
-            let t41 = k(2.0) * t40;
-            let t42 = t28 * t41 + t23 * t37 + t31 * t36;
-            let t43 = t42 * t34 + t32 * t16;
-            let t44 = k(2.0) * (k(0.5) - (t17 + coupler_e1 * coupler_e1));
-            let t45 = k(2.0) * (t25 + t24);
-            let t46 = k(2.0) * (t39 - t38);
-            let t47 = t31 * t46 - (t23 * t45 - t28 * t44);
-            let t48 = k(5e-5) * t47;
-            let t49 = k(0.0835) * t32;
-            let t50 = k(0.0835) * t42;
-            let t51 = k(1.0) / (t42 * t50 + (t32 * t49 + t47 * t48));
-            let t52 = t51 * t43;
-            let t53 = t16 - t49 * t52;
-            let t54 = t49 * t51;
-            let t55 = k(1.0) / (k(0.0835) - t49 * t54);
-            let t56 = t55 * t53;
-            let t57 = t48 * t51;
-            let t58 = t49 * t57;
-            let t59 = k(0.5) * t40;
-            let t60 = k(0.5) * t26;
-            let t61 = t60 * t42 + t59 * t32;
-            let t62 = t51 * t61;
-            let t63 = t59 - t49 * t62;
-            let t64 = t55 * t63;
-            let t65 = t58 * t64 - t48 * t62;
-            let t66 = coupler_wz * coupler_wz;
-            let t67 = t66 + coupler_wy * coupler_wy;
-            let t68 = k(0.25) * (t41 * t15 + (t27 * t33 + t44 * t67));
-            let t69 = crank_wz * crank_wz + t2;
-            let t70 = k(2.0) * (k(0.5) - (t0 + crank_e1 * crank_e1));
-            let t71 = crank_wx * crank_wy;
-            let t72 = crank_e0 * crank_e3;
-            let t73 = crank_e1 * crank_e2;
-            let t74 = t73 - t72;
-            let t75 = k(2.0) * t74;
-            let t76 = t28 * t8 + (t75 * t71 + t70 * t69);
-            let t77 = k(0.1) * t76;
-            let t78 = t77 + t68;
-            let t79 = k(0.5) * t14;
-            let t80 = k(0.5) * t18;
-            let t81 = t80 * t42 - t79 * t32;
-            let t82 = t51 * t81;
-            let t83 = t79 + t49 * t82;
-            let t84 = t55 * t83;
-            let t85 = t58 * t84 + t48 * t82;
-            let t86 = k(0.25) * (t37 * t15 - (t19 * t33 + t45 * t67));
-            let t87 = k(2.0) * (t73 + t72);
-            let t88 = k(0.5) - (t0 + crank_e2 * crank_e2);
-            let t89 = k(2.0) * t88;
-            let t90 = t23 * t8 - (t89 * t71 + t87 * t69);
-            let t91 = k(0.1) * t90;
-            let t92 = t91 + t86;
-            let t93 = k(0.5) * t35;
-            let t94 = k(0.5) * t29;
-            let t95 = t94 * t42 - t93 * t32;
-            let t96 = t51 * t95;
-            let t97 = t93 + t49 * t96;
-            let t98 = t55 * t97;
-            let t99 = t58 * t98 + t48 * t96;
-            let t100 = k(0.25) * (t36 * t15 - (t30 * t33 - t46 * t67));
-            let t101 = t21 + t20;
-            let t102 = k(2.0) * t101;
-            let t103 = k(0.1) * (t31 * t8 - (t102 * t71 - t7 * t69));
-            let t104 = t103 + t100;
-            let t105 = k(1.0) / (t47 * t47 + t42 * t42);
-            let t106 = crank_wy * crank_wz;
-            let t107 = t106 * (t102 * t30 + (t75 * t27 + t89 * t19))
-                + t8 * (t7 * t30 - (t87 * t19 + t70 * t27));
-            let t108 = t7 * t46 + (t87 * t45 + t70 * t44);
-            let t109 = t7 * t36 - (t87 * t37 - t70 * t41);
-            let t110 = t102 * t46 - (t89 * t45 + t75 * t44);
-            let t111 = t102 * t36 - (t75 * t41 - t89 * t37);
-            let t112 = crank_wx * (coupler_wx * t111 + coupler_wz * t110)
-                - crank_wy * (coupler_wx * t109 + coupler_wz * t108);
-            let t113 = coupler_wy * coupler_wz * t42
-                + ((t66 + coupler_wx * coupler_wx) * t32 - t33 * t47);
-            let t114 = t113 + k(2.0) * t112 + (t3 * t32 + t107);
-            let t115 = t114 * (t42 * t105);
-            let t116 = t55 * t58;
-            let t117 = t58 * t116 - (k(5e-5) - t48 * t57);
-            let t118 = t114 * (t47 * t105);
-            let t119 = t50 * t54;
-            let t120 = t119 * t116 + t50 * t57;
-            let t121 = t120 * t118 - t117 * t115
-                + (t104 * t99 + (t92 * t85 + t78 * t65));
-            let t122 = t119 * t64 + (t60 - t50 * t62);
-            let t123 = t119 * t84 - (t80 - t50 * t82);
-            let t124 = t119 * t98 - (t94 - t50 * t96);
-            let t125 = t119 * (t55 * t119) - (k(0.0835) - t50 * (t50 * t51));
-            let t126 = t125 * t118 - t120 * t115
-                + (t104 * t124 + (t92 * t123 + t78 * t122));
-            let t127 = t42 * (t126 + (t119 * t56 + (t34 - t50 * t52)))
-                + t47 * (t121 + (t58 * t56 - t48 * t52));
-            let t128 = t83 * t64 - t81 * t62;
-            let t129 = t83 * t84 + t81 * t82;
-            let t130 = t97 * t84 + t95 * t82;
-            let t131 = t123 * t118 - t85 * t115
-                - (t92 - (t104 * t130 + (t92 * t129 + t78 * t128)));
-            let t132 = t131 + (t83 * t56 - (k(9.81) + t81 * t52));
-            let t133 = k(0.2) * t88;
-            let t134 = t63 * t64 + t61 * t62;
-            let t135 = t97 * t64 - t95 * t62;
-            let t136 = t122 * t118 - t65 * t115
-                - (t78 - (t104 * t135 + (t92 * t128 + t78 * t134)));
-            let t137 = k(0.2) * t74;
-            let t138 = t137 * (t136 + (t63 * t56 + t61 * t52));
-            let t139 = t97 * t98 + t95 * t96;
-            let t140 = t124 * t118 - t99 * t115
-                - (t104 - (t104 * t139 + (t92 * t130 + t78 * t135)));
-            let t141 = k(0.2) * t101;
-            let t142 = t141 * (t140 + (t97 * t56 - t95 * t52));
-            let t143 = t133 * (k(3.924) - t132) + t138 - t142
-                - (k(0.00133) * t71 + (t142 - (t138 - t133 * t132) + t127));
-            let t144 = t141 * t135 + (t133 * t128 - t137 * t134);
-            let t145 = t42 * t122 + t47 * t65;
-            let t146 = t137 + t144 + t145;
-            let t147 = t141 * t130 + (t133 * t129 - t137 * t128);
-            let t148 = t42 * t123 + t47 * t85;
-            let t149 = t133 - t147 - t148;
-            let t150 = t91 * (t149 - (t147 - k(0.28) * t88))
-                - t77 * (t146 + (t144 + k(0.28) * t74));
-            let t151 = t141 * t139 + (t133 * t130 - t137 * t135);
-            let t152 = t42 * t124 + t47 * t99;
-            let t153 = t141 - t151 - t152;
-            let t154 = t106 - t102 * t4;
-            let t155 = t42 * (t109 * t125 + t108 * t120)
-                + t47 * (t109 * t120 + t108 * t117);
-            let t156 = t133 * (t109 * t123 + t108 * t85)
-                - t137 * (t109 * t122 + t108 * t65);
-            let t157 = t141 * (t109 * t124 + t108 * t99) + t156;
-            let t158 = t42 * (t111 * t125 + t110 * t120)
-                + t47 * (t111 * t120 + t110 * t117);
-            let t159 = k(0.2) * t22;
-            let t160 = k(0.2) * t1;
-            let t161 = t111 * t122 + t110 * t65;
-            let t162 = t111 * t123 + t110 * t85;
-            let t163 = t111 * t124 + t110 * t99;
-            let t164 = t141 * t163 + (t133 * t162 - t137 * t161)
-                - (t160 * t152 + (t159 * t148 + t11 * t145));
-            let t165 = t160 * t151 + (t159 * t147 + t11 * t144);
-            let t166 = t11 - (t160 * t135 + (t159 * t128 + t11 * t134)) + t161;
-            let t167 = t159 - (t160 * t130 + (t159 * t129 + t11 * t128)) + t162;
-            let t168 = t160 - (t160 * t139 + (t159 * t130 + t11 * t135)) + t163;
-            let t169 = t141 * t168 + (t133 * t167 - t137 * t166)
-                + (t160 * t153 + (t159 * t149 - t11 * t146));
-            let t170 = (t169 - t165 - (t165 - t164 - t158)) * t9
-                - (t157 + (t157 + t155)) * t154;
-            let t171 = t170 + (t103 * (t153 - (t151 - k(0.28) * t101)) + t150) + t143;
-            let t172 = t42 * (t42 * t125 + t47 * t120) + t47 * (t42 * t120 + t47 * t117);
-            let t173 = t141 * t151 + (t133 * t147 - t137 * t144);
-            let t174 = t173 + k(2.0) * (t141 * t152 + (t133 * t148 - t137 * t145));
-            let t175 = k(2.0) * (t141 * t153 + (t133 * t149 + t137 * t146)) - t173;
-            let t176 = k(1.0)
-                / (t175 + (k(0.014) + (k(0.00135) - (t174 - (k(0.01) - t172)))));
-            let t177 = t176 * t171;
-            let t178 = t137 * t177 + t11 * t9;
-            let t179 = t77 + t178;
-            let t180 = t78 + (t178 + t179);
-            let t181 = t133 * t177 - t159 * t9;
-            let t182 = t91 - t181;
-            let t183 = t92 - (t181 - t182);
-            let t184 = t141 * t177 - t160 * t9;
-            let t185 = t103 - t184;
-            let t186 = t104 - (t184 - t185);
-            let t187 = t115 + (t47 * t177 + (t110 * t9 - t108 * t154));
-            let t188 = t118 - (t42 * t177 + (t111 * t9 - t109 * t154));
-            let t189 = t119 * t188 - t58 * t187
-                + (t97 * t186 + (t83 * t183 + t63 * t180));
-            let t190 = t55 * (t53 + t189);
-            let t191 = t50 * t188 + (t49 * t190 - t48 * t187)
-                + (t95 * t186 + (t81 * t183 - t61 * t180));
-            let t192 = t51 * (t43 - t191);
-            let t193 = t190 + t32 * t192;
-            let t194 = t188 + t42 * t192;
-            let t195 = t60 * t194 + t59 * t193;
-            let t196 = t180 - t195;
-            let t197 = rocker_e0 * rocker_e0;
-            let t198 = k(0.5) - (t197 + rocker_e3 * rocker_e3);
-            let t199 = rocker_wy * rocker_wy;
+            let t0 = coupler_wz * coupler_wz;
+            let t1 = t0 + coupler_wy * coupler_wy;
+            let t2 = coupler_e0 * coupler_e0;
+            let t3 = k(2.0) * (k(0.5) - (t2 + coupler_e1 * coupler_e1));
+            let t4 = coupler_wx * coupler_wy;
+            let t5 = coupler_e0 * coupler_e3;
+            let t6 = coupler_e1 * coupler_e2;
+            let t7 = t6 - t5;
+            let t8 = k(2.0) * t7;
+            let t9 = coupler_wx * coupler_wz;
+            let t10 = coupler_e0 * coupler_e2;
+            let t11 = coupler_e1 * coupler_e3;
+            let t12 = t11 + t10;
+            let t13 = k(2.0) * t12;
+            let t14 = k(0.25) * (t13 * t9 + (t8 * t4 + t3 * t1));
+            let t15 = rocker_wy * rocker_wy;
+            let t16 = rocker_wz * rocker_wz + t15;
+            let t17 = rocker_e0 * rocker_e0;
+            let t18 = rocker_wx * rocker_wy;
+            let t19 = rocker_e0 * rocker_e3;
+            let t20 = rocker_e1 * rocker_e2;
+            let t21 = t20 - t19;
+            let t22 = k(2.0) * t21 * t18
+                + k(2.0) * (k(0.5) - (t17 + rocker_e1 * rocker_e1)) * t16;
+            let t23 = rocker_wx * rocker_wz;
+            let t24 = rocker_e0 * rocker_e2;
+            let t25 = rocker_e1 * rocker_e3;
+            let t26 = t25 + t24;
+            let t27 = k(0.2) * (k(2.0) * t26 * t23 + t22);
+            let t28 = crank_e0 * crank_e0;
+            let t29 = k(0.5) - (t28 + crank_e3 * crank_e3);
+            let t30 = crank_wy * crank_wy;
+            let t31 = t30 + crank_wx * crank_wx;
+            let t32 = t31 * (k(0.5) / t29);
+            let t33 = crank_e0 * crank_e2;
+            let t34 = crank_e1 * crank_e3;
+            let t35 = k(2.0) * (t34 - t33);
+            let t36 = crank_wx * crank_wz;
+            let t37 = t36 - t35 * t32;
+            let t38 = t34 + t33;
+            let t39 = k(0.2) * t38;
+            let t40 = coupler_e0 * coupler_e1;
+            let t41 = coupler_e2 * coupler_e3;
+            let t42 = t41 - t40;
+            let t43 = k(0.02095) * t9 + k(4.905) * t42;
+            let t44 = k(0.5) - (t2 + coupler_e2 * coupler_e2);
+            let t45 = k(2.0) * t44;
+            let t46 = crank_e0 * crank_e1;
+            let t47 = crank_e2 * crank_e3;
+            let t48 = t47 - t46;
+            let t49 = k(2.0) * t48;
+            let t50 = k(2.0) * t38;
+            let t51 = t41 + t40;
+            let t52 = k(2.0) * t51;
+            let t53 = k(2.0) * t29;
+            let t54 = t53 * t52 - (t50 * t8 - t49 * t45);
+            let t55 = k(0.02095) * t4 - k(4.905) * t44;
+            let t56 = k(0.5) - (t2 + coupler_e3 * coupler_e3);
+            let t57 = k(2.0) * t56;
+            let t58 = k(2.0) * t42;
+            let t59 = t50 * t13 + t49 * t58 + t53 * t57;
+            let t60 = t59 * t55 + t54 * t43;
+            let t61 = k(2.0) * (t6 + t5);
+            let t62 = k(2.0) * (t11 - t10);
+            let t63 = t53 * t62 - (t49 * t61 - t50 * t3);
+            let t64 = k(5e-5) * t63;
+            let t65 = k(0.0835) * t54;
+            let t66 = k(0.0835) * t59;
+            let t67 = k(1.0) / (t59 * t66 + (t54 * t65 + t63 * t64));
+            let t68 = t67 * t60;
+            let t69 = t43 - t65 * t68;
+            let t70 = t65 * t67;
+            let t71 = k(1.0) / (k(0.0835) - t65 * t70);
+            let t72 = t71 * t69;
+            let t73 = t64 * t67;
+            let t74 = t65 * t73;
+            let t75 = crank_wz * crank_wz + t30;
+            let t76 = k(2.0) * (k(0.5) - (t28 + crank_e1 * crank_e1));
+            let t77 = crank_wx * crank_wy;
+            let t78 = crank_e0 * crank_e3;
+            let t79 = crank_e1 * crank_e2;
+            let t80 = t79 - t78;
+            let t81 = k(2.0) * t80;
+            let t82 = t50 * t36 + (t81 * t77 + t76 * t75);
+            let t83 = k(0.1) * t82;
+            let t84 = t83 + t14;
+            let t85 = k(0.5) * t12;
+            let t86 = k(0.5) * t7;
+            let t87 = t86 * t59 + t85 * t54;
+            let t88 = t67 * t87;
+            let t89 = t85 - t65 * t88;
+            let t90 = t71 * t89;
+            let t91 = t74 * t90 - t64 * t88;
+            let t92 = k(0.25) * (t58 * t9 - (t45 * t4 + t61 * t1));
+            let t93 = k(2.0) * (t79 + t78);
+            let t94 = k(0.5) - (t28 + crank_e2 * crank_e2);
+            let t95 = k(2.0) * t94;
+            let t96 = t49 * t36 - (t95 * t77 + t93 * t75);
+            let t97 = k(0.1) * t96;
+            let t98 = t97 + t92;
+            let t99 = k(0.5) * t42;
+            let t100 = k(0.5) * t44;
+            let t101 = t100 * t59 - t99 * t54;
+            let t102 = t67 * t101;
+            let t103 = t99 + t65 * t102;
+            let t104 = t71 * t103;
+            let t105 = t74 * t104 + t64 * t102;
+            let t106 = k(0.25) * (t57 * t9 - (t52 * t4 - t62 * t1));
+            let t107 = t47 + t46;
+            let t108 = k(2.0) * t107;
+            let t109 = k(0.1) * (t53 * t36 - (t108 * t77 - t35 * t75));
+            let t110 = t109 + t106;
+            let t111 = k(0.5) * t56;
+            let t112 = k(0.5) * t51;
+            let t113 = t112 * t59 - t111 * t54;
+            let t114 = t67 * t113;
+            let t115 = t111 + t65 * t114;
+            let t116 = t71 * t115;
+            let t117 = t74 * t116 + t64 * t114;
+            let t118 = k(1.0) / (t63 * t63 + t59 * t59);
+            let t119 = crank_wy * crank_wz;
+            let t120 = t119 * (t108 * t52 + (t81 * t8 + t95 * t45))
+                + t36 * (t35 * t52 - (t93 * t45 + t76 * t8));
+            let t121 = t35 * t62 + (t93 * t61 + t76 * t3);
+            let t122 = t35 * t57 - (t93 * t58 - t76 * t13);
+            let t123 = t108 * t62 - (t95 * t61 + t81 * t3);
+            let t124 = t108 * t57 - (t81 * t13 - t95 * t58);
+            let t125 = crank_wx * (coupler_wx * t124 + coupler_wz * t123)
+                - crank_wy * (coupler_wx * t122 + coupler_wz * t121);
+            let t126 = coupler_wy * coupler_wz * t59
+                + ((t0 + coupler_wx * coupler_wx) * t54 - t4 * t63);
+            let t127 = t126 + k(2.0) * t125 + (t31 * t54 + t120);
+            let t128 = t127 * (t59 * t118);
+            let t129 = t71 * t74;
+            let t130 = t74 * t129 - (k(5e-5) - t64 * t73);
+            let t131 = t63 * t118 * t127;
+            let t132 = t66 * t70;
+            let t133 = t132 * t129 + t66 * t73;
+            let t134 = t133 * t131 - t130 * t128
+                + (t117 * t110 + (t105 * t98 + t91 * t84));
+            let t135 = t132 * t90 + (t86 - t66 * t88);
+            let t136 = t132 * t104 - (t100 - t66 * t102);
+            let t137 = t132 * t116 - (t112 - t66 * t114);
+            let t138 = t132 * (t71 * t132) - (k(0.0835) - t66 * (t66 * t67));
+            let t139 = t138 * t131 - t133 * t128
+                + (t137 * t110 + (t136 * t98 + t135 * t84));
+            let t140 = t59 * (t139 + (t132 * t72 + (t55 - t66 * t68)))
+                + t63 * (t134 + (t74 * t72 - t64 * t68));
+            let t141 = t103 * t90 - t101 * t88;
+            let t142 = t103 * t104 + t101 * t102;
+            let t143 = t115 * t104 + t113 * t102;
+            let t144 = t136 * t131 - t105 * t128
+                - (t98 - (t143 * t110 + (t142 * t98 + t141 * t84)));
+            let t145 = t144 + (t103 * t72 - (k(9.81) + t101 * t68));
+            let t146 = k(0.2) * t94;
+            let t147 = t89 * t90 + t87 * t88;
+            let t148 = t115 * t90 - t113 * t88;
+            let t149 = t135 * t131 - t91 * t128
+                - (t84 - (t148 * t110 + (t141 * t98 + t147 * t84)));
+            let t150 = k(0.2) * t80;
+            let t151 = t150 * (t149 + (t89 * t72 + t87 * t68));
+            let t152 = t115 * t116 + t113 * t114;
+            let t153 = t137 * t131 - t117 * t128
+                - (t110 - (t152 * t110 + (t143 * t98 + t148 * t84)));
+            let t154 = k(0.2) * t107;
+            let t155 = t154 * (t153 + (t115 * t72 - t113 * t68));
+            let t156 = t146 * (k(3.924) - t145) + t151 - t155
+                - (k(0.00133) * t77 + (t155 - (t151 - t146 * t145) + t140));
+            let t157 = t154 * t148 + (t146 * t141 - t150 * t147);
+            let t158 = t59 * t135 + t63 * t91;
+            let t159 = t150 + t157 + t158;
+            let t160 = t154 * t143 + (t146 * t142 - t150 * t141);
+            let t161 = t59 * t136 + t63 * t105;
+            let t162 = t146 - t160 - t161;
+            let t163 = (t162 - (t160 - k(0.28) * t94)) * t97
+                - (t159 + (t157 + k(0.28) * t80)) * t83;
+            let t164 = t154 * t152 + (t146 * t143 - t150 * t148);
+            let t165 = t59 * t137 + t63 * t117;
+            let t166 = t154 - t164 - t165;
+            let t167 = t119 - t108 * t32;
+            let t168 = t59 * (t138 * t122 + t133 * t121)
+                + t63 * (t133 * t122 + t130 * t121);
+            let t169 = t146 * (t136 * t122 + t105 * t121)
+                - t150 * (t135 * t122 + t91 * t121);
+            let t170 = t154 * (t137 * t122 + t117 * t121) + t169;
+            let t171 = t59 * (t138 * t124 + t133 * t123)
+                + t63 * (t133 * t124 + t130 * t123);
+            let t172 = k(0.2) * t48;
+            let t173 = k(0.2) * t29;
+            let t174 = t135 * t124 + t91 * t123;
+            let t175 = t136 * t124 + t105 * t123;
+            let t176 = t137 * t124 + t117 * t123;
+            let t177 = t154 * t176 + (t146 * t175 - t150 * t174)
+                - (t173 * t165 + (t172 * t161 + t39 * t158));
+            let t178 = t173 * t164 + (t172 * t160 + t39 * t157);
+            let t179 = t39 - (t173 * t148 + (t172 * t141 + t39 * t147)) + t174;
+            let t180 = t172 - (t173 * t143 + (t172 * t142 + t39 * t141)) + t175;
+            let t181 = t173 - (t173 * t152 + (t172 * t143 + t39 * t148)) + t176;
+            let t182 = t154 * t181 + (t146 * t180 - t150 * t179)
+                + (t173 * t166 + (t172 * t162 - t39 * t159));
+            let t183 = (t182 - t178 - (t178 - t177 - t171)) * t37
+                - (t170 + (t170 + t168)) * t167;
+            let t184 = t183 + ((t166 - (t164 - k(0.28) * t107)) * t109 + t163) + t156;
+            let t185 = t59 * (t59 * t138 + t63 * t133) + t63 * (t59 * t133 + t63 * t130);
+            let t186 = t154 * t164 + (t146 * t160 - t150 * t157);
+            let t187 = t186 + k(2.0) * (t154 * t165 + (t146 * t161 - t150 * t158));
+            let t188 = k(2.0) * (t154 * t166 + (t146 * t162 + t150 * t159)) - t186;
+            let t189 = k(1.0)
+                / (t188 + (k(0.014) + (k(0.00135) - (t187 - (k(0.01) - t185)))));
+            let t190 = t189 * t184;
+            let t191 = t150 * t190 + t39 * t37;
+            let t192 = t83 + t191;
+            let t193 = t84 + (t191 + t192);
+            let t194 = t146 * t190 - t172 * t37;
+            let t195 = t97 - t194;
+            let t196 = t98 - (t194 - t195);
+            let t197 = t154 * t190 - t173 * t37;
+            let t198 = t109 - t197;
+            let t199 = t110 - (t197 - t198);
             (
-                t9,
+                t7,
+                t12,
                 t14,
+                t15,
+                t16,
+                t17,
                 t18,
+                t19,
+                t20,
+                t21,
                 t23,
+                t24,
+                t25,
                 t26,
-                t28,
-                t29,
-                t32,
-                t35,
-                t40,
+                t27,
+                t37,
                 t42,
-                t47,
-                t48,
+                t44,
                 t49,
                 t50,
                 t51,
-                t55,
-                t58,
+                t54,
+                t56,
                 t59,
                 t60,
-                t61,
                 t63,
-                t68,
-                t70,
-                t75,
+                t64,
+                t65,
+                t66,
+                t67,
+                t69,
+                t71,
+                t74,
                 t76,
-                t79,
-                t80,
                 t81,
-                t83,
+                t82,
+                t85,
                 t86,
                 t87,
                 t89,
-                t90,
+                t92,
                 t93,
-                t94,
                 t95,
-                t97,
+                t96,
+                t99,
                 t100,
-                t119,
-                t133,
-                t137,
-                t141,
+                t101,
+                t103,
+                t106,
+                t111,
+                t112,
+                t113,
+                t115,
+                t121,
+                t122,
+                t123,
+                t124,
+                t128,
+                t131,
+                t132,
+                t146,
+                t150,
                 t154,
-                t176,
-                t177,
-                t179,
-                t182,
-                t183,
-                t185,
-                t186,
-                t187,
+                t167,
+                t189,
+                t190,
                 t192,
                 t193,
-                t194,
                 t195,
                 t196,
-                t197,
                 t198,
                 t199,
             )
         };
         let (
-            t200,
-            t205,
+            t211,
+            t213,
             t221,
             t224,
             t253,
@@ -1887,227 +1910,228 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
             t386,
             t387,
         ) = {
-            let t200 = (t199 + rocker_wx * rocker_wx) * (k(0.5) / t198);
-            let t201 = rocker_e0 * rocker_e2;
-            let t202 = rocker_e1 * rocker_e3;
-            let t203 = k(2.0) * (t202 - t201);
-            let t204 = rocker_wx * rocker_wz;
-            let t205 = t204 - t203 * t200;
-            let t206 = t202 + t201;
-            let t207 = k(0.5) - (t197 + rocker_e2 * rocker_e2);
-            let t208 = rocker_wx * rocker_wy;
-            let t209 = rocker_e0 * rocker_e3;
-            let t210 = rocker_e1 * rocker_e2;
-            let t211 = t210 - t209;
-            let t212 = rocker_wz * rocker_wz + t199;
-            let t213 = k(2.0) * t211 * t208
-                + k(2.0) * (k(0.5) - (t197 + rocker_e1 * rocker_e1)) * t212;
-            let t214 = k(0.2) * (k(2.0) * t206 * t204 + t213);
+            let t200 = t128 + (t63 * t190 + (t123 * t37 - t121 * t167));
+            let t201 = t131 - (t59 * t190 + (t124 * t37 - t122 * t167));
+            let t202 = t132 * t201 - t74 * t200
+                + (t115 * t199 + (t103 * t196 + t89 * t193));
+            let t203 = t71 * (t69 + t202);
+            let t204 = t66 * t201 + (t65 * t203 - t64 * t200)
+                + (t113 * t199 + (t101 * t196 - t87 * t193));
+            let t205 = t67 * (t60 - t204);
+            let t206 = t203 + t54 * t205;
+            let t207 = t201 + t59 * t205;
+            let t208 = t86 * t207 + t85 * t206;
+            let t209 = t193 - t208;
+            let t210 = k(0.5) - (t17 + rocker_e3 * rocker_e3);
+            let t211 = (t15 + rocker_wx * rocker_wx) * (k(0.5) / t210);
+            let t212 = k(2.0) * (t25 - t24);
+            let t213 = t23 - t212 * t211;
+            let t214 = k(0.5) - (t17 + rocker_e2 * rocker_e2);
             let t215 = rocker_e0 * rocker_e1;
             let t216 = rocker_e2 * rocker_e3;
             let t217 = t216 - t215;
-            let t218 = k(2.0) * t217 * t204
-                - (k(2.0) * t207 * t208 + k(2.0) * (t210 + t209) * t212);
+            let t218 = k(2.0) * t217 * t23
+                - (k(2.0) * t214 * t18 + k(2.0) * (t20 + t19) * t16);
             let t219 = k(0.2) * t218;
             let t220 = t216 + t215;
             let t221 = k(2.0) * t220;
-            let t222 = k(0.2) * (k(2.0) * t198 * t204 - (t221 * t208 - t203 * t212));
-            let t223 = t222 * (k(0.32) * t220)
-                + (t219 * (k(0.32) * t207) - t214 * (k(0.32) * t211));
+            let t222 = k(0.2) * (k(2.0) * t210 * t23 - (t221 * t18 - t212 * t16));
+            let t223 = k(0.32) * t220 * t222
+                + (k(0.32) * t214 * t219 - k(0.32) * t21 * t27);
             let t224 = k(23.364485981308412)
-                * (t223 - (k(0.01076) * t208 - k(3.1392) * t207));
-            let t225 = k(0.4) * t211;
-            let t226 = t225 * t224 + k(0.4) * t206 * t205;
-            let t227 = t214 + t226;
-            let t228 = t214 - t68 + (t226 + t227 + (t195 - t196));
-            let t229 = t26 * t42 + t40 * t32;
-            let t230 = t229 * t51;
-            let t231 = t40 - t49 * t230;
-            let t232 = t231 * t55;
-            let t233 = t42 * (t232 * t119 + (t26 - t50 * t230))
-                + t47 * (t232 * t58 - t48 * t230);
-            let t234 = t133 * (t232 * t83 - t230 * t81)
-                - t137 * (t232 * t63 - (k(1.0) - t230 * t61));
-            let t235 = t141 * (t232 * t97 - t230 * t95) + t234;
-            let t236 = (t235 + (t235 + t233)) * t176;
-            let t237 = t137 * t236;
+                * (t223 - (k(0.01076) * t18 - k(3.1392) * t214));
+            let t225 = k(0.4) * t21;
+            let t226 = t225 * t224 + k(0.4) * t26 * t213;
+            let t227 = t27 + t226;
+            let t228 = t226 + t227 + (t208 - t209) + (t27 - t14);
+            let t229 = t7 * t59 + t12 * t54;
+            let t230 = t229 * t67;
+            let t231 = t12 - t65 * t230;
+            let t232 = t231 * t71;
+            let t233 = t59 * (t232 * t132 + (t7 - t66 * t230))
+                + t63 * (t232 * t74 - t64 * t230);
+            let t234 = t146 * (t232 * t103 - t230 * t101)
+                - t150 * (t232 * t89 - (k(1.0) - t230 * t87));
+            let t235 = t154 * (t232 * t115 - t230 * t113) + t234;
+            let t236 = (t235 + (t235 + t233)) * t189;
+            let t237 = t150 * t236;
             let t238 = k(2.0) * t237;
-            let t239 = t133 * t236;
+            let t239 = t146 * t236;
             let t240 = k(2.0) * t239;
-            let t241 = t141 * t236;
+            let t241 = t154 * t236;
             let t242 = k(2.0) * t241;
-            let t243 = t47 * t236;
-            let t244 = t42 * t236;
-            let t245 = t119 * t244 + t58 * t243
-                + (t97 * t242 + (t83 * t240 - t63 * t238));
-            let t246 = t55 * (t231 + t245);
-            let t247 = t50 * t244 + (t49 * t246 + t48 * t243)
-                + (t95 * t242 + (t81 * t240 + t61 * t238));
-            let t248 = t51 * (t229 - t247);
-            let t249 = t246 + t32 * t248;
-            let t250 = t244 + t42 * t248;
-            let t251 = t60 * t250 + t59 * t249;
+            let t243 = t63 * t236;
+            let t244 = t59 * t236;
+            let t245 = t132 * t244 + t74 * t243
+                + (t115 * t242 + (t103 * t240 - t89 * t238));
+            let t246 = t71 * (t231 + t245);
+            let t247 = t66 * t244 + (t65 * t246 + t64 * t243)
+                + (t113 * t242 + (t101 * t240 + t87 * t238));
+            let t248 = t67 * (t229 - t247);
+            let t249 = t246 + t54 * t248;
+            let t250 = t244 + t59 * t248;
+            let t251 = t86 * t250 + t85 * t249;
             let t252 = t238 + t251;
-            let t253 = k(18.69158878504673) * t211;
+            let t253 = k(18.69158878504673) * t21;
             let t254 = t225 * t253;
             let t255 = k(1.0) / (k(2.0) * t254 + (t251 + t252));
-            let t256 = t80 * t194 - t79 * t193;
-            let t257 = t183 + t256;
-            let t258 = k(0.4) * t207;
-            let t259 = t258 * t224 - k(0.4) * t217 * t205;
+            let t256 = t100 * t207 - t99 * t206;
+            let t257 = t196 + t256;
+            let t258 = k(0.4) * t214;
+            let t259 = t258 * t224 - k(0.4) * t217 * t213;
             let t260 = t219 - t259;
-            let t261 = t80 * t250 - t79 * t249;
+            let t261 = t100 * t250 - t99 * t249;
             let t262 = t240 + t261;
             let t263 = t258 * t253;
             let t264 = k(2.0) * t263 + (t261 + t262);
             let t265 = t255 * t264;
-            let t266 = t265 * t228 + (t219 - t86 - (t259 - t260 + (t256 + t257)));
-            let t267 = t18 * t42 - t14 * t32;
-            let t268 = t51 * t267;
-            let t269 = t14 + t49 * t268;
-            let t270 = t55 * t269;
-            let t271 = t42 * (t119 * t270 - (t18 - t50 * t268))
-                + t47 * (t58 * t270 + t48 * t268);
-            let t272 = t133 * (t83 * t270 - (k(1.0) - t81 * t268))
-                - t137 * (t63 * t270 - t61 * t268);
-            let t273 = t141 * (t97 * t270 + t95 * t268) + t272;
-            let t274 = t176 * (t273 + (t273 + t271));
-            let t275 = t137 * t274;
+            let t266 = t265 * t228 - (t259 - t260 + (t256 + t257) - (t219 - t92));
+            let t267 = t44 * t59 - t42 * t54;
+            let t268 = t67 * t267;
+            let t269 = t42 + t65 * t268;
+            let t270 = t71 * t269;
+            let t271 = t59 * (t132 * t270 - (t44 - t66 * t268))
+                + t63 * (t74 * t270 + t64 * t268);
+            let t272 = t146 * (t103 * t270 - (k(1.0) - t101 * t268))
+                - t150 * (t89 * t270 - t87 * t268);
+            let t273 = t154 * (t115 * t270 + t113 * t268) + t272;
+            let t274 = t189 * (t273 + (t273 + t271));
+            let t275 = t150 * t274;
             let t276 = k(2.0) * t275;
-            let t277 = t133 * t274;
+            let t277 = t146 * t274;
             let t278 = k(2.0) * t277;
-            let t279 = t141 * t274;
+            let t279 = t154 * t274;
             let t280 = k(2.0) * t279;
-            let t281 = t47 * t274;
-            let t282 = t42 * t274;
-            let t283 = t119 * t282 + t58 * t281
-                + (t97 * t280 + (t83 * t278 - t63 * t276));
-            let t284 = t55 * (t269 + t283);
-            let t285 = t50 * t282 + (t49 * t284 + t48 * t281)
-                + (t95 * t280 + (t81 * t278 + t61 * t276));
-            let t286 = t51 * (t267 + t285);
-            let t287 = t284 - t32 * t286;
-            let t288 = t282 - t42 * t286;
-            let t289 = t80 * t288 - t79 * t287;
+            let t281 = t63 * t274;
+            let t282 = t59 * t274;
+            let t283 = t132 * t282 + t74 * t281
+                + (t115 * t280 + (t103 * t278 - t89 * t276));
+            let t284 = t71 * (t269 + t283);
+            let t285 = t66 * t282 + (t65 * t284 + t64 * t281)
+                + (t113 * t280 + (t101 * t278 + t87 * t276));
+            let t286 = t67 * (t267 + t285);
+            let t287 = t284 - t54 * t286;
+            let t288 = t282 - t59 * t286;
+            let t289 = t100 * t288 - t99 * t287;
             let t290 = t278 + t289;
-            let t291 = k(18.69158878504673) * t207;
+            let t291 = k(18.69158878504673) * t214;
             let t292 = t258 * t291;
             let t293 = k(1.0) / (t264 * t265 - (k(2.0) * t292 - (t289 + t290)));
-            let t294 = t94 * t194 - t93 * t193;
-            let t295 = t186 + t294;
+            let t294 = t112 * t207 - t111 * t206;
+            let t295 = t199 + t294;
             let t296 = k(0.4) * t220;
-            let t297 = t296 * t224 - k(0.4) * t198 * t205;
+            let t297 = t296 * t224 - k(0.4) * t210 * t213;
             let t298 = t222 - t297;
-            let t299 = t94 * t250 - t93 * t249;
+            let t299 = t112 * t250 - t111 * t249;
             let t300 = t242 + t299;
             let t301 = t296 * t253;
             let t302 = k(2.0) * t301 + (t299 + t300);
             let t303 = t255 * t302;
-            let t304 = t303 * t228 + (t222 - t100 - (t297 - t298 + (t294 + t295)));
-            let t305 = t94 * t288 - t93 * t287;
+            let t304 = t303 * t228 - (t297 - t298 + (t294 + t295) - (t222 - t106));
+            let t305 = t112 * t288 - t111 * t287;
             let t306 = t280 + t305;
             let t307 = t296 * t291;
             let t308 = t264 * t303 - (k(2.0) * t307 - (t305 + t306));
             let t309 = t293 * t308;
             let t310 = t309 * t266 - t304;
-            let t311 = t29 * t42 - t35 * t32;
-            let t312 = t51 * t311;
-            let t313 = t35 + t49 * t312;
-            let t314 = t55 * t313;
-            let t315 = t42 * (t119 * t314 - (t29 - t50 * t312))
-                + t47 * (t58 * t314 + t48 * t312);
-            let t316 = t133 * (t83 * t314 + t81 * t312)
-                - t137 * (t63 * t314 - t61 * t312);
-            let t317 = t141 * (t97 * t314 - (k(1.0) - t95 * t312)) + t316;
-            let t318 = t176 * (t317 + (t317 + t315));
-            let t319 = t137 * t318;
+            let t311 = t51 * t59 - t56 * t54;
+            let t312 = t67 * t311;
+            let t313 = t56 + t65 * t312;
+            let t314 = t71 * t313;
+            let t315 = t59 * (t132 * t314 - (t51 - t66 * t312))
+                + t63 * (t74 * t314 + t64 * t312);
+            let t316 = t146 * (t103 * t314 + t101 * t312)
+                - t150 * (t89 * t314 - t87 * t312);
+            let t317 = t154 * (t115 * t314 - (k(1.0) - t113 * t312)) + t316;
+            let t318 = t189 * (t317 + (t317 + t315));
+            let t319 = t150 * t318;
             let t320 = k(2.0) * t319;
-            let t321 = t133 * t318;
+            let t321 = t146 * t318;
             let t322 = k(2.0) * t321;
-            let t323 = t141 * t318;
+            let t323 = t154 * t318;
             let t324 = k(2.0) * t323;
-            let t325 = t47 * t318;
-            let t326 = t42 * t318;
-            let t327 = t119 * t326 + t58 * t325
-                + (t97 * t324 + (t83 * t322 - t63 * t320));
-            let t328 = t55 * (t313 + t327);
-            let t329 = t50 * t326 + (t49 * t328 + t48 * t325)
-                + (t95 * t324 + (t81 * t322 + t61 * t320));
-            let t330 = t51 * (t311 + t329);
-            let t331 = t328 - t32 * t330;
-            let t332 = t326 - t42 * t330;
-            let t333 = t94 * t332 - t93 * t331;
+            let t325 = t63 * t318;
+            let t326 = t59 * t318;
+            let t327 = t132 * t326 + t74 * t325
+                + (t115 * t324 + (t103 * t322 - t89 * t320));
+            let t328 = t71 * (t313 + t327);
+            let t329 = t66 * t326 + (t65 * t328 + t64 * t325)
+                + (t113 * t324 + (t101 * t322 + t87 * t320));
+            let t330 = t67 * (t311 + t329);
+            let t331 = t328 - t54 * t330;
+            let t332 = t326 - t59 * t330;
+            let t333 = t112 * t332 - t111 * t331;
             let t334 = t324 + t333;
             let t335 = k(18.69158878504673) * t220;
             let t336 = t296 * t335;
             let t337 = t308 * t309 - (t302 * t303 - (k(2.0) * t336 - (t333 + t334)));
             let t338 = k(1.0) / t337;
-            let t339 = k(1.0) / (t87 * t87 + t70 * t70);
-            let t340 = t339 * (t75 * t87 - t70 * t89);
-            let t341 = t340 * t177 + (t28 * t87 + t70 * t23) * t339 * t9;
-            let t342 = t23 * crank_wy + t89 * crank_wz;
-            let t343 = t28 * crank_wy - t75 * crank_wz;
-            let t344 = t339 * t339 * (k(2.0) * (t70 * t343 - t87 * t342))
-                * (t87 * t343 + t70 * t342);
-            let t345 = t342 * t343;
-            let t346 = t339 * (t70 * t90 - t345 + (t345 + t87 * t76)) + t344;
-            let t347 = t340 * t236;
+            let t339 = t49 * crank_wy + t95 * crank_wz;
+            let t340 = t50 * crank_wy - t81 * crank_wz;
+            let t341 = k(1.0) / (t93 * t93 + t76 * t76);
+            let t342 = t341 * t341 * (k(2.0) * (t76 * t340 - t93 * t339))
+                * (t93 * t340 + t76 * t339);
+            let t343 = t339 * t340;
+            let t344 = t341 * (t76 * t96 - t343 + (t343 + t93 * t82)) + t342;
+            let t345 = t341 * (t81 * t93 - t76 * t95);
+            let t346 = t345 * t190 + (t50 * t93 + t76 * t49) * t341 * t37;
+            let t347 = t345 * t236;
             let t348 = t255 * t347;
-            let t349 = t348 * t228 - (k(1.8) * (k(3.0) * t).sin() - t346 - t341);
-            let t350 = t264 * t348 + t340 * t274;
+            let t349 = t348 * t228 + (t346 - (k(1.8) * (k(3.0) * t).sin() - t344));
+            let t350 = t264 * t348 + t345 * t274;
             let t351 = t293 * t350;
-            let t352 = t308 * t351 - (t302 * t348 + t340 * t318);
+            let t352 = t308 * t351 - (t302 * t348 + t345 * t318);
             let t353 = t338 * t352;
-            let t354 = t340 * t176;
-            let t355 = t352 * t353 - (t350 * t351 - (t347 * t348 - t340 * t354));
+            let t354 = t345 * t189;
+            let t355 = t352 * t353 - (t350 * t351 - (t347 * t348 - t345 * t354));
             let t356 = (t353 * t310 - (t351 * t266 - t349)) / t355;
             let t357 = t353 * t356 - t338 * t310;
             let t358 = t351 * t356 - (t309 * t357 + t293 * t266);
             let t359 = t348 * t356 - (t303 * t357 + (t265 * t358 + t255 * t228));
-            let t360 = t137 * t354;
+            let t360 = t150 * t354;
             let t361 = t356 * t360
-                + (t319 * t357 + (t275 * t358 + (t179 - t237 * t359)));
-            let t362 = t133 * t354;
+                + (t319 * t357 + (t275 * t358 + (t192 - t237 * t359)));
+            let t362 = t146 * t354;
             let t363 = t356 * t362
-                + (t321 * t357 + (t277 * t358 - (t182 + t239 * t359)));
-            let t364 = t141 * t354;
+                + (t321 * t357 + (t277 * t358 - (t195 + t239 * t359)));
+            let t364 = t154 * t354;
             let t365 = t356 * t364
-                + (t323 * t357 + (t279 * t358 - (t185 + t241 * t359)));
+                + (t323 * t357 + (t279 * t358 - (t198 + t241 * t359)));
             let t366 = t354 * t356
-                + (t318 * t357 + (t274 * t358 + (t177 - t236 * t359)));
-            let t367 = t358 * (t276 + (t60 * t288 + t59 * t287)) + (t196 - t252 * t359);
+                + (t318 * t357 + (t274 * t358 + (t190 - t236 * t359)));
+            let t367 = t358 * (t276 + (t86 * t288 + t85 * t287)) + (t209 - t252 * t359);
             let t368 = k(2.0) * t360;
             let t369 = k(2.0) * t362;
             let t370 = k(2.0) * t364;
-            let t371 = t47 * t354;
-            let t372 = t42 * t354;
-            let t373 = t119 * t372 + t58 * t371
-                + (t97 * t370 + (t83 * t369 - t63 * t368));
-            let t374 = t55 * t373;
-            let t375 = t50 * t372 + (t49 * t374 + t48 * t371)
-                + (t95 * t370 + (t81 * t369 + t61 * t368));
-            let t376 = t51 * t375;
-            let t377 = t374 - t32 * t376;
-            let t378 = t372 - t42 * t376;
-            let t379 = t356 * (t368 + (t60 * t378 + t59 * t377))
-                + (t357 * (t320 + (t60 * t332 + t59 * t331)) + t367);
-            let t380 = t357 * (t322 + (t80 * t332 - t79 * t331))
+            let t371 = t63 * t354;
+            let t372 = t59 * t354;
+            let t373 = t132 * t372 + t74 * t371
+                + (t115 * t370 + (t103 * t369 - t89 * t368));
+            let t374 = t71 * t373;
+            let t375 = t66 * t372 + (t65 * t374 + t64 * t371)
+                + (t113 * t370 + (t101 * t369 + t87 * t368));
+            let t376 = t67 * t375;
+            let t377 = t374 - t54 * t376;
+            let t378 = t372 - t59 * t376;
+            let t379 = t356 * (t368 + (t86 * t378 + t85 * t377))
+                + (t357 * (t320 + (t86 * t332 + t85 * t331)) + t367);
+            let t380 = t357 * (t322 + (t100 * t332 - t99 * t331))
                 + (t290 * t358 - (t257 + t262 * t359));
-            let t381 = t356 * (t370 + (t94 * t378 - t93 * t377))
+            let t381 = t356 * (t370 + (t112 * t378 - t111 * t377))
                 + (t334 * t357 + (t306 * t358 - (t295 + t300 * t359)));
-            let t382 = t358 * (t281 - t47 * t286)
-                - (t359 * (t243 + t47 * t248) - (t187 - t47 * t192));
-            let t383 = t356 * (t371 - t47 * t376) + (t357 * (t325 - t47 * t330) + t382);
+            let t382 = t358 * (t281 - t63 * t286)
+                - (t359 * (t243 + t63 * t248) - (t200 - t63 * t205));
+            let t383 = t356 * (t371 - t63 * t376) + (t357 * (t325 - t63 * t330) + t382);
             let t384 = t356 * t377
-                + (t331 * t357 + (t287 * t358 - (t193 + t249 * t359)));
+                + (t331 * t357 + (t287 * t358 - (t206 + t249 * t359)));
             let t385 = t356 * t378
-                + (t332 * t357 + (t288 * t358 - (t194 + t250 * t359)));
+                + (t332 * t357 + (t288 * t358 - (t207 + t250 * t359)));
             let t386 = t357 * (t225 * t335)
                 + (t358 * (t225 * t291) + (t227 + t254 * t359));
             let t387 = t357 * (t258 * t335) + (t292 * t358 - (t260 - t263 * t359));
             (
-                t200,
-                t205,
+                t211,
+                t213,
                 t221,
                 t224,
                 t253,
@@ -2142,11 +2166,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
             t361,
             -t363,
             t365,
-            t154,
-            -t9,
+            t167,
+            -t37,
             t366,
             t379,
-            -(t356 * (t369 + (t80 * t378 - t79 * t377)) + t380),
+            -(t356 * (t369 + (t100 * t378 - t99 * t377)) + t380),
             t381,
             -t383,
             -t384,
@@ -2154,8 +2178,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
             t386,
             -t387,
             t336 * t357 + (t307 * t358 - (t298 - t301 * t359)),
-            rocker_wy * rocker_wz - t221 * t200,
-            -t205,
+            rocker_wy * rocker_wz - t221 * t211,
+            -t213,
             t335 * t357 + (t291 * t358 + (t224 + t253 * t359)),
             -t359,
             t358,

@@ -196,19 +196,19 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Gear<T> {
         let wheel_e3 = y[13];
         let turn0 = y[27];
         let turn1 = y[28];
-        let t0 = turn1.cos();
-        let t1 = wheel_e2 * wheel_e2;
-        let t2 = wheel_e0 * wheel_e0;
-        let t3 = k(2.0) * (k(0.5) - (t2 + t1));
-        let t4 = turn1.sin();
-        let t5 = k(2.0) * (wheel_e2 * wheel_e3 + wheel_e0 * wheel_e1);
-        let t6 = (t5 * t0 + t3 * t4).atan2(t5 * t4 - t3 * t0);
-        let t7 = turn0.cos();
-        let t8 = pinion_e0 * pinion_e0 + pinion_e1 * pinion_e1;
-        let t9 = k(2.0) * (k(0.5) - t8);
-        let t10 = turn0.sin();
-        let t11 = k(2.0) * (pinion_e1 * pinion_e2 + pinion_e0 * pinion_e3);
-        let t12 = (t11 * t7 + t9 * t10).atan2(t11 * t10 - t9 * t7);
+        let t0 = turn0.cos();
+        let t1 = pinion_e0 * pinion_e0 + pinion_e1 * pinion_e1;
+        let t2 = k(2.0) * (k(0.5) - t1);
+        let t3 = turn0.sin();
+        let t4 = k(2.0) * (pinion_e1 * pinion_e2 + pinion_e0 * pinion_e3);
+        let t5 = (t4 * t0 + t2 * t3).atan2(t4 * t3 - t2 * t0);
+        let t6 = turn1.cos();
+        let t7 = wheel_e2 * wheel_e2;
+        let t8 = wheel_e0 * wheel_e0;
+        let t9 = k(2.0) * (k(0.5) - (t8 + t7));
+        let t10 = turn1.sin();
+        let t11 = k(2.0) * (wheel_e2 * wheel_e3 + wheel_e0 * wheel_e1);
+        let t12 = (t11 * t6 + t9 * t10).atan2(t11 * t10 - t9 * t6);
         *out = [
             pinion_rx,
             pinion_ry,
@@ -220,9 +220,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Gear<T> {
             wheel_rz,
             k(2.0) * (wheel_e1 * wheel_e2 + wheel_e0 * wheel_e3),
             k(2.0) * (wheel_e1 * wheel_e3 - wheel_e0 * wheel_e2),
-            k(2.5) * (turn0 + t12) + (turn1 + t6) - k(0.3),
-            pinion_e3 * pinion_e3 + (t8 + pinion_e2 * pinion_e2) - k(1.0),
-            wheel_e3 * wheel_e3 + (t2 + wheel_e1 * wheel_e1 + t1) - k(1.0),
+            turn1 + t12 + k(2.5) * (turn0 + t5) - k(0.3),
+            pinion_e3 * pinion_e3 + (t1 + pinion_e2 * pinion_e2) - k(1.0),
+            wheel_e3 * wheel_e3 + (t8 + wheel_e1 * wheel_e1 + t7) - k(1.0),
         ];
     }
     /// Writes Φ_r s + Φ_π' w' − ν: 86 operations (29 ±, 55 ×, 2 ÷).
@@ -835,63 +835,64 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gear<T> {
         let t6 = pinion_e1 * pinion_e3;
         let t7 = pinion_wx * pinion_wz;
         let t8 = t7 - k(2.0) * (t6 - t5) * t2;
-        let t9 = k(2.0) * (k(0.5) - (t0 + pinion_e1 * pinion_e1));
-        let t10 = pinion_e0 * pinion_e3;
-        let t11 = pinion_e1 * pinion_e2;
-        let t12 = k(2.0) * (t11 + t10);
-        let t13 = k(1.0) / (t12 * t12 + t9 * t9);
-        let t14 = k(2.0) * (t4 - t3);
-        let t15 = k(2.0) * (t6 + t5);
-        let t16 = k(2.0) * (k(0.5) - (t0 + pinion_e2 * pinion_e2));
-        let t17 = k(2.0) * (t11 - t10);
-        let t18 = t13 * (t17 * t12 - t9 * t16);
-        let t19 = k(87.5) * t18 + k(2.5) * ((t15 * t12 + t9 * t14) * t13) * t8;
-        let t20 = turn1.cos();
-        let t21 = wheel_e0 * wheel_e0;
-        let t22 = k(2.0) * (k(0.5) - (t21 + wheel_e2 * wheel_e2));
-        let t23 = turn1.sin();
-        let t24 = wheel_e0 * wheel_e1;
-        let t25 = wheel_e2 * wheel_e3;
-        let t26 = k(2.0) * (t25 + t24);
-        let t27 = (t26 * t20 + t22 * t23).atan2(t26 * t23 - t22 * t20);
-        let t28 = k(8.0) * (k(0.2) + (turn1 + t27));
-        let t29 = k(1.0) / (t26 * t26 + t22 * t22);
-        let t30 = k(2.0) * (k(0.5) - (t21 + wheel_e3 * wheel_e3));
-        let t31 = k(2.0) * (t25 - t24);
-        let t32 = (t31 * t26 - t22 * t30) * t29;
-        let t33 = wheel_wz * wheel_wz;
-        let t34 = (t33 + wheel_wy * wheel_wy)
-            * (k(0.5) / (k(0.5) - (t21 + wheel_e1 * wheel_e1)));
-        let t35 = wheel_e0 * wheel_e3;
-        let t36 = wheel_e1 * wheel_e2;
-        let t37 = wheel_wx * wheel_wy;
-        let t38 = t37 - k(2.0) * (t36 - t35) * t34;
-        let t39 = wheel_e0 * wheel_e2;
-        let t40 = wheel_e1 * wheel_e3;
-        let t41 = k(2.0) * (t40 - t39);
-        let t42 = k(2.0) * (t36 + t35);
-        let t43 = t29 * (t42 * t26 + t22 * t41) * t38 - t32 * t28;
-        let t44 = t30 * wheel_wx + t41 * wheel_wz;
-        let t45 = t31 * wheel_wx - t42 * wheel_wz;
-        let t46 = t29 * t29 * (k(2.0) * (t22 * t45 + t26 * t44))
-            * (t26 * t45 - t22 * t44);
-        let t47 = t33 + wheel_wx * wheel_wx;
-        let t48 = wheel_wy * wheel_wz;
-        let t49 = t44 * t45;
-        let t50 = t49 - t26 * (t31 * t48 + (t22 * t47 + t42 * t37));
-        let t51 = t22 * (t30 * t48 + (t26 * t47 - t41 * t37)) - t49;
-        let t52 = t14 * pinion_wy + t16 * pinion_wz;
-        let t53 = t15 * pinion_wy - t17 * pinion_wz;
-        let t54 = t13 * t13 * (k(2.0) * (t9 * t53 - t12 * t52)) * (t12 * t53 + t9 * t52);
-        let t55 = pinion_wz * pinion_wz + t1;
-        let t56 = pinion_wx * pinion_wy;
-        let t57 = t52 * t53;
-        let t58 = t57 + t12 * (t15 * t7 + (t17 * t56 + t9 * t55));
-        let t59 = t9 * (t14 * t7 - (t16 * t56 + t12 * t55)) - t57;
-        let t60 = k(2.5) * (t13 * (t59 + t58) + t54) - (t29 * (t51 + t50) - t46);
-        let t61 = k(125.0) * t18;
-        let t62 = k(20.0) * t32;
-        let t63 = (t60 + (t43 + t19)) / (t32 * t62 + k(2.5) * t18 * t61);
+        let t9 = wheel_e0 * wheel_e2;
+        let t10 = wheel_e1 * wheel_e3;
+        let t11 = k(2.0) * (t10 - t9);
+        let t12 = wheel_e0 * wheel_e0;
+        let t13 = k(2.0) * (k(0.5) - (t12 + wheel_e3 * wheel_e3));
+        let t14 = t13 * wheel_wx + t11 * wheel_wz;
+        let t15 = k(2.0) * (k(0.5) - (t12 + wheel_e2 * wheel_e2));
+        let t16 = wheel_e0 * wheel_e3;
+        let t17 = wheel_e1 * wheel_e2;
+        let t18 = k(2.0) * (t17 + t16);
+        let t19 = wheel_e0 * wheel_e1;
+        let t20 = wheel_e2 * wheel_e3;
+        let t21 = k(2.0) * (t20 - t19);
+        let t22 = t21 * wheel_wx - t18 * wheel_wz;
+        let t23 = k(2.0) * (t20 + t19);
+        let t24 = k(1.0) / (t23 * t23 + t15 * t15);
+        let t25 = t24 * t24 * (k(2.0) * (t15 * t22 + t23 * t14))
+            * (t23 * t22 - t15 * t14);
+        let t26 = wheel_wx * wheel_wy;
+        let t27 = wheel_wz * wheel_wz;
+        let t28 = t27 + wheel_wx * wheel_wx;
+        let t29 = wheel_wy * wheel_wz;
+        let t30 = t14 * t22;
+        let t31 = t30 - t23 * (t21 * t29 + (t15 * t28 + t18 * t26));
+        let t32 = t15 * (t13 * t29 + (t23 * t28 - t11 * t26)) - t30;
+        let t33 = k(2.0) * (k(0.5) - (t0 + pinion_e2 * pinion_e2));
+        let t34 = k(2.0) * (t4 - t3);
+        let t35 = t34 * pinion_wy + t33 * pinion_wz;
+        let t36 = k(2.0) * (k(0.5) - (t0 + pinion_e1 * pinion_e1));
+        let t37 = pinion_e0 * pinion_e3;
+        let t38 = pinion_e1 * pinion_e2;
+        let t39 = k(2.0) * (t38 - t37);
+        let t40 = k(2.0) * (t6 + t5);
+        let t41 = t40 * pinion_wy - t39 * pinion_wz;
+        let t42 = k(2.0) * (t38 + t37);
+        let t43 = k(1.0) / (t42 * t42 + t36 * t36);
+        let t44 = t43 * t43 * (k(2.0) * (t36 * t41 - t42 * t35))
+            * (t42 * t41 + t36 * t35);
+        let t45 = pinion_wz * pinion_wz + t1;
+        let t46 = pinion_wx * pinion_wy;
+        let t47 = t35 * t41;
+        let t48 = t47 + t42 * (t40 * t7 + (t39 * t46 + t36 * t45));
+        let t49 = t36 * (t34 * t7 - (t33 * t46 + t42 * t45)) - t47;
+        let t50 = k(2.5) * (t43 * (t49 + t48) + t44) - (t24 * (t32 + t31) - t25);
+        let t51 = t43 * (t39 * t42 - t36 * t33);
+        let t52 = k(87.5) * t51 + k(2.5) * ((t40 * t42 + t36 * t34) * t43) * t8;
+        let t53 = turn1.cos();
+        let t54 = turn1.sin();
+        let t55 = (t23 * t53 + t15 * t54).atan2(t23 * t54 - t15 * t53);
+        let t56 = k(8.0) * (k(0.2) + (turn1 + t55));
+        let t57 = (t21 * t23 - t15 * t13) * t24;
+        let t58 = (t27 + wheel_wy * wheel_wy)
+            * (k(0.5) / (k(0.5) - (t12 + wheel_e1 * wheel_e1)));
+        let t59 = t26 - k(2.0) * (t17 - t16) * t58;
+        let t60 = t24 * (t18 * t23 + t15 * t11) * t59 - t57 * t56;
+        let t61 = k(125.0) * t51;
+        let t62 = k(20.0) * t57;
+        let t63 = (t60 + t52 + t50) / (t57 * t62 + k(2.5) * t51 * t61);
         *out = [
             k(0.0),
             k(0.0),
@@ -902,9 +903,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gear<T> {
             k(0.0),
             k(0.0),
             k(0.0),
-            -(t28 + t62 * t63),
-            wheel_wx * wheel_wz - k(2.0) * (t40 + t39) * t34,
-            -t38,
+            -(t56 + t62 * t63),
+            wheel_wx * wheel_wz - k(2.0) * (t10 + t9) * t58,
+            -t59,
             -t63,
         ];
     }

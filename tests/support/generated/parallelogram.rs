@@ -1456,327 +1456,389 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
         let rocker_wy = y[37];
         let rocker_wz = y[38];
         let (
-            t9,
+            t7,
+            t12,
             t14,
+            t15,
+            t16,
+            t17,
             t18,
+            t19,
+            t20,
+            t21,
+            t23,
+            t24,
+            t25,
             t26,
-            t29,
-            t32,
-            t35,
-            t40,
+            t27,
+            t37,
+            t39,
             t42,
-            t43,
-            t47,
-            t48,
-            t49,
-            t50,
+            t44,
             t51,
-            t55,
-            t58,
-            t61,
+            t54,
+            t56,
+            t59,
+            t60,
             t63,
-            t76,
-            t80,
-            t82,
-            t89,
-            t93,
+            t64,
+            t65,
+            t66,
+            t67,
+            t69,
+            t71,
+            t74,
+            t83,
+            t86,
+            t88,
             t95,
+            t96,
+            t99,
             t101,
-            t117,
-            t131,
-            t136,
-            t140,
-            t142,
-            t143,
+            t107,
+            t108,
+            t111,
+            t113,
+            t119,
+            t120,
+            t121,
+            t122,
+            t126,
+            t129,
+            t130,
             t144,
-            t162,
-            t188,
-            t189,
+            t149,
+            t153,
+            t155,
+            t156,
+            t157,
+            t158,
+            t159,
+            t160,
+            t163,
+            t164,
+            t165,
+            t168,
+            t170,
+            t171,
+            t174,
+            t175,
+            t182,
+            t183,
+            t184,
             t190,
             t191,
-            t192,
-            t193,
-            t194,
-            t195,
-            t196,
             t197,
+            t198,
             t199,
         ) = {
-            let t0 = crank_e0 * crank_e0;
-            let t1 = k(0.5) - (t0 + crank_e3 * crank_e3);
-            let t2 = crank_wy * crank_wy;
-            let t3 = t2 + crank_wx * crank_wx;
-            let t4 = t3 * (k(0.5) / t1);
-            let t5 = crank_e0 * crank_e2;
-            let t6 = crank_e1 * crank_e3;
-            let t7 = k(2.0) * (t6 - t5);
-            let t8 = crank_wx * crank_wz;
-            let t9 = t8 - t7 * t4;
-            let t10 = t6 + t5;
-            let t11 = k(0.2) * t10;
-            let t12 = coupler_e0 * coupler_e1;
-            let t13 = coupler_e2 * coupler_e3;
-            let t14 = t13 - t12;
-            let t15 = coupler_wx * coupler_wz;
-            let t16 = k(0.01995) * t15 + k(3.924) * t14;
-            let t17 = coupler_e0 * coupler_e0;
-            let t18 = k(0.5) - (t17 + coupler_e2 * coupler_e2);
-            let t19 = k(2.0) * t18;
-            let t20 = crank_e0 * crank_e1;
-            let t21 = crank_e2 * crank_e3;
-            let t22 = t21 - t20;
-            let t23 = k(2.0) * t22;
-            let t24 = coupler_e0 * coupler_e3;
-            let t25 = coupler_e1 * coupler_e2;
-            let t26 = t25 - t24;
-            let t27 = k(2.0) * t26;
-            let t28 = k(2.0) * t10;
-            let t29 = t13 + t12;
-            let t30 = k(2.0) * t29;
-            let t31 = k(2.0) * t1;
-            let t32 = t31 * t30 - (t28 * t27 - t23 * t19);
-            let t33 = coupler_wx * coupler_wy;
-            let t34 = k(0.01995) * t33 - k(3.924) * t18;
-            let t35 = k(0.5) - (t17 + coupler_e3 * coupler_e3);
-            let t36 = k(2.0) * t35;
-            let t37 = k(2.0) * t14;
-            let t38 = coupler_e0 * coupler_e2;
-            let t39 = coupler_e1 * coupler_e3;
-            let t40 = t39 + t38;
-            let t41 = k(2.0) * t40;
-            let t42 = t28 * t41 + t23 * t37 + t31 * t36;
-            let t43 = t42 * t34 + t32 * t16;
-            let t44 = k(2.0) * (k(0.5) - (t17 + coupler_e1 * coupler_e1));
-            let t45 = k(2.0) * (t25 + t24);
-            let t46 = k(2.0) * (t39 - t38);
-            let t47 = t31 * t46 - (t23 * t45 - t28 * t44);
-            let t48 = k(5e-5) * t47;
-            let t49 = k(0.07) * t32;
-            let t50 = k(0.07) * t42;
-            let t51 = k(1.0) / (t42 * t50 + (t32 * t49 + t47 * t48));
-            let t52 = t51 * t43;
-            let t53 = t16 - t49 * t52;
-            let t54 = t49 * t51;
-            let t55 = k(1.0) / (k(0.07) - t49 * t54);
-            let t56 = t55 * t53;
-            let t57 = t48 * t51;
-            let t58 = t49 * t57;
-            let t59 = k(0.4) * t40;
-            let t60 = k(0.4) * t26;
-            let t61 = t42 * t60 + t32 * t59;
-            let t62 = t51 * t61;
-            let t63 = t59 - t49 * t62;
-            let t64 = t55 * t63;
-            let t65 = t58 * t64 - t48 * t62;
-            let t66 = crank_wz * crank_wz + t2;
-            let t67 = k(2.0) * (k(0.5) - (t0 + crank_e1 * crank_e1));
-            let t68 = crank_wx * crank_wy;
-            let t69 = crank_e0 * crank_e3;
-            let t70 = crank_e1 * crank_e2;
-            let t71 = t70 - t69;
-            let t72 = k(2.0) * t71;
-            let t73 = t28 * t8 + (t72 * t68 + t67 * t66);
-            let t74 = coupler_wz * coupler_wz;
-            let t75 = t74 + coupler_wy * coupler_wy;
-            let t76 = k(0.25) * (t41 * t15 + (t27 * t33 + t44 * t75));
-            let t77 = t76 + k(0.2) * t73;
-            let t78 = k(0.4) * t14;
-            let t79 = k(0.4) * t18;
-            let t80 = t42 * t79 - t32 * t78;
-            let t81 = t51 * t80;
-            let t82 = t78 + t49 * t81;
-            let t83 = t55 * t82;
-            let t84 = t58 * t83 + t48 * t81;
-            let t85 = k(2.0) * (t70 + t69);
-            let t86 = k(0.5) - (t0 + crank_e2 * crank_e2);
-            let t87 = k(2.0) * t86;
-            let t88 = t23 * t8 - (t87 * t68 + t85 * t66);
-            let t89 = k(0.25) * (t37 * t15 - (t19 * t33 + t45 * t75));
-            let t90 = t89 + k(0.2) * t88;
-            let t91 = k(0.4) * t35;
-            let t92 = k(0.4) * t29;
-            let t93 = t42 * t92 - t32 * t91;
-            let t94 = t51 * t93;
-            let t95 = t91 + t49 * t94;
-            let t96 = t55 * t95;
-            let t97 = t58 * t96 + t48 * t94;
-            let t98 = t21 + t20;
-            let t99 = k(2.0) * t98;
-            let t100 = t31 * t8 - (t99 * t68 - t7 * t66);
-            let t101 = k(0.25) * (t36 * t15 - (t30 * t33 - t46 * t75));
-            let t102 = t101 + k(0.2) * t100;
-            let t103 = k(1.0) / (t47 * t47 + t42 * t42);
-            let t104 = crank_wy * crank_wz;
-            let t105 = t104 * (t99 * t30 + (t72 * t27 + t87 * t19))
-                + t8 * (t7 * t30 - (t85 * t19 + t67 * t27));
-            let t106 = t7 * t46 + (t85 * t45 + t67 * t44);
-            let t107 = t7 * t36 - (t85 * t37 - t67 * t41);
-            let t108 = t99 * t46 - (t87 * t45 + t72 * t44);
-            let t109 = t99 * t36 - (t72 * t41 - t87 * t37);
-            let t110 = crank_wx * (coupler_wx * t109 + coupler_wz * t108)
-                - crank_wy * (coupler_wx * t107 + coupler_wz * t106);
-            let t111 = coupler_wy * coupler_wz * t42
-                + ((t74 + coupler_wx * coupler_wx) * t32 - t33 * t47);
-            let t112 = t111 + k(2.0) * t110 + (t3 * t32 + t105);
-            let t113 = t112 * (t42 * t103);
-            let t114 = t55 * t58;
-            let t115 = t58 * t114 - (k(5e-5) - t48 * t57);
-            let t116 = t112 * (t47 * t103);
-            let t117 = t50 * t54;
-            let t118 = t117 * t114 + t50 * t57;
-            let t119 = t118 * t116 - t115 * t113
-                + (t102 * t97 + (t90 * t84 + t77 * t65));
-            let t120 = t117 * t64 + (t60 - t50 * t62);
-            let t121 = t117 * t83 - (t79 - t50 * t81);
-            let t122 = t117 * t96 - (t92 - t50 * t94);
-            let t123 = t117 * (t55 * t117) - (k(0.07) - t50 * (t50 * t51));
-            let t124 = t123 * t116 - t118 * t113
-                + (t102 * t122 + (t90 * t121 + t77 * t120));
-            let t125 = t42 * (t124 + (t117 * t56 + (t34 - t50 * t52)))
-                + t47 * (t119 + (t58 * t56 - t48 * t52));
-            let t126 = t63 * t64 + t61 * t62;
-            let t127 = t82 * t64 - t80 * t62;
-            let t128 = t95 * t64 - t93 * t62;
-            let t129 = t102 * t128 + (t90 * t127 + t77 * t126) - k(0.8) * t77;
-            let t130 = t120 * t116 - t65 * t113 + t129 + (t63 * t56 + t61 * t52);
-            let t131 = k(0.4) * t71;
-            let t132 = t82 * t83 + t80 * t81;
-            let t133 = t95 * t83 + t93 * t81;
-            let t134 = t102 * t133 + (t90 * t132 + t77 * t127) - k(0.8) * t90;
-            let t135 = t121 * t116 - t84 * t113 + t134
-                + (t82 * t56 - (k(7.848) + t80 * t52));
-            let t136 = k(0.4) * t86;
-            let t137 = t95 * t96 + t93 * t94;
-            let t138 = t102 * t137 + (t90 * t133 + t77 * t128) - k(0.8) * t102;
-            let t139 = t122 * t116 - t97 * t113 + t138 + (t95 * t56 - t93 * t52);
-            let t140 = k(0.4) * t98;
-            let t141 = k(0.00398) * t68
-                + (t140 * t139 + (t136 * t135 - t131 * t130) + t125);
-            let t142 = k(0.2) * t71;
-            let t143 = k(0.2) * t86;
-            let t144 = k(0.2) * t98;
-            let t145 = t144 * t139 - (t143 * (k(4.905) - t135) + t142 * t130) + t141;
-            let t146 = t144 * t128 + (t143 * t127 - t142 * t126);
-            let t147 = t42 * t120 + t47 * t65;
-            let t148 = t140 * t128 + (t136 * t127 - t131 * t126);
-            let t149 = t148 + k(0.32) * t71 + t147;
-            let t150 = k(0.1) * t73;
-            let t151 = t144 * t133 + (t143 * t132 - t142 * t127);
-            let t152 = t42 * t121 + t47 * t84;
-            let t153 = t140 * t133 + (t136 * t132 - t131 * t127);
-            let t154 = t153 - k(0.32) * t86 + t152;
-            let t155 = k(0.1) * t88;
-            let t156 = t155 * (t154 + (t151 - k(0.26) * t86))
-                + t150 * (t149 + (t146 + k(0.26) * t71));
-            let t157 = t144 * t137 + (t143 * t133 - t142 * t128);
-            let t158 = t42 * t122 + t47 * t97;
-            let t159 = t140 * t137 + (t136 * t133 - t131 * t128);
-            let t160 = t159 - k(0.32) * t98 + t158;
-            let t161 = k(0.1) * t100;
-            let t162 = t104 - t99 * t4;
-            let t163 = t42 * (t107 * t123 + t106 * t118)
-                + t47 * (t107 * t118 + t106 * t115);
-            let t164 = t107 * t120 + t106 * t65;
-            let t165 = t107 * t121 + t106 * t84;
-            let t166 = t107 * t122 + t106 * t97;
-            let t167 = t144 * t166 + (t143 * t165 - t142 * t164)
-                + (t140 * t166 + (t136 * t165 - t131 * t164) + t163);
-            let t168 = t42 * (t109 * t123 + t108 * t118)
-                + t47 * (t109 * t118 + t108 * t115);
-            let t169 = k(0.4) * t10;
-            let t170 = k(0.4) * t22;
-            let t171 = k(0.4) * t1;
-            let t172 = t109 * t120 + t108 * t65;
-            let t173 = t109 * t121 + t108 * t84;
-            let t174 = t109 * t122 + t108 * t97;
-            let t175 = t140 * t174 + (t136 * t173 - t131 * t172)
-                - (t171 * t158 + (t170 * t152 + t169 * t147));
-            let t176 = t175 - (t171 * t159 + (t170 * t153 + t169 * t148)) + t168;
-            let t177 = k(0.2) * t22;
-            let t178 = k(0.2) * t1;
-            let t179 = t171 * t128 + (t170 * t127 + t169 * t126) - k(0.32) * t10;
-            let t180 = t171 * t133 + (t170 * t132 + t169 * t127) - k(0.32) * t22;
-            let t181 = t171 * t137 + (t170 * t133 + t169 * t128) - k(0.32) * t1;
-            let t182 = t144 * (t181 - t174)
-                + (t143 * (t180 - t173) - t142 * (t179 - t172));
-            let t183 = t182 + (t178 * t160 + (t177 * t154 + t11 * t149))
-                + (t178 * t157 + (t177 * t151 + t11 * t146));
-            let t184 = (t183 - t176) * t9 + t167 * t162
-                + (t161 * (t160 + (t157 - k(0.26) * t98)) + t156);
-            let t185 = t42 * (t42 * t123 + t47 * t118) + t47 * (t42 * t118 + t47 * t115);
-            let t186 = k(2.0) * (t140 * t158 + (t136 * t152 - t131 * t147))
-                + (t140 * t159 + (t136 * t153 - t131 * t148));
-            let t187 = k(2.0) * (t144 * t160 + (t143 * t154 - t142 * t149))
-                + (t144 * t157 + (t143 * t151 - t142 * t146));
-            let t188 = k(1.0)
-                / (t187 - (k(0.013) + (k(0.004) - (t186 - (k(0.032) - t185)))));
-            let t189 = t188 * (t184 + t145);
-            let t190 = t150 + (t142 * t189 + t11 * t9);
-            let t191 = t77 + (t131 * t189 + t169 * t9 + t190);
-            let t192 = t155 - (t143 * t189 - t177 * t9);
-            let t193 = t90 - (t136 * t189 - t170 * t9 - t192);
-            let t194 = t161 - (t144 * t189 - t178 * t9);
-            let t195 = t102 - (t140 * t189 - t171 * t9 - t194);
-            let t196 = t113 + (t47 * t189 + (t108 * t9 - t106 * t162));
-            let t197 = t116 - (t42 * t189 + (t109 * t9 - t107 * t162));
-            let t198 = t117 * t197 - t58 * t196
-                + (t95 * t195 + (t82 * t193 + t63 * t191));
-            let t199 = t55 * (t53 + t198);
+            let t0 = coupler_wz * coupler_wz;
+            let t1 = t0 + coupler_wy * coupler_wy;
+            let t2 = coupler_e0 * coupler_e0;
+            let t3 = k(2.0) * (k(0.5) - (t2 + coupler_e1 * coupler_e1));
+            let t4 = coupler_wx * coupler_wy;
+            let t5 = coupler_e0 * coupler_e3;
+            let t6 = coupler_e1 * coupler_e2;
+            let t7 = t6 - t5;
+            let t8 = k(2.0) * t7;
+            let t9 = coupler_wx * coupler_wz;
+            let t10 = coupler_e0 * coupler_e2;
+            let t11 = coupler_e1 * coupler_e3;
+            let t12 = t11 + t10;
+            let t13 = k(2.0) * t12;
+            let t14 = k(0.25) * (t13 * t9 + (t8 * t4 + t3 * t1));
+            let t15 = rocker_wy * rocker_wy;
+            let t16 = rocker_wz * rocker_wz + t15;
+            let t17 = rocker_e0 * rocker_e0;
+            let t18 = rocker_wx * rocker_wy;
+            let t19 = rocker_e0 * rocker_e3;
+            let t20 = rocker_e1 * rocker_e2;
+            let t21 = t20 - t19;
+            let t22 = k(2.0) * t21 * t18
+                + k(2.0) * (k(0.5) - (t17 + rocker_e1 * rocker_e1)) * t16;
+            let t23 = rocker_wx * rocker_wz;
+            let t24 = rocker_e0 * rocker_e2;
+            let t25 = rocker_e1 * rocker_e3;
+            let t26 = t25 + t24;
+            let t27 = k(0.15) * (k(2.0) * t26 * t23 + t22);
+            let t28 = crank_e0 * crank_e0;
+            let t29 = k(0.5) - (t28 + crank_e3 * crank_e3);
+            let t30 = crank_wy * crank_wy;
+            let t31 = t30 + crank_wx * crank_wx;
+            let t32 = t31 * (k(0.5) / t29);
+            let t33 = crank_e0 * crank_e2;
+            let t34 = crank_e1 * crank_e3;
+            let t35 = k(2.0) * (t34 - t33);
+            let t36 = crank_wx * crank_wz;
+            let t37 = t36 - t35 * t32;
+            let t38 = t34 + t33;
+            let t39 = k(0.2) * t38;
+            let t40 = coupler_e0 * coupler_e1;
+            let t41 = coupler_e2 * coupler_e3;
+            let t42 = t41 - t40;
+            let t43 = k(0.01995) * t9 + k(3.924) * t42;
+            let t44 = k(0.5) - (t2 + coupler_e2 * coupler_e2);
+            let t45 = k(2.0) * t44;
+            let t46 = crank_e0 * crank_e1;
+            let t47 = crank_e2 * crank_e3;
+            let t48 = t47 - t46;
+            let t49 = k(2.0) * t48;
+            let t50 = k(2.0) * t38;
+            let t51 = t41 + t40;
+            let t52 = k(2.0) * t51;
+            let t53 = k(2.0) * t29;
+            let t54 = t53 * t52 - (t50 * t8 - t49 * t45);
+            let t55 = k(0.01995) * t4 - k(3.924) * t44;
+            let t56 = k(0.5) - (t2 + coupler_e3 * coupler_e3);
+            let t57 = k(2.0) * t56;
+            let t58 = k(2.0) * t42;
+            let t59 = t50 * t13 + t49 * t58 + t53 * t57;
+            let t60 = t59 * t55 + t54 * t43;
+            let t61 = k(2.0) * (t6 + t5);
+            let t62 = k(2.0) * (t11 - t10);
+            let t63 = t53 * t62 - (t49 * t61 - t50 * t3);
+            let t64 = k(5e-5) * t63;
+            let t65 = k(0.07) * t54;
+            let t66 = k(0.07) * t59;
+            let t67 = k(1.0) / (t59 * t66 + (t54 * t65 + t63 * t64));
+            let t68 = t67 * t60;
+            let t69 = t43 - t65 * t68;
+            let t70 = t65 * t67;
+            let t71 = k(1.0) / (k(0.07) - t65 * t70);
+            let t72 = t71 * t69;
+            let t73 = t64 * t67;
+            let t74 = t65 * t73;
+            let t75 = crank_wz * crank_wz + t30;
+            let t76 = k(2.0) * (k(0.5) - (t28 + crank_e1 * crank_e1));
+            let t77 = crank_wx * crank_wy;
+            let t78 = crank_e0 * crank_e3;
+            let t79 = crank_e1 * crank_e2;
+            let t80 = t79 - t78;
+            let t81 = k(2.0) * t80;
+            let t82 = t50 * t36 + (t81 * t77 + t76 * t75);
+            let t83 = t14 + k(0.2) * t82;
+            let t84 = k(0.4) * t12;
+            let t85 = k(0.4) * t7;
+            let t86 = t59 * t85 + t54 * t84;
+            let t87 = t67 * t86;
+            let t88 = t84 - t65 * t87;
+            let t89 = t71 * t88;
+            let t90 = t74 * t89 - t64 * t87;
+            let t91 = k(2.0) * (t79 + t78);
+            let t92 = k(0.5) - (t28 + crank_e2 * crank_e2);
+            let t93 = k(2.0) * t92;
+            let t94 = t49 * t36 - (t93 * t77 + t91 * t75);
+            let t95 = k(0.25) * (t58 * t9 - (t45 * t4 + t61 * t1));
+            let t96 = t95 + k(0.2) * t94;
+            let t97 = k(0.4) * t42;
+            let t98 = k(0.4) * t44;
+            let t99 = t59 * t98 - t54 * t97;
+            let t100 = t67 * t99;
+            let t101 = t97 + t65 * t100;
+            let t102 = t71 * t101;
+            let t103 = t74 * t102 + t64 * t100;
+            let t104 = t47 + t46;
+            let t105 = k(2.0) * t104;
+            let t106 = t53 * t36 - (t105 * t77 - t35 * t75);
+            let t107 = k(0.25) * (t57 * t9 - (t52 * t4 - t62 * t1));
+            let t108 = t107 + k(0.2) * t106;
+            let t109 = k(0.4) * t56;
+            let t110 = k(0.4) * t51;
+            let t111 = t59 * t110 - t54 * t109;
+            let t112 = t67 * t111;
+            let t113 = t109 + t65 * t112;
+            let t114 = t71 * t113;
+            let t115 = t74 * t114 + t64 * t112;
+            let t116 = k(1.0) / (t63 * t63 + t59 * t59);
+            let t117 = crank_wy * crank_wz;
+            let t118 = t117 * (t105 * t52 + (t81 * t8 + t93 * t45))
+                + t36 * (t35 * t52 - (t91 * t45 + t76 * t8));
+            let t119 = t35 * t62 + (t91 * t61 + t76 * t3);
+            let t120 = t35 * t57 - (t91 * t58 - t76 * t13);
+            let t121 = t105 * t62 - (t93 * t61 + t81 * t3);
+            let t122 = t105 * t57 - (t81 * t13 - t93 * t58);
+            let t123 = crank_wx * (coupler_wx * t122 + coupler_wz * t121)
+                - crank_wy * (coupler_wx * t120 + coupler_wz * t119);
+            let t124 = coupler_wy * coupler_wz * t59
+                + ((t0 + coupler_wx * coupler_wx) * t54 - t4 * t63);
+            let t125 = t124 + k(2.0) * t123 + (t31 * t54 + t118);
+            let t126 = t125 * (t59 * t116);
+            let t127 = t71 * t74;
+            let t128 = t74 * t127 - (k(5e-5) - t64 * t73);
+            let t129 = t63 * t116 * t125;
+            let t130 = t66 * t70;
+            let t131 = t130 * t127 + t66 * t73;
+            let t132 = t131 * t129 - t128 * t126
+                + (t115 * t108 + (t103 * t96 + t90 * t83));
+            let t133 = t130 * t89 + (t85 - t66 * t87);
+            let t134 = t130 * t102 - (t98 - t66 * t100);
+            let t135 = t130 * t114 - (t110 - t66 * t112);
+            let t136 = t130 * (t71 * t130) - (k(0.07) - t66 * (t66 * t67));
+            let t137 = t136 * t129 - t131 * t126
+                + (t135 * t108 + (t134 * t96 + t133 * t83));
+            let t138 = t59 * (t137 + (t130 * t72 + (t55 - t66 * t68)))
+                + t63 * (t132 + (t74 * t72 - t64 * t68));
+            let t139 = t88 * t89 + t86 * t87;
+            let t140 = t101 * t89 - t99 * t87;
+            let t141 = t113 * t89 - t111 * t87;
+            let t142 = t141 * t108 + (t140 * t96 + t139 * t83) - k(0.8) * t83;
+            let t143 = t133 * t129 - t90 * t126 + t142 + (t88 * t72 + t86 * t68);
+            let t144 = k(0.4) * t80;
+            let t145 = t101 * t102 + t99 * t100;
+            let t146 = t113 * t102 + t111 * t100;
+            let t147 = t146 * t108 + (t145 * t96 + t140 * t83) - k(0.8) * t96;
+            let t148 = t134 * t129 - t103 * t126 + t147
+                + (t101 * t72 - (k(7.848) + t99 * t68));
+            let t149 = k(0.4) * t92;
+            let t150 = t113 * t114 + t111 * t112;
+            let t151 = t150 * t108 + (t146 * t96 + t141 * t83) - k(0.8) * t108;
+            let t152 = t135 * t129 - t115 * t126 + t151 + (t113 * t72 - t111 * t68);
+            let t153 = k(0.4) * t104;
+            let t154 = k(0.00398) * t77
+                + (t153 * t152 + (t149 * t148 - t144 * t143) + t138);
+            let t155 = k(0.2) * t80;
+            let t156 = k(0.2) * t92;
+            let t157 = k(0.2) * t104;
+            let t158 = t157 * t152 - (t156 * (k(4.905) - t148) + t155 * t143) + t154;
+            let t159 = k(0.1) * t82;
+            let t160 = t157 * t141 + (t156 * t140 - t155 * t139);
+            let t161 = t59 * t133 + t63 * t90;
+            let t162 = t153 * t141 + (t149 * t140 - t144 * t139);
+            let t163 = t162 + k(0.32) * t80 + t161;
+            let t164 = k(0.1) * t94;
+            let t165 = t157 * t146 + (t156 * t145 - t155 * t140);
+            let t166 = t59 * t134 + t63 * t103;
+            let t167 = t153 * t146 + (t149 * t145 - t144 * t140);
+            let t168 = t167 - k(0.32) * t92 + t166;
+            let t169 = (t168 + (t165 - k(0.26) * t92)) * t164
+                + (t163 + (t160 + k(0.26) * t80)) * t159;
+            let t170 = k(0.1) * t106;
+            let t171 = t157 * t150 + (t156 * t146 - t155 * t141);
+            let t172 = t59 * t135 + t63 * t115;
+            let t173 = t153 * t150 + (t149 * t146 - t144 * t141);
+            let t174 = t173 - k(0.32) * t104 + t172;
+            let t175 = t117 - t105 * t32;
+            let t176 = t59 * (t136 * t120 + t131 * t119)
+                + t63 * (t131 * t120 + t128 * t119);
+            let t177 = t133 * t120 + t90 * t119;
+            let t178 = t134 * t120 + t103 * t119;
+            let t179 = t135 * t120 + t115 * t119;
+            let t180 = t157 * t179 + (t156 * t178 - t155 * t177)
+                + (t153 * t179 + (t149 * t178 - t144 * t177) + t176);
+            let t181 = t59 * (t136 * t122 + t131 * t121)
+                + t63 * (t131 * t122 + t128 * t121);
+            let t182 = k(0.4) * t38;
+            let t183 = k(0.4) * t48;
+            let t184 = k(0.4) * t29;
+            let t185 = t133 * t122 + t90 * t121;
+            let t186 = t134 * t122 + t103 * t121;
+            let t187 = t135 * t122 + t115 * t121;
+            let t188 = t153 * t187 + (t149 * t186 - t144 * t185)
+                - (t184 * t172 + (t183 * t166 + t182 * t161));
+            let t189 = t188 - (t184 * t173 + (t183 * t167 + t182 * t162)) + t181;
+            let t190 = k(0.2) * t48;
+            let t191 = k(0.2) * t29;
+            let t192 = t184 * t141 + (t183 * t140 + t182 * t139) - k(0.32) * t38;
+            let t193 = t184 * t146 + (t183 * t145 + t182 * t140) - k(0.32) * t48;
+            let t194 = t184 * t150 + (t183 * t146 + t182 * t141) - k(0.32) * t29;
+            let t195 = t157 * (t194 - t187)
+                + (t156 * (t193 - t186) - t155 * (t192 - t185));
+            let t196 = t195 + (t191 * t174 + (t190 * t168 + t39 * t163))
+                + (t191 * t171 + (t190 * t165 + t39 * t160));
+            let t197 = (t196 - t189) * t37 + t180 * t175
+                + ((t174 + (t171 - k(0.26) * t104)) * t170 + t169);
+            let t198 = t59 * (t59 * t136 + t63 * t131) + t63 * (t59 * t131 + t63 * t128);
+            let t199 = k(2.0) * (t153 * t172 + (t149 * t166 - t144 * t161))
+                + (t153 * t173 + (t149 * t167 - t144 * t162));
             (
-                t9,
+                t7,
+                t12,
                 t14,
+                t15,
+                t16,
+                t17,
                 t18,
+                t19,
+                t20,
+                t21,
+                t23,
+                t24,
+                t25,
                 t26,
-                t29,
-                t32,
-                t35,
-                t40,
+                t27,
+                t37,
+                t39,
                 t42,
-                t43,
-                t47,
-                t48,
-                t49,
-                t50,
+                t44,
                 t51,
-                t55,
-                t58,
-                t61,
+                t54,
+                t56,
+                t59,
+                t60,
                 t63,
-                t76,
-                t80,
-                t82,
-                t89,
-                t93,
+                t64,
+                t65,
+                t66,
+                t67,
+                t69,
+                t71,
+                t74,
+                t83,
+                t86,
+                t88,
                 t95,
+                t96,
+                t99,
                 t101,
-                t117,
-                t131,
-                t136,
-                t140,
-                t142,
-                t143,
+                t107,
+                t108,
+                t111,
+                t113,
+                t119,
+                t120,
+                t121,
+                t122,
+                t126,
+                t129,
+                t130,
                 t144,
-                t162,
-                t188,
-                t189,
+                t149,
+                t153,
+                t155,
+                t156,
+                t157,
+                t158,
+                t159,
+                t160,
+                t163,
+                t164,
+                t165,
+                t168,
+                t170,
+                t171,
+                t174,
+                t175,
+                t182,
+                t183,
+                t184,
                 t190,
                 t191,
-                t192,
-                t193,
-                t194,
-                t195,
-                t196,
                 t197,
+                t198,
                 t199,
             )
         };
         let (
             t202,
             t203,
-            t204,
             t205,
-            t211,
+            t207,
+            t215,
             t216,
+            t217,
+            t218,
+            t222,
+            t224,
             t232,
             t235,
             t249,
@@ -1820,176 +1882,178 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
             t364,
             t365,
         ) = {
-            let t200 = t50 * t197 + (t49 * t199 - t48 * t196)
-                + (t93 * t195 + (t80 * t193 - t61 * t191));
-            let t201 = t51 * (t43 - t200);
-            let t202 = t199 + t32 * t201;
-            let t203 = k(0.5) * t40;
-            let t204 = t197 + t42 * t201;
-            let t205 = k(0.5) * t26;
-            let t206 = t205 * t204 + t203 * t202;
-            let t207 = t191 - t206;
-            let t208 = rocker_e0 * rocker_e0;
-            let t209 = k(0.5) - (t208 + rocker_e3 * rocker_e3);
-            let t210 = rocker_wy * rocker_wy;
-            let t211 = (t210 + rocker_wx * rocker_wx) * (k(0.5) / t209);
-            let t212 = rocker_e0 * rocker_e2;
-            let t213 = rocker_e1 * rocker_e3;
-            let t214 = k(2.0) * (t213 - t212);
-            let t215 = rocker_wx * rocker_wz;
-            let t216 = t215 - t214 * t211;
-            let t217 = t213 + t212;
-            let t218 = k(0.5) - (t208 + rocker_e2 * rocker_e2);
-            let t219 = rocker_wx * rocker_wy;
-            let t220 = rocker_e0 * rocker_e3;
-            let t221 = rocker_e1 * rocker_e2;
-            let t222 = t221 - t220;
-            let t223 = rocker_wz * rocker_wz + t210;
-            let t224 = k(2.0) * t222 * t219
-                + k(2.0) * (k(0.5) - (t208 + rocker_e1 * rocker_e1)) * t223;
-            let t225 = k(0.15) * (k(2.0) * t217 * t215 + t224);
+            let t200 = k(2.0) * (t157 * t174 + (t156 * t168 - t155 * t163))
+                + (t157 * t171 + (t156 * t165 - t155 * t160));
+            let t201 = k(1.0)
+                / (t200 - (k(0.013) + (k(0.004) - (t199 - (k(0.032) - t198)))));
+            let t202 = t201 * (t197 + t158);
+            let t203 = t159 + (t155 * t202 + t39 * t37);
+            let t204 = t83 + (t144 * t202 + t182 * t37 + t203);
+            let t205 = t164 - (t156 * t202 - t190 * t37);
+            let t206 = t96 - (t149 * t202 - t183 * t37 - t205);
+            let t207 = t170 - (t157 * t202 - t191 * t37);
+            let t208 = t108 - (t153 * t202 - t184 * t37 - t207);
+            let t209 = t126 + (t63 * t202 + (t121 * t37 - t119 * t175));
+            let t210 = t129 - (t59 * t202 + (t122 * t37 - t120 * t175));
+            let t211 = t130 * t210 - t74 * t209
+                + (t113 * t208 + (t101 * t206 + t88 * t204));
+            let t212 = t71 * (t69 + t211);
+            let t213 = t66 * t210 + (t65 * t212 - t64 * t209)
+                + (t111 * t208 + (t99 * t206 - t86 * t204));
+            let t214 = t67 * (t60 - t213);
+            let t215 = t212 + t54 * t214;
+            let t216 = k(0.5) * t12;
+            let t217 = t210 + t59 * t214;
+            let t218 = k(0.5) * t7;
+            let t219 = t218 * t217 + t216 * t215;
+            let t220 = t204 - t219;
+            let t221 = k(0.5) - (t17 + rocker_e3 * rocker_e3);
+            let t222 = (t15 + rocker_wx * rocker_wx) * (k(0.5) / t221);
+            let t223 = k(2.0) * (t25 - t24);
+            let t224 = t23 - t223 * t222;
+            let t225 = k(0.5) - (t17 + rocker_e2 * rocker_e2);
             let t226 = rocker_e0 * rocker_e1;
             let t227 = rocker_e2 * rocker_e3;
             let t228 = t227 - t226;
-            let t229 = k(2.0) * t228 * t215
-                - (k(2.0) * t218 * t219 + k(2.0) * (t221 + t220) * t223);
+            let t229 = k(2.0) * t228 * t23
+                - (k(2.0) * t225 * t18 + k(2.0) * (t20 + t19) * t16);
             let t230 = k(0.15) * t229;
             let t231 = t227 + t226;
             let t232 = k(2.0) * t231;
-            let t233 = k(0.15) * (k(2.0) * t209 * t215 - (t232 * t219 - t214 * t223));
-            let t234 = t233 * (k(0.18) * t231)
-                + (t230 * (k(0.18) * t218) - t225 * (k(0.18) * t222));
+            let t233 = k(0.15) * (k(2.0) * t221 * t23 - (t232 * t18 - t223 * t16));
+            let t234 = k(0.18) * t231 * t233
+                + (k(0.18) * t225 * t230 - k(0.18) * t21 * t27);
             let t235 = k(54.054054054054056)
-                * (t234 - (k(0.00496) * t219 - k(1.7658) * t218));
-            let t236 = k(0.3) * t222;
-            let t237 = t236 * t235 + k(0.3) * t217 * t216;
-            let t238 = t225 + t237;
-            let t239 = t225 - t76 + (t237 + t238 + (t206 - t207));
-            let t240 = t26 * t42 + t40 * t32;
-            let t241 = t240 * t51;
-            let t242 = t40 - t49 * t241;
-            let t243 = t242 * t55;
-            let t244 = t42 * (t243 * t117 + (t26 - t50 * t241))
-                + t47 * (t243 * t58 - t48 * t241);
-            let t245 = t243 * t63 - (k(1.0) - t241 * t61);
-            let t246 = t243 * t82 - t241 * t80;
-            let t247 = t243 * t95 - t241 * t93;
-            let t248 = t144 * t247 + (t143 * t246 - t142 * t245)
-                + (t140 * t247 + (t136 * t246 - t131 * t245) + t244);
-            let t249 = t248 * t188;
-            let t250 = t142 * t249;
-            let t251 = t131 * t249 + t250;
-            let t252 = t143 * t249;
-            let t253 = t136 * t249 + t252;
-            let t254 = t144 * t249;
-            let t255 = t140 * t249 + t254;
-            let t256 = t47 * t249;
-            let t257 = t42 * t249;
-            let t258 = t117 * t257 + t58 * t256
-                + (t95 * t255 + (t82 * t253 - t63 * t251));
-            let t259 = t55 * (t242 - t258);
-            let t260 = t50 * t257 - (t49 * t259 - t48 * t256)
-                + (t93 * t255 + (t80 * t253 + t61 * t251));
-            let t261 = t51 * (t240 + t260);
-            let t262 = t259 + t32 * t261;
-            let t263 = t257 - t42 * t261;
-            let t264 = t205 * t263 - t203 * t262;
+                * (t234 - (k(0.00496) * t18 - k(1.7658) * t225));
+            let t236 = k(0.3) * t21;
+            let t237 = t236 * t235 + k(0.3) * t26 * t224;
+            let t238 = t27 + t237;
+            let t239 = t237 + t238 + (t219 - t220) + (t27 - t14);
+            let t240 = t7 * t59 + t12 * t54;
+            let t241 = t240 * t67;
+            let t242 = t12 - t65 * t241;
+            let t243 = t242 * t71;
+            let t244 = t59 * (t243 * t130 + (t7 - t66 * t241))
+                + t63 * (t243 * t74 - t64 * t241);
+            let t245 = t243 * t88 - (k(1.0) - t241 * t86);
+            let t246 = t243 * t101 - t241 * t99;
+            let t247 = t243 * t113 - t241 * t111;
+            let t248 = t157 * t247 + (t156 * t246 - t155 * t245)
+                + (t153 * t247 + (t149 * t246 - t144 * t245) + t244);
+            let t249 = t248 * t201;
+            let t250 = t155 * t249;
+            let t251 = t144 * t249 + t250;
+            let t252 = t156 * t249;
+            let t253 = t149 * t249 + t252;
+            let t254 = t157 * t249;
+            let t255 = t153 * t249 + t254;
+            let t256 = t63 * t249;
+            let t257 = t59 * t249;
+            let t258 = t130 * t257 + t74 * t256
+                + (t113 * t255 + (t101 * t253 - t88 * t251));
+            let t259 = t71 * (t242 - t258);
+            let t260 = t66 * t257 - (t65 * t259 - t64 * t256)
+                + (t111 * t255 + (t99 * t253 + t86 * t251));
+            let t261 = t67 * (t240 + t260);
+            let t262 = t259 + t54 * t261;
+            let t263 = t257 - t59 * t261;
+            let t264 = t218 * t263 - t216 * t262;
             let t265 = t251 + t264;
-            let t266 = k(32.432432432432435) * t222;
+            let t266 = k(32.432432432432435) * t21;
             let t267 = t236 * t266;
             let t268 = k(1.0) / (k(2.0) * t267 - (t264 + t265));
-            let t269 = k(0.5) * t14;
-            let t270 = k(0.5) * t18;
-            let t271 = t270 * t204 - t269 * t202;
-            let t272 = t193 + t271;
-            let t273 = k(0.3) * t218;
-            let t274 = t273 * t235 - k(0.3) * t228 * t216;
+            let t269 = k(0.5) * t42;
+            let t270 = k(0.5) * t44;
+            let t271 = t270 * t217 - t269 * t215;
+            let t272 = t206 + t271;
+            let t273 = k(0.3) * t225;
+            let t274 = t273 * t235 - k(0.3) * t228 * t224;
             let t275 = t230 - t274;
             let t276 = t270 * t263 + t269 * t262;
             let t277 = t253 + t276;
             let t278 = t273 * t266;
             let t279 = k(2.0) * t278 - (t276 + t277);
             let t280 = t268 * t279;
-            let t281 = t280 * t239 + (t230 - t89 - (t274 - t275 + (t271 + t272)));
-            let t282 = t18 * t42 - t14 * t32;
-            let t283 = t51 * t282;
-            let t284 = t14 + t49 * t283;
-            let t285 = t55 * t284;
-            let t286 = t42 * (t117 * t285 - (t18 - t50 * t283))
-                + t47 * (t58 * t285 + t48 * t283);
-            let t287 = t63 * t285 - t61 * t283;
-            let t288 = t82 * t285 - (k(1.0) - t80 * t283);
-            let t289 = t95 * t285 + t93 * t283;
-            let t290 = t144 * t289 + (t143 * t288 - t142 * t287)
-                + (t140 * t289 + (t136 * t288 - t131 * t287) + t286);
-            let t291 = t188 * t290;
-            let t292 = t142 * t291;
-            let t293 = t131 * t291 + t292;
-            let t294 = t143 * t291;
-            let t295 = t136 * t291 + t294;
-            let t296 = t144 * t291;
-            let t297 = t140 * t291 + t296;
-            let t298 = t47 * t291;
-            let t299 = t42 * t291;
-            let t300 = t117 * t299 + t58 * t298
-                + (t95 * t297 + (t82 * t295 - t63 * t293));
-            let t301 = t55 * (t284 - t300);
-            let t302 = t50 * t299 - (t49 * t301 - t48 * t298)
-                + (t93 * t297 + (t80 * t295 + t61 * t293));
-            let t303 = t51 * (t282 - t302);
-            let t304 = t301 - t32 * t303;
-            let t305 = t299 + t42 * t303;
+            let t281 = t280 * t239 - (t274 - t275 + (t271 + t272) - (t230 - t95));
+            let t282 = t44 * t59 - t42 * t54;
+            let t283 = t67 * t282;
+            let t284 = t42 + t65 * t283;
+            let t285 = t71 * t284;
+            let t286 = t59 * (t130 * t285 - (t44 - t66 * t283))
+                + t63 * (t74 * t285 + t64 * t283);
+            let t287 = t88 * t285 - t86 * t283;
+            let t288 = t101 * t285 - (k(1.0) - t99 * t283);
+            let t289 = t113 * t285 + t111 * t283;
+            let t290 = t157 * t289 + (t156 * t288 - t155 * t287)
+                + (t153 * t289 + (t149 * t288 - t144 * t287) + t286);
+            let t291 = t201 * t290;
+            let t292 = t155 * t291;
+            let t293 = t144 * t291 + t292;
+            let t294 = t156 * t291;
+            let t295 = t149 * t291 + t294;
+            let t296 = t157 * t291;
+            let t297 = t153 * t291 + t296;
+            let t298 = t63 * t291;
+            let t299 = t59 * t291;
+            let t300 = t130 * t299 + t74 * t298
+                + (t113 * t297 + (t101 * t295 - t88 * t293));
+            let t301 = t71 * (t284 - t300);
+            let t302 = t66 * t299 - (t65 * t301 - t64 * t298)
+                + (t111 * t297 + (t99 * t295 + t86 * t293));
+            let t303 = t67 * (t282 - t302);
+            let t304 = t301 - t54 * t303;
+            let t305 = t299 + t59 * t303;
             let t306 = t270 * t305 + t269 * t304;
             let t307 = t295 + t306;
-            let t308 = k(32.432432432432435) * t218;
+            let t308 = k(32.432432432432435) * t225;
             let t309 = t273 * t308;
             let t310 = k(1.0) / (t279 * t280 - (k(2.0) * t309 + (t306 + t307)));
-            let t311 = k(0.5) * t35;
-            let t312 = k(0.5) * t29;
-            let t313 = t312 * t204 - t311 * t202;
-            let t314 = t195 + t313;
+            let t311 = k(0.5) * t56;
+            let t312 = k(0.5) * t51;
+            let t313 = t312 * t217 - t311 * t215;
+            let t314 = t208 + t313;
             let t315 = k(0.3) * t231;
-            let t316 = t315 * t235 - k(0.3) * t209 * t216;
+            let t316 = t315 * t235 - k(0.3) * t221 * t224;
             let t317 = t233 - t316;
             let t318 = t312 * t263 + t311 * t262;
             let t319 = t255 + t318;
             let t320 = t315 * t266;
             let t321 = k(2.0) * t320 - (t318 + t319);
             let t322 = t268 * t321;
-            let t323 = t322 * t239 + (t233 - t101 - (t316 - t317 + (t313 + t314)));
+            let t323 = t322 * t239 - (t316 - t317 + (t313 + t314) - (t233 - t107));
             let t324 = t312 * t305 + t311 * t304;
             let t325 = t297 + t324;
             let t326 = t315 * t308;
             let t327 = t279 * t322 - (k(2.0) * t326 + (t324 + t325));
             let t328 = t310 * t327;
-            let t329 = t29 * t42 - t35 * t32;
-            let t330 = t51 * t329;
-            let t331 = t35 + t49 * t330;
-            let t332 = t55 * t331;
-            let t333 = t42 * (t117 * t332 - (t29 - t50 * t330))
-                + t47 * (t58 * t332 + t48 * t330);
-            let t334 = t63 * t332 - t61 * t330;
-            let t335 = t82 * t332 + t80 * t330;
-            let t336 = t95 * t332 - (k(1.0) - t93 * t330);
-            let t337 = t144 * t336 + (t143 * t335 - t142 * t334)
-                + (t140 * t336 + (t136 * t335 - t131 * t334) + t333);
-            let t338 = t188 * t337;
-            let t339 = t142 * t338;
-            let t340 = t131 * t338 + t339;
-            let t341 = t143 * t338;
-            let t342 = t136 * t338 + t341;
-            let t343 = t144 * t338;
-            let t344 = t140 * t338 + t343;
-            let t345 = t47 * t338;
-            let t346 = t42 * t338;
-            let t347 = t117 * t346 + t58 * t345
-                + (t95 * t344 + (t82 * t342 - t63 * t340));
-            let t348 = t55 * (t331 - t347);
-            let t349 = t50 * t346 - (t49 * t348 - t48 * t345)
-                + (t93 * t344 + (t80 * t342 + t61 * t340));
-            let t350 = t51 * (t329 - t349);
-            let t351 = t348 - t32 * t350;
-            let t352 = t346 + t42 * t350;
+            let t329 = t51 * t59 - t56 * t54;
+            let t330 = t67 * t329;
+            let t331 = t56 + t65 * t330;
+            let t332 = t71 * t331;
+            let t333 = t59 * (t130 * t332 - (t51 - t66 * t330))
+                + t63 * (t74 * t332 + t64 * t330);
+            let t334 = t88 * t332 - t86 * t330;
+            let t335 = t101 * t332 + t99 * t330;
+            let t336 = t113 * t332 - (k(1.0) - t111 * t330);
+            let t337 = t157 * t336 + (t156 * t335 - t155 * t334)
+                + (t153 * t336 + (t149 * t335 - t144 * t334) + t333);
+            let t338 = t201 * t337;
+            let t339 = t155 * t338;
+            let t340 = t144 * t338 + t339;
+            let t341 = t156 * t338;
+            let t342 = t149 * t338 + t341;
+            let t343 = t157 * t338;
+            let t344 = t153 * t338 + t343;
+            let t345 = t63 * t338;
+            let t346 = t59 * t338;
+            let t347 = t130 * t346 + t74 * t345
+                + (t113 * t344 + (t101 * t342 - t88 * t340));
+            let t348 = t71 * (t331 - t347);
+            let t349 = t66 * t346 - (t65 * t348 - t64 * t345)
+                + (t111 * t344 + (t99 * t342 + t86 * t340));
+            let t350 = t67 * (t329 - t349);
+            let t351 = t348 - t54 * t350;
+            let t352 = t346 + t59 * t350;
             let t353 = t312 * t352 + t311 * t351;
             let t354 = t344 + t353;
             let t355 = k(32.432432432432435) * t231;
@@ -1998,22 +2062,26 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
             let t358 = (t328 * t281 - t323) / t357;
             let t359 = t328 * t358 - t310 * t281;
             let t360 = t322 * t358 - (t280 * t359 + t268 * t239);
-            let t361 = t359 * (t293 + (t205 * t305 - t203 * t304))
-                - (t207 + t265 * t360);
+            let t361 = t359 * (t293 + (t218 * t305 - t216 * t304))
+                - (t220 + t265 * t360);
             let t362 = t358 * (t342 + (t270 * t352 + t269 * t351))
                 - (t307 * t359 + (t272 - t277 * t360));
-            let t363 = t359 * (t298 + t47 * t303)
-                - (t360 * (t256 - t47 * t261) + (t196 - t47 * t201));
+            let t363 = t359 * (t298 + t63 * t303)
+                - (t360 * (t256 - t63 * t261) + (t209 - t63 * t214));
             let t364 = t358 * (t236 * t355)
                 - (t359 * (t236 * t308) + (t238 + t267 * t360));
             let t365 = t358 * (t273 * t355) - (t309 * t359 - (t275 - t278 * t360));
             (
                 t202,
                 t203,
-                t204,
                 t205,
-                t211,
+                t207,
+                t215,
                 t216,
+                t217,
+                t218,
+                t222,
+                t224,
                 t232,
                 t235,
                 t249,
@@ -2059,23 +2127,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
             )
         };
         *out = [
-            t339 * t358 - (t292 * t359 - (t190 + t250 * t360)),
-            t294 * t359 + (t192 - t252 * t360) - t341 * t358,
-            t343 * t358 - (t296 * t359 + (t194 - t254 * t360)),
-            t162,
-            -t9,
-            t338 * t358 - (t291 * t359 - (t189 + t249 * t360)),
-            t358 * (t340 + (t205 * t352 - t203 * t351)) - t361,
+            t339 * t358 - (t292 * t359 - (t203 + t250 * t360)),
+            t294 * t359 + (t205 - t252 * t360) - t341 * t358,
+            t343 * t358 - (t296 * t359 + (t207 - t254 * t360)),
+            t175,
+            -t37,
+            t338 * t358 - (t291 * t359 - (t202 + t249 * t360)),
+            t358 * (t340 + (t218 * t352 - t216 * t351)) - t361,
             -t362,
             t354 * t358 - (t325 * t359 + (t314 - t319 * t360)),
-            t363 - t358 * (t345 + t47 * t350),
-            t351 * t358 - (t304 * t359 - (t202 + t262 * t360)),
-            t352 * t358 - (t305 * t359 + (t204 - t263 * t360)),
+            t363 - t358 * (t345 + t63 * t350),
+            t351 * t358 - (t304 * t359 - (t215 + t262 * t360)),
+            t352 * t358 - (t305 * t359 + (t217 - t263 * t360)),
             -t364,
             t365,
             t326 * t359 - (t317 - t320 * t360) - t356 * t358,
-            rocker_wy * rocker_wz - t232 * t211,
-            -t216,
+            rocker_wy * rocker_wz - t232 * t222,
+            -t224,
             t308 * t359 + (t235 + t266 * t360) - t355 * t358,
             -t360,
             t359,

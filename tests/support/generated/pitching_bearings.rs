@@ -18,7 +18,7 @@
 //! | gamma | γ | 157 | 249 | 0 | 406 | 6 of 15 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 101 | 156 | 0 | 257 | 0 of 15 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 216 | 333 | 5 | 554 | 7 of 18 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 216 | 332 | 5 | 553 | 7 of 18 |
 //! | multipliers | λ, the accelerations being known | 120 | 203 | 3 | 326 | 0 of 15 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 132 | 236 | 1 | 369 | 0 of 22 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
@@ -2124,7 +2124,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for PitchingBearings<T> {
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 554 operations (216 ±, 333 ×, 5 ÷) and 8 functions.
+    /// Solves eq. (17): 553 operations (216 ±, 332 ×, 5 ÷) and 8 functions.
     fn accelerations(&self, t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2204,153 +2204,165 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for PitchingBearings<T> {
         let t53 = outer_ring_wy * t38 + outer_ring_wz * t28
             + (t52 * t45 + (t51 * t44 - t50 * t43));
         let t54 = t53 + (t36 * t48 - t39 * t29);
-        let t55 = rotor_e0 * rotor_e3;
-        let t56 = rotor_e1 * rotor_e2;
-        let t57 = k(2.0) * (t56 - t55);
-        let t58 = inner_ring_e0 * inner_ring_e0;
-        let t59 = k(2.0) * (k(0.5) - (t58 + inner_ring_e1 * inner_ring_e1));
-        let t60 = rotor_e0 * rotor_e0;
-        let t61 = k(2.0) * (k(0.5) - (t60 + rotor_e2 * rotor_e2));
-        let t62 = inner_ring_e0 * inner_ring_e3;
-        let t63 = inner_ring_e1 * inner_ring_e2;
-        let t64 = k(2.0) * (t63 + t62);
-        let t65 = rotor_e0 * rotor_e1;
-        let t66 = rotor_e2 * rotor_e3;
-        let t67 = k(2.0) * (t66 + t65);
-        let t68 = inner_ring_e0 * inner_ring_e2;
-        let t69 = inner_ring_e1 * inner_ring_e3;
-        let t70 = k(2.0) * (t69 - t68);
-        let t71 = t70 * t67 - (t64 * t61 + t59 * t57);
-        let t72 = k(5e-6) * t71;
-        let t73 = rotor_e0 * rotor_e2;
-        let t74 = rotor_e1 * rotor_e3;
-        let t75 = k(2.0) * (t74 + t73);
-        let t76 = k(2.0) * (t66 - t65);
-        let t77 = k(2.0) * (k(0.5) - (t60 + rotor_e3 * rotor_e3));
-        let t78 = t70 * t77 - (t64 * t76 - t59 * t75);
-        let t79 = k(5e-6) * t78;
-        let t80 = inner_ring_e0 * inner_ring_e1;
-        let t81 = inner_ring_e2 * inner_ring_e3;
-        let t82 = t81 - t80;
-        let t83 = k(2.0) * t82;
-        let t84 = t69 + t68;
-        let t85 = k(2.0) * t84;
-        let t86 = k(0.5) - (t58 + inner_ring_e3 * inner_ring_e3);
-        let t87 = k(2.0) * t86;
-        let t88 = t87 * t67 - (t85 * t57 - t83 * t61);
-        let t89 = t85 * t75 + t83 * t76 + t87 * t77;
-        let t90 = t89 * t79 + t88 * t72;
-        let t91 = k(1e-6)
-            + (k(1.25e-9) + (t89 * (k(5e-6) * t89) + t88 * (k(5e-6) * t88)));
-        let t92 = k(1.0) / t91;
-        let t93 = t92 * t90;
-        let t94 = t90 * t93 - (k(1e-6) + (t78 * t79 + t71 * t72));
-        let t95 = t17 * t70 - (t1 * t64 + t13 * t59);
-        let t96 = k(0.5) - (t58 + inner_ring_e2 * inner_ring_e2);
-        let t97 = k(2.0) * t96;
-        let t98 = t63 - t62;
-        let t99 = k(2.0) * t98;
-        let t100 = t81 + t80;
-        let t101 = k(2.0) * t100;
-        let t102 = t101 * t67 + (t99 * t57 + t97 * t61);
-        let t103 = t101 * t77 - (t99 * t75 - t97 * t76);
-        let t104 = k(5e-6) * t102;
-        let t105 = k(5e-6) * t103;
-        let t106 = t89 * t105 + t88 * t104;
-        let t107 = t106 * t93 - (t103 * t79 + t102 * t72);
-        let t108 = t17 * t101 + (t13 * t99 + t1 * t97);
-        let t109 = t108 * t107 + t95 * t94;
-        let t110 = t106 * (t92 * t106)
-            - (k(2e-6) + (k(1.25e-9) + (t103 * t105 + t102 * t104)));
-        let t111 = t108 * t110 + t95 * t107;
-        let t112 = k(2.0) * (k(0.5) - (t60 + rotor_e1 * rotor_e1));
-        let t113 = k(2.0) * (t56 + t55);
-        let t114 = k(2.0) * (t74 - t73);
-        let t115 = t70 * t114 + (t64 * t113 + t59 * t112);
-        let t116 = inner_ring_wy * (t101 * t114 - (t97 * t113 + t99 * t112))
-            + inner_ring_wx * t115;
-        let t117 = inner_ring_wz * (t87 * t114 - (t83 * t113 - t85 * t112)) - t116;
-        let t118 = rotor_wx + t117;
-        let t119 = inner_ring_wz * t89 - (inner_ring_wy * t103 + inner_ring_wx * t78);
-        let t120 = rotor_wz - t119;
-        let t121 = inner_ring_wz * t88 - (inner_ring_wy * t102 + inner_ring_wx * t71);
-        let t122 = rotor_wy + t121;
-        let t123 = (t122 * t122 + t120 * t120) / t115;
-        let t124 = rotor_wz * t117 + rotor_wx * t119 - (t78 * t123 - t120 * t118);
-        let t125 = k(5e-6) * (rotor_wx * rotor_wz + t124);
-        let t126 = rotor_wx * t121 - rotor_wy * t117 - (t71 * t123 + t122 * t118);
-        let t127 = k(5e-6) * (rotor_wx * rotor_wy - t126);
-        let t128 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
-        let t129 = inner_ring_wx * inner_ring_wy;
-        let t130 = inner_ring_wx * inner_ring_wz;
-        let t131 = t85 * t130 + (t99 * t129 + t59 * t128);
-        let t132 = k(1e-5) * t131;
-        let t133 = k(0.00025) * t98;
-        let t134 = t83 * t130 - (t97 * t129 + t64 * t128);
-        let t135 = k(0.8) + k(1e-5) * t134;
-        let t136 = k(0.00025) * t96;
-        let t137 = t87 * t130 - (t101 * t129 - t70 * t128);
-        let t138 = k(1e-5) * t137;
-        let t139 = k(0.00025) * t100;
-        let t140 = t139 * t138 + (t136 * t135 - t133 * t132) + (t89 * t127 + t88 * t125);
-        let t141 = k(1e-6) * t129 - t140;
-        let t142 = t92 * t141;
-        let t143 = t90 * t142
-            - (k(1e-6) * (inner_ring_wy * inner_ring_wz) - (t78 * t127 + t71 * t125));
-        let t144 = outer_ring_wy * (t17 * t87 - (t13 * t85 - t1 * t83))
-            + outer_ring_wx * (t42 * t87 - (t41 * t83 - t40 * t85));
-        let t145 = t34 * t85 + t31 * t83 + t30 * t87;
-        let t146 = outer_ring_wz * t145 - t144;
-        let t147 = inner_ring_wz - t146;
-        let t148 = t42 * t101 - (t41 * t97 + t40 * t99);
-        let t149 = t30 * t101 - (t34 * t99 - t31 * t97);
-        let t150 = outer_ring_wz * t149 - (outer_ring_wy * t108 + outer_ring_wx * t148);
-        let t151 = inner_ring_wy + t150;
-        let t152 = t42 * t70 + (t41 * t64 + t40 * t59);
-        let t153 = t30 * t70 - (t31 * t64 - t34 * t59);
-        let t154 = outer_ring_wz * t153 - (outer_ring_wy * t95 + outer_ring_wx * t152);
-        let t155 = inner_ring_wx + t154;
-        let t156 = (t155 * t155 + t151 * t151) / t145;
-        let t157 = inner_ring_wy * t146 + inner_ring_wz * t150
-            + (t149 * t156 - t151 * t147);
-        let t158 = inner_ring_wz * t154 + inner_ring_wx * t146
-            + (t153 * t156 - t155 * t147);
-        let t159 = k(0.00025) * t84;
-        let t160 = k(0.00025) * t82;
-        let t161 = k(0.00025) * t86;
-        let t162 = t161 * t138 + (t160 * t135 + t159 * t132)
-            - (t103 * t127 + t102 * t125);
-        let t163 = t108 * (t110 * t158 - t107 * t157 - (t106 * t142 - t162));
-        let t164 = k(1e-6) * (outer_ring_wx * outer_ring_wz)
-            - (t163 + t95 * (t107 * t158 - t94 * t157 - t143));
-        let t165 = t108 * (t148 * t110 + t152 * t107) + t95 * (t148 * t107 + t152 * t94);
-        let t166 = outer_ring_wx * t28 + outer_ring_wy * t46
+        let t55 = inner_ring_e3 * rotor_e0 - inner_ring_e2 * rotor_e1
+            + inner_ring_e1 * rotor_e2 - inner_ring_e0 * rotor_e3;
+        let t56 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t57 = t56 * t55;
+        let t58 = inner_ring_e2 * rotor_e0 + inner_ring_e3 * rotor_e1
+            - inner_ring_e0 * rotor_e2 - inner_ring_e1 * rotor_e3;
+        let t59 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t60 = t59 * t58;
+        let t61 = t60 + t57;
+        let t62 = k(1e-5) * t61;
+        let t63 = k(2.0) * t61;
+        let t64 = t56 * t58;
+        let t65 = t59 * t55;
+        let t66 = t65 - t64;
+        let t67 = k(1e-5) * t66;
+        let t68 = k(2.0) * t66;
+        let t69 = t56 * t59;
+        let t70 = t58 * t55;
+        let t71 = t70 - t69;
+        let t72 = k(2.0) * t71;
+        let t73 = t56 * t56;
+        let t74 = k(0.5) - (t73 + t55 * t55);
+        let t75 = k(2.0) * t74;
+        let t76 = t75 * t67 - t72 * t62;
+        let t77 = k(1e-6)
+            + (k(1.25e-9) + (t75 * (k(1e-5) * t74) + t72 * (k(1e-5) * t71)));
+        let t78 = k(1.0) / t77;
+        let t79 = t78 * t76;
+        let t80 = t76 * t79 - (k(1e-6) + (t68 * t67 + t63 * t62));
+        let t81 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t82 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t83 = t82 * t81;
+        let t84 = outer_ring_e2 * inner_ring_e0 + outer_ring_e3 * inner_ring_e1
+            - outer_ring_e0 * inner_ring_e2 - outer_ring_e1 * inner_ring_e3;
+        let t85 = outer_ring_e1 * inner_ring_e0 - outer_ring_e0 * inner_ring_e1
+            - outer_ring_e3 * inner_ring_e2 + outer_ring_e2 * inner_ring_e3;
+        let t86 = t85 * t84;
+        let t87 = k(2.0) * (t86 - t83);
+        let t88 = k(0.5) - (t73 + t58 * t58);
+        let t89 = k(2.0) * t88;
+        let t90 = t70 + t69;
+        let t91 = k(2.0) * t90;
+        let t92 = k(1e-5) * t88;
+        let t93 = k(1e-5) * t90;
+        let t94 = t75 * t93 + t72 * t92;
+        let t95 = t94 * t79 - (t91 * t67 - t89 * t62);
+        let t96 = t82 * t82;
+        let t97 = k(2.0) * (k(0.5) - (t96 + t84 * t84));
+        let t98 = t97 * t95 - t87 * t80;
+        let t99 = t94 * (t78 * t94) - (k(2e-6) + (k(1.25e-9) + (t91 * t93 + t89 * t92)));
+        let t100 = t97 * t99 - t87 * t95;
+        let t101 = k(0.5) - (t73 + t59 * t59);
+        let t102 = inner_ring_wz * (k(2.0) * (t65 + t64))
+            + (inner_ring_wy * (k(2.0) * (t60 - t57)) - inner_ring_wx * (k(2.0) * t101));
+        let t103 = rotor_wx - t102;
+        let t104 = inner_ring_wz * t75 - (inner_ring_wy * t91 + inner_ring_wx * t68);
+        let t105 = rotor_wz + t104;
+        let t106 = inner_ring_wz * t72 - (inner_ring_wy * t89 - inner_ring_wx * t63);
+        let t107 = rotor_wy - t106;
+        let t108 = k(0.5) / t101 * (t107 * t107 + t105 * t105);
+        let t109 = rotor_wz * t102 + rotor_wx * t104 + (t68 * t108 - t105 * t103);
+        let t110 = k(5e-6) * (rotor_wx * rotor_wz - t109);
+        let t111 = rotor_wx * t106 - rotor_wy * t102 - (t63 * t108 - t107 * t103);
+        let t112 = k(5e-6) * (rotor_wx * rotor_wy + t111);
+        let t113 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
+        let t114 = inner_ring_e0 * inner_ring_e0;
+        let t115 = inner_ring_wx * inner_ring_wy;
+        let t116 = inner_ring_e0 * inner_ring_e3;
+        let t117 = inner_ring_e1 * inner_ring_e2;
+        let t118 = t117 - t116;
+        let t119 = k(2.0) * t118 * t115
+            + k(2.0) * (k(0.5) - (t114 + inner_ring_e1 * inner_ring_e1)) * t113;
+        let t120 = inner_ring_wx * inner_ring_wz;
+        let t121 = inner_ring_e0 * inner_ring_e2;
+        let t122 = inner_ring_e1 * inner_ring_e3;
+        let t123 = t122 + t121;
+        let t124 = k(2.0) * t123 * t120 + t119;
+        let t125 = k(1e-5) * t124;
+        let t126 = k(0.00025) * t118;
+        let t127 = k(0.5) - (t114 + inner_ring_e2 * inner_ring_e2);
+        let t128 = inner_ring_e0 * inner_ring_e1;
+        let t129 = inner_ring_e2 * inner_ring_e3;
+        let t130 = t129 - t128;
+        let t131 = k(2.0) * t130 * t120
+            - (k(2.0) * t127 * t115 + k(2.0) * (t117 + t116) * t113);
+        let t132 = k(0.8) + k(1e-5) * t131;
+        let t133 = k(0.00025) * t127;
+        let t134 = t129 + t128;
+        let t135 = k(0.5) - (t114 + inner_ring_e3 * inner_ring_e3);
+        let t136 = k(2.0) * t135 * t120
+            - (k(2.0) * t134 * t115 - k(2.0) * (t122 - t121) * t113);
+        let t137 = k(1e-5) * t136;
+        let t138 = k(0.00025) * t134;
+        let t139 = t138 * t137 + (t133 * t132 - t126 * t125) - (t75 * t112 + t72 * t110);
+        let t140 = k(1e-6) * t115 - t139;
+        let t141 = t78 * t140;
+        let t142 = t76 * t141
+            - (k(1e-6) * (inner_ring_wy * inner_ring_wz) + (t68 * t112 - t63 * t110));
+        let t143 = t82 * t84;
+        let t144 = t85 * t81;
+        let t145 = t82 * t85;
+        let t146 = t84 * t81;
+        let t147 = outer_ring_wy * (k(2.0) * (t146 + t145))
+            + outer_ring_wx * (k(2.0) * (t144 - t143));
+        let t148 = k(0.5) - (t96 + t81 * t81);
+        let t149 = outer_ring_wz * (k(2.0) * t148) - t147;
+        let t150 = inner_ring_wz + t149;
+        let t151 = k(2.0) * (t86 + t83);
+        let t152 = k(2.0) * (t146 - t145);
+        let t153 = outer_ring_wz * t152 - (outer_ring_wy * t97 - outer_ring_wx * t151);
+        let t154 = inner_ring_wy - t153;
+        let t155 = k(2.0) * (k(0.5) - (t96 + t85 * t85));
+        let t156 = k(2.0) * (t144 + t143);
+        let t157 = outer_ring_wz * t156 + (outer_ring_wy * t87 - outer_ring_wx * t155);
+        let t158 = inner_ring_wx - t157;
+        let t159 = k(0.5) / t148 * (t158 * t158 + t154 * t154);
+        let t160 = inner_ring_wy * t149 + inner_ring_wz * t153
+            - (t152 * t159 - t154 * t150);
+        let t161 = inner_ring_wz * t157 + inner_ring_wx * t149
+            - (t156 * t159 - t158 * t150);
+        let t162 = k(0.00025) * t123;
+        let t163 = k(0.00025) * t130;
+        let t164 = k(0.00025) * t135;
+        let t165 = t164 * t137 + (t163 * t132 + t162 * t125) + (t91 * t112 + t89 * t110);
+        let t166 = t97 * (t99 * t161 - t95 * t160 + (t94 * t141 - t165));
+        let t167 = k(1e-6) * (outer_ring_wx * outer_ring_wz)
+            - (t166 - t87 * (t95 * t161 - t80 * t160 + t142));
+        let t168 = t97 * (t151 * t99 - t155 * t95) - t87 * (t151 * t95 - t155 * t80);
+        let t169 = outer_ring_wx * t28 + outer_ring_wy * t46
             - (t52 * t37 - (t51 * t36 + t50 * t35));
-        let t167 = t166 - (t44 * t48 + t47 * t29);
-        let t168 = (t111 * t149 + t109 * t153) * t167 + t54 * t165 - t164;
-        let t169 = t168 / (k(1e-6) - (t108 * t111 + t95 * t109));
-        let t170 = t157 - (t153 * t167 + (t95 * t169 + t152 * t54));
-        let t171 = t158 + (t149 * t167 + (t108 * t169 + t148 * t54));
-        let t172 = t92 * (t141 - (t106 * t171 - t90 * t170));
+        let t170 = t169 - (t44 * t48 + t47 * t29);
+        let t171 = t170 * (t152 * t100 + t156 * t98) - t54 * t168 - t167;
+        let t172 = t171 / (k(1e-6) - (t97 * t100 - t87 * t98));
+        let t173 = t160 - (t170 * t156 - (t87 * t172 - t54 * t155));
+        let t174 = t161 + (t170 * t152 + (t97 * t172 - t54 * t151));
+        let t175 = t78 * (t140 + (t94 * t174 - t76 * t173));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             t54,
-            t169,
-            -t167,
-            k(0.0),
-            k(0.0),
-            k(0.0),
+            t172,
             -t170,
-            t171,
-            -t172,
-            k(0.000125) * t131 - (t133 * t172 + t159 * t171),
-            t136 * t172 - t160 * t171 + k(0.000125) * t134,
-            -(t139 * t172 - t161 * t171 + k(0.000125) * t137),
             k(0.0),
-            t124 + (t88 * t172 + (t102 * t171 - t71 * t170)),
-            t126 - (t89 * t172 + (t103 * t171 - t78 * t170)),
+            k(0.0),
+            k(0.0),
+            t173,
+            -t174,
+            -t175,
+            k(0.000125) * t124 - (t126 * t175 - t162 * t174),
+            k(0.000125) * t131 + (t133 * t175 + t163 * t174),
+            -(k(0.000125) * t136 + (t138 * t175 + t164 * t174)),
+            k(0.0),
+            -(t109 + (t72 * t175 - (t89 * t174 + t63 * t173))),
+            t75 * t175 - (t91 * t174 - t68 * t173) - t111,
         ];
     }
     /// Writes λ: 326 operations (120 ±, 203 ×, 3 ÷) and 6 functions.
