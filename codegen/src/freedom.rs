@@ -182,12 +182,10 @@ impl Freedom {
         let mut bias = turned(graph, &self.bias);
         if let Some(steering) = &self.steering {
             bias.rho = steering.angular_acceleration(graph, &steering.frame_of_first, &a);
-            if steering.holds_point
-                && let Some((parent, of_parent)) = self.parent.zip(of_parent)
-            {
-                let arm_of_first = graph.mat_vec(&of_parent, &parent.point);
-                bias.t = steering.acceleration_of_point(graph, (&of_parent, &arm_of_first), (&a, &arm));
-            }
+        }
+        if let Some(((steering, parent), of_parent)) = self.held_point().zip(of_parent) {
+            let arm_of_parent = graph.mat_vec(&of_parent, &parent.point);
+            bias.t = steering.acceleration_of_point(graph, (&of_parent, &arm_of_parent), (&a, &arm));
         }
         let bias = moved(graph, bias);
         let parent = self.parent.zip(of_parent).map(|(parent, a)| {
@@ -196,6 +194,31 @@ impl Freedom {
             Parent { slot: parent.slot, point, relative: UNIT3, frame: UNIT3, carried: UNIT3 }
         });
         Self { parent, point: ZERO3, frame: UNIT3, free, forced, bias, ..self.clone() }
+    }
+}
+
+impl Freedom {
+    /// For a joint that holds an axis and a point of it to a parent with coordinates.
+    fn held_point(&self) -> Option<(&Steering, &Parent)> {
+        let steering = self.steering.as_ref().filter(|steering| steering.holds_point)?;
+        Some((steering, self.parent.as_ref()?))
+    }
+
+    /// The same with all vectors in the bodies' own frames.
+    pub fn in_own_frames(&self, system: &mut System) -> Self {
+        let a = system.poses[system.slots[self.slot]].a;
+        let graph = &mut system.graph;
+        let mut turned = |twist: &Twist| Twist { t: graph.transposed_vec(&a, &twist.t), rho: twist.rho };
+        let [free, forced] =
+            [&self.free, &self.forced].map(|twists| twists.iter().map(&mut turned).collect());
+        let mut bias = turned(&self.bias);
+        if let Some((steering, parent)) = self.held_point() {
+            let (at_first, at_second) = steering.centripetal(graph, &parent.point, &self.point);
+            let at_first = graph.transposed_vec(&parent.relative, &at_first);
+            bias.t = graph.sub_vec(&at_first, &at_second);
+        }
+        let parent = self.parent.map(|parent| Parent { frame: UNIT3, carried: parent.relative, ..parent });
+        Self { parent, frame: UNIT3, free, forced, bias, ..self.clone() }
     }
 }
 

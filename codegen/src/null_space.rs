@@ -32,9 +32,11 @@ pub fn solve(system: &mut System, kinematics: &Kinematics, dynamics: &Dynamics) 
     let links = system.tree.links.clone();
     let freedoms: Vec<_> = links.iter().map(|&link| Freedom::of(system, kinematics, link)).collect();
     let in_global_frame = freedoms.iter().map(|freedom| freedom.in_global_frame(system)).collect();
+    let in_own_frames = freedoms.iter().map(|freedom| freedom.in_own_frames(system)).collect();
     let trees = [
-        EliminatedTree::new(system, freedoms.clone(), Rotations::Body),
-        EliminatedTree::new(system, in_global_frame, Rotations::Global),
+        EliminatedTree::new(system, freedoms.clone(), Basis::Mixed),
+        EliminatedTree::new(system, in_global_frame, Basis::Global),
+        EliminatedTree::new(system, in_own_frames, Basis::Own),
     ];
     let solved = trees.map(|tree| {
         let free = tree.accelerations(system, dynamics);
@@ -45,18 +47,37 @@ pub fn solve(system: &mut System, kinematics: &Kinematics, dynamics: &Dynamics) 
     let cost = |(accelerations, closing): &(Vec<_>, Vec<_>)| {
         Operations::count(&system.graph, &[&accelerations[..], closing].concat()).total()
     };
-    let (accelerations, closing) = solved.into_iter().min_by_key(cost).expect("two of them");
+    let (accelerations, closing) = solved.into_iter().min_by_key(cost).expect("three of them");
     let lambda = multipliers::of(system, kinematics, dynamics, &freedoms);
     Solution { accelerations, closing, lambda }
 }
 
-/// The frame in which rotations of the bodies are written.
+/// The frames in which an elimination works.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Rotations {
-    /// Each body's own: axes and inertias are constants there.
-    Body,
-    /// One for all: nothing is turned on its way from body to body.
+pub enum Basis {
+    /// Translations in the global frame, rotations in each body's own: as in eq. (17).
+    Mixed,
+    /// The global frame: nothing is turned on its way from body to body.
     Global,
+    /// Each body's own: axes, arms and inertias are constants.
+    Own,
+}
+
+/// From the frames of eq. (17) to those of an elimination.
+#[derive(Clone, Copy, Debug)]
+struct Frames {
+    t: Mat3,
+    rho: Mat3,
+}
+
+impl Frames {
+    fn enter(&self, graph: &mut Graph, twist: &Twist) -> Twist {
+        Twist { t: graph.mat_vec(&self.t, &twist.t), rho: graph.mat_vec(&self.rho, &twist.rho) }
+    }
+
+    fn leave(&self, graph: &mut Graph, twist: &Twist) -> Twist {
+        Twist { t: graph.transposed_vec(&self.t, &twist.t), rho: graph.transposed_vec(&self.rho, &twist.rho) }
+    }
 }
 
 /// The trees with the free twists of all joints eliminated.
@@ -64,8 +85,8 @@ pub enum Rotations {
 pub struct EliminatedTree {
     /// Root first.
     pub joints: Vec<EliminatedJoint>,
-    /// From each slot's frame to that of its rotations.
-    frames: Vec<Mat3>,
+    /// Of each slot.
+    frames: Vec<Frames>,
 }
 
 /// What sets a tree in motion.
@@ -90,13 +111,16 @@ pub struct Response {
 
 impl EliminatedTree {
     /// The links come root first.
-    pub fn new(system: &mut System, freedoms: Vec<Freedom>, rotations: Rotations) -> Self {
-        let frame = |&body: &usize| match rotations {
-            Rotations::Body => UNIT3,
-            Rotations::Global => system.poses[body].a,
+    pub fn new(system: &mut System, freedoms: Vec<Freedom>, basis: Basis) -> Self {
+        let frames_of = |&body: &usize| match basis {
+            Basis::Mixed => Frames { t: UNIT3, rho: UNIT3 },
+            Basis::Global => Frames { t: UNIT3, rho: system.poses[body].a },
+            Basis::Own => Frames { t: transposed(&system.poses[body].a), rho: UNIT3 },
         };
-        let frames: Vec<_> = system.slots.iter().map(frame).collect();
-        let rigid = |(slot, frame)| Inertia::rigid(system, slot).turned(&mut system.graph, frame);
+        let frames: Vec<_> = system.slots.iter().map(frames_of).collect();
+        let rigid = |(slot, frames): (usize, &Frames)| {
+            Inertia::rigid(system, slot).turned(&mut system.graph, &frames.rho)
+        };
         let mut bodies: Vec<_> = frames.iter().enumerate().map(rigid).collect();
         let mut joints = Vec::new();
         for freedom in freedoms.into_iter().rev() {
@@ -126,8 +150,8 @@ impl EliminatedTree {
 
     pub fn respond(&self, graph: &mut Graph, excitation: Excitation) -> Response {
         let Excitation { mut bias, forced, along } = excitation;
-        for (bias, frame) in bias.iter_mut().zip(&self.frames) {
-            bias.rho = graph.mat_vec(frame, &bias.rho);
+        for (bias, frames) in bias.iter_mut().zip(&self.frames) {
+            *bias = frames.enter(graph, bias);
         }
         let mut loads = Vec::new();
         for ((joint, forced), along) in self.joints.iter().zip(&forced).zip(&along).rev() {
@@ -143,8 +167,8 @@ impl EliminatedTree {
             response.motions[joint.freedom.slot] = motion;
             response.rates.push(rates);
         }
-        for (motion, frame) in response.motions.iter_mut().zip(&self.frames) {
-            motion.rho = graph.transposed_vec(frame, &motion.rho);
+        for (motion, frames) in response.motions.iter_mut().zip(&self.frames) {
+            *motion = frames.leave(graph, motion);
         }
         response
     }

@@ -60,6 +60,11 @@ impl Steering {
         graph.sub_vec(&of_first, &of_second)
     }
 
+    /// `w × (w × s)` of either body in its own frame, arms too.
+    pub fn centripetal(&self, graph: &mut Graph, first: &Vec3, second: &Vec3) -> (Vec3, Vec3) {
+        (graph.centripetal(&self.first[0], first), graph.centripetal(&self.second[0], second))
+    }
+
     /// ẇ_j while ẇ_i is zero or as prescribed; both matrices lead to the frame that is asked for.
     pub fn angular_acceleration(&self, graph: &mut Graph, from_first: &Mat3, from_second: &Mat3) -> Vec3 {
         let [w_i, a, prescribed] = self.first.map(|v| graph.mat_vec(from_first, &v));

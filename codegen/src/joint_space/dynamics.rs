@@ -12,7 +12,7 @@ use crate::graph::{ExprId, Graph};
 use crate::ldl::Elimination;
 use crate::linear::{UNIT3, Vec3, ZERO3};
 use crate::normal_form::normal_form;
-use crate::null_space::{Arm, EliminatedTree, Excitation, Inertia, Rotations};
+use crate::null_space::{Arm, Basis, EliminatedTree, Excitation, Inertia};
 use crate::outputs::time_derivative;
 use crate::symbol::Symbol;
 use crate::system::System;
@@ -87,7 +87,7 @@ impl Reduced {
 
     /// u̇ by elimination from the leaves to the roots: operations grow linearly with the number of bodies.
     pub fn recursion(&self, system: &mut System) -> Vec<ExprId> {
-        let tree = EliminatedTree::new(system, self.freedoms.clone(), Rotations::Body);
+        let tree = EliminatedTree::new(system, self.freedoms.clone(), Basis::Mixed);
         let (bias, forced, along) = (self.bias.clone(), self.forced.clone(), self.along.clone());
         let response = tree.respond(&mut system.graph, Excitation { bias, forced, along });
         self.scattered(&response.rates)

@@ -22,7 +22,7 @@
 //! | gamma | γ | 109 | 174 | 0 | 283 | 0 of 17 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 89 | 120 | 0 | 209 | 0 of 17 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 314 | 432 | 6 | 752 | 0 of 20 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 293 | 441 | 6 | 740 | 0 of 20 |
 //! | multipliers | λ, the accelerations being known | 96 | 157 | 3 | 256 | 0 of 17 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
@@ -37,7 +37,7 @@
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints: their definitions
 //!
-//! All of it holds but with a probability below 1e-145.
+//! All of it holds but with a probability below 1e-146.
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
 
 /// The mechanism `four_bar_revolute`.
@@ -1389,7 +1389,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
             -(k(0.01076) * (rocker_wx * rocker_wy)),
         ];
     }
-    /// Solves eq. (17): 752 operations (314 ±, 432 ×, 6 ÷).
+    /// Solves eq. (17): 740 operations (293 ±, 441 ×, 6 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let crank_e0 = y[3];
@@ -1414,439 +1414,464 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
         let rocker_wy = y[37];
         let rocker_wz = y[38];
         let (
+            t3,
+            t7,
+            t11,
+            t13,
+            t15,
+            t18,
+            t20,
+            t21,
+            t23,
+            t25,
+            t29,
+            t33,
             t35,
             t37,
-            t51,
+            t44,
+            t45,
+            t46,
+            t47,
+            t49,
+            t50,
+            t53,
+            t55,
+            t56,
             t57,
-            t70,
-            t75,
-            t76,
-            t77,
-            t81,
-            t86,
-            t87,
-            t90,
-            t93,
-            t99,
-            t104,
-            t108,
+            t58,
+            t59,
+            t63,
+            t97,
+            t103,
             t109,
+            t111,
             t113,
-            t117,
-            t150,
-            t151,
-            t152,
+            t115,
+            t116,
+            t126,
+            t136,
+            t139,
+            t140,
+            t141,
+            t142,
+            t144,
+            t147,
+            t148,
             t154,
+            t155,
             t157,
-            t158,
-            t160,
-            t161,
+            t159,
             t162,
+            t163,
             t164,
             t165,
             t166,
-            t168,
-            t169,
+            t167,
+            t170,
             t172,
-            t174,
             t175,
             t176,
             t177,
+            t178,
             t179,
             t180,
+            t181,
             t182,
-            t183,
+            t184,
+            t185,
             t186,
             t187,
             t188,
+            t189,
             t190,
             t191,
             t192,
             t193,
             t194,
-            t196,
+            t195,
             t197,
             t198,
             t199,
         ) = {
-            let t0 = coupler_wz * coupler_wz + coupler_wy * coupler_wy;
-            let t1 = coupler_e0 * coupler_e0;
-            let t2 = k(2.0) * (k(0.5) - (t1 + coupler_e1 * coupler_e1));
-            let t3 = coupler_wx * coupler_wy;
-            let t4 = coupler_e0 * coupler_e3;
-            let t5 = coupler_e1 * coupler_e2;
-            let t6 = t5 - t4;
-            let t7 = k(2.0) * t6;
-            let t8 = coupler_wx * coupler_wz;
-            let t9 = coupler_e0 * coupler_e2;
-            let t10 = coupler_e1 * coupler_e3;
-            let t11 = t10 + t9;
-            let t12 = k(2.0) * t11;
-            let t13 = k(0.25) * (t12 * t8 + (t7 * t3 + t2 * t0));
-            let t14 = rocker_wy * rocker_wy;
-            let t15 = rocker_wz * rocker_wz + t14;
-            let t16 = rocker_e0 * rocker_e0;
-            let t17 = rocker_wx * rocker_wy;
-            let t18 = rocker_e0 * rocker_e3;
-            let t19 = rocker_e1 * rocker_e2;
-            let t20 = t19 - t18;
-            let t21 = k(2.0) * t20 * t17
-                + k(2.0) * (k(0.5) - (t16 + rocker_e1 * rocker_e1)) * t15;
-            let t22 = rocker_wx * rocker_wz;
-            let t23 = rocker_e0 * rocker_e2;
-            let t24 = rocker_e1 * rocker_e3;
-            let t25 = t24 + t23;
-            let t26 = k(0.2) * (k(2.0) * t25 * t22 + t21);
-            let t27 = crank_e0 * crank_e0;
-            let t28 = k(0.5) - (t27 + crank_e3 * crank_e3);
-            let t29 = crank_wy * crank_wy;
-            let t30 = (t29 + crank_wx * crank_wx) * (k(0.5) / t28);
-            let t31 = crank_e0 * crank_e1;
-            let t32 = crank_e2 * crank_e3;
-            let t33 = t32 + t31;
-            let t34 = k(2.0) * t33;
-            let t35 = crank_wy * crank_wz - t34 * t30;
-            let t36 = k(2.0) * (k(0.5) - (t27 + crank_e1 * crank_e1));
-            let t37 = k(0.5) - (t1 + coupler_e2 * coupler_e2);
-            let t38 = k(2.0) * t37;
-            let t39 = crank_e0 * crank_e3;
-            let t40 = crank_e1 * crank_e2;
-            let t41 = k(2.0) * (t40 + t39);
-            let t42 = coupler_e0 * coupler_e1;
-            let t43 = coupler_e2 * coupler_e3;
-            let t44 = t43 + t42;
-            let t45 = k(2.0) * t44;
-            let t46 = crank_e0 * crank_e2;
-            let t47 = crank_e1 * crank_e3;
-            let t48 = k(2.0) * (t47 - t46);
-            let t49 = t48 * t45 - (t41 * t38 + t36 * t7);
-            let t50 = crank_wx * crank_wz;
-            let t51 = t50 - t48 * t30;
-            let t52 = k(0.5) - (t27 + crank_e2 * crank_e2);
-            let t53 = k(2.0) * t52;
-            let t54 = t40 - t39;
+            let t0 = crank_wy * crank_wy;
+            let t1 = crank_wz * crank_wz + t0;
+            let t2 = crank_e0 * crank_e0;
+            let t3 = k(2.0) * (k(0.5) - (t2 + crank_e1 * crank_e1));
+            let t4 = crank_wx * crank_wy;
+            let t5 = crank_e0 * crank_e3;
+            let t6 = crank_e1 * crank_e2;
+            let t7 = k(2.0) * (t6 - t5);
+            let t8 = crank_wx * crank_wz;
+            let t9 = crank_e0 * crank_e2;
+            let t10 = crank_e1 * crank_e3;
+            let t11 = k(2.0) * (t10 + t9);
+            let t12 = k(0.1) * (t11 * t8 + (t7 * t4 + t3 * t1));
+            let t13 = k(2.0) * (t6 + t5);
+            let t14 = k(0.5) - (t2 + crank_e2 * crank_e2);
+            let t15 = k(2.0) * t14;
+            let t16 = crank_e0 * crank_e1;
+            let t17 = crank_e2 * crank_e3;
+            let t18 = k(2.0) * (t17 - t16);
+            let t19 = k(0.1) * (t18 * t8 - (t15 * t4 + t13 * t1));
+            let t20 = k(2.0) * (t10 - t9);
+            let t21 = k(2.0) * (t17 + t16);
+            let t22 = k(0.5) - (t2 + crank_e3 * crank_e3);
+            let t23 = k(2.0) * t22;
+            let t24 = k(0.1) * (t23 * t8 - (t21 * t4 - t20 * t1));
+            let t25 = t20 * t24 - (t13 * t19 - t3 * t12);
+            let t26 = coupler_e0 * coupler_e2;
+            let t27 = coupler_e1 * coupler_e3;
+            let t28 = t27 + t26;
+            let t29 = k(2.0) * t28;
+            let t30 = coupler_e0 * coupler_e1;
+            let t31 = coupler_e2 * coupler_e3;
+            let t32 = t31 - t30;
+            let t33 = k(2.0) * t32;
+            let t34 = coupler_e0 * coupler_e0;
+            let t35 = k(2.0) * (k(0.5) - (t34 + coupler_e3 * coupler_e3));
+            let t36 = t20 * t35 - (t13 * t33 - t3 * t29);
+            let t37 = t21 * t35 - (t7 * t29 - t15 * t33);
+            let t38 = t11 * t29 + t18 * t33 + t23 * t35;
+            let t39 = crank_wz * t38 - (crank_wy * t37 + crank_wx * t36);
+            let t40 = coupler_wz - t39;
+            let t41 = coupler_e0 * coupler_e3;
+            let t42 = coupler_e1 * coupler_e2;
+            let t43 = t42 - t41;
+            let t44 = k(2.0) * t43;
+            let t45 = k(0.5) - (t34 + coupler_e2 * coupler_e2);
+            let t46 = k(2.0) * t45;
+            let t47 = k(2.0) * (t31 + t30);
+            let t48 = t20 * t47 - (t13 * t46 + t3 * t44);
+            let t49 = t21 * t47 + (t7 * t44 + t15 * t46);
+            let t50 = t23 * t47 - (t11 * t44 - t18 * t46);
+            let t51 = crank_wz * t50 - (crank_wy * t49 + crank_wx * t48);
+            let t52 = coupler_wy + t51;
+            let t53 = k(2.0) * (k(0.5) - (t34 + coupler_e1 * coupler_e1));
+            let t54 = t42 + t41;
             let t55 = k(2.0) * t54;
-            let t56 = t34 * t45 + (t55 * t7 + t53 * t38);
-            let t57 = t43 - t42;
-            let t58 = k(2.0) * t57;
-            let t59 = k(0.5) - (t1 + coupler_e3 * coupler_e3);
-            let t60 = k(2.0) * t59;
-            let t61 = crank_wy * (t34 * t60 - (t55 * t12 - t53 * t58))
-                + crank_wx * (t48 * t60 - (t41 * t58 - t36 * t12));
-            let t62 = k(2.0) * t28;
-            let t63 = t32 - t31;
-            let t64 = k(2.0) * t63;
-            let t65 = t47 + t46;
-            let t66 = k(2.0) * t65;
-            let t67 = t66 * t12 + t64 * t58 + t62 * t60;
-            let t68 = crank_wz * t67 - t61;
-            let t69 = coupler_wz - t68;
-            let t70 = t62 * t45 - (t66 * t7 - t64 * t38);
-            let t71 = crank_wz * t70 - (crank_wy * t56 + crank_wx * t49);
-            let t72 = coupler_wy + t71;
-            let t73 = k(2.0) * (t5 + t4);
-            let t74 = k(2.0) * (t10 - t9);
-            let t75 = t48 * t74 + (t41 * t73 + t36 * t2);
-            let t76 = t34 * t74 - (t53 * t73 + t55 * t2);
-            let t77 = t62 * t74 - (t64 * t73 - t66 * t2);
-            let t78 = crank_wz * t77 - (crank_wy * t76 + crank_wx * t75);
-            let t79 = coupler_wx + t78;
-            let t80 = (t79 * t79 + t72 * t72) / t67;
-            let t81 = coupler_wy * t68 + coupler_wz * t71 + (t70 * t80 - t72 * t69);
-            let t82 = crank_wz * crank_wz + t29;
-            let t83 = crank_wx * crank_wy;
-            let t84 = k(0.1) * (t66 * t50 + (t55 * t83 + t36 * t82));
-            let t85 = t84 + t13;
-            let t86 = k(0.5) * t11;
-            let t87 = k(0.25) * (t58 * t8 - (t38 * t3 + t73 * t0));
-            let t88 = k(0.1) * (t64 * t50 - (t53 * t83 + t41 * t82));
-            let t89 = t88 + t87;
-            let t90 = k(0.5) * t57;
-            let t91 = k(0.1) * (t62 * t50 - (t34 * t83 - t48 * t82));
-            let t92 = t91 + k(0.25) * (t60 * t8 - (t45 * t3 - t74 * t0));
-            let t93 = k(0.5) * t59;
-            let t94 = coupler_wz * t78 + coupler_wx * t68 + (t77 * t80 - t79 * t69);
-            let t95 = k(0.0835) * t94 - (t93 * t92 + (t90 * t89 + t86 * t85));
-            let t96 = t70 * (t95 - (k(0.02095) * t8 + k(4.905) * t57))
-                - t77 * (k(5e-5) * t81);
-            let t97 = k(0.02095) * t3 - k(4.905) * t37;
-            let t98 = k(11.976047904191617) * t97;
-            let t99 = k(0.5) * t37;
-            let t100 = k(5.9880239520958085) * t6;
-            let t101 = t99 * t100;
-            let t102 = k(5.9880239520958085) * t37;
-            let t103 = t99 * t102;
-            let t104 = k(0.5) * t44;
-            let t105 = t104 * t102;
-            let t106 = t90 * t94 - (t89 - (t105 * t92 + (t103 * t89 - t101 * t85)));
-            let t107 = t106 - (k(9.81) + t99 * t98);
-            let t108 = k(0.2) * t52;
-            let t109 = k(0.5) * t6;
-            let t110 = t109 * t100;
-            let t111 = t104 * t100;
-            let t112 = t86 * t94 - (t85 + (t111 * t92 + (t101 * t89 - t110 * t85)));
-            let t113 = k(0.2) * t54;
-            let t114 = t113 * (t112 + t109 * t98);
-            let t115 = t104 * (k(5.9880239520958085) * t44);
-            let t116 = t93 * t94 - (t92 - (t115 * t92 + (t105 * t89 - t111 * t85)));
-            let t117 = k(0.2) * t33;
-            let t118 = t117 * (t116 - t104 * t98);
-            let t119 = t108 * (k(3.924) - t107) + t114 - t118
-                - (k(0.00133) * t83 + (t118 - (t114 - t108 * t107) - t96));
-            let t120 = t117 * t111 + (t108 * t101 + t113 * t110);
-            let t121 = t86 * t70;
-            let t122 = t113 - t120 + t121;
-            let t123 = t117 * t105 + (t108 * t103 + t113 * t101);
-            let t124 = t90 * t70;
-            let t125 = t108 - t123 - t124;
-            let t126 = (t125 - (t123 - k(0.28) * t52)) * t88
-                - (t122 - (t120 - k(0.28) * t54)) * t84;
-            let t127 = t117 * t115 + (t108 * t105 + t113 * t111);
-            let t128 = t93 * t70;
-            let t129 = t117 - t127 - t128;
-            let t130 = t117 * (t93 * t49) + (t108 * (t90 * t49) - t113 * (t86 * t49));
-            let t131 = t130 + (t130 - (t70 * (k(0.0835) * t49) + t77 * (k(5e-5) * t75)));
-            let t132 = k(0.2) * t65;
-            let t133 = k(0.2) * t63;
-            let t134 = k(0.2) * t28;
-            let t135 = t86 * t56;
-            let t136 = t90 * t56;
-            let t137 = t93 * t56;
-            let t138 = t117 * t137 + (t108 * t136 - t113 * t135)
-                - (t134 * t128 + (t133 * t124 + t132 * t121));
-            let t139 = t134 * t127 + (t133 * t123 - t132 * t120);
-            let t140 = t139 - t138 + (t70 * (k(0.0835) * t56) + t77 * (k(5e-5) * t76));
-            let t141 = t132 + (t134 * t111 + (t133 * t101 - t132 * t110)) + t135;
-            let t142 = t133 - (t134 * t105 + (t133 * t103 - t132 * t101)) + t136;
-            let t143 = t134 - (t134 * t115 + (t133 * t105 - t132 * t111)) + t137;
-            let t144 = t117 * t143 + (t108 * t142 - t113 * t141)
-                + (t134 * t129 + (t133 * t125 - t132 * t122));
-            let t145 = (t144 - t139 - t140) * t51 - t131 * t35
-                + ((t129 - (t127 - k(0.28) * t33)) * t91 + t126);
-            let t146 = t117 * t127 + (t108 * t123 + t113 * t120);
-            let t147 = t146 + k(2.0) * (t117 * t128 + (t108 * t124 - t113 * t121));
-            let t148 = t147
-                - (k(0.01) + (t70 * (k(0.0835) * t70) + t77 * (k(5e-5) * t77)));
-            let t149 = k(2.0) * (t117 * t129 + (t108 * t125 + t113 * t122)) - t146;
-            let t150 = k(1.0) / (t149 + (k(0.014) + (k(0.00135) - t148)));
-            let t151 = t150 * (t145 + t119);
-            let t152 = t94 - (t70 * t151 + (t56 * t51 - t49 * t35));
-            let t153 = t113 * t151 + t132 * t51;
-            let t154 = t84 + t153;
-            let t155 = t85 + (t153 + t154);
-            let t156 = t108 * t151 - t133 * t51;
-            let t157 = t88 - t156;
-            let t158 = t89 - (t156 - t157);
-            let t159 = t117 * t151 - t134 * t51;
-            let t160 = t91 - t159;
-            let t161 = t92 - (t159 - t160);
-            let t162 = k(11.976047904191617)
-                * (t97 - (t104 * t161 + (t99 * t158 - t109 * t155)));
-            let t163 = t109 * t162 + t86 * t152;
-            let t164 = t155 - t163;
-            let t165 = k(0.5) - (t16 + rocker_e3 * rocker_e3);
-            let t166 = (t14 + rocker_wx * rocker_wx) * (k(0.5) / t165);
-            let t167 = k(2.0) * (t24 - t23);
-            let t168 = t22 - t167 * t166;
-            let t169 = k(0.5) - (t16 + rocker_e2 * rocker_e2);
-            let t170 = rocker_e0 * rocker_e1;
-            let t171 = rocker_e2 * rocker_e3;
-            let t172 = t171 - t170;
-            let t173 = k(2.0) * t172 * t22
-                - (k(2.0) * t169 * t17 + k(2.0) * (t19 + t18) * t15);
-            let t174 = k(0.2) * t173;
-            let t175 = t171 + t170;
-            let t176 = k(2.0) * t175;
-            let t177 = k(0.2) * (k(2.0) * t165 * t22 - (t176 * t17 - t167 * t15));
-            let t178 = k(0.32) * t175 * t177
-                + (k(0.32) * t169 * t174 - k(0.32) * t20 * t26);
-            let t179 = k(23.364485981308412)
-                * (t178 - (k(0.01076) * t17 - k(3.1392) * t169));
-            let t180 = k(0.4) * t20;
-            let t181 = t180 * t179 + k(0.4) * t25 * t168;
-            let t182 = t26 + t181;
-            let t183 = t181 + t182 + (t163 - t164) + (t26 - t13);
-            let t184 = k(11.976047904191617) * t6;
-            let t185 = t117 * (t104 * t184)
-                + (t108 * (t99 * t184) - t113 * (k(1.0) - t109 * t184));
-            let t186 = (t185 + (t185 - t11 * t70)) * t150;
-            let t187 = t70 * t186;
-            let t188 = t113 * t186;
-            let t189 = k(2.0) * t188;
-            let t190 = t108 * t186;
-            let t191 = k(2.0) * t190;
-            let t192 = t117 * t186;
-            let t193 = k(2.0) * t192;
-            let t194 = k(11.976047904191617)
-                * (t6 + (t104 * t193 + (t99 * t191 + t109 * t189)));
-            let t195 = t109 * t194 - t86 * t187;
-            let t196 = t189 - t195;
-            let t197 = k(18.69158878504673) * t20;
-            let t198 = t180 * t197;
-            let t199 = k(1.0) / (k(2.0) * t198 + (t195 - t196));
+            let t56 = k(2.0) * (t27 - t26);
+            let t57 = t20 * t56 + (t13 * t55 + t3 * t53);
+            let t58 = t21 * t56 - (t15 * t55 + t7 * t53);
+            let t59 = t23 * t56 - (t18 * t55 - t11 * t53);
+            let t60 = crank_wz * t59 - (crank_wy * t58 + crank_wx * t57);
+            let t61 = coupler_wx + t60;
+            let t62 = (t61 * t61 + t52 * t52) / t38;
+            let t63 = coupler_wy * t39 + coupler_wz * t51 + (t50 * t62 - t52 * t40);
+            let t64 = coupler_wx * coupler_wz;
+            let t65 = coupler_wz * t60 + coupler_wx * t39 + (t59 * t62 - t61 * t40);
+            let t66 = k(0.1) * crank_wz;
+            let t67 = k(0.1) * crank_wy;
+            let t68 = crank_wy * t67 + crank_wz * t66;
+            let t69 = crank_wx * t67;
+            let t70 = crank_wx * t66;
+            let t71 = k(0.25) * coupler_wz;
+            let t72 = coupler_wx * t71 + (t70 * t38 - (t69 * t37 - t68 * t36));
+            let t73 = k(0.25) * t72 - k(0.0835) * t65
+                + (k(0.02095) * t64 + k(4.905) * t32);
+            let t74 = k(0.25) * coupler_wy;
+            let t75 = coupler_wy * t74 + coupler_wz * t71
+                + (t70 * t59 - (t69 * t58 - t68 * t57));
+            let t76 = coupler_wx * coupler_wy;
+            let t77 = k(0.02095) * t76 - k(4.905) * t45;
+            let t78 = coupler_wx * t74 - (t70 * t50 - (t69 * t49 - t68 * t48));
+            let t79 = t49
+                * (k(0.25149700598802394) * t78
+                    - (k(2.9940119760479043) * t77 + k(19.62) * t45))
+                + t58 * (k(19.62) * t54 - t75);
+            let t80 = t37 * (k(0.25) * t65 - t72 - k(19.62) * t32) + t79;
+            let t81 = k(0.00133) * t4
+                + (k(0.1) * t80 + (t50 * t73 + t59 * (k(5e-5) * t63)));
+            let t82 = k(0.1) * (t49 * (k(0.7485029940119761) * t48));
+            let t83 = t21 * t24 + (t15 * t19 - t7 * t12);
+            let t84 = k(0.7485029940119761) * t49;
+            let t85 = t49 * t84;
+            let t86 = k(0.1) * t85;
+            let t87 = k(0.25) * t37;
+            let t88 = t50 * t87;
+            let t89 = k(0.1) - t86 - t88;
+            let t90 = (t89 + (k(0.14) - t86)) * t83
+                - (t82 + (t82 + t50 * (k(0.25) * t36))) * t25;
+            let t91 = t50 * (k(0.25) * t38);
+            let t92 = t50 * t84;
+            let t93 = k(0.1) * t92;
+            let t94 = t93 + t91;
+            let t95 = t23 * t24 + (t18 * t19 + t11 * t12);
+            let t96 = (t0 + crank_wx * crank_wx) * (k(0.5) / t22);
+            let t97 = crank_wy * crank_wz - t21 * t96;
+            let t98 = k(0.1) * (t48 * t87);
+            let t99 = t98 + (t98 - (t50 * (k(0.0835) * t48) + t59 * (k(5e-5) * t57)));
+            let t100 = t49 * t87;
+            let t101 = k(0.01) * t92;
+            let t102 = t101 + k(0.1) * (t91 - t100)
+                + (t50 * (k(0.0835) * t49) + t59 * (k(5e-5) * t58));
+            let t103 = t8 - t20 * t96;
+            let t104 = t103 * (k(0.1) * (t94 + (t93 - t100)) + t101 + t102) + t99 * t97;
+            let t105 = t104 + (t95 * (t93 + t94) - t90)
+                + (k(0.1) * (t80 - k(7.848) * t14) + t81);
+            let t106 = k(0.01) * t85;
+            let t107 = t106 + k(0.2) * t88
+                - (k(0.01) + (t50 * (k(0.0835) * t50) + t59 * (k(5e-5) * t59)));
+            let t108 = k(1.0) / (k(0.2) * t89 - t106 + (k(0.014) + (k(0.00135) - t107)));
+            let t109 = t108 * t105;
+            let t110 = k(0.1) * t109;
+            let t111 = t83 + t110;
+            let t112 = k(0.1) * t103;
+            let t113 = t112 + t95;
+            let t114 = k(0.1)
+                * (t29 * t37 + (t49 * (k(0.9940119760479041) * t43) + t53 * t58));
+            let t115 = (t114 + (t114 - t28 * t50)) * t108;
+            let t116 = k(0.1) * t115;
+            let t117 = coupler_wz * coupler_wz + coupler_wy * coupler_wy;
+            let t118 = rocker_wy * rocker_wy;
+            let t119 = rocker_wz * rocker_wz + t118;
+            let t120 = rocker_e0 * rocker_e0;
+            let t121 = k(2.0) * (k(0.5) - (t120 + rocker_e1 * rocker_e1));
+            let t122 = rocker_wx * rocker_wy;
+            let t123 = rocker_e0 * rocker_e3;
+            let t124 = rocker_e1 * rocker_e2;
+            let t125 = t124 - t123;
+            let t126 = k(2.0) * t125;
+            let t127 = rocker_wx * rocker_wz;
+            let t128 = rocker_e0 * rocker_e2;
+            let t129 = rocker_e1 * rocker_e3;
+            let t130 = t129 + t128;
+            let t131 = k(2.0) * t130;
+            let t132 = k(0.2) * (t131 * t127 + (t126 * t122 + t121 * t119));
+            let t133 = t132 - k(0.25) * (t29 * t64 + (t44 * t76 + t53 * t117));
+            let t134 = t110 + t111;
+            let t135 = t112 + t113;
+            let t136 = t75 + (t59 * t135 + (t58 * t134 + t57 * t25));
+            let t137 = t78 - (t50 * t135 + (t49 * t134 + t48 * t25));
+            let t138 = t77 + k(0.25) * t137;
+            let t139 = t137 - k(2.9940119760479043) * t138;
+            let t140 = t65 + (t50 * t109 - (t49 * t103 - t48 * t97));
+            let t141 = k(0.25) * t140 - (t72 + (t38 * t135 + (t37 * t134 + t36 * t25)));
+            let t142 = t29 * t141 - (t44 * t139 + t53 * t136);
+            let t143 = k(0.5) * t28;
+            let t144 = k(11.976047904191617) * t138;
+            let t145 = k(0.5) * t43;
+            let t146 = k(2.0) * (t124 + t123);
+            let t147 = k(0.5) - (t120 + rocker_e2 * rocker_e2);
+            let t148 = k(2.0) * t147;
+            let t149 = rocker_e0 * rocker_e1;
+            let t150 = rocker_e2 * rocker_e3;
+            let t151 = t150 - t149;
+            let t152 = k(2.0) * t151;
+            let t153 = k(0.2) * (t152 * t127 - (t148 * t122 + t146 * t119));
+            let t154 = k(2.0) * (t129 - t128);
+            let t155 = k(2.0) * (t150 + t149);
+            let t156 = k(0.5) - (t120 + rocker_e3 * rocker_e3);
+            let t157 = k(2.0) * t156;
+            let t158 = k(0.2) * (t157 * t127 - (t155 * t122 - t154 * t119));
+            let t159 = t154 * t158 - (t146 * t153 - t121 * t132);
+            let t160 = t155 * t158 + (t148 * t153 - t126 * t132);
+            let t161 = k(0.16) * t160 - (k(0.01076) * t122 - k(3.1392) * t147);
+            let t162 = t160 - k(4.672897196261682) * t161;
+            let t163 = (t118 + rocker_wx * rocker_wx) * (k(0.5) / t156);
+            let t164 = t127 - t154 * t163;
+            let t165 = k(0.2) * t164 + (t157 * t158 + (t152 * t153 + t131 * t132));
+            let t166 = t131 * t165 - (t126 * t162 - t121 * t159);
+            let t167 = k(23.364485981308412) * t161;
+            let t168 = k(0.4) * t125;
+            let t169 = t168 * t167 + k(0.4) * t130 * t164 + t166
+                + (t145 * t144 + t143 * t140 + t142);
+            let t170 = t169 + t133;
+            let t171 = k(0.2) * t115;
+            let t172 = t58 * t171;
+            let t173 = t49 * t171;
+            let t174 = t43 + k(0.25) * t173;
+            let t175 = t173 - k(2.9940119760479043) * t174;
+            let t176 = t50 * t115;
+            let t177 = k(0.25) * t176 - t37 * t171;
+            let t178 = t29 * t177 + (t44 * t175 - t53 * t172);
+            let t179 = k(11.976047904191617) * t174;
+            let t180 = k(18.69158878504673) * t125;
+            let t181 = k(3.7383177570093458) * t125;
+            let t182 = t126 * t181;
+            let t183 = t182 + t168 * t180 + (t145 * t179 - t143 * t176 - t178);
+            let t184 = k(1.0) / t183;
+            let t185 = t153 - k(0.25) * (t33 * t64 - (t46 * t76 + t55 * t117));
+            let t186 = t33 * t141 + (t46 * t139 + t55 * t136);
+            let t187 = k(0.5) * t32;
+            let t188 = k(0.5) * t45;
+            let t189 = t152 * t165 + (t148 * t162 - t146 * t159);
+            let t190 = k(0.4) * t147;
+            let t191 = t190 * t167 - k(0.4) * t151 * t164 - t189
+                + (t188 * t144 - t187 * t140 - t186);
+            let t192 = t33 * t177 - (t46 * t175 - t55 * t172);
+            let t193 = t148 * t181;
+            let t194 = t193 + t190 * t180 + (t188 * t179 + t187 * t176 + t192);
+            let t195 = t184 * t194;
+            let t196 = k(0.1)
+                * (t33 * t37 - (t49 * (k(0.9940119760479041) * t45) + t55 * t58));
+            let t197 = t108 * (t196 + (t196 - t32 * t50));
+            let t198 = k(0.2) * t197;
+            let t199 = t58 * t198;
             (
+                t3,
+                t7,
+                t11,
+                t13,
+                t15,
+                t18,
+                t20,
+                t21,
+                t23,
+                t25,
+                t29,
+                t33,
                 t35,
                 t37,
-                t51,
+                t44,
+                t45,
+                t46,
+                t47,
+                t49,
+                t50,
+                t53,
+                t55,
+                t56,
                 t57,
-                t70,
-                t75,
-                t76,
-                t77,
-                t81,
-                t86,
-                t87,
-                t90,
-                t93,
-                t99,
-                t104,
-                t108,
+                t58,
+                t59,
+                t63,
+                t97,
+                t103,
                 t109,
+                t111,
                 t113,
-                t117,
-                t150,
-                t151,
-                t152,
+                t115,
+                t116,
+                t126,
+                t136,
+                t139,
+                t140,
+                t141,
+                t142,
+                t144,
+                t147,
+                t148,
                 t154,
+                t155,
                 t157,
-                t158,
-                t160,
-                t161,
+                t159,
                 t162,
+                t163,
                 t164,
                 t165,
                 t166,
-                t168,
-                t169,
+                t167,
+                t170,
                 t172,
-                t174,
                 t175,
                 t176,
                 t177,
+                t178,
                 t179,
                 t180,
+                t181,
                 t182,
-                t183,
+                t184,
+                t185,
                 t186,
                 t187,
                 t188,
+                t189,
                 t190,
                 t191,
                 t192,
                 t193,
                 t194,
-                t196,
+                t195,
                 t197,
                 t198,
                 t199,
             )
         };
         let (
-            t201,
-            t204,
+            t203,
+            t205,
             t206,
             t207,
+            t208,
+            t209,
+            t211,
+            t212,
             t213,
             t214,
             t215,
+            t216,
             t217,
             t219,
             t220,
             t221,
-            t223,
-            t224,
-            t225,
-            t226,
-            t227,
-            t228,
-            t229,
-            t230,
-            t231,
-            t232,
         ) = {
-            let t200 = t99 * t162 - t90 * t152;
-            let t201 = t158 + t200;
-            let t202 = k(0.4) * t169;
-            let t203 = t202 * t179 - k(0.4) * t172 * t168;
-            let t204 = t174 - t203;
-            let t205 = t99 * t194 + t90 * t187;
-            let t206 = t191 - t205;
-            let t207 = t202 * t197;
-            let t208 = k(2.0) * t207 + (t205 - t206);
-            let t209 = t199 * t208;
-            let t210 = t209 * t183 - (t203 - t204 + (t200 + t201) - (t174 - t87));
-            let t211 = k(11.976047904191617) * t37;
-            let t212 = t117 * (t104 * t211)
-                - (t108 * (k(1.0) - t99 * t211) - t113 * (t109 * t211));
-            let t213 = t150 * (t212 + (t212 + t57 * t70));
-            let t214 = t70 * t213;
-            let t215 = t113 * t213;
-            let t216 = k(2.0) * t215;
-            let t217 = t108 * t213;
-            let t218 = k(2.0) * t217;
-            let t219 = t117 * t213;
-            let t220 = k(2.0) * t219;
-            let t221 = k(11.976047904191617)
-                * (t37 + (t104 * t220 + (t99 * t218 + t109 * t216)));
-            let t222 = t99 * t221 + t90 * t214;
-            let t223 = t218 - t222;
-            let t224 = k(18.69158878504673) * t169;
-            let t225 = t202 * t224;
-            let t226 = t210 / (t208 * t209 - (k(2.0) * t225 + (t222 - t223)));
-            let t227 = t209 * t226 - t199 * t183;
-            let t228 = t226 * (t216 - (t109 * t221 - t86 * t214)) - (t164 + t196 * t227);
-            let t229 = t227 * (t193 - (t104 * t194 + t93 * t187))
-                - (t161 + (t104 * t162 - t93 * t152));
-            let t230 = t227 * (t77 * t186)
-                + (t81 + (t77 * t151 + (t76 * t51 - t75 * t35)));
-            let t231 = k(0.4) * t175;
-            let t232 = t227 * (t231 * t197)
-                - (t177 - (t231 * t179 - k(0.4) * t165 * t168));
+            let t200 = t49 * t198;
+            let t201 = t45 - k(0.25) * t200;
+            let t202 = t200 + k(2.9940119760479043) * t201;
+            let t203 = t50 * t197;
+            let t204 = k(0.25) * t203 - t37 * t198;
+            let t205 = t33 * t204 - (t46 * t202 - t55 * t199);
+            let t206 = k(11.976047904191617) * t201;
+            let t207 = k(18.69158878504673) * t147;
+            let t208 = k(3.7383177570093458) * t147;
+            let t209 = t148 * t208;
+            let t210 = t209 + t190 * t207 + (t188 * t206 - t187 * t203 - t205);
+            let t211 = (t195 * t170 - (t191 - t185)) / (t194 * t195 - t210);
+            let t212 = t195 * t211 - t184 * t170;
+            let t213 = t212 * (t7 * t116) + (t11 * t113 - (t7 * t111 - t3 * t25));
+            let t214 = k(0.1) * t197;
+            let t215 = t212 * (t15 * t116) - (t18 * t113 + (t15 * t111 - t13 * t25));
+            let t216 = t212 * (t21 * t116) - (t23 * t113 + (t21 * t111 + t20 * t25));
+            let t217 = t211 * (t29 * t204 + (t44 * t202 - t53 * t199))
+                - (t142 - t178 * t212);
+            let t218 = t212 * (t35 * t177 - (t47 * t175 + t56 * t172))
+                - (t35 * t141 + (t47 * t139 - t56 * t136));
+            let t219 = t211 * (t35 * t204 - (t47 * t202 + t56 * t199)) + t218;
+            let t220 = t212 * (t59 * t115)
+                + (t63 - (t59 * t109 - (t58 * t103 - t57 * t97)));
+            let t221 = t212 * (t155 * t181)
+                - (t157 * t165 + (t155 * t162 + t154 * t159));
             (
-                t201,
-                t204,
+                t203,
+                t205,
                 t206,
                 t207,
+                t208,
+                t209,
+                t211,
+                t212,
                 t213,
                 t214,
                 t215,
+                t216,
                 t217,
                 t219,
                 t220,
                 t221,
-                t223,
-                t224,
-                t225,
-                t226,
-                t227,
-                t228,
-                t229,
-                t230,
-                t231,
-                t232,
             )
         };
         *out = [
-            t154 + t188 * t227 - t215 * t226,
-            t217 * t226 + (t157 - t190 * t227),
-            -(t219 * t226 + (t160 - t192 * t227)),
-            t35,
-            -t51,
-            t151 + t186 * t227 - t213 * t226,
-            -t228,
-            t223 * t226 + (t201 - t206 * t227),
-            t229 - t226 * (t220 - (t104 * t221 + t93 * t214)),
-            t226 * (t77 * t213) - t230,
-            t214 * t226 + (t152 - t187 * t227),
-            t221 * t226 - (t162 + t194 * t227),
-            t182 + t198 * t227 - t226 * (t180 * t224),
-            t225 * t226 + (t204 - t207 * t227),
-            t232 - t226 * (t231 * t224),
-            rocker_wy * rocker_wz - t176 * t166,
-            -t168,
-            t179 + t197 * t227 - t224 * t226,
-            -t227,
-            -t226,
+            t211 * (t7 * t214) + t213,
+            -(t211 * (t15 * t214) + t215),
+            t211 * (t21 * t214) + t216,
+            t97,
+            -t103,
+            t197 * t211 - (t109 - t115 * t212),
+            t217,
+            t205 * t211 - (t186 - t192 * t212),
+            -t219,
+            -(t211 * (t59 * t197) + t220),
+            t140 - t176 * t212 - t203 * t211,
+            t206 * t211 - (t144 + t179 * t212),
+            t166 + t182 * t212 - t211 * (t126 * t208),
+            t209 * t211 + (t189 - t193 * t212),
+            t221 - t211 * (t155 * t208),
+            rocker_wy * rocker_wz - t155 * t163,
+            -t164,
+            t167 + t180 * t212 - t207 * t211,
+            -t212,
+            -t211,
         ];
     }
     /// Writes λ: 256 operations (96 ±, 157 ×, 3 ÷).

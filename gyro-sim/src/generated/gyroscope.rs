@@ -2374,14 +2374,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gyroscope<T> {
         let t24 = inner_ring_wx * t23;
         let t25 = k(0.000125) * inner_ring_wz;
         let t26 = inner_ring_wx * t25;
-        let t27 = t22 * t26 - t19 * t24 - (t22 * t20 + t19 * t16);
+        let t27 = t26 * t22 - t24 * t19 - (t22 * t20 + t19 * t16);
         let t28 = rotor_e0 * rotor_e3;
         let t29 = rotor_e1 * rotor_e2;
         let t30 = inner_ring_wy * t23 + inner_ring_wz * t25;
         let t31 = rotor_e0 * rotor_e0;
         let t32 = k(2.0) * (k(0.5) - (t31 + rotor_e1 * rotor_e1)) * t30
             - k(2.0) * (t29 - t28) * t27;
-        let t33 = t19 * t26 + t22 * t24 - (t19 * t20 - t22 * t16);
+        let t33 = t26 * t19 + t24 * t22 - (t19 * t20 - t22 * t16);
         let t34 = rotor_e0 * rotor_e2;
         let t35 = rotor_e1 * rotor_e3;
         let t36 = k(2.0) * (t29 + t28) * t30
@@ -2581,14 +2581,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gyroscope<T> {
         let t24 = inner_ring_wx * t23;
         let t25 = k(0.000125) * inner_ring_wz;
         let t26 = inner_ring_wx * t25;
-        let t27 = t22 * t26 - t19 * t24 - (t22 * t20 + t19 * t16);
+        let t27 = t26 * t22 - t24 * t19 - (t22 * t20 + t19 * t16);
         let t28 = rotor_e0 * rotor_e3;
         let t29 = rotor_e1 * rotor_e2;
         let t30 = inner_ring_wy * t23 + inner_ring_wz * t25;
         let t31 = rotor_e0 * rotor_e0;
         let t32 = k(2.0) * (k(0.5) - (t31 + rotor_e1 * rotor_e1)) * t30
             - k(2.0) * (t29 - t28) * t27;
-        let t33 = t19 * t26 + t22 * t24 - (t19 * t20 - t22 * t16);
+        let t33 = t26 * t19 + t24 * t22 - (t19 * t20 - t22 * t16);
         let t34 = rotor_e0 * rotor_e2;
         let t35 = rotor_e1 * rotor_e3;
         let t36 = k(2.0) * (t35 + t34) * t33 + t32;

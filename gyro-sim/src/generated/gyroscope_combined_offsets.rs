@@ -19,7 +19,7 @@
 //! | gamma | γ | 169 | 255 | 0 | 424 | 6 of 15 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 120 | 173 | 0 | 293 | 0 of 15 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 386 | 544 | 5 | 935 | 6 of 18 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 324 | 456 | 5 | 785 | 6 of 18 |
 //! | multipliers | λ, the accelerations being known | 144 | 229 | 3 | 376 | 0 of 15 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
@@ -1921,7 +1921,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 935 operations (386 ±, 544 ×, 5 ÷).
+    /// Solves eq. (17): 785 operations (324 ±, 456 ×, 5 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1945,451 +1945,266 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let (
-            t0,
-            t2,
-            t5,
-            t6,
-            t13,
-            t20,
-            t28,
-            t29,
-            t38,
-            t41,
-            t42,
-            t47,
-            t48,
-            t49,
-            t55,
-            t56,
-            t57,
-            t61,
-            t69,
-            t71,
-            t75,
-            t77,
-            t81,
-            t83,
-            t87,
-            t88,
-            t89,
-            t90,
-            t91,
-            t92,
-            t93,
-            t94,
-            t102,
-            t105,
-            t107,
-            t108,
-            t109,
-            t110,
-            t111,
-            t112,
-            t113,
-            t114,
-            t115,
-            t116,
-            t117,
-            t118,
-            t119,
-            t120,
-            t121,
-            t133,
-            t134,
-            t135,
-            t136,
-            t138,
-            t139,
-            t144,
-            t148,
-            t163,
-            t169,
-            t175,
-            t185,
-            t186,
-            t188,
-            t190,
-            t193,
-            t195,
-            t197,
-            t198,
-            t199,
-        ) = {
-            let t0 = outer_ring_e0 * outer_ring_e0;
-            let t1 = k(0.5) - (t0 + outer_ring_e2 * outer_ring_e2);
-            let t2 = (outer_ring_wz * outer_ring_wz + outer_ring_wx * outer_ring_wx)
-                * (k(0.5) / t1);
-            let t3 = outer_ring_e0 * outer_ring_e1;
-            let t4 = outer_ring_e2 * outer_ring_e3;
-            let t5 = k(2.0) * (t4 - t3);
-            let t6 = outer_ring_wy * outer_ring_wz - t5 * t2;
-            let t7 = rotor_e0 * rotor_e3;
-            let t8 = rotor_e1 * rotor_e2;
-            let t9 = t8 - t7;
-            let t10 = k(2.0) * t9;
-            let t11 = inner_ring_e0 * inner_ring_e0;
-            let t12 = k(0.5) - (t11 + inner_ring_e1 * inner_ring_e1);
-            let t13 = k(2.0) * t12;
-            let t14 = rotor_e0 * rotor_e0;
-            let t15 = k(0.5) - (t14 + rotor_e2 * rotor_e2);
-            let t16 = k(2.0) * t15;
-            let t17 = inner_ring_e0 * inner_ring_e3;
-            let t18 = inner_ring_e1 * inner_ring_e2;
-            let t19 = t18 + t17;
-            let t20 = k(2.0) * t19;
-            let t21 = rotor_e0 * rotor_e1;
-            let t22 = rotor_e2 * rotor_e3;
-            let t23 = t22 + t21;
-            let t24 = k(2.0) * t23;
-            let t25 = inner_ring_e0 * inner_ring_e2;
-            let t26 = inner_ring_e1 * inner_ring_e3;
-            let t27 = t26 - t25;
-            let t28 = k(2.0) * t27;
-            let t29 = t28 * t24 - (t20 * t16 + t13 * t10);
-            let t30 = rotor_e0 * rotor_e2;
-            let t31 = rotor_e1 * rotor_e3;
-            let t32 = t31 + t30;
-            let t33 = k(2.0) * t32;
-            let t34 = t22 - t21;
-            let t35 = k(2.0) * t34;
-            let t36 = k(0.5) - (t14 + rotor_e3 * rotor_e3);
-            let t37 = k(2.0) * t36;
-            let t38 = t28 * t37 - (t20 * t35 - t13 * t33);
-            let t39 = k(2.400191904047976e-9) * t38 - k(5.002599744127936e-6) * t29;
-            let t40 = k(5.003999856071964e-6) * t38 - k(2.400191904047976e-9) * t29;
-            let t41 = k(0.0004) * t32 + k(0.0003) * t9;
-            let t42 = k(0.08) * t41;
-            let t43 = k(7996.001999000499) * t41;
-            let t44 = t43 * t42;
-            let t45 = t18 - t17;
-            let t46 = t26 + t25;
-            let t47 = k(0.0001) * t46 + k(6e-5) * t45;
-            let t48 = k(0.0004) * t34 - k(0.0003) * t15;
-            let t49 = k(0.08) * t48;
-            let t50 = t43 * t49;
-            let t51 = k(0.5) - (t11 + inner_ring_e2 * inner_ring_e2);
-            let t52 = inner_ring_e0 * inner_ring_e1;
-            let t53 = inner_ring_e2 * inner_ring_e3;
-            let t54 = t53 - t52;
-            let t55 = k(0.0001) * t54 - k(6e-5) * t51;
-            let t56 = k(0.0004) * t36 - k(0.0003) * t23;
-            let t57 = k(0.08) * t56;
-            let t58 = t57 * t43;
-            let t59 = t53 + t52;
-            let t60 = k(0.5) - (t11 + inner_ring_e3 * inner_ring_e3);
-            let t61 = k(0.0001) * t60 - k(6e-5) * t59;
-            let t62 = k(7996.001999000499) * t48;
-            let t63 = t62 * t49;
-            let t64 = t57 * t62;
-            let t65 = t55 * (t61 * t64 + (t55 * t63 + t47 * t50))
-                + t47 * (t61 * t58 + (t55 * t50 + t47 * t44));
-            let t66 = k(7996.001999000499) * t56 * t57;
-            let t67 = t61 * (t61 * t66 + (t55 * t64 + t47 * t58)) + t65;
-            let t68 = k(0.5) - (t14 + rotor_e1 * rotor_e1);
-            let t69 = k(0.0002) * t32 - k(0.0003) * t68;
-            let t70 = k(1.2793603198400799e-5) * t41 - k(0.08) * t69;
-            let t71 = k(0.0002) * t9 + k(0.0004) * t68;
-            let t72 = k(9.595202398800599e-6) * t41 - k(0.08) * t71;
-            let t73 = t72 * t38 + t70 * t29;
-            let t74 = t8 + t7;
-            let t75 = k(0.0002) * t34 + k(0.0003) * t74;
-            let t76 = k(1.2793603198400799e-5) * t48 - k(0.08) * t75;
-            let t77 = k(0.0002) * t15 + k(0.0004) * t74;
-            let t78 = k(9.595202398800599e-6) * t48 + k(0.08) * t77;
-            let t79 = t78 * t38 + t76 * t29;
-            let t80 = t31 - t30;
-            let t81 = k(0.0002) * t36 - k(0.0003) * t80;
-            let t82 = k(1.2793603198400799e-5) * t56 - k(0.08) * t81;
-            let t83 = k(0.0002) * t23 - k(0.0004) * t80;
-            let t84 = k(9.595202398800599e-6) * t56 + k(0.08) * t83;
-            let t85 = t84 * t38 + t82 * t29;
-            let t86 = k(2.0) * (t61 * t85 + (t55 * t79 + t47 * t73)) + t67;
-            let t87 = k(2.0) * t54;
-            let t88 = k(2.0) * t46;
-            let t89 = k(2.0) * t60;
-            let t90 = t89 * t24 - (t88 * t10 - t87 * t16);
-            let t91 = t88 * t33 + t87 * t35 + t89 * t37;
-            let t92 = k(0.00025) * t45 + k(0.0001) * t12;
-            let t93 = k(0.00025) * t51 + k(0.0001) * t19;
-            let t94 = k(0.00025) * t59 - k(0.0001) * t27;
-            let t95 = t94 * t58 + (t93 * t50 - t92 * t44);
-            let t96 = t94 * t64 + (t93 * t63 - t92 * t50);
-            let t97 = t94 * t66 + (t93 * t64 - t92 * t58);
-            let t98 = t91 * t72 + t90 * t70;
-            let t99 = t91 * t78 + t90 * t76;
-            let t100 = t91 * t84 + t90 * t82;
-            let t101 = t94 * t85 + (t93 * t79 - t92 * t73)
-                + (t61 * t100 + (t55 * t99 + t47 * t98));
-            let t102 = t101 + (t61 * t97 + (t55 * t96 + t47 * t95))
-                + (k(3e-10) - (t91 * t40 - t90 * t39));
-            let t103 = t91
-                * (k(5.003999856071964e-6) * t91 - k(2.400191904047976e-9) * t90)
-                - t90 * (k(2.400191904047976e-9) * t91 - k(5.002599744127936e-6) * t90);
-            let t104 = k(2.0) * (t94 * t100 + (t93 * t99 - t92 * t98))
-                + (t94 * t97 + (t93 * t96 - t92 * t95));
-            let t105 = k(1.0) / (k(1e-6) - (t104 - (k(1.45e-9) + t103)));
-            let t106 = t105 * t102;
-            let t107 = t102 * t106
-                - (k(1e-6) - (t86 - (k(2.72e-10) + (t38 * t40 - t29 * t39))));
-            let t108 = outer_ring_e0 * outer_ring_e3;
-            let t109 = outer_ring_e1 * outer_ring_e2;
-            let t110 = k(2.0) * (t109 - t108);
-            let t111 = k(2.0) * t1;
-            let t112 = k(2.0) * (t4 + t3);
-            let t113 = t112 * t28 - (t111 * t20 + t110 * t13);
-            let t114 = k(2.0) * t51;
-            let t115 = k(2.0) * t45;
-            let t116 = k(2.0) * t59;
-            let t117 = t116 * t24 + (t115 * t10 + t114 * t16);
-            let t118 = t116 * t37 - (t115 * t33 - t114 * t35);
-            let t119 = k(0.00025) * t46 - k(6e-5) * t12;
-            let t120 = k(0.00025) * t54 + k(6e-5) * t19;
-            let t121 = k(0.00025) * t60 - k(6e-5) * t27;
-            let t122 = t121 * t58 + (t120 * t50 + t119 * t44);
-            let t123 = t121 * t64 + (t120 * t63 + t119 * t50);
-            let t124 = t121 * t66 + (t120 * t64 + t119 * t58);
-            let t125 = t118 * t72 + t117 * t70;
-            let t126 = t118 * t78 + t117 * t76;
-            let t127 = t118 * t84 + t117 * t82;
-            let t128 = t121 * t85 + (t120 * t79 + t119 * t73)
-                - (t61 * t127 + (t55 * t126 + t47 * t125));
-            let t129 = t128 + (t61 * t124 + (t55 * t123 + t47 * t122))
-                - (k(5e-10) - (t118 * t40 - t117 * t39));
-            let t130 = k(2.400191904047976e-9) * t118 - k(5.002599744127936e-6) * t117;
-            let t131 = k(5.003999856071964e-6) * t118 - k(2.400191904047976e-9) * t117;
-            let t132 = t94 * t127 + (t93 * t126 - t92 * t125)
-                - (t121 * t100 + (t120 * t99 + t119 * t98));
-            let t133 = t132 - (t121 * t97 + (t120 * t96 + t119 * t95))
-                + (k(1.2e-10) - (t91 * t131 - t90 * t130));
-            let t134 = t133 * t106 - t129;
-            let t135 = t112 * t116 + (t110 * t115 + t111 * t114);
-            let t136 = t135 * t134 + t113 * t107;
-            let t137 = k(2.0) * (t121 * t127 + (t120 * t126 + t119 * t125))
-                - (t121 * t124 + (t120 * t123 + t119 * t122));
-            let t138 = t133 * (t105 * t133)
-                - (k(2e-6) + (t137 + (k(1.322e-9) + (t118 * t131 - t117 * t130))));
-            let t139 = t135 * t138 + t113 * t134;
-            let t140 = rotor_wx * rotor_wz;
-            let t141 = inner_ring_wy * inner_ring_wy;
-            let t142 = inner_ring_wz * inner_ring_wz;
-            let t143 = t142 + t141;
-            let t144 = inner_ring_wx * inner_ring_wy;
-            let t145 = inner_ring_wx * inner_ring_wz;
-            let t146 = inner_ring_wx * inner_ring_wx;
-            let t147 = t142 + t146;
-            let t148 = inner_ring_wy * inner_ring_wz;
-            let t149 = k(5e-5) * (t88 * t148 - (t115 * t147 + t13 * t144))
-                + k(0.000125) * (t88 * t145 + (t115 * t144 + t13 * t143));
-            let t150 = t141 + t146;
-            let t151 = k(3e-5) * (t88 * t150 - (t115 * t148 - t13 * t145)) + t149;
-            let t152 = rotor_wy * rotor_wy;
-            let t153 = rotor_wz * rotor_wz;
-            let t154 = t153 + t152;
-            let t155 = k(2.0) * t68;
-            let t156 = rotor_wx * rotor_wy;
-            let t157 = rotor_wx * rotor_wx;
-            let t158 = t153 + t157;
-            let t159 = rotor_wy * rotor_wz;
-            let t160 = k(0.0002) * (t33 * t159 - (t10 * t158 + t155 * t156))
-                + k(0.0001) * (t33 * t140 + (t10 * t156 + t155 * t154));
-            let t161 = t152 + t157;
-            let t162 = k(0.00015) * (t33 * t161 - (t10 * t159 - t155 * t140)) + t160;
-            let t163 = t162 - t151;
-            let t164 = k(5e-5) * (t87 * t148 + (t114 * t147 + t20 * t144))
-                + k(0.000125) * (t87 * t145 - (t114 * t144 + t20 * t143));
-            let t165 = k(3e-5) * (t87 * t150 + (t114 * t148 - t20 * t145)) + t164;
-            let t166 = k(2.0) * t74;
-            let t167 = k(0.0002) * (t35 * t159 + (t16 * t158 + t166 * t156))
-                + k(0.0001) * (t35 * t140 - (t16 * t156 + t166 * t154));
-            let t168 = k(0.00015) * (t35 * t161 + (t16 * t159 - t166 * t140)) + t167;
-            let t169 = t168 - t165;
-            let t170 = k(5e-5) * (t89 * t148 + (t116 * t147 - t28 * t144))
-                + k(0.000125) * (t89 * t145 - (t116 * t144 - t28 * t143));
-            let t171 = k(3e-5) * (t89 * t150 + (t116 * t148 + t28 * t145)) + t170;
-            let t172 = k(2.0) * t80;
-            let t173 = k(0.0002) * (t37 * t159 + (t24 * t158 - t172 * t156))
-                + k(0.0001) * (t37 * t140 - (t24 * t156 - t172 * t154));
-            let t174 = k(0.00015) * (t37 * t161 + (t24 * t159 + t172 * t140)) + t173;
-            let t175 = t174 - t171;
-            let t176 = t28 * t172 + (t20 * t166 + t13 * t155);
-            let t177 = inner_ring_wy * (t116 * t172 - (t114 * t166 + t115 * t155))
-                + inner_ring_wx * t176;
-            let t178 = inner_ring_wz * (t89 * t172 - (t87 * t166 - t88 * t155)) - t177;
-            let t179 = rotor_wx + t178;
-            let t180 = inner_ring_wz * t91
-                - (inner_ring_wy * t118 + inner_ring_wx * t38);
-            let t181 = rotor_wz - t180;
-            let t182 = inner_ring_wz * t90
-                - (inner_ring_wy * t117 + inner_ring_wx * t29);
-            let t183 = rotor_wy + t182;
-            let t184 = (t183 * t183 + t181 * t181) / t176;
-            let t185 = rotor_wz * t178 + rotor_wx * t180 - (t38 * t184 - t181 * t179);
-            let t186 = rotor_wx * t182 - rotor_wy * t178 - (t29 * t184 + t183 * t179);
-            let t187 = k(2.400191904047976e-9) * t186 + k(5.002599744127936e-6) * t185
-                + (t82 * t175 + (t76 * t169 + t70 * t163));
-            let t188 = t187
-                - (k(0.000127936031984008) * t48 - (k(5e-6) * t140 + k(0.8) * t75));
-            let t189 = k(5.003999856071964e-6) * t186 + k(2.400191904047976e-9) * t185
-                - (t84 * t175 + (t78 * t169 + t72 * t163));
-            let t190 = t189
-                + (k(9.595202398800599e-5) * t48 - (k(5e-6) * t156 - k(0.8) * t77));
-            let t191 = k(79960.01999000499) * t48;
-            let t192 = t58 * t175 + (t50 * t169 + t44 * t163) - k(0.08) * t163;
-            let t193 = t72 * t186 - t70 * t185 + t192 - t42 * t191;
-            let t194 = t64 * t175 + (t63 * t169 + t50 * t163) - k(0.08) * t169;
-            let t195 = t78 * t186 - t76 * t185 + t194 + (k(0.8) - t49 * t191);
-            let t196 = t66 * t175 + (t64 * t169 + t58 * t163) - k(0.08) * t175;
-            let t197 = t84 * t186 - t82 * t185 + t196 - t57 * t191;
-            let t198 = t61 * t197 + (t55 * t195 + t47 * t193)
-                - (t38 * t190 - t29 * t188);
-            let t199 = t94 * t197 + (t93 * t195 - t92 * t193)
-                - (t91 * t190 - t90 * t188);
-            (
-                t0,
-                t2,
-                t5,
-                t6,
-                t13,
-                t20,
-                t28,
-                t29,
-                t38,
-                t41,
-                t42,
-                t47,
-                t48,
-                t49,
-                t55,
-                t56,
-                t57,
-                t61,
-                t69,
-                t71,
-                t75,
-                t77,
-                t81,
-                t83,
-                t87,
-                t88,
-                t89,
-                t90,
-                t91,
-                t92,
-                t93,
-                t94,
-                t102,
-                t105,
-                t107,
-                t108,
-                t109,
-                t110,
-                t111,
-                t112,
-                t113,
-                t114,
-                t115,
-                t116,
-                t117,
-                t118,
-                t119,
-                t120,
-                t121,
-                t133,
-                t134,
-                t135,
-                t136,
-                t138,
-                t139,
-                t144,
-                t148,
-                t163,
-                t169,
-                t175,
-                t185,
-                t186,
-                t188,
-                t190,
-                t193,
-                t195,
-                t197,
-                t198,
-                t199,
-            )
-        };
-        let (t228, t230, t231, t232, t233, t234, t235, t236, t237, t238, t240) = {
-            let t200 = k(1e-6) * t144 - t199;
-            let t201 = t105 * t200;
-            let t202 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
-            let t203 = k(2.0) * (t109 + t108);
-            let t204 = outer_ring_e0 * outer_ring_e2;
-            let t205 = outer_ring_e1 * outer_ring_e3;
-            let t206 = k(2.0) * (t205 - t204);
-            let t207 = outer_ring_wy * (t112 * t89 - (t110 * t88 - t111 * t87))
-                + outer_ring_wx * (t206 * t89 - (t203 * t87 - t202 * t88));
-            let t208 = k(2.0) * (k(0.5) - (t0 + outer_ring_e3 * outer_ring_e3));
-            let t209 = k(2.0) * (t205 + t204);
-            let t210 = t209 * t88 + t5 * t87 + t208 * t89;
-            let t211 = outer_ring_wz * t210 - t207;
-            let t212 = inner_ring_wz - t211;
-            let t213 = t206 * t116 - (t203 * t114 + t202 * t115);
-            let t214 = t208 * t116 - (t209 * t115 - t5 * t114);
-            let t215 = outer_ring_wz * t214
-                - (outer_ring_wy * t135 + outer_ring_wx * t213);
-            let t216 = inner_ring_wy + t215;
-            let t217 = t206 * t28 + (t203 * t20 + t202 * t13);
-            let t218 = t208 * t28 - (t5 * t20 - t209 * t13);
-            let t219 = outer_ring_wz * t218
-                - (outer_ring_wy * t113 + outer_ring_wx * t217);
-            let t220 = inner_ring_wx + t219;
-            let t221 = (t220 * t220 + t216 * t216) / t210;
-            let t222 = inner_ring_wy * t211 + inner_ring_wz * t215
-                + (t214 * t221 - t216 * t212);
-            let t223 = inner_ring_wz * t219 + inner_ring_wx * t211
-                + (t218 * t221 - t220 * t212);
-            let t224 = t134 * t223 - t107 * t222
-                + (t102 * t201 + (k(1e-6) * t148 - t198));
-            let t225 = t121 * t197 + (t120 * t195 + t119 * t193)
-                + (t118 * t190 - t117 * t188);
-            let t226 = t135 * (t138 * t223 - t134 * t222 + (t133 * t201 + t225));
-            let t227 = t135 * (t213 * t138 + t217 * t134)
-                + t113 * (t213 * t134 + t217 * t107);
-            let t228 = outer_ring_wx * outer_ring_wy - t203 * t2;
-            let t229 = (t139 * t214 + t136 * t218) * t228 + t6 * t227
-                + (k(1e-6) * (outer_ring_wx * outer_ring_wz) - (t226 + t113 * t224));
-            let t230 = t229 / (k(1e-6) - (t135 * t139 + t113 * t136));
-            let t231 = t222 + (t218 * t228 + (t113 * t230 + t217 * t6));
-            let t232 = t223 - (t214 * t228 + (t135 * t230 + t213 * t6));
-            let t233 = t105 * (t200 + (t133 * t232 - t102 * t231));
-            let t234 = t163 + (t92 * t233 + (t119 * t232 + t47 * t231));
-            let t235 = t169 - (t93 * t233 - (t120 * t232 + t55 * t231));
-            let t236 = t175 - (t94 * t233 - (t121 * t232 + t61 * t231));
-            let t237 = t185 + (t90 * t233 + (t117 * t232 - t29 * t231));
-            let t238 = t186 - (t91 * t233 + (t118 * t232 - t38 * t231));
-            let t239 = k(1.2e-9) * t238 - k(1.6e-9) * t237
-                + (t57 * t236 + (t49 * t235 + t42 * t234));
-            let t240 = k(99950.02498750624) * (t239 - k(0.8) * t48);
-            (t228, t230, t231, t232, t233, t234, t235, t236, t237, t238, t240)
-        };
+        let t0 = (outer_ring_wz * outer_ring_wz + outer_ring_wx * outer_ring_wx)
+            * (k(0.5)
+                / (k(0.5)
+                    - (outer_ring_e0 * outer_ring_e0 + outer_ring_e2 * outer_ring_e2)));
+        let t1 = outer_ring_wy * outer_ring_wz
+            - k(2.0) * (outer_ring_e2 * outer_ring_e3 - outer_ring_e0 * outer_ring_e1)
+                * t0;
+        let t2 = inner_ring_e3 * rotor_e0 - inner_ring_e2 * rotor_e1
+            + inner_ring_e1 * rotor_e2 - inner_ring_e0 * rotor_e3;
+        let t3 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t4 = t3 * t2;
+        let t5 = inner_ring_e2 * rotor_e0 + inner_ring_e3 * rotor_e1
+            - inner_ring_e0 * rotor_e2 - inner_ring_e1 * rotor_e3;
+        let t6 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t7 = t6 * t5;
+        let t8 = t7 + t4;
+        let t9 = t3 * t5;
+        let t10 = t6 * t2;
+        let t11 = t10 - t9;
+        let t12 = k(4.800383808095952e-9) * t11 + k(1.0005199488255872e-5) * t8;
+        let t13 = k(2.0) * t8;
+        let t14 = k(1.0007999712143928e-5) * t11 + k(4.800383808095952e-9) * t8;
+        let t15 = k(2.0) * t11;
+        let t16 = t3 * t3;
+        let t17 = k(0.5) - (t16 + t5 * t5);
+        let t18 = t3 * t6;
+        let t19 = t5 * t2;
+        let t20 = t19 + t18;
+        let t21 = k(3.8380809595202396e-5) * t20 - k(2.87856071964018e-5) * t17;
+        let t22 = k(2.0) * t17;
+        let t23 = k(5.1174412793603195e-5) * t20 - k(3.8380809595202396e-5) * t17;
+        let t24 = k(2.0) * t20;
+        let t25 = t24 * t23 - t22 * t21;
+        let t26 = t19 - t18;
+        let t27 = k(2.0) * t26;
+        let t28 = k(0.5) - (t16 + t2 * t2);
+        let t29 = k(2.0) * t28;
+        let t30 = t29 * t23 - t27 * t21;
+        let t31 = t29 * (k(5.1174412793603195e-5) * t28 - k(3.8380809595202396e-5) * t26)
+            - t27 * (k(3.8380809595202396e-5) * t28 - k(2.87856071964018e-5) * t26);
+        let t32 = k(5e-5) * (k(5e-5) * t31 - k(3e-5) * t30)
+            - k(3e-5) * (k(5e-5) * t30 - k(3e-5) * t25);
+        let t33 = t7 - t4;
+        let t34 = k(1.599488255872064e-5) * t20
+            + (k(3.8380809595202396e-9) * t17 + k(2.4e-5) * t33);
+        let t35 = k(3.8380809595202396e-9) * t20
+            + (k(1.599712143928036e-5) * t17 + k(3.2e-5) * t33);
+        let t36 = t15 * t35 + t13 * t34;
+        let t37 = t10 + t9;
+        let t38 = k(1.599488255872064e-5) * t28
+            + (k(3.8380809595202396e-9) * t26 - k(2.4e-5) * t37);
+        let t39 = k(3.8380809595202396e-9) * t28
+            + (k(1.599712143928036e-5) * t26 - k(3.2e-5) * t37);
+        let t40 = t15 * t39 + t13 * t38;
+        let t41 = k(2.0) * (k(5e-5) * t40 - k(3e-5) * t36) + t32
+            - (k(2.72e-10) + (t15 * t14 + t13 * t12));
+        let t42 = k(3.8380809595202396e-5) * t11 + k(2.87856071964018e-5) * t8;
+        let t43 = k(5.1174412793603195e-5) * t11 + k(3.8380809595202396e-5) * t8;
+        let t44 = t24 * t43 - t22 * t42;
+        let t45 = k(0.000125) * t25 - k(5e-5) * t44;
+        let t46 = t29 * t43 - t27 * t42;
+        let t47 = k(0.000125) * t30;
+        let t48 = t47 - k(5e-5) * t46;
+        let t49 = t29 * t35 - t27 * t34;
+        let t50 = t29 * t39 - t27 * t38;
+        let t51 = k(0.5) - (t16 + t6 * t6);
+        let t52 = k(1.599488255872064e-5) * t11
+            - (k(3.8380809595202396e-9) * t8 + k(2.4e-5) * t51);
+        let t53 = k(3.8380809595202396e-9) * t11
+            - (k(1.599712143928036e-5) * t8 + k(3.2e-5) * t51);
+        let t54 = t15 * t53 + t13 * t52;
+        let t55 = k(0.000125) * t36 - k(5e-5) * t54 + (k(5e-5) * t50 - k(3e-5) * t49);
+        let t56 = t55 + (k(5e-5) * t48 - k(3e-5) * t45)
+            + (k(3e-10) - (t29 * t14 - t27 * t12));
+        let t57 = t29 * (k(1.0007999712143928e-5) * t28 - k(4.800383808095952e-9) * t26)
+            - t27 * (k(4.800383808095952e-9) * t28 - k(1.0005199488255872e-5) * t26);
+        let t58 = t15 * t43 + t13 * t42;
+        let t59 = k(0.000125) * t44 - k(5e-5) * t58;
+        let t60 = t29 * t53 - t27 * t52;
+        let t61 = k(2.0) * (k(0.000125) * t49 - k(5e-5) * t60)
+            + (k(0.000125) * t45 - k(5e-5) * t59);
+        let t62 = k(1.0) / (k(1e-6) - (t61 - (k(1.45e-9) + t57)));
+        let t63 = t62 * t56;
+        let t64 = t56 * t63 - (k(1e-6) - t41);
+        let t65 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t66 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t67 = t66 * t65;
+        let t68 = outer_ring_e2 * inner_ring_e0 + outer_ring_e3 * inner_ring_e1
+            - outer_ring_e0 * inner_ring_e2 - outer_ring_e1 * inner_ring_e3;
+        let t69 = outer_ring_e1 * inner_ring_e0 - outer_ring_e0 * inner_ring_e1
+            - outer_ring_e3 * inner_ring_e2 + outer_ring_e2 * inner_ring_e3;
+        let t70 = t69 * t68;
+        let t71 = k(2.0) * (t70 - t67);
+        let t72 = k(0.000125) * t31 - k(3e-5) * t46;
+        let t73 = t24 * t35 - t22 * t34;
+        let t74 = t24 * t39 - t22 * t38;
+        let t75 = k(0.000125) * t40 - k(3e-5) * t54 - (k(5e-5) * t74 - k(3e-5) * t73);
+        let t76 = t75 + (k(5e-5) * t72 - k(3e-5) * (t47 - k(3e-5) * t44))
+            - (k(5e-10) - (t24 * t14 - t22 * t12));
+        let t77 = k(4.800383808095952e-9) * t20 - k(1.0005199488255872e-5) * t17;
+        let t78 = k(1.0007999712143928e-5) * t20 - k(4.800383808095952e-9) * t17;
+        let t79 = t24 * t53 - t22 * t52;
+        let t80 = k(0.000125) * t73 - k(5e-5) * t79
+            - (k(0.000125) * t50 - k(3e-5) * t60);
+        let t81 = t80 - (k(0.000125) * t48 - k(3e-5) * t59)
+            + (k(1.2e-10) - (t29 * t78 - t27 * t77));
+        let t82 = t81 * t63 - t76;
+        let t83 = t66 * t66;
+        let t84 = k(2.0) * (k(0.5) - (t83 + t68 * t68));
+        let t85 = t84 * t82 - t71 * t64;
+        let t86 = k(2.0) * (k(0.000125) * t74 - k(3e-5) * t79)
+            - (k(0.000125) * t72 - k(3e-5) * (k(0.000125) * t46 - k(3e-5) * t58));
+        let t87 = t81 * (t62 * t81)
+            - (k(2e-6) + (t86 + (k(1.322e-9) + (t24 * t78 - t22 * t77))));
+        let t88 = t84 * t87 - t71 * t82;
+        let t89 = k(2.0) * t51;
+        let t90 = k(2.0) * t33;
+        let t91 = k(2.0) * t37;
+        let t92 = inner_ring_wz * t91 + (inner_ring_wy * t90 - inner_ring_wx * t89);
+        let t93 = rotor_wx - t92;
+        let t94 = inner_ring_wz * t29 - (inner_ring_wy * t24 + inner_ring_wx * t15);
+        let t95 = rotor_wz + t94;
+        let t96 = inner_ring_wz * t27 - (inner_ring_wy * t22 - inner_ring_wx * t13);
+        let t97 = rotor_wy - t96;
+        let t98 = k(0.5) / t51 * (t97 * t97 + t95 * t95);
+        let t99 = rotor_wz * t92 + rotor_wx * t94 + (t15 * t98 - t95 * t93);
+        let t100 = rotor_wx * t96 - rotor_wy * t92 - (t13 * t98 - t97 * t93);
+        let t101 = k(0.000125) * inner_ring_wz + k(3e-5) * inner_ring_wx;
+        let t102 = k(5e-5) * inner_ring_wx - k(0.000125) * inner_ring_wy;
+        let t103 = inner_ring_wy * t102 - inner_ring_wz * t101;
+        let t104 = k(3e-5) * inner_ring_wy + k(5e-5) * inner_ring_wz;
+        let t105 = inner_ring_wz * t104 + inner_ring_wx * t102;
+        let t106 = inner_ring_wx * t101 + inner_ring_wy * t104;
+        let t107 = k(0.0001) * rotor_wz + k(0.00015) * rotor_wx;
+        let t108 = k(0.0002) * rotor_wx - k(0.0001) * rotor_wy;
+        let t109 = rotor_wy * t108 - rotor_wz * t107
+            - (t106 * t91 - (t105 * t90 + t103 * t89));
+        let t110 = k(0.00015) * rotor_wy + k(0.0002) * rotor_wz;
+        let t111 = rotor_wz * t110 + rotor_wx * t108
+            + (t106 * t27 + (t105 * t22 + t103 * t13));
+        let t112 = rotor_wx * t107 + rotor_wy * t110
+            + (t106 * t29 + (t105 * t24 - t103 * t15));
+        let t113 = k(7.99744127936032e-6) * t112
+            + (k(1.9190404797601198e-9) * t111 + k(1.2e-5) * t109)
+            + (k(2.400191904047976e-9) * t100 + k(5.002599744127936e-6) * t99);
+        let t114 = rotor_e0 * rotor_e3;
+        let t115 = rotor_e1 * rotor_e2;
+        let t116 = t115 + t114;
+        let t117 = rotor_e0 * rotor_e1;
+        let t118 = rotor_e2 * rotor_e3;
+        let t119 = t118 - t117;
+        let t120 = rotor_e0 * rotor_e0;
+        let t121 = k(0.5) - (t120 + rotor_e2 * rotor_e2);
+        let t122 = k(0.00032) * t119 - k(0.00024) * t121;
+        let t123 = k(0.00015992003998001) * t122
+            - (k(5e-6) * (rotor_wx * rotor_wz)
+                + (k(0.00016) * t119 + k(0.00024) * t116));
+        let t124 = t123 + t113;
+        let t125 = k(1.9190404797601198e-9) * t112
+            + (k(7.99856071964018e-6) * t111 + k(1.6e-5) * t109)
+            + (k(5.003999856071964e-6) * t100 + k(2.400191904047976e-9) * t99);
+        let t126 = k(0.0001199400299850075) * t122
+            - (k(5e-6) * (rotor_wx * rotor_wy)
+                - (k(0.00016) * t121 + k(0.00032) * t116));
+        let t127 = t126 - t125;
+        let t128 = k(1.6) * t116 - (k(1.6e-5) * t100 + k(1.2e-5) * t99 + k(0.08) * t109);
+        let t129 = k(7.99856071964018e-6) * t100 + k(1.9190404797601198e-9) * t99
+            + (k(1.9190404797601198e-5) * t112 - k(1.43928035982009e-5) * t111
+                + k(0.08) * t111);
+        let t130 = k(1.199400299850075) * t122 + k(1.6) * t121 - t129;
+        let t131 = k(1.9190404797601198e-9) * t100 + k(7.99744127936032e-6) * t99
+            - (k(2.5587206396801598e-5) * t112 - k(1.9190404797601198e-5) * t111
+                - k(0.08) * t112);
+        let t132 = k(1.5992003998000999) * t122 - k(1.6) * t119 + t131;
+        let t133 = t24 * t132 - (t22 * t130 + t90 * t128);
+        let t134 = t29 * t132 - (t27 * t130 - t91 * t128);
+        let t135 = k(5e-5) * t134 - k(3e-5) * t133 + (t15 * t127 - t13 * t124);
+        let t136 = t15 * t132 + (t13 * t130 + t89 * t128);
+        let t137 = k(0.000125) * t133 - k(5e-5) * t136 + (t29 * t127 + t27 * t124);
+        let t138 = k(1e-6) * (inner_ring_wx * inner_ring_wy) - t137;
+        let t139 = t62 * t138;
+        let t140 = t66 * t68;
+        let t141 = t69 * t65;
+        let t142 = t66 * t69;
+        let t143 = t68 * t65;
+        let t144 = outer_ring_wy * (k(2.0) * (t143 + t142))
+            + outer_ring_wx * (k(2.0) * (t141 - t140));
+        let t145 = k(0.5) - (t83 + t65 * t65);
+        let t146 = outer_ring_wz * (k(2.0) * t145) - t144;
+        let t147 = inner_ring_wz + t146;
+        let t148 = k(2.0) * (t70 + t67);
+        let t149 = k(2.0) * (t143 - t142);
+        let t150 = outer_ring_wz * t149 - (outer_ring_wy * t84 - outer_ring_wx * t148);
+        let t151 = inner_ring_wy - t150;
+        let t152 = k(2.0) * (k(0.5) - (t83 + t69 * t69));
+        let t153 = k(2.0) * (t141 + t140);
+        let t154 = outer_ring_wz * t153 + (outer_ring_wy * t71 - outer_ring_wx * t152);
+        let t155 = inner_ring_wx - t154;
+        let t156 = k(0.5) / t145 * (t155 * t155 + t151 * t151);
+        let t157 = inner_ring_wy * t146 + inner_ring_wz * t150
+            - (t149 * t156 - t151 * t147);
+        let t158 = inner_ring_wz * t154 + inner_ring_wx * t146
+            - (t153 * t156 - t155 * t147);
+        let t159 = t82 * t158 - t64 * t157
+            - (t56 * t139 + (k(1e-6) * (inner_ring_wy * inner_ring_wz) - t135));
+        let t160 = k(0.000125) * t134 - k(3e-5) * t136 - (t24 * t127 + t22 * t124);
+        let t161 = t84 * (t87 * t158 - t82 * t157 - (t81 * t139 + t160));
+        let t162 = t84 * (t148 * t87 - t152 * t82) - t71 * (t148 * t82 - t152 * t64);
+        let t163 = outer_ring_wx * outer_ring_wy
+            - k(2.0) * (outer_ring_e1 * outer_ring_e2 + outer_ring_e0 * outer_ring_e3)
+                * t0;
+        let t164 = t163 * (t149 * t88 + t153 * t85) - t1 * t162
+            + (k(1e-6) * (outer_ring_wx * outer_ring_wz) - (t161 - t71 * t159));
+        let t165 = t164 / (k(1e-6) - (t84 * t88 - t71 * t85));
+        let t166 = t157 - (t71 * t165 - t1 * t152 - t163 * t153);
+        let t167 = t158 - (t84 * t165 - t1 * t148 + t163 * t149);
+        let t168 = t62 * (t138 - (t81 * t167 - t56 * t166));
+        let t169 = k(5e-5) * t168 + k(3e-5) * t167;
+        let t170 = k(0.000125) * t168 - k(3e-5) * t166;
+        let t171 = k(0.000125) * t167 + k(5e-5) * t166;
+        let t172 = t99 + (t27 * t168 - (t22 * t167 + t13 * t166));
+        let t173 = t100 - (t29 * t168 - (t24 * t167 - t15 * t166));
+        let t174 = k(0.0002) * t173 + k(0.00015) * t172
+            + (t109 - (t91 * t171 - (t90 * t170 + t89 * t169)));
+        let t175 = t111 + (t27 * t171 + (t22 * t170 + t13 * t169));
+        let t176 = t112 + (t29 * t171 + (t24 * t170 - t15 * t169));
+        let t177 = k(1.2e-9) * t173 - k(1.6e-9) * t172
+            - (k(1.6e-5) * t176 - k(1.2e-5) * t175);
+        let t178 = t122 + t177;
+        let t179 = t175 + (k(0.0001) * t173 - k(14.992503748125937) * t178);
+        let t180 = k(2.0) * (t115 - t114) * t179
+            + k(2.0) * (k(0.5) - (t120 + rotor_e1 * rotor_e1)) * t174;
+        let t181 = t176 + (k(0.0001) * t172 + k(19.99000499750125) * t178);
+        let t182 = rotor_e0 * rotor_e2;
+        let t183 = rotor_e1 * rotor_e3;
+        let t184 = k(2.0) * t119 * t181 + (k(2.0) * t121 * t179 + k(2.0) * t116 * t174);
+        let t185 = k(2.0) * (t118 + t117) * t179 - k(2.0) * (t183 - t182) * t174;
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -t6,
-            -t230,
-            t228,
+            -t1,
+            -t165,
+            t163,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t231,
-            t232,
-            -t233,
-            -(t234 + (t71 * t238 - (t69 * t237 + t41 * t240))),
-            t77 * t238 + (t75 * t237 + t48 * t240) - t235,
-            t236 - (t83 * t238 + (t81 * t237 + t56 * t240)),
-            -t240,
-            t237,
-            t238,
+            t166,
+            -t167,
+            -t168,
+            t180 - k(2.0) * (t183 + t182) * t181,
+            -t184,
+            k(2.0) * (k(0.5) - (t120 + rotor_e3 * rotor_e3)) * t181 + t185,
+            k(99950.02498750624) * t178,
+            -t172,
+            -t173,
         ];
     }
     /// Writes λ: 376 operations (144 ±, 229 ×, 3 ÷).
@@ -3041,14 +2856,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
         let t63 = inner_ring_wz * t62 + inner_ring_wx * t54;
         let t64 = inner_ring_wx * t53 + inner_ring_wy * t62;
         let t65 = k(0.00015) * rotor_wy + k(0.0002) * rotor_wz;
-        let t66 = rotor_wz * t65 + rotor_wx * t52 - (t5 * t64 + t3 * t63);
+        let t66 = rotor_wz * t65 + rotor_wx * t52 - (t64 * t5 + t63 * t3);
         let t67 = t39 * t49 - (t37 * t45 - k(99950.02498750624) * t35) - t47;
         let t68 = k(0.0001) * t57 + k(0.00015) * t67 - (t66 + (t5 * t61 + t3 * t60));
         let t69 = rotor_e0 * rotor_e3;
         let t70 = rotor_e1 * rotor_e2;
         let t71 = k(2.0) * (t70 - t69) * t68
             + k(2.0) * (k(0.5) - (t59 + rotor_e1 * rotor_e1)) * t58;
-        let t72 = rotor_wx * t51 + rotor_wy * t65 - (t3 * t64 - t5 * t63);
+        let t72 = rotor_wx * t51 + rotor_wy * t65 - (t64 * t3 - t63 * t5);
         let t73 = k(0.0001) * t56 + k(0.0002) * t67 + (t72 + (t3 * t61 - t5 * t60));
         let t74 = rotor_e0 * rotor_e2;
         let t75 = rotor_e1 * rotor_e3;
@@ -3327,13 +3142,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
         let t64 = inner_ring_wz * t63 + inner_ring_wx * t54;
         let t65 = inner_ring_wx * t53 + inner_ring_wy * t63;
         let t66 = k(0.00015) * rotor_wy + k(0.0002) * rotor_wz;
-        let t67 = rotor_wz * t66 + rotor_wx * t52 - (t5 * t65 + t3 * t64);
+        let t67 = rotor_wz * t66 + rotor_wx * t52 - (t65 * t5 + t64 * t3);
         let t68 = t39 * t49 - (t37 * t45 - k(99950.02498750624) * t35) - t47;
         let t69 = k(0.0001) * t57 + k(0.00015) * t68 - (t67 + (t5 * t62 + t3 * t61));
         let t70 = rotor_e0 * rotor_e3;
         let t71 = rotor_e1 * rotor_e2;
         let t72 = t71 - t70;
-        let t73 = rotor_wx * t51 + rotor_wy * t66 - (t3 * t65 - t5 * t64);
+        let t73 = rotor_wx * t51 + rotor_wy * t66 - (t65 * t3 - t64 * t5);
         let t74 = k(0.0001) * t56 + k(0.0002) * t68 + (t73 + (t3 * t62 - t5 * t61));
         let t75 = rotor_e0 * rotor_e2;
         let t76 = rotor_e1 * rotor_e3;

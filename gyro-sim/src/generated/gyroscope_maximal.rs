@@ -2946,14 +2946,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
         let t25 = inner_ring_wx * t24;
         let t26 = k(0.000125) * inner_ring_wz;
         let t27 = inner_ring_wx * t26;
-        let t28 = t23 * t27 - t20 * t25 - (t23 * t21 - t20 * t17);
+        let t28 = t27 * t23 - t25 * t20 - (t23 * t21 - t20 * t17);
         let t29 = rotor_e0 * rotor_e3;
         let t30 = rotor_e1 * rotor_e2;
         let t31 = inner_ring_wy * t24 + inner_ring_wz * t26;
         let t32 = rotor_e0 * rotor_e0;
         let t33 = k(2.0) * (k(0.5) - (t32 + rotor_e1 * rotor_e1)) * t31
             - k(2.0) * (t30 - t29) * t28;
-        let t34 = t20 * t27 + t23 * t25 - (t20 * t21 + t23 * t17);
+        let t34 = t27 * t20 + t25 * t23 - (t20 * t21 + t23 * t17);
         let t35 = rotor_e0 * rotor_e2;
         let t36 = rotor_e1 * rotor_e3;
         let t37 = k(2.0) * (t30 + t29) * t31
@@ -3210,14 +3210,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
         let t25 = inner_ring_wx * t24;
         let t26 = k(0.000125) * inner_ring_wz;
         let t27 = inner_ring_wx * t26;
-        let t28 = t23 * t27 - t20 * t25 - (t23 * t21 - t20 * t17);
+        let t28 = t27 * t23 - t25 * t20 - (t23 * t21 - t20 * t17);
         let t29 = rotor_e0 * rotor_e3;
         let t30 = rotor_e1 * rotor_e2;
         let t31 = inner_ring_wy * t24 + inner_ring_wz * t26;
         let t32 = rotor_e0 * rotor_e0;
         let t33 = k(2.0) * (k(0.5) - (t32 + rotor_e1 * rotor_e1)) * t31
             - k(2.0) * (t30 - t29) * t28;
-        let t34 = t20 * t27 + t23 * t25 - (t20 * t21 + t23 * t17);
+        let t34 = t27 * t20 + t25 * t23 - (t20 * t21 + t23 * t17);
         let t35 = rotor_e0 * rotor_e2;
         let t36 = rotor_e1 * rotor_e3;
         let t37 = k(2.0) * (t36 + t35) * t34 + t33;

@@ -2413,14 +2413,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
         let t30 = inner_ring_wx * t29;
         let t31 = inner_ring_wz * self.rotor_offset;
         let t32 = inner_ring_wx * t31;
-        let t33 = t28 * t32 - t25 * t30 - (t28 * t26 + t25 * t22);
+        let t33 = t32 * t28 - t30 * t25 - (t28 * t26 + t25 * t22);
         let t34 = rotor_e0 * rotor_e3;
         let t35 = rotor_e1 * rotor_e2;
         let t36 = inner_ring_wy * t29 + inner_ring_wz * t31;
         let t37 = rotor_e0 * rotor_e0;
         let t38 = k(2.0) * (k(0.5) - (t37 + rotor_e1 * rotor_e1)) * t36
             - k(2.0) * (t35 - t34) * t33;
-        let t39 = t25 * t32 + t28 * t30 - (t25 * t26 - t28 * t22);
+        let t39 = t32 * t25 + t30 * t28 - (t25 * t26 - t28 * t22);
         let t40 = rotor_e0 * rotor_e2;
         let t41 = rotor_e1 * rotor_e3;
         let t42 = k(2.0) * (t35 + t34) * t36
@@ -2632,14 +2632,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
         let t30 = inner_ring_wx * t29;
         let t31 = inner_ring_wz * self.rotor_offset;
         let t32 = inner_ring_wx * t31;
-        let t33 = t28 * t32 - t25 * t30 - (t28 * t26 + t25 * t22);
+        let t33 = t32 * t28 - t30 * t25 - (t28 * t26 + t25 * t22);
         let t34 = rotor_e0 * rotor_e3;
         let t35 = rotor_e1 * rotor_e2;
         let t36 = inner_ring_wy * t29 + inner_ring_wz * t31;
         let t37 = rotor_e0 * rotor_e0;
         let t38 = k(2.0) * (k(0.5) - (t37 + rotor_e1 * rotor_e1)) * t36
             - k(2.0) * (t35 - t34) * t33;
-        let t39 = t25 * t32 + t28 * t30 - (t25 * t26 - t28 * t22);
+        let t39 = t32 * t25 + t30 * t28 - (t25 * t26 - t28 * t22);
         let t40 = rotor_e0 * rotor_e2;
         let t41 = rotor_e1 * rotor_e3;
         let t42 = k(2.0) * (t41 + t40) * t39 + t38;

@@ -19,7 +19,7 @@
 //! | gamma | γ | 122 | 195 | 0 | 317 | 6 of 15 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 90 | 128 | 0 | 218 | 0 of 15 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 170 | 266 | 5 | 441 | 6 of 18 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 162 | 246 | 5 | 413 | 6 of 18 |
 //! | multipliers | λ, the accelerations being known | 114 | 187 | 3 | 304 | 0 of 15 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
@@ -1719,7 +1719,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 441 operations (170 ±, 266 ×, 5 ÷).
+    /// Solves eq. (17): 413 operations (162 ±, 246 ×, 5 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1804,103 +1804,98 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
         let t44 = t43 * t41 - t33 * t26;
         let t45 = t40 * (t24 * t40) - (k(2e-6) + (t37 * t39 + t35 * t38));
         let t46 = t43 * t45 - t33 * t41;
-        let t47 = k(0.5) - (t20 + t6 * t6);
-        let t48 = inner_ring_wz * (k(2.0) * (t12 + t11))
-            + (inner_ring_wy * (k(2.0) * (t7 - t4)) - inner_ring_wx * (k(2.0) * t47));
-        let t49 = rotor_wx - t48;
-        let t50 = inner_ring_wz * t22 - (inner_ring_wy * t37 + inner_ring_wx * t15);
-        let t51 = rotor_wz + t50;
-        let t52 = inner_ring_wz * t19 - (inner_ring_wy * t35 - inner_ring_wx * t10);
-        let t53 = rotor_wy - t52;
-        let t54 = k(0.5) / t47 * (t53 * t53 + t51 * t51);
-        let t55 = rotor_wz * t48 + rotor_wx * t50 + (t15 * t54 - t51 * t49);
-        let t56 = k(5e-6) * (rotor_wx * rotor_wz - t55);
-        let t57 = rotor_wx * t52 - rotor_wy * t48 - (t10 * t54 - t53 * t49);
-        let t58 = rotor_wx * rotor_wy;
-        let t59 = rotor_e0 * rotor_e0;
-        let t60 = k(0.5) - (t59 + rotor_e1 * rotor_e1);
-        let t61 = rotor_wz * rotor_wz + rotor_wx * rotor_wx;
-        let t62 = rotor_e0 * rotor_e3;
-        let t63 = rotor_e1 * rotor_e2;
-        let t64 = rotor_wy * rotor_wz;
-        let t65 = rotor_e0 * rotor_e2;
-        let t66 = rotor_e1 * rotor_e3;
-        let t67 = t66 + t65;
-        let t68 = k(2.0) * t67 * t64 - (k(2.0) * (t63 - t62) * t61 + k(2.0) * t60 * t58);
-        let t69 = k(0.0002) * t68;
-        let t70 = t63 + t62;
-        let t71 = k(2.0) * (k(0.5) - (t59 + rotor_e2 * rotor_e2)) * t61
-            + k(2.0) * t70 * t58;
-        let t72 = rotor_e0 * rotor_e1;
-        let t73 = rotor_e2 * rotor_e3;
-        let t74 = t73 - t72;
-        let t75 = k(0.0002) * (k(2.0) * t74 * t64 + t71);
-        let t76 = t66 - t65;
-        let t77 = k(0.5) - (t59 + rotor_e3 * rotor_e3);
-        let t78 = k(2.0) * t77 * t64 + (k(2.0) * (t73 + t72) * t61 - k(2.0) * t76 * t58);
-        let t79 = k(0.0002) * t78;
-        let t80 = k(3.2e-5) * t76 * t79
-            - (k(3.2e-5) * t70 * t75 - k(3.2e-5) * t60 * t69);
-        let t81 = k(5e-6) * t58 - k(0.00032) * t70 - (t80 - k(5.0032e-6) * t57);
-        let t82 = k(1e-6) * (inner_ring_wx * inner_ring_wy) + (t22 * t81 + t19 * t56);
-        let t83 = t24 * t82;
-        let t84 = t23 * t83
-            - (k(1e-6) * (inner_ring_wy * inner_ring_wz) + (t15 * t81 - t10 * t56));
-        let t85 = t28 * t30;
-        let t86 = t31 * t27;
-        let t87 = t28 * t31;
-        let t88 = t30 * t27;
-        let t89 = outer_ring_wy * (k(2.0) * (t88 + t87))
-            + outer_ring_wx * (k(2.0) * (t86 - t85));
-        let t90 = k(0.5) - (t42 + t27 * t27);
-        let t91 = outer_ring_wz * (k(2.0) * t90) - t89;
-        let t92 = inner_ring_wz + t91;
-        let t93 = k(2.0) * (t32 + t29);
-        let t94 = k(2.0) * (t88 - t87);
-        let t95 = outer_ring_wz * t94 - (outer_ring_wy * t43 - outer_ring_wx * t93);
-        let t96 = inner_ring_wy - t95;
-        let t97 = k(2.0) * (k(0.5) - (t42 + t31 * t31));
-        let t98 = k(2.0) * (t86 + t85);
-        let t99 = outer_ring_wz * t98 + (outer_ring_wy * t33 - outer_ring_wx * t97);
-        let t100 = inner_ring_wx - t99;
-        let t101 = k(0.5) / t90 * (t100 * t100 + t96 * t96);
-        let t102 = inner_ring_wy * t91 + inner_ring_wz * t95 - (t94 * t101 - t96 * t92);
-        let t103 = inner_ring_wz * t99 + inner_ring_wx * t91 - (t98 * t101 - t100 * t92);
-        let t104 = t45 * t103 - t41 * t102 + (t40 * t83 - (t37 * t81 + t35 * t56));
-        let t105 = t43 * t104 - t33 * (t41 * t103 - t26 * t102 + t84);
-        let t106 = t43 * (t93 * t45 - t97 * t41) - t33 * (t93 * t41 - t97 * t26);
-        let t107 = outer_ring_wx * outer_ring_wy
+        let t47 = k(2.0) * (k(0.5) - (t42 + t31 * t31));
+        let t48 = k(2.0) * (t32 + t29);
+        let t49 = t43 * (t48 * t45 - t47 * t41) - t33 * (t48 * t41 - t47 * t26);
+        let t50 = t28 * t30;
+        let t51 = t31 * t27;
+        let t52 = k(2.0) * (t51 + t50);
+        let t53 = t28 * t31;
+        let t54 = t30 * t27;
+        let t55 = k(2.0) * (t54 - t53);
+        let t56 = outer_ring_wx * outer_ring_wy
             - k(2.0) * (outer_ring_e1 * outer_ring_e2 + outer_ring_e0 * outer_ring_e3)
                 * t0;
-        let t108 = t107 * (t94 * t46 + t98 * t44) - t1 * t106
-            + (k(1e-6) * (outer_ring_wx * outer_ring_wz) - t105);
-        let t109 = t108 / (k(1e-6) - (t43 * t46 - t33 * t44));
-        let t110 = t102 + (t107 * t98 - (t33 * t109 - t1 * t97));
-        let t111 = t103 - (t107 * t94 + (t43 * t109 - t1 * t93));
-        let t112 = t24 * (t82 + (t40 * t111 - t23 * t110));
-        let t113 = t57 - (t22 * t112 - (t37 * t111 - t15 * t110));
-        let t114 = t79 * (k(3.2e-5) * t77)
-            + (t75 * (k(3.2e-5) * t74) + t69 * (k(3.2e-5) * t67));
-        let t115 = k(99968.01023672425) * (t114 - k(0.00032) * t74);
+        let t57 = outer_ring_wy * (k(2.0) * (t54 + t53))
+            + outer_ring_wx * (k(2.0) * (t51 - t50));
+        let t58 = k(0.5) - (t42 + t27 * t27);
+        let t59 = outer_ring_wz * (k(2.0) * t58) - t57;
+        let t60 = inner_ring_wz + t59;
+        let t61 = outer_ring_wz * t55 - (outer_ring_wy * t43 - outer_ring_wx * t48);
+        let t62 = inner_ring_wy - t61;
+        let t63 = outer_ring_wz * t52 + (outer_ring_wy * t33 - outer_ring_wx * t47);
+        let t64 = inner_ring_wx - t63;
+        let t65 = k(0.5) / t58 * (t64 * t64 + t62 * t62);
+        let t66 = inner_ring_wy * t59 + inner_ring_wz * t61 - (t55 * t65 - t62 * t60);
+        let t67 = inner_ring_wz * t63 + inner_ring_wx * t59 - (t52 * t65 - t64 * t60);
+        let t68 = k(0.5) - (t20 + t6 * t6);
+        let t69 = inner_ring_wz * (k(2.0) * (t12 + t11))
+            + (inner_ring_wy * (k(2.0) * (t7 - t4)) - inner_ring_wx * (k(2.0) * t68));
+        let t70 = rotor_wx - t69;
+        let t71 = inner_ring_wz * t22 - (inner_ring_wy * t37 + inner_ring_wx * t15);
+        let t72 = rotor_wz + t71;
+        let t73 = inner_ring_wz * t19 - (inner_ring_wy * t35 - inner_ring_wx * t10);
+        let t74 = rotor_wy - t73;
+        let t75 = k(0.5) / t68 * (t74 * t74 + t72 * t72);
+        let t76 = rotor_wz * t69 + rotor_wx * t71 + (t15 * t75 - t72 * t70);
+        let t77 = k(5e-6) * (rotor_wx * rotor_wz - t76);
+        let t78 = rotor_wx * t73 - rotor_wy * t69 - (t10 * t75 - t74 * t70);
+        let t79 = k(0.0002) * rotor_wx;
+        let t80 = rotor_wy * t79;
+        let t81 = rotor_e0 * rotor_e3;
+        let t82 = rotor_e1 * rotor_e2;
+        let t83 = t82 + t81;
+        let t84 = k(5e-6) * (rotor_wx * rotor_wy) - k(0.00032) * t83
+            + (k(1.6e-5) * t80 + k(5.0032e-6) * t78);
+        let t85 = k(1e-6) * (inner_ring_wx * inner_ring_wy) + (t22 * t84 + t19 * t77);
+        let t86 = t85 * t24;
+        let t87 = t86 * t23
+            - (k(1e-6) * (inner_ring_wy * inner_ring_wz) + (t15 * t84 - t10 * t77));
+        let t88 = t86 * t40 - (t37 * t84 + t35 * t77) + (t45 * t67 - t41 * t66);
+        let t89 = t43 * t88 - t33 * (t87 + (t67 * t41 - t66 * t26));
+        let t90 = k(1e-6) * (outer_ring_wx * outer_ring_wz) - t89
+            + (t56 * (t55 * t46 + t52 * t44) - t1 * t49);
+        let t91 = t90 / (k(1e-6) - (t43 * t46 - t33 * t44));
+        let t92 = t66 - (t33 * t91 - t1 * t47 - t56 * t52);
+        let t93 = t67 - (t43 * t91 - t1 * t48 + t56 * t55);
+        let t94 = t24 * (t85 + (t40 * t93 - t23 * t92));
+        let t95 = t78 - (t22 * t94 - (t37 * t93 - t15 * t92));
+        let t96 = t80 + k(0.0002) * t95;
+        let t97 = rotor_e0 * rotor_e0;
+        let t98 = k(0.0002) * rotor_wz;
+        let t99 = rotor_wz * t98 + rotor_wx * t79;
+        let t100 = k(2.0) * (t82 - t81) * t99
+            + k(2.0) * (k(0.5) - (t97 + rotor_e1 * rotor_e1)) * t96;
+        let t101 = rotor_e0 * rotor_e1;
+        let t102 = rotor_e2 * rotor_e3;
+        let t103 = t102 - t101;
+        let t104 = rotor_wy * t98;
+        let t105 = k(1.6e-5) * t104 - k(0.00032) * t103;
+        let t106 = t104 - k(19.99360204734485) * t105;
+        let t107 = rotor_e0 * rotor_e2;
+        let t108 = rotor_e1 * rotor_e3;
+        let t109 = k(2.0) * (k(0.5) - (t97 + rotor_e2 * rotor_e2)) * t99
+            + k(2.0) * t83 * t96;
+        let t110 = k(2.0) * (t102 + t101) * t99 - k(2.0) * (t108 - t107) * t96;
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t1,
-            -t109,
-            t107,
+            -t91,
+            t56,
             k(0.0),
             k(0.0),
             k(0.0),
-            t110,
-            -t111,
-            -t112,
-            k(0.0004) * t67 * t115 + k(0.0004) * t60 * t113 - t69,
-            k(0.0004) * t74 * t115 - k(0.0004) * t70 * t113 - t75,
-            t79 - (k(0.0004) * t77 * t115 + k(0.0004) * t76 * t113),
-            -t115,
-            -(t55 + (t19 * t112 - (t35 * t111 + t10 * t110))),
-            -t113,
+            t92,
+            -t93,
+            -t94,
+            t100 - k(2.0) * (t108 + t107) * t106,
+            -(k(2.0) * t103 * t106 + t109),
+            k(2.0) * (k(0.5) - (t97 + rotor_e3 * rotor_e3)) * t106 + t110,
+            -(k(99968.01023672425) * t105),
+            -(t76 + (t19 * t94 - (t35 * t93 + t10 * t92))),
+            -t95,
         ];
     }
     /// Writes λ: 304 operations (114 ±, 187 ×, 3 ÷).

@@ -2403,14 +2403,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeViscous<T> {
         let t27 = inner_ring_wx * t26;
         let t28 = k(0.000125) * inner_ring_wz;
         let t29 = inner_ring_wx * t28;
-        let t30 = t25 * t29 - t22 * t27 - (t25 * t23 + t22 * t19);
+        let t30 = t29 * t25 - t27 * t22 - (t25 * t23 + t22 * t19);
         let t31 = rotor_e0 * rotor_e3;
         let t32 = rotor_e1 * rotor_e2;
         let t33 = inner_ring_wy * t26 + inner_ring_wz * t28;
         let t34 = rotor_e0 * rotor_e0;
         let t35 = k(2.0) * (k(0.5) - (t34 + rotor_e1 * rotor_e1)) * t33
             - k(2.0) * (t32 - t31) * t30;
-        let t36 = t22 * t29 + t25 * t27 - (t22 * t23 - t25 * t19);
+        let t36 = t29 * t22 + t27 * t25 - (t22 * t23 - t25 * t19);
         let t37 = rotor_e0 * rotor_e2;
         let t38 = rotor_e1 * rotor_e3;
         let t39 = k(2.0) * (t32 + t31) * t33
@@ -2614,14 +2614,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeViscous<T> {
         let t27 = inner_ring_wx * t26;
         let t28 = k(0.000125) * inner_ring_wz;
         let t29 = inner_ring_wx * t28;
-        let t30 = t25 * t29 - t22 * t27 - (t25 * t23 + t22 * t19);
+        let t30 = t29 * t25 - t27 * t22 - (t25 * t23 + t22 * t19);
         let t31 = rotor_e0 * rotor_e3;
         let t32 = rotor_e1 * rotor_e2;
         let t33 = inner_ring_wy * t26 + inner_ring_wz * t28;
         let t34 = rotor_e0 * rotor_e0;
         let t35 = k(2.0) * (k(0.5) - (t34 + rotor_e1 * rotor_e1)) * t33
             - k(2.0) * (t32 - t31) * t30;
-        let t36 = t22 * t29 + t25 * t27 - (t22 * t23 - t25 * t19);
+        let t36 = t29 * t22 + t27 * t25 - (t22 * t23 - t25 * t19);
         let t37 = rotor_e0 * rotor_e2;
         let t38 = rotor_e1 * rotor_e3;
         let t39 = k(2.0) * (t38 + t37) * t36 + t35;

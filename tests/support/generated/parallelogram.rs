@@ -19,7 +19,7 @@
 //! | gamma | γ | 101 | 166 | 0 | 267 | 0 of 17 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 83 | 110 | 0 | 193 | 0 of 17 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 517 | 719 | 9 | 1245 | 0 of 21 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 477 | 709 | 9 | 1195 | 0 of 21 |
 //! | multipliers | λ, the accelerations being known | 104 | 171 | 3 | 278 | 0 of 17 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | energy | T and V | 19 | 34 | 0 | 53 | 0 of 2 |
@@ -34,7 +34,7 @@
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints: their definitions
 //!
-//! All of it holds but with a probability below 1e-142.
+//! All of it holds but with a probability below 1e-143.
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
 
 /// The mechanism `parallelogram`.
@@ -1431,7 +1431,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
             -(k(0.00496) * (rocker_wx * rocker_wy)),
         ];
     }
-    /// Solves eq. (17): 1245 operations (517 ±, 719 ×, 9 ÷).
+    /// Solves eq. (17): 1195 operations (477 ±, 709 ×, 9 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let crank_e0 = y[3];
@@ -1456,698 +1456,632 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
         let rocker_wy = y[37];
         let rocker_wz = y[38];
         let (
+            t3,
             t7,
-            t12,
+            t11,
             t14,
-            t15,
             t16,
-            t17,
-            t18,
             t19,
-            t20,
-            t21,
+            t22,
             t23,
-            t24,
             t25,
-            t26,
-            t27,
-            t37,
-            t39,
+            t28,
+            t31,
+            t35,
+            t36,
+            t40,
+            t41,
             t42,
-            t44,
-            t51,
-            t54,
-            t56,
+            t43,
+            t46,
+            t47,
+            t48,
+            t52,
+            t53,
+            t55,
+            t57,
+            t58,
             t59,
             t60,
+            t61,
+            t62,
             t63,
-            t64,
-            t65,
-            t66,
             t67,
-            t69,
-            t71,
-            t74,
-            t83,
-            t86,
+            t70,
+            t73,
+            t78,
+            t79,
             t88,
+            t91,
+            t93,
             t95,
-            t96,
-            t99,
-            t101,
-            t107,
-            t108,
-            t111,
-            t113,
-            t119,
-            t120,
-            t121,
-            t122,
-            t126,
-            t129,
-            t130,
-            t144,
-            t149,
+            t98,
+            t100,
+            t104,
+            t106,
+            t142,
+            t145,
+            t152,
             t153,
+            t154,
             t155,
             t156,
-            t157,
             t158,
-            t159,
-            t160,
             t163,
             t164,
             t165,
+            t166,
+            t167,
             t168,
-            t170,
-            t171,
+            t169,
+            t172,
+            t173,
             t174,
             t175,
+            t176,
+            t177,
+            t178,
+            t179,
             t182,
-            t183,
-            t184,
+            t185,
             t190,
             t191,
+            t192,
+            t193,
+            t194,
+            t195,
+            t196,
             t197,
             t198,
             t199,
         ) = {
-            let t0 = coupler_wz * coupler_wz;
-            let t1 = t0 + coupler_wy * coupler_wy;
-            let t2 = coupler_e0 * coupler_e0;
-            let t3 = k(2.0) * (k(0.5) - (t2 + coupler_e1 * coupler_e1));
-            let t4 = coupler_wx * coupler_wy;
-            let t5 = coupler_e0 * coupler_e3;
-            let t6 = coupler_e1 * coupler_e2;
-            let t7 = t6 - t5;
-            let t8 = k(2.0) * t7;
-            let t9 = coupler_wx * coupler_wz;
-            let t10 = coupler_e0 * coupler_e2;
-            let t11 = coupler_e1 * coupler_e3;
-            let t12 = t11 + t10;
-            let t13 = k(2.0) * t12;
-            let t14 = k(0.25) * (t13 * t9 + (t8 * t4 + t3 * t1));
-            let t15 = rocker_wy * rocker_wy;
-            let t16 = rocker_wz * rocker_wz + t15;
-            let t17 = rocker_e0 * rocker_e0;
-            let t18 = rocker_wx * rocker_wy;
-            let t19 = rocker_e0 * rocker_e3;
-            let t20 = rocker_e1 * rocker_e2;
-            let t21 = t20 - t19;
-            let t22 = k(2.0) * t21 * t18
-                + k(2.0) * (k(0.5) - (t17 + rocker_e1 * rocker_e1)) * t16;
-            let t23 = rocker_wx * rocker_wz;
-            let t24 = rocker_e0 * rocker_e2;
-            let t25 = rocker_e1 * rocker_e3;
-            let t26 = t25 + t24;
-            let t27 = k(0.15) * (k(2.0) * t26 * t23 + t22);
-            let t28 = crank_e0 * crank_e0;
-            let t29 = k(0.5) - (t28 + crank_e3 * crank_e3);
-            let t30 = crank_wy * crank_wy;
-            let t31 = t30 + crank_wx * crank_wx;
-            let t32 = t31 * (k(0.5) / t29);
-            let t33 = crank_e0 * crank_e2;
-            let t34 = crank_e1 * crank_e3;
-            let t35 = k(2.0) * (t34 - t33);
-            let t36 = crank_wx * crank_wz;
-            let t37 = t36 - t35 * t32;
-            let t38 = t34 + t33;
-            let t39 = k(0.2) * t38;
-            let t40 = coupler_e0 * coupler_e1;
-            let t41 = coupler_e2 * coupler_e3;
-            let t42 = t41 - t40;
-            let t43 = k(0.01995) * t9 + k(3.924) * t42;
-            let t44 = k(0.5) - (t2 + coupler_e2 * coupler_e2);
-            let t45 = k(2.0) * t44;
-            let t46 = crank_e0 * crank_e1;
-            let t47 = crank_e2 * crank_e3;
-            let t48 = t47 - t46;
-            let t49 = k(2.0) * t48;
-            let t50 = k(2.0) * t38;
-            let t51 = t41 + t40;
+            let t0 = crank_wy * crank_wy;
+            let t1 = crank_wz * crank_wz + t0;
+            let t2 = crank_e0 * crank_e0;
+            let t3 = k(2.0) * (k(0.5) - (t2 + crank_e1 * crank_e1));
+            let t4 = crank_wx * crank_wy;
+            let t5 = crank_e0 * crank_e3;
+            let t6 = crank_e1 * crank_e2;
+            let t7 = k(2.0) * (t6 - t5);
+            let t8 = crank_wx * crank_wz;
+            let t9 = crank_e0 * crank_e2;
+            let t10 = crank_e1 * crank_e3;
+            let t11 = k(2.0) * (t10 + t9);
+            let t12 = t11 * t8 + (t7 * t4 + t3 * t1);
+            let t13 = k(0.1) * t12;
+            let t14 = k(2.0) * (t6 + t5);
+            let t15 = k(0.5) - (t2 + crank_e2 * crank_e2);
+            let t16 = k(2.0) * t15;
+            let t17 = crank_e0 * crank_e1;
+            let t18 = crank_e2 * crank_e3;
+            let t19 = k(2.0) * (t18 - t17);
+            let t20 = t19 * t8 - (t16 * t4 + t14 * t1);
+            let t21 = k(0.1) * t20;
+            let t22 = k(2.0) * (t10 - t9);
+            let t23 = k(2.0) * (t18 + t17);
+            let t24 = k(0.5) - (t2 + crank_e3 * crank_e3);
+            let t25 = k(2.0) * t24;
+            let t26 = t25 * t8 - (t23 * t4 - t22 * t1);
+            let t27 = k(0.1) * t26;
+            let t28 = t22 * t27 - (t14 * t21 - t3 * t13);
+            let t29 = coupler_e0 * coupler_e1;
+            let t30 = coupler_e2 * coupler_e3;
+            let t31 = t30 - t29;
+            let t32 = coupler_wx * coupler_wz;
+            let t33 = k(0.01995) * t32 + k(3.924) * t31;
+            let t34 = coupler_e0 * coupler_e0;
+            let t35 = k(0.5) - (t34 + coupler_e2 * coupler_e2);
+            let t36 = k(2.0) * t35;
+            let t37 = coupler_e0 * coupler_e3;
+            let t38 = coupler_e1 * coupler_e2;
+            let t39 = t38 - t37;
+            let t40 = k(2.0) * t39;
+            let t41 = t30 + t29;
+            let t42 = k(2.0) * t41;
+            let t43 = t25 * t42 - (t11 * t40 - t19 * t36);
+            let t44 = coupler_wx * coupler_wy;
+            let t45 = k(0.01995) * t44 - k(3.924) * t35;
+            let t46 = k(0.5) - (t34 + coupler_e3 * coupler_e3);
+            let t47 = k(2.0) * t46;
+            let t48 = k(2.0) * t31;
+            let t49 = coupler_e0 * coupler_e2;
+            let t50 = coupler_e1 * coupler_e3;
+            let t51 = t50 + t49;
             let t52 = k(2.0) * t51;
-            let t53 = k(2.0) * t29;
-            let t54 = t53 * t52 - (t50 * t8 - t49 * t45);
-            let t55 = k(0.01995) * t4 - k(3.924) * t44;
-            let t56 = k(0.5) - (t2 + coupler_e3 * coupler_e3);
+            let t53 = t11 * t52 + t19 * t48 + t25 * t47;
+            let t54 = t53 * t45 + t43 * t33;
+            let t55 = k(2.0) * (k(0.5) - (t34 + coupler_e1 * coupler_e1));
+            let t56 = t38 + t37;
             let t57 = k(2.0) * t56;
-            let t58 = k(2.0) * t42;
-            let t59 = t50 * t13 + t49 * t58 + t53 * t57;
-            let t60 = t59 * t55 + t54 * t43;
-            let t61 = k(2.0) * (t6 + t5);
-            let t62 = k(2.0) * (t11 - t10);
-            let t63 = t53 * t62 - (t49 * t61 - t50 * t3);
-            let t64 = k(5e-5) * t63;
-            let t65 = k(0.07) * t54;
-            let t66 = k(0.07) * t59;
-            let t67 = k(1.0) / (t59 * t66 + (t54 * t65 + t63 * t64));
-            let t68 = t67 * t60;
-            let t69 = t43 - t65 * t68;
-            let t70 = t65 * t67;
-            let t71 = k(1.0) / (k(0.07) - t65 * t70);
-            let t72 = t71 * t69;
-            let t73 = t64 * t67;
-            let t74 = t65 * t73;
-            let t75 = crank_wz * crank_wz + t30;
-            let t76 = k(2.0) * (k(0.5) - (t28 + crank_e1 * crank_e1));
-            let t77 = crank_wx * crank_wy;
-            let t78 = crank_e0 * crank_e3;
-            let t79 = crank_e1 * crank_e2;
-            let t80 = t79 - t78;
-            let t81 = k(2.0) * t80;
-            let t82 = t50 * t36 + (t81 * t77 + t76 * t75);
-            let t83 = t14 + k(0.2) * t82;
-            let t84 = k(0.4) * t12;
-            let t85 = k(0.4) * t7;
-            let t86 = t59 * t85 + t54 * t84;
-            let t87 = t67 * t86;
-            let t88 = t84 - t65 * t87;
-            let t89 = t71 * t88;
-            let t90 = t74 * t89 - t64 * t87;
-            let t91 = k(2.0) * (t79 + t78);
-            let t92 = k(0.5) - (t28 + crank_e2 * crank_e2);
-            let t93 = k(2.0) * t92;
-            let t94 = t49 * t36 - (t93 * t77 + t91 * t75);
-            let t95 = k(0.25) * (t58 * t9 - (t45 * t4 + t61 * t1));
-            let t96 = t95 + k(0.2) * t94;
-            let t97 = k(0.4) * t42;
-            let t98 = k(0.4) * t44;
-            let t99 = t59 * t98 - t54 * t97;
-            let t100 = t67 * t99;
-            let t101 = t97 + t65 * t100;
-            let t102 = t71 * t101;
-            let t103 = t74 * t102 + t64 * t100;
-            let t104 = t47 + t46;
-            let t105 = k(2.0) * t104;
-            let t106 = t53 * t36 - (t105 * t77 - t35 * t75);
-            let t107 = k(0.25) * (t57 * t9 - (t52 * t4 - t62 * t1));
-            let t108 = t107 + k(0.2) * t106;
-            let t109 = k(0.4) * t56;
-            let t110 = k(0.4) * t51;
-            let t111 = t59 * t110 - t54 * t109;
-            let t112 = t67 * t111;
-            let t113 = t109 + t65 * t112;
-            let t114 = t71 * t113;
-            let t115 = t74 * t114 + t64 * t112;
-            let t116 = k(1.0) / (t63 * t63 + t59 * t59);
-            let t117 = crank_wy * crank_wz;
-            let t118 = t117 * (t105 * t52 + (t81 * t8 + t93 * t45))
-                + t36 * (t35 * t52 - (t91 * t45 + t76 * t8));
-            let t119 = t35 * t62 + (t91 * t61 + t76 * t3);
-            let t120 = t35 * t57 - (t91 * t58 - t76 * t13);
-            let t121 = t105 * t62 - (t93 * t61 + t81 * t3);
-            let t122 = t105 * t57 - (t81 * t13 - t93 * t58);
-            let t123 = crank_wx * (coupler_wx * t122 + coupler_wz * t121)
-                - crank_wy * (coupler_wx * t120 + coupler_wz * t119);
-            let t124 = coupler_wy * coupler_wz * t59
-                + ((t0 + coupler_wx * coupler_wx) * t54 - t4 * t63);
-            let t125 = t124 + k(2.0) * t123 + (t31 * t54 + t118);
-            let t126 = t125 * (t59 * t116);
-            let t127 = t71 * t74;
-            let t128 = t74 * t127 - (k(5e-5) - t64 * t73);
-            let t129 = t63 * t116 * t125;
-            let t130 = t66 * t70;
-            let t131 = t130 * t127 + t66 * t73;
-            let t132 = t131 * t129 - t128 * t126
-                + (t115 * t108 + (t103 * t96 + t90 * t83));
-            let t133 = t130 * t89 + (t85 - t66 * t87);
-            let t134 = t130 * t102 - (t98 - t66 * t100);
-            let t135 = t130 * t114 - (t110 - t66 * t112);
-            let t136 = t130 * (t71 * t130) - (k(0.07) - t66 * (t66 * t67));
-            let t137 = t136 * t129 - t131 * t126
-                + (t135 * t108 + (t134 * t96 + t133 * t83));
-            let t138 = t59 * (t137 + (t130 * t72 + (t55 - t66 * t68)))
-                + t63 * (t132 + (t74 * t72 - t64 * t68));
-            let t139 = t88 * t89 + t86 * t87;
-            let t140 = t101 * t89 - t99 * t87;
-            let t141 = t113 * t89 - t111 * t87;
-            let t142 = t141 * t108 + (t140 * t96 + t139 * t83) - k(0.8) * t83;
-            let t143 = t133 * t129 - t90 * t126 + t142 + (t88 * t72 + t86 * t68);
-            let t144 = k(0.4) * t80;
-            let t145 = t101 * t102 + t99 * t100;
-            let t146 = t113 * t102 + t111 * t100;
-            let t147 = t146 * t108 + (t145 * t96 + t140 * t83) - k(0.8) * t96;
-            let t148 = t134 * t129 - t103 * t126 + t147
-                + (t101 * t72 - (k(7.848) + t99 * t68));
-            let t149 = k(0.4) * t92;
-            let t150 = t113 * t114 + t111 * t112;
-            let t151 = t150 * t108 + (t146 * t96 + t141 * t83) - k(0.8) * t108;
-            let t152 = t135 * t129 - t115 * t126 + t151 + (t113 * t72 - t111 * t68);
-            let t153 = k(0.4) * t104;
-            let t154 = k(0.00398) * t77
-                + (t153 * t152 + (t149 * t148 - t144 * t143) + t138);
-            let t155 = k(0.2) * t80;
-            let t156 = k(0.2) * t92;
-            let t157 = k(0.2) * t104;
-            let t158 = t157 * t152 - (t156 * (k(4.905) - t148) + t155 * t143) + t154;
-            let t159 = k(0.1) * t82;
-            let t160 = t157 * t141 + (t156 * t140 - t155 * t139);
-            let t161 = t59 * t133 + t63 * t90;
-            let t162 = t153 * t141 + (t149 * t140 - t144 * t139);
-            let t163 = t162 + k(0.32) * t80 + t161;
-            let t164 = k(0.1) * t94;
-            let t165 = t157 * t146 + (t156 * t145 - t155 * t140);
-            let t166 = t59 * t134 + t63 * t103;
-            let t167 = t153 * t146 + (t149 * t145 - t144 * t140);
-            let t168 = t167 - k(0.32) * t92 + t166;
-            let t169 = (t168 + (t165 - k(0.26) * t92)) * t164
-                + (t163 + (t160 + k(0.26) * t80)) * t159;
-            let t170 = k(0.1) * t106;
-            let t171 = t157 * t150 + (t156 * t146 - t155 * t141);
-            let t172 = t59 * t135 + t63 * t115;
-            let t173 = t153 * t150 + (t149 * t146 - t144 * t141);
-            let t174 = t173 - k(0.32) * t104 + t172;
-            let t175 = t117 - t105 * t32;
-            let t176 = t59 * (t136 * t120 + t131 * t119)
-                + t63 * (t131 * t120 + t128 * t119);
-            let t177 = t133 * t120 + t90 * t119;
-            let t178 = t134 * t120 + t103 * t119;
-            let t179 = t135 * t120 + t115 * t119;
-            let t180 = t157 * t179 + (t156 * t178 - t155 * t177)
-                + (t153 * t179 + (t149 * t178 - t144 * t177) + t176);
-            let t181 = t59 * (t136 * t122 + t131 * t121)
-                + t63 * (t131 * t122 + t128 * t121);
-            let t182 = k(0.4) * t38;
-            let t183 = k(0.4) * t48;
-            let t184 = k(0.4) * t29;
-            let t185 = t133 * t122 + t90 * t121;
-            let t186 = t134 * t122 + t103 * t121;
-            let t187 = t135 * t122 + t115 * t121;
-            let t188 = t153 * t187 + (t149 * t186 - t144 * t185)
-                - (t184 * t172 + (t183 * t166 + t182 * t161));
-            let t189 = t188 - (t184 * t173 + (t183 * t167 + t182 * t162)) + t181;
-            let t190 = k(0.2) * t48;
-            let t191 = k(0.2) * t29;
-            let t192 = t184 * t141 + (t183 * t140 + t182 * t139) - k(0.32) * t38;
-            let t193 = t184 * t146 + (t183 * t145 + t182 * t140) - k(0.32) * t48;
-            let t194 = t184 * t150 + (t183 * t146 + t182 * t141) - k(0.32) * t29;
-            let t195 = t157 * (t194 - t187)
-                + (t156 * (t193 - t186) - t155 * (t192 - t185));
-            let t196 = t195 + (t191 * t174 + (t190 * t168 + t39 * t163))
-                + (t191 * t171 + (t190 * t165 + t39 * t160));
-            let t197 = (t196 - t189) * t37 + t180 * t175
-                + ((t174 + (t171 - k(0.26) * t104)) * t170 + t169);
-            let t198 = t59 * (t59 * t136 + t63 * t131) + t63 * (t59 * t131 + t63 * t128);
-            let t199 = k(2.0) * (t153 * t172 + (t149 * t166 - t144 * t161))
-                + (t153 * t173 + (t149 * t167 - t144 * t162));
+            let t58 = k(2.0) * (t50 - t49);
+            let t59 = t25 * t58 - (t19 * t57 - t11 * t55);
+            let t60 = k(5e-5) * t59;
+            let t61 = k(0.07) * t43;
+            let t62 = k(0.07) * t53;
+            let t63 = k(1.0) / (t53 * t62 + (t43 * t61 + t59 * t60));
+            let t64 = t63 * t54;
+            let t65 = t33 - t61 * t64;
+            let t66 = t61 * t63;
+            let t67 = k(1.0) / (k(0.07) - t61 * t66);
+            let t68 = t67 * t65;
+            let t69 = t60 * t63;
+            let t70 = t61 * t69;
+            let t71 = k(1.0) / (t59 * t59 + t53 * t53);
+            let t72 = t22 * t42 - (t14 * t36 + t3 * t40);
+            let t73 = t23 * t42 + (t7 * t40 + t16 * t36);
+            let t74 = crank_wy * crank_wz;
+            let t75 = t0 + crank_wx * crank_wx;
+            let t76 = t22 * t58 + (t14 * t57 + t3 * t55);
+            let t77 = t22 * t47 - (t14 * t48 - t3 * t52);
+            let t78 = t23 * t58 - (t16 * t57 + t7 * t55);
+            let t79 = t23 * t47 - (t7 * t52 - t16 * t48);
+            let t80 = crank_wx * (coupler_wx * t79 + coupler_wz * t78)
+                - crank_wy * (coupler_wx * t77 + coupler_wz * t76);
+            let t81 = coupler_wz * coupler_wz;
+            let t82 = coupler_wy * coupler_wz * t53
+                + ((t81 + coupler_wx * coupler_wx) * t43 - t44 * t59);
+            let t83 = t82 + k(2.0) * t80 + (t75 * t43 + (t74 * t73 + t8 * t72));
+            let t84 = t83 * (t53 * t71);
+            let t85 = t67 * t70;
+            let t86 = t70 * t85 - (k(5e-5) - t60 * t69);
+            let t87 = t59 * t71 * t83;
+            let t88 = t62 * t66;
+            let t89 = t88 * t85 + t62 * t69;
+            let t90 = t81 + coupler_wy * coupler_wy;
+            let t91 = k(0.25) * (t52 * t32 + (t40 * t44 + t55 * t90));
+            let t92 = t91 + k(0.2) * t12;
+            let t93 = k(0.25) * (t48 * t32 - (t36 * t44 + t57 * t90));
+            let t94 = t93 + k(0.2) * t20;
+            let t95 = k(0.25) * (t47 * t32 - (t42 * t44 - t58 * t90));
+            let t96 = t95 + k(0.2) * t26;
+            let t97 = t42 * t96 + (t36 * t94 - t40 * t92);
+            let t98 = k(0.2) * t53;
+            let t99 = t63 * t98;
+            let t100 = t61 * t99;
+            let t101 = t67 * t100;
+            let t102 = t70 * t101 + t60 * t99;
+            let t103 = t47 * t96 + (t48 * t94 + t52 * t92);
+            let t104 = k(0.2) * t43;
+            let t105 = t63 * t104;
+            let t106 = k(0.2) - t61 * t105;
+            let t107 = t67 * t106;
+            let t108 = t70 * t107 - t60 * t105;
+            let t109 = t108 * t103 + t102 * t97 + (t89 * t87 - t86 * t84);
+            let t110 = t88 * (t67 * t88) - (k(0.07) - t62 * (t62 * t63));
+            let t111 = t88 * t101 - (k(0.2) - t62 * t99);
+            let t112 = t88 * t107 - t62 * t105;
+            let t113 = t112 * t103 + t111 * t97 + (t110 * t87 - t89 * t84);
+            let t114 = t53 * (t113 + (t88 * t68 + (t45 - t62 * t64)))
+                + t59 * (t109 + (t70 * t68 - t60 * t64));
+            let t115 = t58 * t96 - (t57 * t94 - t55 * t92);
+            let t116 = t100 * t101 + t98 * t99;
+            let t117 = t106 * t101 - t104 * t99;
+            let t118 = t111 * t87 - t102 * t84
+                + (t117 * t103 + t116 * t97 - k(0.8) * t97);
+            let t119 = t73 * (t118 + (t100 * t68 - (t98 * t64 + k(15.696) * t35)));
+            let t120 = t106 * t107 + t104 * t105;
+            let t121 = t112 * t87 - t108 * t84
+                + (t120 * t103 + t117 * t97 - k(0.8) * t103);
+            let t122 = t79 * (t121 + (t106 * t68 + (t104 * t64 - k(15.696) * t31)));
+            let t123 = t122 + (t119 - t78 * (k(0.8) * t115 - k(15.696) * t56));
+            let t124 = k(0.1) * (t123 - k(9.81) * t15)
+                + (k(0.00398) * t4 + (k(0.2) * t123 + t114));
+            let t125 = t53 * (t112 * t77 + t72 * t111) + t59 * (t108 * t77 + t72 * t102);
+            let t126 = t79 * (t120 * t77 + t72 * t117) + t73 * (t117 * t77 + t72 * t116);
+            let t127 = t23 * t27 + (t16 * t21 - t7 * t13);
+            let t128 = t79 * t117 + t73 * t116;
+            let t129 = t79 * t120 + t73 * t117;
+            let t130 = t79 * t129 + t73 * t128;
+            let t131 = t79 * t108 + t73 * t102;
+            let t132 = t79 * t112 + t73 * t111;
+            let t133 = t53 * t132 + t59 * t131;
+            let t134 = k(0.16) - k(0.2) * t130 - t133;
+            let t135 = (t134 + (k(0.13) - k(0.1) * t130)) * t127
+                - (k(0.1) * t126 + (k(0.2) * t126 + t125)) * t28;
+            let t136 = t25 * t27 + (t19 * t21 + t11 * t13);
+            let t137 = t53 * t129 + t43 * t128;
+            let t138 = t53 * (t53 * t112 + t43 * t111) + t59 * (t53 * t108 + t43 * t102);
+            let t139 = k(0.2) * t137;
+            let t140 = t139 + t138;
+            let t141 = t75 * (k(0.5) / t24);
+            let t142 = t74 - t23 * t141;
+            let t143 = t53 * (t110 * t77 + t89 * t76) + t59 * (t89 * t77 + t86 * t76);
+            let t144 = t132 * t77 + t131 * t76;
+            let t145 = t8 - t22 * t141;
+            let t146 = t53 * (t79 * t110 + t78 * t89) + t59 * (t79 * t89 + t78 * t86);
+            let t147 = t79 * t132 + t78 * t131;
+            let t148 = k(0.1) * (t140 + (t139 - t147)) + k(0.01) * t137
+                + (k(0.2) * (t138 - t147) + k(0.04) * t137 - t146);
+            let t149 = t148 * t145 + (k(0.1) * t144 + (k(0.2) * t144 + t143)) * t142;
+            let t150 = t53 * (t53 * t110 + t59 * t89) + t59 * (t53 * t89 + t59 * t86);
+            let t151 = k(0.013)
+                + (k(0.004) - (k(0.4) * t133 + k(0.04) * t130 - (k(0.032) - t150)));
+            let t152 = k(1.0) / (k(0.2) * t134 - k(0.01) * t130 + t151);
+            let t153 = t152 * (t149 + ((t140 + k(0.1) * t137) * t136 - t135) + t124);
+            let t154 = t127 + k(0.1) * t153;
+            let t155 = t136 + k(0.1) * t145;
+            let t156 = t39 * t53 + t51 * t43;
+            let t157 = t156 * t63;
+            let t158 = t51 - t61 * t157;
+            let t159 = t158 * t67;
+            let t160 = t53 * (t159 * t88 + (t39 - t62 * t157))
+                + t59 * (t159 * t70 - t60 * t157);
+            let t161 = t73 * (t159 * t100 + (t40 - t157 * t98)) - t55 * t78;
+            let t162 = (t159 * t106 - (t52 - t157 * t104)) * t79 + t161;
+            let t163 = (k(0.1) * t162 + (k(0.2) * t162 + t160)) * t152;
+            let t164 = k(0.1) * t163;
+            let t165 = rocker_wy * rocker_wy;
+            let t166 = rocker_wz * rocker_wz + t165;
+            let t167 = rocker_e0 * rocker_e0;
+            let t168 = k(2.0) * (k(0.5) - (t167 + rocker_e1 * rocker_e1));
+            let t169 = rocker_wx * rocker_wy;
+            let t170 = rocker_e0 * rocker_e3;
+            let t171 = rocker_e1 * rocker_e2;
+            let t172 = t171 - t170;
+            let t173 = k(2.0) * t172;
+            let t174 = rocker_wx * rocker_wz;
+            let t175 = rocker_e0 * rocker_e2;
+            let t176 = rocker_e1 * rocker_e3;
+            let t177 = t176 + t175;
+            let t178 = k(2.0) * t177;
+            let t179 = k(0.15) * (t178 * t174 + (t173 * t169 + t168 * t166));
+            let t180 = k(0.2) * t153 + t154;
+            let t181 = k(0.2) * t145 + t155;
+            let t182 = t115 + (t59 * t181 + (t78 * t180 + t76 * t28));
+            let t183 = t97 + (t43 * t181 + (t73 * t180 + t72 * t28));
+            let t184 = t103 + (t53 * t181 + (t79 * t180 + t77 * t28));
+            let t185 = t84 - (t59 * t153 - (t78 * t145 - t76 * t142));
+            let t186 = t87 + (t53 * t153 - (t79 * t145 - t77 * t142));
+            let t187 = t88 * t186 - t70 * t185 + (t106 * t184 + t100 * t183);
+            let t188 = t67 * (t65 + t187);
+            let t189 = t62 * t186 + (t61 * t188 - t60 * t185)
+                - (t104 * t184 - t98 * t183);
+            let t190 = t63 * (t54 - t189);
+            let t191 = t186 + t53 * t190;
+            let t192 = t183 + k(0.25) * t191;
+            let t193 = t188 + t43 * t190;
+            let t194 = t184 - k(0.25) * t193;
+            let t195 = t52 * t194 - (t40 * t192 - t55 * t182);
+            let t196 = k(0.5) * t51;
+            let t197 = k(0.5) * t39;
+            let t198 = k(2.0) * (t171 + t170);
+            let t199 = k(0.5) - (t167 + rocker_e2 * rocker_e2);
             (
+                t3,
                 t7,
-                t12,
+                t11,
                 t14,
-                t15,
                 t16,
-                t17,
-                t18,
                 t19,
-                t20,
-                t21,
+                t22,
                 t23,
-                t24,
                 t25,
-                t26,
-                t27,
-                t37,
-                t39,
+                t28,
+                t31,
+                t35,
+                t36,
+                t40,
+                t41,
                 t42,
-                t44,
-                t51,
-                t54,
-                t56,
+                t43,
+                t46,
+                t47,
+                t48,
+                t52,
+                t53,
+                t55,
+                t57,
+                t58,
                 t59,
                 t60,
+                t61,
+                t62,
                 t63,
-                t64,
-                t65,
-                t66,
                 t67,
-                t69,
-                t71,
-                t74,
-                t83,
-                t86,
+                t70,
+                t73,
+                t78,
+                t79,
                 t88,
+                t91,
+                t93,
                 t95,
-                t96,
-                t99,
-                t101,
-                t107,
-                t108,
-                t111,
-                t113,
-                t119,
-                t120,
-                t121,
-                t122,
-                t126,
-                t129,
-                t130,
-                t144,
-                t149,
+                t98,
+                t100,
+                t104,
+                t106,
+                t142,
+                t145,
+                t152,
                 t153,
+                t154,
                 t155,
                 t156,
-                t157,
                 t158,
-                t159,
-                t160,
                 t163,
                 t164,
                 t165,
+                t166,
+                t167,
                 t168,
-                t170,
-                t171,
+                t169,
+                t172,
+                t173,
                 t174,
                 t175,
+                t176,
+                t177,
+                t178,
+                t179,
                 t182,
-                t183,
-                t184,
+                t185,
                 t190,
                 t191,
+                t192,
+                t193,
+                t194,
+                t195,
+                t196,
                 t197,
                 t198,
                 t199,
             )
         };
         let (
-            t202,
-            t203,
-            t205,
-            t207,
-            t215,
+            t208,
             t216,
             t217,
-            t218,
-            t222,
-            t224,
-            t232,
-            t235,
-            t249,
-            t250,
-            t252,
-            t254,
+            t220,
+            t234,
+            t236,
+            t239,
             t262,
-            t263,
-            t266,
-            t291,
-            t292,
+            t273,
+            t275,
+            t278,
+            t283,
+            t286,
+            t289,
+            t290,
+            t293,
             t294,
-            t296,
-            t304,
             t305,
-            t308,
-            t314,
-            t317,
-            t319,
+            t310,
+            t315,
+            t316,
+            t318,
             t320,
+            t321,
+            t323,
             t325,
             t326,
+            t327,
+            t328,
+            t329,
+            t330,
+            t331,
+            t332,
+            t334,
+            t335,
+            t336,
+            t337,
             t338,
-            t339,
-            t340,
-            t341,
-            t343,
-            t345,
-            t350,
-            t351,
-            t352,
-            t354,
-            t355,
-            t356,
-            t358,
-            t359,
-            t360,
-            t361,
-            t362,
-            t363,
-            t364,
-            t365,
         ) = {
-            let t200 = k(2.0) * (t157 * t174 + (t156 * t168 - t155 * t163))
-                + (t157 * t171 + (t156 * t165 - t155 * t160));
-            let t201 = k(1.0)
-                / (t200 - (k(0.013) + (k(0.004) - (t199 - (k(0.032) - t198)))));
-            let t202 = t201 * (t197 + t158);
-            let t203 = t159 + (t155 * t202 + t39 * t37);
-            let t204 = t83 + (t144 * t202 + t182 * t37 + t203);
-            let t205 = t164 - (t156 * t202 - t190 * t37);
-            let t206 = t96 - (t149 * t202 - t183 * t37 - t205);
-            let t207 = t170 - (t157 * t202 - t191 * t37);
-            let t208 = t108 - (t153 * t202 - t184 * t37 - t207);
-            let t209 = t126 + (t63 * t202 + (t121 * t37 - t119 * t175));
-            let t210 = t129 - (t59 * t202 + (t122 * t37 - t120 * t175));
-            let t211 = t130 * t210 - t74 * t209
-                + (t113 * t208 + (t101 * t206 + t88 * t204));
-            let t212 = t71 * (t69 + t211);
-            let t213 = t66 * t210 + (t65 * t212 - t64 * t209)
-                + (t111 * t208 + (t99 * t206 - t86 * t204));
-            let t214 = t67 * (t60 - t213);
-            let t215 = t212 + t54 * t214;
-            let t216 = k(0.5) * t12;
-            let t217 = t210 + t59 * t214;
-            let t218 = k(0.5) * t7;
-            let t219 = t218 * t217 + t216 * t215;
-            let t220 = t204 - t219;
-            let t221 = k(0.5) - (t17 + rocker_e3 * rocker_e3);
-            let t222 = (t15 + rocker_wx * rocker_wx) * (k(0.5) / t221);
-            let t223 = k(2.0) * (t25 - t24);
-            let t224 = t23 - t223 * t222;
-            let t225 = k(0.5) - (t17 + rocker_e2 * rocker_e2);
-            let t226 = rocker_e0 * rocker_e1;
-            let t227 = rocker_e2 * rocker_e3;
-            let t228 = t227 - t226;
-            let t229 = k(2.0) * t228 * t23
-                - (k(2.0) * t225 * t18 + k(2.0) * (t20 + t19) * t16);
-            let t230 = k(0.15) * t229;
-            let t231 = t227 + t226;
-            let t232 = k(2.0) * t231;
-            let t233 = k(0.15) * (k(2.0) * t221 * t23 - (t232 * t18 - t223 * t16));
-            let t234 = k(0.18) * t231 * t233
-                + (k(0.18) * t225 * t230 - k(0.18) * t21 * t27);
-            let t235 = k(54.054054054054056)
-                * (t234 - (k(0.00496) * t18 - k(1.7658) * t225));
-            let t236 = k(0.3) * t21;
-            let t237 = t236 * t235 + k(0.3) * t26 * t224;
-            let t238 = t27 + t237;
-            let t239 = t237 + t238 + (t219 - t220) + (t27 - t14);
-            let t240 = t7 * t59 + t12 * t54;
-            let t241 = t240 * t67;
-            let t242 = t12 - t65 * t241;
-            let t243 = t242 * t71;
-            let t244 = t59 * (t243 * t130 + (t7 - t66 * t241))
-                + t63 * (t243 * t74 - t64 * t241);
-            let t245 = t243 * t88 - (k(1.0) - t241 * t86);
-            let t246 = t243 * t101 - t241 * t99;
-            let t247 = t243 * t113 - t241 * t111;
-            let t248 = t157 * t247 + (t156 * t246 - t155 * t245)
-                + (t153 * t247 + (t149 * t246 - t144 * t245) + t244);
-            let t249 = t248 * t201;
-            let t250 = t155 * t249;
-            let t251 = t144 * t249 + t250;
-            let t252 = t156 * t249;
-            let t253 = t149 * t249 + t252;
-            let t254 = t157 * t249;
-            let t255 = t153 * t249 + t254;
-            let t256 = t63 * t249;
-            let t257 = t59 * t249;
-            let t258 = t130 * t257 + t74 * t256
-                + (t113 * t255 + (t101 * t253 - t88 * t251));
-            let t259 = t71 * (t242 - t258);
-            let t260 = t66 * t257 - (t65 * t259 - t64 * t256)
-                + (t111 * t255 + (t99 * t253 + t86 * t251));
-            let t261 = t67 * (t240 + t260);
-            let t262 = t259 + t54 * t261;
-            let t263 = t257 - t59 * t261;
-            let t264 = t218 * t263 - t216 * t262;
-            let t265 = t251 + t264;
-            let t266 = k(32.432432432432435) * t21;
-            let t267 = t236 * t266;
-            let t268 = k(1.0) / (k(2.0) * t267 - (t264 + t265));
-            let t269 = k(0.5) * t42;
-            let t270 = k(0.5) * t44;
-            let t271 = t270 * t217 - t269 * t215;
-            let t272 = t206 + t271;
-            let t273 = k(0.3) * t225;
-            let t274 = t273 * t235 - k(0.3) * t228 * t224;
-            let t275 = t230 - t274;
-            let t276 = t270 * t263 + t269 * t262;
-            let t277 = t253 + t276;
-            let t278 = t273 * t266;
-            let t279 = k(2.0) * t278 - (t276 + t277);
-            let t280 = t268 * t279;
-            let t281 = t280 * t239 - (t274 - t275 + (t271 + t272) - (t230 - t95));
-            let t282 = t44 * t59 - t42 * t54;
-            let t283 = t67 * t282;
-            let t284 = t42 + t65 * t283;
-            let t285 = t71 * t284;
-            let t286 = t59 * (t130 * t285 - (t44 - t66 * t283))
-                + t63 * (t74 * t285 + t64 * t283);
-            let t287 = t88 * t285 - t86 * t283;
-            let t288 = t101 * t285 - (k(1.0) - t99 * t283);
-            let t289 = t113 * t285 + t111 * t283;
-            let t290 = t157 * t289 + (t156 * t288 - t155 * t287)
-                + (t153 * t289 + (t149 * t288 - t144 * t287) + t286);
-            let t291 = t201 * t290;
-            let t292 = t155 * t291;
-            let t293 = t144 * t291 + t292;
-            let t294 = t156 * t291;
-            let t295 = t149 * t291 + t294;
-            let t296 = t157 * t291;
-            let t297 = t153 * t291 + t296;
-            let t298 = t63 * t291;
-            let t299 = t59 * t291;
-            let t300 = t130 * t299 + t74 * t298
-                + (t113 * t297 + (t101 * t295 - t88 * t293));
-            let t301 = t71 * (t284 - t300);
-            let t302 = t66 * t299 - (t65 * t301 - t64 * t298)
-                + (t111 * t297 + (t99 * t295 + t86 * t293));
-            let t303 = t67 * (t282 - t302);
-            let t304 = t301 - t54 * t303;
-            let t305 = t299 + t59 * t303;
-            let t306 = t270 * t305 + t269 * t304;
-            let t307 = t295 + t306;
-            let t308 = k(32.432432432432435) * t225;
-            let t309 = t273 * t308;
-            let t310 = k(1.0) / (t279 * t280 - (k(2.0) * t309 + (t306 + t307)));
-            let t311 = k(0.5) * t56;
-            let t312 = k(0.5) * t51;
-            let t313 = t312 * t217 - t311 * t215;
-            let t314 = t208 + t313;
-            let t315 = k(0.3) * t231;
-            let t316 = t315 * t235 - k(0.3) * t221 * t224;
-            let t317 = t233 - t316;
-            let t318 = t312 * t263 + t311 * t262;
-            let t319 = t255 + t318;
-            let t320 = t315 * t266;
-            let t321 = k(2.0) * t320 - (t318 + t319);
-            let t322 = t268 * t321;
-            let t323 = t322 * t239 - (t316 - t317 + (t313 + t314) - (t233 - t107));
-            let t324 = t312 * t305 + t311 * t304;
-            let t325 = t297 + t324;
-            let t326 = t315 * t308;
-            let t327 = t279 * t322 - (k(2.0) * t326 + (t324 + t325));
-            let t328 = t310 * t327;
-            let t329 = t51 * t59 - t56 * t54;
-            let t330 = t67 * t329;
-            let t331 = t56 + t65 * t330;
-            let t332 = t71 * t331;
-            let t333 = t59 * (t130 * t332 - (t51 - t66 * t330))
-                + t63 * (t74 * t332 + t64 * t330);
-            let t334 = t88 * t332 - t86 * t330;
-            let t335 = t101 * t332 + t99 * t330;
-            let t336 = t113 * t332 - (k(1.0) - t111 * t330);
-            let t337 = t157 * t336 + (t156 * t335 - t155 * t334)
-                + (t153 * t336 + (t149 * t335 - t144 * t334) + t333);
-            let t338 = t201 * t337;
-            let t339 = t155 * t338;
-            let t340 = t144 * t338 + t339;
-            let t341 = t156 * t338;
-            let t342 = t149 * t338 + t341;
-            let t343 = t157 * t338;
-            let t344 = t153 * t338 + t343;
-            let t345 = t63 * t338;
-            let t346 = t59 * t338;
-            let t347 = t130 * t346 + t74 * t345
-                + (t113 * t344 + (t101 * t342 - t88 * t340));
-            let t348 = t71 * (t331 - t347);
-            let t349 = t66 * t346 - (t65 * t348 - t64 * t345)
-                + (t111 * t344 + (t99 * t342 + t86 * t340));
-            let t350 = t67 * (t329 - t349);
-            let t351 = t348 - t54 * t350;
-            let t352 = t346 + t59 * t350;
-            let t353 = t312 * t352 + t311 * t351;
-            let t354 = t344 + t353;
-            let t355 = k(32.432432432432435) * t231;
-            let t356 = t315 * t355;
-            let t357 = t327 * t328 - (t321 * t322 - (k(2.0) * t356 + (t353 + t354)));
-            let t358 = (t328 * t281 - t323) / t357;
-            let t359 = t328 * t358 - t310 * t281;
-            let t360 = t322 * t358 - (t280 * t359 + t268 * t239);
-            let t361 = t359 * (t293 + (t218 * t305 - t216 * t304))
-                - (t220 + t265 * t360);
-            let t362 = t358 * (t342 + (t270 * t352 + t269 * t351))
-                - (t307 * t359 + (t272 - t277 * t360));
-            let t363 = t359 * (t298 + t63 * t303)
-                - (t360 * (t256 - t63 * t261) + (t209 - t63 * t214));
-            let t364 = t358 * (t236 * t355)
-                - (t359 * (t236 * t308) + (t238 + t267 * t360));
-            let t365 = t358 * (t273 * t355) - (t309 * t359 - (t275 - t278 * t360));
+            let t200 = k(2.0) * t199;
+            let t201 = rocker_e0 * rocker_e1;
+            let t202 = rocker_e2 * rocker_e3;
+            let t203 = t202 - t201;
+            let t204 = k(2.0) * t203;
+            let t205 = k(0.15) * (t204 * t174 - (t200 * t169 + t198 * t166));
+            let t206 = k(2.0) * (t176 - t175);
+            let t207 = t202 + t201;
+            let t208 = k(2.0) * t207;
+            let t209 = k(0.5) - (t167 + rocker_e3 * rocker_e3);
+            let t210 = k(2.0) * t209;
+            let t211 = k(0.15) * (t210 * t174 - (t208 * t169 - t206 * t166));
+            let t212 = t206 * t211 - (t198 * t205 - t168 * t179);
+            let t213 = t208 * t211 + (t200 * t205 - t173 * t179);
+            let t214 = k(0.09) * t213 - (k(0.00496) * t169 - k(1.7658) * t199);
+            let t215 = t213 - k(8.108108108108109) * t214;
+            let t216 = (t165 + rocker_wx * rocker_wx) * (k(0.5) / t209);
+            let t217 = t174 - t206 * t216;
+            let t218 = k(0.15) * t217 + (t210 * t211 + (t204 * t205 + t178 * t179));
+            let t219 = t178 * t218 - (t173 * t215 - t168 * t212);
+            let t220 = k(54.054054054054056) * t214;
+            let t221 = k(0.3) * t172;
+            let t222 = t221 * t220 + k(0.3) * t177 * t217 + t219
+                + (t197 * t191 + t196 * t193 - t195);
+            let t223 = t222 + (t179 - t91);
+            let t224 = k(0.3) * t163;
+            let t225 = t78 * t224;
+            let t226 = t73 * t224;
+            let t227 = t79 * t224;
+            let t228 = t59 * t163;
+            let t229 = t53 * t163;
+            let t230 = t88 * t229 + t70 * t228 + (t106 * t227 + t100 * t226);
+            let t231 = t67 * (t158 + t230);
+            let t232 = t62 * t229 + (t61 * t231 + t60 * t228)
+                - (t104 * t227 - t98 * t226);
+            let t233 = t63 * (t156 - t232);
+            let t234 = t229 + t53 * t233;
+            let t235 = t226 + k(0.25) * t234;
+            let t236 = t231 + t43 * t233;
+            let t237 = t227 - k(0.25) * t236;
+            let t238 = t52 * t237 - (t40 * t235 - t55 * t225);
+            let t239 = k(32.432432432432435) * t172;
+            let t240 = k(4.864864864864865) * t172;
+            let t241 = t173 * t240;
+            let t242 = t241 + t221 * t239 + (t197 * t234 + t196 * t236 - t238);
+            let t243 = k(1.0) / t242;
+            let t244 = t48 * t194 + (t36 * t192 - t57 * t182);
+            let t245 = k(0.5) * t31;
+            let t246 = k(0.5) * t35;
+            let t247 = t204 * t218 + (t200 * t215 - t198 * t212);
+            let t248 = k(0.3) * t199;
+            let t249 = t248 * t220 - k(0.3) * t203 * t217 - t247
+                + (t246 * t191 - t245 * t193 + t244);
+            let t250 = t48 * t237 + (t36 * t235 - t57 * t225);
+            let t251 = t200 * t240;
+            let t252 = t251 + t248 * t239 + (t246 * t234 - t245 * t236 + t250);
+            let t253 = t243 * t252;
+            let t254 = t253 * t223 - (t249 - (t205 - t93));
+            let t255 = t35 * t53 - t31 * t43;
+            let t256 = t63 * t255;
+            let t257 = t31 + t61 * t256;
+            let t258 = t67 * t257;
+            let t259 = t53 * (t88 * t258 - (t35 - t62 * t256))
+                + t59 * (t70 * t258 + t60 * t256);
+            let t260 = t73 * (t100 * t258 - (t36 - t98 * t256)) + t57 * t78;
+            let t261 = t79 * (t106 * t258 - (t48 + t104 * t256)) + t260;
+            let t262 = t152 * (k(0.1) * t261 + (k(0.2) * t261 + t259));
+            let t263 = k(0.3) * t262;
+            let t264 = t78 * t263;
+            let t265 = t73 * t263;
+            let t266 = t79 * t263;
+            let t267 = t59 * t262;
+            let t268 = t53 * t262;
+            let t269 = t88 * t268 + t70 * t267 + (t106 * t266 + t100 * t265);
+            let t270 = t67 * (t257 + t269);
+            let t271 = t62 * t268 + (t61 * t270 + t60 * t267)
+                - (t104 * t266 - t98 * t265);
+            let t272 = t63 * (t255 + t271);
+            let t273 = t268 - t53 * t272;
+            let t274 = t265 + k(0.25) * t273;
+            let t275 = t270 - t43 * t272;
+            let t276 = t266 - k(0.25) * t275;
+            let t277 = t48 * t276 + (t36 * t274 - t57 * t264);
+            let t278 = k(32.432432432432435) * t199;
+            let t279 = k(4.864864864864865) * t199;
+            let t280 = t200 * t279;
+            let t281 = t280 + t248 * t278 - (t246 * t273 - t245 * t275 + t277);
+            let t282 = k(1.0) / (t252 * t253 - t281);
+            let t283 = t47 * t194 + (t42 * t192 + t58 * t182);
+            let t284 = k(0.5) * t46;
+            let t285 = k(0.5) * t41;
+            let t286 = t210 * t218 + (t208 * t215 + t206 * t212);
+            let t287 = k(0.3) * t207;
+            let t288 = t287 * t220 - k(0.3) * t209 * t217 - t286
+                + (t285 * t191 - t284 * t193 + t283);
+            let t289 = t47 * t237 + (t42 * t235 + t58 * t225);
+            let t290 = t208 * t240;
+            let t291 = t290 + t287 * t239 + (t285 * t234 - t284 * t236 + t289);
+            let t292 = t243 * t291;
+            let t293 = t47 * t276 + (t42 * t274 + t58 * t264);
+            let t294 = t208 * t279;
+            let t295 = t294 + t287 * t278 - (t285 * t273 - t284 * t275 + t293);
+            let t296 = t252 * t292 - t295;
+            let t297 = t282 * t296;
+            let t298 = t41 * t53 - t46 * t43;
+            let t299 = t63 * t298;
+            let t300 = t46 + t61 * t299;
+            let t301 = t67 * t300;
+            let t302 = t53 * (t88 * t301 - (t41 - t62 * t299))
+                + t59 * (t70 * t301 + t60 * t299);
+            let t303 = t73 * (t100 * t301 - (t42 - t98 * t299)) - t58 * t78;
+            let t304 = t79 * (t106 * t301 - (t47 + t104 * t299)) + t303;
+            let t305 = t152 * (k(0.1) * t304 + (k(0.2) * t304 + t302));
+            let t306 = k(0.3) * t305;
+            let t307 = t78 * t306;
+            let t308 = t73 * t306;
+            let t309 = t79 * t306;
+            let t310 = t59 * t305;
+            let t311 = t53 * t305;
+            let t312 = t88 * t311 + t70 * t310 + (t106 * t309 + t100 * t308);
+            let t313 = t67 * (t300 + t312);
+            let t314 = t62 * t311 + (t61 * t313 + t60 * t310)
+                - (t104 * t309 - t98 * t308);
+            let t315 = t63 * (t298 + t314);
+            let t316 = t311 - t53 * t315;
+            let t317 = t308 + k(0.25) * t316;
+            let t318 = t313 - t43 * t315;
+            let t319 = t309 - k(0.25) * t318;
+            let t320 = t47 * t319 + (t42 * t317 + t58 * t307);
+            let t321 = k(32.432432432432435) * t207;
+            let t322 = k(4.864864864864865) * t207;
+            let t323 = t208 * t322;
+            let t324 = t323 + t287 * t321 - (t285 * t316 - t284 * t318 + t320);
+            let t325 = (t297 * t254 - (t292 * t223 - (t288 - (t211 - t95))))
+                / (t296 * t297 - (t291 * t292 - t324));
+            let t326 = t297 * t325 - t282 * t254;
+            let t327 = t292 * t325 - (t253 * t326 + t243 * t223);
+            let t328 = t327 * (t7 * t164) - (t11 * t155 - (t7 * t154 - t3 * t28));
+            let t329 = k(0.1) * t262;
+            let t330 = k(0.1) * t305;
+            let t331 = t327 * (t16 * t164) + (t19 * t155 + (t16 * t154 - t14 * t28));
+            let t332 = t327 * (t23 * t164) + (t25 * t155 + (t23 * t154 + t22 * t28));
+            let t333 = t326 * (t52 * t276 - (t40 * t274 - t55 * t264))
+                - (t195 + t238 * t327);
+            let t334 = t325 * (t52 * t319 - (t40 * t317 - t55 * t307)) - t333;
+            let t335 = t325 * (t48 * t319 + (t36 * t317 - t57 * t307))
+                - (t277 * t326 - (t244 + t250 * t327));
+            let t336 = t326 * (t267 - t59 * t272)
+                - (t327 * (t228 + t59 * t233) - (t185 - t59 * t190));
+            let t337 = t325 * (t173 * t322)
+                - (t326 * (t173 * t279) + (t219 + t241 * t327));
+            let t338 = t325 * (t200 * t322) - (t280 * t326 - (t247 - t251 * t327));
             (
-                t202,
-                t203,
-                t205,
-                t207,
-                t215,
+                t208,
                 t216,
                 t217,
-                t218,
-                t222,
-                t224,
-                t232,
-                t235,
-                t249,
-                t250,
-                t252,
-                t254,
+                t220,
+                t234,
+                t236,
+                t239,
                 t262,
-                t263,
-                t266,
-                t291,
-                t292,
+                t273,
+                t275,
+                t278,
+                t283,
+                t286,
+                t289,
+                t290,
+                t293,
                 t294,
-                t296,
-                t304,
                 t305,
-                t308,
-                t314,
-                t317,
-                t319,
+                t310,
+                t315,
+                t316,
+                t318,
                 t320,
+                t321,
+                t323,
                 t325,
                 t326,
+                t327,
+                t328,
+                t329,
+                t330,
+                t331,
+                t332,
+                t334,
+                t335,
+                t336,
+                t337,
                 t338,
-                t339,
-                t340,
-                t341,
-                t343,
-                t345,
-                t350,
-                t351,
-                t352,
-                t354,
-                t355,
-                t356,
-                t358,
-                t359,
-                t360,
-                t361,
-                t362,
-                t363,
-                t364,
-                t365,
             )
         };
         *out = [
-            t339 * t358 - (t292 * t359 - (t203 + t250 * t360)),
-            t294 * t359 + (t205 - t252 * t360) - t341 * t358,
-            t343 * t358 - (t296 * t359 + (t207 - t254 * t360)),
-            t175,
-            -t37,
-            t338 * t358 - (t291 * t359 - (t202 + t249 * t360)),
-            t358 * (t340 + (t218 * t352 - t216 * t351)) - t361,
-            -t362,
-            t354 * t358 - (t325 * t359 + (t314 - t319 * t360)),
-            t363 - t358 * (t345 + t63 * t350),
-            t351 * t358 - (t304 * t359 - (t215 + t262 * t360)),
-            t352 * t358 - (t305 * t359 + (t217 - t263 * t360)),
-            -t364,
-            t365,
-            t326 * t359 - (t317 - t320 * t360) - t356 * t358,
-            rocker_wy * rocker_wz - t232 * t222,
-            -t224,
-            t308 * t359 + (t235 + t266 * t360) - t355 * t358,
-            -t360,
-            t359,
-            t358,
+            t326 * (t7 * t329) - t328 - t325 * (t7 * t330),
+            t325 * (t16 * t330) - (t326 * (t16 * t329) - t331),
+            t326 * (t23 * t329) - t332 - t325 * (t23 * t330),
+            t142,
+            -t145,
+            t262 * t326 - (t153 + t163 * t327) - t305 * t325,
+            t334,
+            t335,
+            t293 * t326 - (t283 + t289 * t327) - t320 * t325,
+            t325 * (t310 - t59 * t315) - t336,
+            t318 * t325 - (t275 * t326 - (t193 + t236 * t327)),
+            t273 * t326 - (t191 + t234 * t327) - t316 * t325,
+            -t337,
+            t338,
+            t294 * t326 - (t286 - t290 * t327) - t323 * t325,
+            rocker_wy * rocker_wz - t208 * t216,
+            -t217,
+            t278 * t326 + (t220 + t239 * t327) - t321 * t325,
+            -t327,
+            t326,
+            t325,
         ];
     }
     /// Writes λ: 278 operations (104 ±, 171 ×, 3 ÷).

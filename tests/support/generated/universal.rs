@@ -18,7 +18,7 @@
 //! | gamma | γ | 39 | 61 | 0 | 100 | 0 of 4 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 30 | 46 | 0 | 76 | 0 of 4 |
 //! | applied_force | (f, n' − w̃'J'w') | 27 | 41 | 0 | 68 | 2 of 6 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 118 | 177 | 3 | 298 | 0 of 6 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 117 | 167 | 3 | 287 | 0 of 6 |
 //! | multipliers | λ, the accelerations being known | 47 | 68 | 1 | 116 | 0 of 4 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 14 | 30 | 0 | 44 | 0 of 9 |
 //! | energy | T and V | 19 | 31 | 0 | 50 | 0 of 2 |
@@ -648,7 +648,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Universal<T> {
             k(2.0) * (bob_e1 * bob_e3 + bob_e0 * bob_e2) * t6 - t16,
         ];
     }
-    /// Solves eq. (17): 298 operations (118 ±, 177 ×, 3 ÷) and 3 functions.
+    /// Solves eq. (17): 287 operations (117 ±, 167 ×, 3 ÷) and 3 functions.
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let bob_e0 = y[3];
@@ -682,82 +682,73 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Universal<T> {
         let t20 = k(0.02) * t19 - k(0.03) * (t15 * t11 + (t10 * t6 + t5 * t2));
         let t21 = t0 + t16;
         let t22 = k(0.4) * (t15 * t21 - (t10 * t18 - t5 * t11)) - t20;
-        let t23 = k(0.04) * t14;
-        let t24 = t23 - k(0.8) * t9;
-        let t25 = k(0.06) * t14 - k(0.8) * t4;
-        let t26 = k(2.0) * t25;
-        let t27 = k(0.04) * t4;
-        let t28 = t27 - k(0.06) * t9;
-        let t29 = t15 * (k(2.0) * t28) + (t10 * t26 - t5 * (k(2.0) * t24));
-        let t30 = t8 + t7;
+        let t23 = k(2.0) * (t8 + t7);
+        let t24 = k(2.0) * (k(0.5) - (t3 + bob_e2 * bob_e2));
+        let t25 = bob_e0 * bob_e1;
+        let t26 = bob_e2 * bob_e3;
+        let t27 = k(2.0) * (t26 - t25);
+        let t28 = k(0.02) * (t27 * t18 + (t24 * t17 + t23 * t6))
+            - k(0.03) * (t27 * t11 - (t24 * t6 + t23 * t2));
+        let t29 = k(0.4) * (t27 * t21 + (t24 * t18 - t23 * t11)) - t28;
+        let t30 = t13 - t12;
         let t31 = k(2.0) * t30;
-        let t32 = k(0.5) - (t3 + bob_e2 * bob_e2);
+        let t32 = t26 + t25;
         let t33 = k(2.0) * t32;
-        let t34 = bob_e0 * bob_e1;
-        let t35 = bob_e2 * bob_e3;
-        let t36 = t35 - t34;
-        let t37 = k(2.0) * t36;
-        let t38 = k(0.02) * (t37 * t18 + (t33 * t17 + t31 * t6))
-            - k(0.03) * (t37 * t11 - (t33 * t6 + t31 * t2));
-        let t39 = k(0.4) * (t37 * t21 + (t33 * t18 - t31 * t11)) - t38;
-        let t40 = k(0.04) * t36 + k(0.8) * t32;
-        let t41 = k(0.06) * t36 + k(0.8) * t30;
-        let t42 = k(2.0) * t41;
-        let t43 = k(0.06) * t32 - k(0.04) * t30;
-        let t44 = t15 * (k(2.0) * t43) + (t10 * t42 - t5 * (k(2.0) * t40));
-        let t45 = t13 - t12;
-        let t46 = k(2.0) * t45;
-        let t47 = t35 + t34;
-        let t48 = k(2.0) * t47;
-        let t49 = k(0.5) - (t3 + bob_e3 * bob_e3);
-        let t50 = k(2.0) * t49;
-        let t51 = k(0.02) * (t50 * t18 + (t48 * t17 - t46 * t6))
-            - k(0.03) * (t50 * t11 - (t48 * t6 - t46 * t2));
-        let t52 = k(0.4) * (t50 * t21 + (t48 * t18 + t46 * t11)) - t51;
-        let t53 = k(0.04) * t49 + k(0.8) * t47;
-        let t54 = k(0.06) * t49 - k(0.8) * t45;
-        let t55 = k(2.0) * t54;
-        let t56 = k(0.06) * t47 + k(0.04) * t45;
-        let t57 = t15 * (k(2.0) * t56) + (t10 * t55 - t5 * (k(2.0) * t53));
-        let t58 = k(1.0) / (t5 * t5 + t15 * t15);
-        let t59 = t19 * (t15 * t58);
-        let t60 = t23 - (k(0.7416) * t4 - k(0.0064) * t9);
-        let t61 = k(0.026) * t14 + (k(0.0064) * t4 - k(0.7636) * t9);
-        let t62 = k(0.0652) * t14 - (t27 + k(0.026) * t9);
-        let t63 = k(1.0) / (t15 * t62 - (t10 * t61 + t5 * t60));
-        let t64 = t61 * t63;
-        let t65 = turn0.cos();
-        let t66 = turn0.sin();
-        let t67 = (t48 * t65 + t33 * t66).atan2(t48 * t66 - t33 * t65);
-        let t68 = k(1.5) * (k(0.2) - (turn0 + t67));
-        let t69 = k(0.002) * bob_wz;
-        let t70 = k(0.004) * bob_wy;
-        let t71 = bob_wx * (t70 + t69) + (k(0.03) * t18 + k(0.003) * (t1 - t0));
-        let t72 = k(0.003) * bob_wx;
-        let t73 = bob_wy * (t69 - t72) + (k(0.02) * t11 - k(0.004) * (t1 - t16));
-        let t74 = k(19.62) * t54 + (t73 + (k(0.05) * bob_wy - t10 * t68));
-        let t75 = t10 * t74 - t5 * (k(19.62) * t53 - (t71 - t5 * t68));
-        let t76 = bob_wz * (t70 + t72) + (k(0.01) * t6 - k(0.002) * (t0 - t16));
-        let t77 = t15 * (k(19.62) * t56 + (t76 - t15 * t68)) + t75;
-        let t78 = (t42 + t61 * (t63 * t44)) * t39 + (t26 + t61 * (t63 * t29)) * t22;
-        let t79 = t5 * t58 * t19;
-        let t80 = t79 * (k(0.013) - t62 * t64) - (k(0.0032) + t61 * (t60 * t63)) * t59;
-        let t81 = t80 - ((t55 + t61 * (t63 * t57)) * t52 + t78)
-            + (t74 + t61 * (t63 * t77));
-        let t82 = t81 / (k(0.3818) - t61 * t64);
-        let t83 = t62 * t79 - (t61 * t82 - t60 * t59)
-            + (t57 * t52 + (t44 * t39 + t29 * t22));
-        let t84 = t63 * (t77 - t83);
-        let t85 = t59 - t5 * t84;
-        let t86 = t82 + t10 * t84;
-        let t87 = t79 + t15 * t84;
+        let t34 = k(0.5) - (t3 + bob_e3 * bob_e3);
+        let t35 = k(2.0) * t34;
+        let t36 = k(0.02) * (t35 * t18 + (t33 * t17 - t31 * t6))
+            - k(0.03) * (t35 * t11 - (t33 * t6 - t31 * t2));
+        let t37 = k(0.4) * (t35 * t21 + (t33 * t18 + t31 * t11)) - t36;
+        let t38 = t31 * t37 - (t23 * t29 - t5 * t22);
+        let t39 = k(0.08) * t14 - k(1.6) * t9;
+        let t40 = t33 * t37 + (t24 * t29 - t10 * t22);
+        let t41 = k(0.12) * t14 - k(1.6) * t4;
+        let t42 = t35 * t37 + (t27 * t29 + t15 * t22);
+        let t43 = k(0.08) * t4 - k(0.12) * t9;
+        let t44 = k(1.0) / (t5 * t5 + t15 * t15);
+        let t45 = t19 * (t5 * t44);
+        let t46 = k(0.0652) * t14 - (k(0.04) * t4 + k(0.026) * t9);
+        let t47 = t19 * (t15 * t44);
+        let t48 = k(0.04) * t14 - (k(0.7416) * t4 - k(0.0064) * t9);
+        let t49 = k(0.026) * t14 + (k(0.0064) * t4 - k(0.7636) * t9);
+        let t50 = k(1.0) / (t15 * t46 - (t10 * t49 + t5 * t48));
+        let t51 = t49 * t50;
+        let t52 = turn0.cos();
+        let t53 = turn0.sin();
+        let t54 = (t33 * t52 + t24 * t53).atan2(t33 * t53 - t24 * t52);
+        let t55 = k(1.5) * (k(0.2) - (turn0 + t54));
+        let t56 = k(0.002) * bob_wz;
+        let t57 = k(0.004) * bob_wy;
+        let t58 = bob_wx * (t57 + t56) + (k(0.03) * t18 + k(0.003) * (t1 - t0));
+        let t59 = t5 * (k(0.7848) * t34 + k(15.696) * t32 - (t58 - t5 * t55));
+        let t60 = k(0.003) * bob_wx;
+        let t61 = bob_wy * (t56 - t60) + (k(0.02) * t11 - k(0.004) * (t1 - t16));
+        let t62 = k(1.1772) * t34 - k(15.696) * t30
+            + (t61 + (k(0.05) * bob_wy - t10 * t55));
+        let t63 = bob_wz * (t57 + t60) + (k(0.01) * t6 - k(0.002) * (t0 - t16));
+        let t64 = t15 * (k(1.1772) * t32 + k(0.7848) * t30 + (t63 - t15 * t55));
+        let t65 = t64 + (t10 * t62 - t59);
+        let t66 = (k(0.013) - t46 * t51) * t45 - (k(0.0032) + t49 * (t48 * t50)) * t47;
+        let t67 = t49 * (t41 * t50) * t40 - (k(0.8) - t49 * (t50 * t39)) * t38;
+        let t68 = (k(0.06) - t49 * (t43 * t50)) * t42 + t67 - t66
+            - (t62 + t49 * (t50 * t65));
+        let t69 = t68 / (k(0.3818) - t49 * t51);
+        let t70 = t49 * t69 + t48 * t47 + t46 * t45
+            - (t43 * t42 - (t41 * t40 + t39 * t38));
+        let t71 = t50 * (t65 - t70);
+        let t72 = t69 - t10 * t71;
+        let t73 = t45 + t15 * t71;
+        let t74 = t38 + (k(0.02) * t73 + k(0.4) * t72);
+        let t75 = t47 - t5 * t71;
+        let t76 = t40 + (k(0.03) * t73 + k(0.4) * t75);
+        let t77 = t42 - (k(0.03) * t72 - k(0.02) * t75);
         *out = [
-            t22 + (t28 * t87 + (t25 * t86 + t24 * t85)),
-            t39 + (t43 * t87 + (t41 * t86 + t40 * t85)),
-            -(t52 + (t56 * t87 + (t54 * t86 + t53 * t85))),
-            -t85,
-            -t86,
-            -t87,
+            t15 * t77 - (t10 * t76 - t5 * t74),
+            t27 * t77 + (t24 * t76 - t23 * t74),
+            -(t35 * t77 + (t33 * t76 + t31 * t74)),
+            -t75,
+            t72,
+            -t73,
         ];
     }
     /// Writes λ: 116 operations (47 ±, 68 ×, 1 ÷) and 3 functions.

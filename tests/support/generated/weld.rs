@@ -19,7 +19,7 @@
 //! | gamma | γ | 93 | 144 | 0 | 237 | 0 of 11 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 69 | 96 | 0 | 165 | 0 of 11 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 8 | 0 | 8 | 6 of 12 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 204 | 305 | 3 | 512 | 0 of 12 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 191 | 291 | 3 | 485 | 0 of 12 |
 //! | multipliers | λ, the accelerations being known | 70 | 129 | 2 | 201 | 0 of 11 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 16 | 32 | 0 | 48 | 0 of 14 |
 //! | energy | T and V | 12 | 22 | 0 | 34 | 0 of 2 |
@@ -1314,7 +1314,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Weld<T> {
             k(0.0),
         ];
     }
-    /// Solves eq. (17): 512 operations (204 ±, 305 ×, 3 ÷).
+    /// Solves eq. (17): 485 operations (191 ±, 291 ×, 3 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let inner_e0 = y[3];
@@ -1331,181 +1331,155 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Weld<T> {
         let outer_wx = y[23];
         let outer_wy = y[24];
         let outer_wz = y[25];
-        let t0 = inner_e0 * inner_e0;
-        let t1 = k(0.5) - (t0 + inner_e3 * inner_e3);
-        let t2 = inner_wx * inner_wx;
-        let t3 = inner_wy * inner_wy;
-        let t4 = (t3 + t2) * (k(0.5) / t1);
-        let t5 = inner_e0 * inner_e2;
-        let t6 = inner_e1 * inner_e3;
-        let t7 = k(2.0) * (t6 - t5);
-        let t8 = inner_wx * inner_wz;
-        let t9 = t8 - t7 * t4;
-        let t10 = t6 + t5;
-        let t11 = k(0.5) * t10;
-        let t12 = outer_e0 * outer_e3;
-        let t13 = outer_e1 * outer_e2;
-        let t14 = t13 - t12;
-        let t15 = k(0.3) * t14;
-        let t16 = outer_e0 * outer_e0;
-        let t17 = k(0.5) - (t16 + outer_e1 * outer_e1);
-        let t18 = k(2.0) * t17;
-        let t19 = k(2.0) * t10;
-        let t20 = t13 + t12;
-        let t21 = k(2.0) * t20;
-        let t22 = inner_e0 * inner_e1;
-        let t23 = inner_e2 * inner_e3;
-        let t24 = t23 - t22;
-        let t25 = k(2.0) * t24;
-        let t26 = outer_e0 * outer_e2;
-        let t27 = outer_e1 * outer_e3;
-        let t28 = t27 - t26;
-        let t29 = k(2.0) * t28;
-        let t30 = k(2.0) * t1;
-        let t31 = t30 * t29 - (t25 * t21 - t19 * t18);
-        let t32 = k(0.3) * t17;
-        let t33 = k(2.0) * t14;
-        let t34 = k(0.5) - (t16 + outer_e2 * outer_e2);
+        let t0 = inner_wy * inner_wy;
+        let t1 = inner_wz * inner_wz;
+        let t2 = t1 + t0;
+        let t3 = inner_e0 * inner_e0;
+        let t4 = k(2.0) * (k(0.5) - (t3 + inner_e1 * inner_e1));
+        let t5 = inner_wx * inner_wy;
+        let t6 = inner_e0 * inner_e3;
+        let t7 = inner_e1 * inner_e2;
+        let t8 = k(2.0) * (t7 - t6);
+        let t9 = inner_wx * inner_wz;
+        let t10 = inner_e0 * inner_e2;
+        let t11 = inner_e1 * inner_e3;
+        let t12 = k(2.0) * (t11 + t10);
+        let t13 = t12 * t9 + (t8 * t5 + t4 * t2);
+        let t14 = k(0.25) * t13;
+        let t15 = k(2.0) * (t7 + t6);
+        let t16 = k(0.5) - (t3 + inner_e2 * inner_e2);
+        let t17 = k(2.0) * t16;
+        let t18 = inner_e0 * inner_e1;
+        let t19 = inner_e2 * inner_e3;
+        let t20 = k(2.0) * (t19 - t18);
+        let t21 = t20 * t9 - (t17 * t5 + t15 * t2);
+        let t22 = k(0.25) * t21;
+        let t23 = k(2.0) * (t11 - t10);
+        let t24 = k(2.0) * (t19 + t18);
+        let t25 = k(0.5) - (t3 + inner_e3 * inner_e3);
+        let t26 = k(2.0) * t25;
+        let t27 = t26 * t9 - (t24 * t5 - t23 * t2);
+        let t28 = k(0.25) * t27;
+        let t29 = t23 * t28 - (t15 * t22 - t4 * t14);
+        let t30 = outer_e0 * outer_e3;
+        let t31 = outer_e1 * outer_e2;
+        let t32 = k(2.0) * (t31 - t30);
+        let t33 = outer_e0 * outer_e0;
+        let t34 = k(0.5) - (t33 + outer_e2 * outer_e2);
         let t35 = k(2.0) * t34;
         let t36 = outer_e0 * outer_e1;
         let t37 = outer_e2 * outer_e3;
-        let t38 = t37 + t36;
-        let t39 = k(2.0) * t38;
-        let t40 = t30 * t39 + (t25 * t35 - t19 * t33);
-        let t41 = t40 * t32 + t31 * t15;
-        let t42 = inner_e0 * inner_e3;
-        let t43 = inner_e1 * inner_e2;
-        let t44 = t43 - t42;
-        let t45 = k(0.3) * t44 + t41;
-        let t46 = k(0.5) * t44;
-        let t47 = k(0.3) * t34;
-        let t48 = k(0.3) * t20;
-        let t49 = t40 * t48 + t31 * t47;
-        let t50 = k(0.5) - (t0 + inner_e2 * inner_e2);
-        let t51 = k(0.3) * t50 + t49;
-        let t52 = k(0.5) * t50;
-        let t53 = k(0.3) * t38;
-        let t54 = k(0.3) * t28;
-        let t55 = t40 * t54 - t31 * t53;
-        let t56 = t23 + t22;
-        let t57 = k(0.3) * t56 - t55;
-        let t58 = k(0.5) * t56;
-        let t59 = k(2.0) * (t27 + t26);
-        let t60 = k(2.0) * (t37 - t36);
-        let t61 = k(2.0) * (k(0.5) - (t16 + outer_e3 * outer_e3));
-        let t62 = t30 * t61 + (t25 * t60 + t19 * t59);
-        let t63 = t62 * (k(5e-5) * t62)
-            + (t40 * (k(0.05) * t40) + t31 * (k(0.05) * t31));
-        let t64 = k(0.0375) + t63 - k(2.0) * (t58 * t55 - (t52 * t49 + t46 * t41));
-        let t65 = k(0.075) + (k(0.0125) + t64)
-            + k(2.0) * (t58 * t57 + (t52 * t51 + t46 * t45));
-        let t66 = outer_wy * outer_wz;
-        let t67 = outer_wx * outer_wz;
-        let t68 = outer_wx * outer_wx;
-        let t69 = outer_wy * outer_wy;
-        let t70 = t69 + t68;
-        let t71 = inner_wz * inner_wz;
-        let t72 = t71 + t3;
-        let t73 = k(2.0) * (k(0.5) - (t0 + inner_e1 * inner_e1));
-        let t74 = inner_wx * inner_wy;
-        let t75 = k(2.0) * t44;
-        let t76 = t19 * t8 + (t75 * t74 + t73 * t72);
-        let t77 = t76 - (t59 * t70 - (t33 * t66 - t18 * t67));
-        let t78 = k(0.25) * t77;
-        let t79 = k(2.0) * (t43 + t42);
-        let t80 = k(2.0) * t50;
-        let t81 = t25 * t8 - (t80 * t74 + t79 * t72);
-        let t82 = t81 - (t60 * t70 + (t35 * t66 - t21 * t67));
-        let t83 = k(0.25) * t82;
-        let t84 = k(2.0) * t56;
-        let t85 = t30 * t8 - (t84 * t74 - t7 * t72);
-        let t86 = t85 - (t61 * t70 + (t39 * t66 + t29 * t67));
-        let t87 = k(0.25) * t86;
-        let t88 = t7 * t39 - (t79 * t35 + t73 * t33);
-        let t89 = t84 * t39 + (t80 * t35 + t75 * t33);
-        let t90 = t84 * t29 - (t80 * t21 + t75 * t18);
-        let t91 = t84 * t61 + (t80 * t60 - t75 * t59);
-        let t92 = outer_wx * t62 + outer_wz * t31;
-        let t93 = k(2.0)
-            * (inner_wy * t92 + inner_wz * (outer_wx * t91 + outer_wz * t90));
-        let t94 = t7 * t29 + (t79 * t21 + t73 * t18);
-        let t95 = outer_wx * outer_wy;
-        let t96 = outer_wz * outer_wz;
-        let t97 = t96 + t68;
-        let t98 = t7 * t61 - (t79 * t60 - t73 * t59);
-        let t99 = t66 * t98 + (t97 * t88 - t95 * t94) + t93
-            + (t8 * t40 - (t74 * t89 - t72 * t88));
-        let t100 = t98 * t90;
-        let t101 = t94 * t91 - t100;
-        let t102 = k(1.0) / (t98 * t101);
-        let t103 = inner_wy * inner_wz;
-        let t104 = k(2.0)
-            * (inner_wx * t92 + inner_wz * (outer_wx * t98 + outer_wz * t94));
-        let t105 = t66 * t91 + (t97 * t89 - t95 * t90) - t104
-            + (t103 * t40 + ((t71 + t2) * t89 - t74 * t88));
-        let t106 = t102 * (t98 * t94) * t105 - t100 * t102 * t99;
-        let t107 = k(0.05) * t106 - (t53 * t87 + (t47 * t83 - t15 * t78));
-        let t108 = inner_wy * (outer_wy * t62 + outer_wz * t40)
-            + inner_wz * (outer_wy * t91 + outer_wz * t89);
-        let t109 = t67 * t98 - (t95 * t88 - (t96 + t69) * t94) - k(2.0) * t108;
-        let t110 = t101 * t102 * (t109 + (t8 * t31 - (t74 * t90 - t72 * t94)));
-        let t111 = t102 * (t98 * t88) * t105 - t102 * (t91 * t88) * t99;
-        let t112 = t111 - t110;
-        let t113 = k(0.05) * t112 + (t54 * t87 - (t48 * t83 - t32 * t78));
-        let t114 = t40 * (t113 - (k(0.01245) * t67 + k(2.943) * t20))
-            + t31 * (t107 + (k(0.01245) * t66 - k(2.943) * t34));
-        let t115 = t102 * (t98 * t98) * t105 - t102 * (t98 * t91) * t99;
-        let t116 = k(5.886) - (t48 * t112 + t47 * t106 - k(0.15) * t82);
-        let t117 = t46 * (t32 * t112 + t15 * t106 + k(0.15) * t77);
-        let t118 = t58 * (t54 * t112 - t53 * t106 + k(0.15) * t86);
-        let t119 = t118 - (t117 - t52 * t116) - (t62 * (k(5e-5) * t115) + t114);
-        let t120 = t52 * (k(5.886) + t116) - t117 + t118 - (k(0.01245) * t74 - t119);
-        let t121 = k(0.25) * t76;
-        let t122 = k(0.25) * t81;
-        let t123 = (t51 + k(0.6) * t50) * t122 - (t45 + k(0.6) * t44) * t121;
-        let t124 = k(0.25) * t85;
-        let t125 = t103 - t84 * t4;
-        let t126 = t62 * (k(5e-5) * t98)
-            + (t40 * (k(0.05) * t88) + t31 * (k(0.05) * t94));
-        let t127 = t52 * (t88 * t48 + t94 * t47) + t46 * (t88 * t32 + t94 * t15);
-        let t128 = t58 * (t88 * t54 - t94 * t53) - t127;
-        let t129 = k(5e-5) * t91 * t62 + (t40 * (k(0.05) * t89) + t31 * (k(0.05) * t90));
-        let t130 = k(0.5) * t24;
-        let t131 = k(0.5) * t1;
-        let t132 = t89 * t32 + t90 * t15;
-        let t133 = t89 * t48 + t90 * t47;
-        let t134 = t89 * t54 - t90 * t53;
-        let t135 = t58 * t134 - (t52 * t133 + t46 * t132)
-            - (t131 * t55 - (t130 * t49 - t11 * t41));
-        let t136 = t52 * (k(0.3) * t24 - t133) - t46 * (k(0.3) * t10 + t132);
-        let t137 = t58 * (k(0.3) * t1 + t134) + t136
-            + (t131 * t57 + (t130 * t51 - t11 * t45));
-        let t138 = (t137 + (t135 - t129)) * t9 - (t128 + (t128 - t126)) * t125;
-        let t139 = (t138 + ((t57 + k(0.6) * t56) * t124 + t123) + t120) / t65;
-        let t140 = t46 * t139 + t11 * t9;
-        let t141 = t121 + t140;
-        let t142 = t52 * t139 - t130 * t9;
-        let t143 = t122 - t142;
-        let t144 = t58 * t139 - t131 * t9;
-        let t145 = t124 - t144;
-        let t146 = t106 + (t31 * t139 + (t90 * t9 - t94 * t125));
-        let t147 = t112 + (t40 * t139 + (t89 * t9 - t88 * t125));
-        let t148 = k(0.5) * t17 * t147 + k(0.5) * t14 * t146 + (t78 + (t140 + t141));
-        let t149 = k(0.5) * t20 * t147 + k(0.5) * t34 * t146 - (t83 - (t142 - t143));
-        let t150 = k(0.5) * t28 * t147 - k(0.5) * t38 * t146 + (t87 - (t144 - t145));
+        let t38 = k(2.0) * (t37 + t36);
+        let t39 = t24 * t38 + (t17 * t35 + t8 * t32);
+        let t40 = k(0.15) * t39;
+        let t41 = k(2.0) * (k(0.5) - (t33 + outer_e1 * outer_e1));
+        let t42 = t31 + t30;
+        let t43 = k(2.0) * t42;
+        let t44 = outer_e0 * outer_e2;
+        let t45 = outer_e1 * outer_e3;
+        let t46 = k(2.0) * (t45 - t44);
+        let t47 = t26 * t46 - (t20 * t43 - t12 * t41);
+        let t48 = t24 * t46 - (t17 * t43 + t8 * t41);
+        let t49 = k(0.15) * t48;
+        let t50 = t26 * t38 + (t20 * t35 - t12 * t32);
+        let t51 = t50 * t49 - t47 * t40;
+        let t52 = k(0.15) - t51;
+        let t53 = k(2.0) * (t45 + t44);
+        let t54 = t37 - t36;
+        let t55 = k(2.0) * t54;
+        let t56 = k(2.0) * (k(0.5) - (t33 + outer_e3 * outer_e3));
+        let t57 = t26 * t56 + (t20 * t55 + t12 * t53);
+        let t58 = t57 * (k(5e-5) * t57)
+            + (t50 * (k(0.05) * t50) + t47 * (k(0.05) * t47));
+        let t59 = k(0.075) + (k(0.0125) - (k(0.5) * t51 - (k(0.0375) + t58)))
+            + k(0.5) * t52;
+        let t60 = t23 * t38 - (t15 * t35 + t4 * t32);
+        let t61 = t24 * t56 + (t17 * t55 - t8 * t53);
+        let t62 = outer_wx * t57 + outer_wz * t47;
+        let t63 = k(2.0)
+            * (inner_wy * t62 + inner_wz * (outer_wx * t61 + outer_wz * t48));
+        let t64 = t23 * t46 + (t15 * t43 + t4 * t41);
+        let t65 = outer_wx * outer_wy;
+        let t66 = outer_wx * outer_wx;
+        let t67 = outer_wz * outer_wz;
+        let t68 = t67 + t66;
+        let t69 = t23 * t56 - (t15 * t55 - t4 * t53);
+        let t70 = outer_wy * outer_wz;
+        let t71 = t70 * t69 + (t68 * t60 - t65 * t64) + t63
+            + (t9 * t50 - (t5 * t39 - t2 * t60));
+        let t72 = t69 * t48;
+        let t73 = t64 * t61 - t72;
+        let t74 = k(1.0) / (t69 * t73);
+        let t75 = inner_wx * inner_wx;
+        let t76 = inner_wy * inner_wz;
+        let t77 = k(2.0)
+            * (inner_wx * t62 + inner_wz * (outer_wx * t69 + outer_wz * t64));
+        let t78 = t70 * t61 + (t68 * t39 - t65 * t48) - t77
+            + (t76 * t50 + ((t1 + t75) * t39 - t5 * t60));
+        let t79 = t74 * (t69 * t69) * t78 - t74 * (t69 * t61) * t71;
+        let t80 = t74 * (t69 * t64) * t78 - t72 * t74 * t71;
+        let t81 = outer_wx * outer_wz;
+        let t82 = outer_wy * outer_wy;
+        let t83 = t82 + t66;
+        let t84 = k(0.25) * (t13 - (t53 * t83 - (t32 * t70 - t41 * t81)));
+        let t85 = k(0.25) * (t21 - (t55 * t83 + (t35 * t70 - t43 * t81)));
+        let t86 = k(0.25) * (t27 - (t56 * t83 + (t38 * t70 + t46 * t81)));
+        let t87 = t38 * t86 + (t35 * t85 - t32 * t84);
+        let t88 = k(0.15) * t87 - k(0.05) * t80 - (k(0.01245) * t70 - k(2.943) * t34);
+        let t89 = inner_wy * (outer_wy * t57 + outer_wz * t50)
+            + inner_wz * (outer_wy * t61 + outer_wz * t39);
+        let t90 = t81 * t69 - (t65 * t60 - (t67 + t82) * t64) - k(2.0) * t89;
+        let t91 = t73 * t74 * (t90 + (t9 * t47 - (t5 * t48 - t2 * t64)));
+        let t92 = t74 * (t69 * t60) * t78 - t74 * (t61 * t60) * t71;
+        let t93 = t92 - t91;
+        let t94 = t46 * t86 - (t43 * t85 - t41 * t84);
+        let t95 = k(0.15) * t94 + k(0.05) * t93 - (k(0.01245) * t81 + k(2.943) * t42);
+        let t96 = t39 * (k(0.15) * t80 - k(0.6) * t87 - k(11.772) * t34)
+            - t48 * (k(0.15) * t93 + k(0.6) * t94 - k(11.772) * t42);
+        let t97 = t56 * t86 + (t55 * t85 + t53 * t84);
+        let t98 = t61 * (k(0.6) * t97 + k(11.772) * t54) - t96;
+        let t99 = k(0.25) * t98 - (t50 * t95 - t47 * t88 + t57 * (k(5e-5) * t79));
+        let t100 = t24 * t28 + (t17 * t22 - t8 * t14);
+        let t101 = (k(0.3) + t52) * t100
+            - (t50 * (k(0.15) * t64) - t47 * (k(0.15) * t60)) * t29;
+        let t102 = t50 * (k(0.15) * t47) - t47 * (k(0.15) * t50);
+        let t103 = t26 * t28 + (t20 * t22 + t12 * t14);
+        let t104 = (t0 + t75) * (k(0.5) / t25);
+        let t105 = t76 - t24 * t104;
+        let t106 = t57 * (k(5e-5) * t69)
+            + (t50 * (k(0.05) * t60) + t47 * (k(0.05) * t64));
+        let t107 = k(0.25) * (t60 * t49 - t64 * t40);
+        let t108 = k(5e-5) * t61 * t57 + (t50 * (k(0.05) * t39) + t47 * (k(0.05) * t48));
+        let t109 = k(0.25) * (t102 - (t39 * t49 - t48 * t40));
+        let t110 = t9 - t23 * t104;
+        let t111 = t110 * (t109 + (t109 + t108)) + (t107 + (t107 - t106)) * t105;
+        let t112 = t111 + (t103 * t102 - t101)
+            - (k(0.25) * (t98 + k(11.772) * t16) - (k(0.01245) * t5 - t99));
+        let t113 = t112 / t59;
+        let t114 = k(0.25) * t113;
+        let t115 = t100 + t114;
+        let t116 = k(0.25) * t110;
+        let t117 = t116 + t103;
+        let t118 = t114 + t115;
+        let t119 = t116 + t117;
+        let t120 = t93 - (t50 * t113 - (t39 * t110 - t60 * t105));
+        let t121 = k(0.25) * t120 + (t94 + (t47 * t119 + (t48 * t118 + t64 * t29)));
+        let t122 = t80 - (t47 * t113 - (t48 * t110 - t64 * t105));
+        let t123 = k(0.25) * t122 - (t87 + (t50 * t119 + (t39 * t118 + t60 * t29)));
+        let t124 = t97 + (t57 * t119 + (t61 * t118 + t69 * t29));
         *out = [
-            t141,
-            t143,
-            -t145,
-            t125,
-            -t9,
-            t139,
-            t148,
-            -t149,
-            -t150,
-            -t146,
-            -t147,
-            t115 + (t62 * t139 + (t91 * t9 - t98 * t125)),
+            t12 * t117 - (t8 * t115 - t4 * t29),
+            t20 * t117 + (t17 * t115 - t15 * t29),
+            -(t26 * t117 + (t24 * t115 + t23 * t29)),
+            t105,
+            -t110,
+            -t113,
+            t53 * t124 + (t32 * t123 + t41 * t121),
+            t55 * t124 - (t35 * t123 + t43 * t121),
+            t38 * t123 - t46 * t121 - t56 * t124,
+            -t122,
+            -t120,
+            t79 - (t57 * t113 - (t61 * t110 - t69 * t105)),
         ];
     }
     /// Writes λ: 201 operations (70 ±, 129 ×, 2 ÷).
