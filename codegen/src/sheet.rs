@@ -163,8 +163,11 @@ impl Sheet {
 
 impl Function {
     fn of(equations: &Equations, &(name, computes, roots): &(&'static str, &'static str, &[ExprId])) -> Self {
-        let space = equations.joint_space.as_ref();
-        let (forms, reductions) = space.map_or_else(Default::default, |space| space.choice(name));
+        let (forms, reductions) = match (name, &equations.joint_space) {
+            ("accelerations", _) => (equations.forms.clone(), Vec::new()),
+            (_, Some(space)) => space.choice(name),
+            (_, None) => Default::default(),
+        };
         Self {
             name,
             computes,
