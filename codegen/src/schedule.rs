@@ -175,3 +175,34 @@ impl Program {
         Self { uses, temporaries }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::symbol::Symbol;
+
+    /// (x + y)² / z, and once more.
+    #[test]
+    fn each_pass_saves_what_it_says() {
+        let mut graph = Graph::new();
+        let [x, y, z] = [0, 1, 2].map(|k| graph.symbol(Symbol::Coordinate(k)));
+        let sum = graph.add(x, y);
+        let square = graph.mul(sum, sum);
+        let inverse = graph.recip(z);
+        let quotient = graph.mul(square, inverse);
+        let passes = Passes::count(&graph, &[quotient]);
+        assert_eq!(passes, Passes { written_out: 5, shared: 4, emitted: 3 });
+        assert_eq!(Passes::count(&graph, &[quotient, quotient]), Passes { written_out: 10, ..passes });
+    }
+
+    #[test]
+    fn what_is_too_large_to_count_is_the_largest_number() {
+        let mut graph = Graph::new();
+        let mut power = graph.symbol(Symbol::Coordinate(0));
+        for _ in 0..100 {
+            power = graph.mul(power, power);
+        }
+        let passes = Passes::count(&graph, &[power]);
+        assert_eq!((passes.written_out, passes.shared), (u64::MAX, 100));
+    }
+}

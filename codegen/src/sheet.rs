@@ -200,7 +200,8 @@ impl Function {
         let others = self.forms.iter().filter(|form| !form.is_taken);
         let others: Vec<_> =
             others.map(|form| format!("{} {}", form.name, form.operations.total())).collect();
-        let others = if others.is_empty() { "alone".to_owned() } else { format!("not {}", others.join(", ")) };
+        let others =
+            if others.is_empty() { "alone".to_owned() } else { format!("not {}", others.join(", ")) };
         Some(format!("* {}: by {}, {} operations, {others}", self.name, taken.name, taken.operations.total()))
     }
 }
@@ -240,7 +241,8 @@ fn left_out(equations: &Equations) -> Vec<String> {
         None => left_out.push("joint coordinates (for trees without couplers and drivers)".into()),
     }
     if equations.charts.is_none() {
-        left_out.push("charts (for trees of revolute, spherical and fixed joints: the run time pivots)".into());
+        left_out
+            .push("charts (for trees of revolute, spherical and fixed joints: the run time pivots)".into());
     }
     if model.gravity.iter().all(gyro_model::Number::is_zero) {
         left_out.push("gravity".into());

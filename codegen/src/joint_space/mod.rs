@@ -133,7 +133,8 @@ impl JointSpace {
             frames.into_iter().zip(outward(system, &carriages, &of_joints, rates))
         });
         let mut corrected: Vec<_> = corrected.collect();
-        corrected.push(("elimination in maximal coordinates".to_owned(), expanded(system, &Values::new(), exact)));
+        corrected
+            .push(("elimination in maximal coordinates".to_owned(), expanded(system, &Values::new(), exact)));
         let (corrected, forms_corrected) = cheapest(&system.graph, corrected);
 
         let tree = (&layout, &carriages[..]);
