@@ -1,7 +1,7 @@
 //! From a set of expressions to a straight-line program: what gets a name, in which order, and what it costs.
 
 use crate::graph::{ExprId, Graph, Node};
-use std::collections::HashMap;
+use rustc_hash::FxHashMap as HashMap;
 use std::fmt;
 
 /// Arithmetic operations of a program. A negation is free; a product with a reciprocal that nobody else uses is one division.
@@ -71,7 +71,7 @@ impl Uses {
     /// A negation is written where it is used, so its uses are uses of what it negates.
     pub fn count(graph: &Graph, roots: &[ExprId]) -> Self {
         let order = graph.reachable(roots);
-        let mut counts: HashMap<ExprId, usize> = HashMap::new();
+        let mut counts: HashMap<ExprId, usize> = HashMap::default();
         for &root in roots {
             *counts.entry(root).or_default() += 1;
         }
@@ -112,7 +112,7 @@ pub struct Program {
 impl Program {
     pub fn new(graph: &Graph, roots: &[ExprId]) -> Self {
         let uses = Uses::count(graph, roots);
-        let mut inline_size: HashMap<ExprId, usize> = HashMap::new();
+        let mut inline_size: HashMap<ExprId, usize> = HashMap::default();
         let mut temporaries = Vec::new();
         for &id in &uses.order {
             let own = match graph.node(id) {

@@ -104,7 +104,7 @@ impl JointSpace {
         let accelerations_at = cheapest(&system.graph, at.clone());
         let mut corrected: Vec<_> =
             at.iter().flat_map(|rates| outward(system, &carriages, &of_joints, rates)).collect();
-        corrected.push(expanded(system, &Values::new(), exact));
+        corrected.push(expanded(system, &Values::default(), exact));
         let corrected = cheapest(&system.graph, corrected);
 
         let tree = (&layout, &carriages[..]);
@@ -204,7 +204,7 @@ fn unit_atoms(system: &mut System, layout: &Layout) -> Vec<Vec<ExprId>> {
 
 /// Everything in terms of joint coordinates and rates.
 fn in_joints(system: &mut System, layout: &Layout, maximal: &Values) -> Values {
-    let mut values = Values::new();
+    let mut values = Values::default();
     for scalar in layout.links.iter().flat_map(|link| &link.scalars) {
         let place = scalar.place.x;
         let x = system.graph.symbol(Symbol::Coordinate(place));
