@@ -6,7 +6,7 @@
 
 use crate::graph::{ExprId, Graph, Node};
 use crate::symbol::Symbol;
-use std::collections::HashMap;
+use rustc_hash::FxHashMap as HashMap;
 
 /// What symbols stand for.
 #[derive(Debug, Default)]
@@ -47,11 +47,11 @@ pub struct Expansion<'a> {
 
 impl<'a> Expansion<'a> {
     pub fn new(definitions: &'a Definitions) -> Self {
-        Self::with_values(definitions, HashMap::new())
+        Self::with_values(definitions, HashMap::default())
     }
 
     pub fn with_values(definitions: &'a Definitions, values: HashMap<Symbol, ExprId>) -> Self {
-        Self { definitions, values, memo: HashMap::new() }
+        Self { definitions, values, memo: HashMap::default() }
     }
 
     pub fn of(&mut self, graph: &mut Graph, root: ExprId) -> ExprId {

@@ -4,7 +4,7 @@ use crate::definitions::Definitions;
 use crate::graph::{ExprId, Graph, Node};
 use crate::symbol::Symbol;
 use crate::system::Direction;
-use std::collections::HashMap;
+use rustc_hash::FxHashMap as HashMap;
 
 /// The derivative along one direction, given by what it is of the symbols. A symbol that the direction does not name
 /// differentiates as its definition, if it has one, and is constant otherwise.
@@ -17,7 +17,7 @@ pub struct Derivative<'a> {
 
 impl<'a> Derivative<'a> {
     pub fn new(definitions: &'a Definitions, direction: Direction) -> Self {
-        Self { definitions, direction, memo: HashMap::new() }
+        Self { definitions, direction, memo: HashMap::default() }
     }
 
     /// The derivative of one expression.

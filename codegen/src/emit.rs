@@ -6,8 +6,9 @@ use crate::schedule::Program;
 use crate::symbol::Symbol;
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::quote;
+use rustc_hash::FxHashMap as HashMap;
 use std::cell::RefCell;
-use std::collections::{BTreeSet, HashMap};
+use std::collections::BTreeSet;
 
 /// The statements of a function and the values of its roots.
 #[derive(Debug)]
@@ -31,6 +32,11 @@ pub trait Variables {
 /// Statements in one block: rustc opens a scope for each `let` and recurses over them, so long functions are cut into
 /// blocks that hand on what is still needed.
 const CHUNK: usize = 200;
+
+/// A function with more statements is cut into larger blocks that are compiled apart: LLVM's time grows with the square of a
+/// function's length.
+const LONG: usize = 1500;
+const PART: usize = 500;
 
 /// How strongly an expression binds, for parentheses.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -91,13 +97,21 @@ impl<V: Variables> Writer<'_, V> {
         if temporaries.len() <= CHUNK {
             return temporaries.iter().map(|&id| self.binding(id)).collect();
         }
+        let is_long = temporaries.len() > LONG;
+        let size = if is_long { PART } else { CHUNK };
         let last_use = self.last_uses(roots);
-        let chunks = temporaries.chunks(CHUNK).enumerate().map(|(n, chunk)| {
-            let end = (n + 1) * CHUNK;
+        let chunks = temporaries.chunks(size).enumerate().map(|(n, chunk)| {
+            let end = (n + 1) * size;
             let live: Vec<_> =
                 chunk.iter().filter(|id| last_use[id] >= end).map(|id| &self.names[id]).collect();
             let bindings = chunk.iter().map(|&id| self.binding(id));
-            quote! { let (#(#live,)*) = { #(#bindings)* (#(#live,)*) }; }
+            let block = quote! { { #(#bindings)* (#(#live,)*) } };
+            let block = if is_long {
+                quote! { gyro_sim::apart(move || #block) }
+            } else {
+                block
+            };
+            quote! { let (#(#live,)*) = #block; }
         });
         chunks.collect()
     }
@@ -105,7 +119,7 @@ impl<V: Variables> Writer<'_, V> {
     /// For each temporary the position of the last one that reads it; beyond all for a root.
     fn last_uses(&self, roots: &[ExprId]) -> HashMap<ExprId, usize> {
         let temporaries = &self.program.temporaries;
-        let mut last = HashMap::new();
+        let mut last = HashMap::default();
         for (position, &id) in temporaries.iter().enumerate() {
             for operand in self.graph.node(id).operands() {
                 self.mark(operand, position, &mut last);

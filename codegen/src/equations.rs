@@ -16,7 +16,7 @@ use crate::symbol::Symbol;
 use crate::system::System;
 use crate::{coordinate, null_space, readings, saddle};
 use gyro_model::{Model, Spline, Start};
-use std::collections::HashMap;
+use rustc_hash::FxHashMap as HashMap;
 
 /// Non-zeros with their places.
 pub type Sparse = Vec<(usize, usize, ExprId)>;
@@ -183,7 +183,7 @@ fn position_rates(system: &mut System) -> Vec<ExprId> {
 
 /// `A_iᵀ A_j = A(p_i* p_j)` of each joint: eq. (4) for unit p, in fewer operations where A_i and A_j are not needed anyhow.
 fn relative_rotations(system: &mut System) -> HashMap<Symbol, ExprId> {
-    let mut values = HashMap::new();
+    let mut values = HashMap::default();
     for (joint, frames) in system.joints.clone().iter().enumerate() {
         let p = readings::relative_euler(system, frames);
         let rotation = system.graph.rotation(&p);

@@ -2,11 +2,11 @@
 
 use crate::graph::{ExprId, Graph, Node};
 use crate::symbol::Symbol;
-use std::collections::HashMap;
+use rustc_hash::FxHashMap as HashMap;
 
 /// The values of some roots, each symbol having the value that `value` gives it.
 pub fn evaluate(graph: &Graph, roots: &[ExprId], value: impl Fn(Symbol) -> f64) -> Vec<f64> {
-    let mut values: HashMap<ExprId, f64> = HashMap::new();
+    let mut values: HashMap<ExprId, f64> = HashMap::default();
     for id in graph.reachable(roots) {
         let result = match graph.node(id) {
             Node::Constant(constant) => constant.to_f64(),

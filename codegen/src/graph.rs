@@ -7,7 +7,7 @@
 use crate::constant::Constant;
 use crate::symbol::Symbol;
 use gyro_model::Rational;
-use std::collections::{HashMap, HashSet};
+use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 
 /// Handle of an expression in its [`Graph`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -58,7 +58,7 @@ impl Graph {
     pub const ONE: ExprId = ExprId(1);
 
     pub fn new() -> Self {
-        let mut graph = Self { nodes: Vec::new(), index: HashMap::new() };
+        let mut graph = Self { nodes: Vec::new(), index: HashMap::default() };
         graph.integer(0);
         graph.integer(1);
         graph
@@ -81,7 +81,7 @@ impl Graph {
 
     /// The same, but for what is known and what only that depends on.
     pub fn reachable_beyond(&self, roots: &[ExprId], is_known: impl Fn(ExprId) -> bool) -> Vec<ExprId> {
-        let mut seen = HashSet::new();
+        let mut seen = HashSet::default();
         let mut order = Vec::new();
         // A node is pushed a second time, as complete, beneath its operands.
         let mut stack: Vec<_> = roots.iter().rev().map(|&root| (root, false)).collect();
@@ -129,6 +129,10 @@ impl Graph {
     }
 
     pub fn add(&mut self, a: ExprId, b: ExprId) -> ExprId {
+        let ((has_factor_a, rest_a), (has_factor_b, rest_b)) = (self.rest(a), self.rest(b));
+        if rest_a != rest_b && !(has_factor_a && has_factor_b) && a != Self::ZERO && b != Self::ZERO {
+            return self.add_terms(a, b);
+        }
         let ((ca, xa), (cb, xb)) = (self.split(a), self.split(b));
         if ca.is_zero() {
             return b;
@@ -158,8 +162,8 @@ impl Graph {
 
     /// A constant factor of one operand stays with it: it is usually shared, as a column of a factorisation is.
     pub fn mul(&mut self, a: ExprId, b: ExprId) -> ExprId {
-        let ((ca, xa), (cb, xb)) = (self.split(a), self.split(b));
-        if let Some(product) = self.reduced_product(xa, xb) {
+        if let Some(product) = self.reduced_product(self.rest(a).1, self.rest(b).1) {
+            let (ca, cb) = (self.split(a).0, self.split(b).0);
             return self.scale(&ca.mul(&cb), product);
         }
         let ((negative_a, a), (negative_b, b)) = (self.split_sign(a), self.split_sign(b));
@@ -256,6 +260,16 @@ impl Graph {
                 _ => (Constant::integer(1), id),
             },
             _ => (Constant::integer(1), id),
+        }
+    }
+
+    /// What [`Self::split`] leaves beside the constant, and whether that is other than ±1.
+    fn rest(&self, id: ExprId) -> (bool, ExprId) {
+        match self.node(id) {
+            Node::Constant(_) => (true, Self::ONE),
+            Node::Neg(inner) => self.rest(*inner),
+            Node::Mul(c, x) if matches!(self.node(*c), Node::Constant(_)) => (true, *x),
+            _ => (false, id),
         }
     }
 

@@ -16,8 +16,8 @@ use crate::linear::{Mat3, Vec3, Vec4, ZERO3};
 use crate::symbol::Symbol;
 use crate::system::System;
 use gyro_model::{Attachment, JointKind, Link};
+use rustc_hash::FxHashMap as HashMap;
 use std::array::from_fn;
-use std::collections::HashMap;
 
 /// What `gyro_sim::Partition` asks of a generated tree.
 #[derive(Debug)]
@@ -55,7 +55,7 @@ impl Partition {
             blocks.push(Block::new(system, kinematics, link, blocks.len()));
         }
         let n_slots = system.slots.len();
-        let (mut positions, mut velocities) = (Values::new(), Values::new());
+        let (mut positions, mut velocities) = (Values::default(), Values::default());
         for block in &blocks {
             block.correct_positions(system, kinematics, &mut positions);
             block.solve_velocities(system, kinematics, &mut velocities);

@@ -2,7 +2,7 @@
 
 use crate::graph::{ExprId, Graph, Node};
 use crate::sheet::Form;
-use std::collections::HashMap;
+use rustc_hash::FxHashMap as HashMap;
 use std::fmt;
 
 /// Arithmetic operations of a program. A negation is free; a product with a reciprocal that nobody else uses is one division.
@@ -72,7 +72,7 @@ impl Passes {
         let is_operation =
             |id: ExprId| matches!(graph.node(id), Node::Add(..) | Node::Mul(..) | Node::Recip(_));
         let order = graph.reachable(roots);
-        let mut sizes: HashMap<ExprId, u64> = HashMap::new();
+        let mut sizes: HashMap<ExprId, u64> = HashMap::default();
         for &id in &order {
             let operands = graph.node(id).operands().map(|operand| sizes[&operand]);
             sizes.insert(id, operands.fold(u64::from(is_operation(id)), u64::saturating_add));
@@ -111,7 +111,7 @@ impl Uses {
     /// A negation is written where it is used, so its uses are uses of what it negates.
     pub fn count(graph: &Graph, roots: &[ExprId]) -> Self {
         let order = graph.reachable(roots);
-        let mut counts: HashMap<ExprId, usize> = HashMap::new();
+        let mut counts: HashMap<ExprId, usize> = HashMap::default();
         for &root in roots {
             *counts.entry(root).or_default() += 1;
         }
@@ -152,7 +152,7 @@ pub struct Program {
 impl Program {
     pub fn new(graph: &Graph, roots: &[ExprId]) -> Self {
         let uses = Uses::count(graph, roots);
-        let mut inline_size: HashMap<ExprId, usize> = HashMap::new();
+        let mut inline_size: HashMap<ExprId, usize> = HashMap::default();
         let mut temporaries = Vec::new();
         for &id in &uses.order {
             let own = match graph.node(id) {

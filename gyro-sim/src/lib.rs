@@ -54,6 +54,7 @@
 // Generated modules name this crate from outside and from within alike.
 extern crate self as gyro_sim;
 
+mod apart;
 pub mod charts;
 mod error;
 #[cfg(feature = "generated")]
@@ -67,6 +68,7 @@ pub mod spline;
 mod turns;
 mod violation;
 
+pub use apart::apart;
 pub use error::Error;
 pub use mechanism::{
     Coordinate, Energy, Equations, JointForm, JointInfo, JointSpace, Mechanism, Ode, OutputInfo, Owner,

@@ -6,8 +6,10 @@
 //! rounded once.
 
 mod samples;
+mod trial;
 
 pub use samples::{Kind, Sample};
+pub use trial::{KERNELS, Trial, relative_error, trial};
 
 use crate::atoms::{Atoms, Elementary};
 use crate::field::{Field, Precision, Real};

@@ -62,6 +62,10 @@ pub(crate) struct VerifyArgs {
     /// Measure rounding instead: errors of generated code and of both forms of the twin, against 384 bits
     #[arg(long, conflicts_with_all = ["quick", "json"])]
     pub(crate) rounding: bool,
+    /// Measure the stability of trees instead: masses, inertias and joint points become parameters, and random configurations of ten kinds
+    /// are compared with 384 bits, beside the dense twin
+    #[arg(long, value_name = "CONFIGURATIONS", num_args = 0..=1, default_missing_value = "1000", conflicts_with_all = ["rounding", "quick", "json"])]
+    pub(crate) stability: Option<usize>,
     /// One point for each claim instead of two
     #[arg(long)]
     pub(crate) quick: bool,

@@ -22,6 +22,7 @@ mod scaling;
 mod scene;
 mod simulate;
 mod spectrum;
+mod stability;
 mod summary;
 mod urdf;
 mod variants;

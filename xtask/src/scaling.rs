@@ -64,7 +64,7 @@ impl Chain {
 }
 
 /// The page of a chain that hangs from the ground, its joints askew, at angles and rates.
-fn page(bodies: usize) -> String {
+pub(crate) fn page(bodies: usize) -> String {
     let mut text = format!(
         "format = 1\nname = \"chain_{bodies}\"\ngravity = [0, 0, -9.81]\n\n[[body]]\nname = \"base\"\nfixed = true\n"
     );

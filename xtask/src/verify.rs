@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::generate::{Places, all_pages, module_path};
 use crate::progress::Spinner;
 use crate::words::count;
-use crate::{files, remarks, rounding, scene};
+use crate::{files, remarks, rounding, scene, stability};
 use gyro_codegen::Module;
 use gyro_model::Model;
 use gyro_verifier::{Depth, Report, verify};
@@ -22,6 +22,9 @@ pub(crate) fn verify_models(args: &VerifyArgs) -> Result<(), Failure> {
         let tables: Result<Vec<rounding::Table>, Failure> =
             pages.par_iter().map(|page| rounding_of(&places, page)).collect();
         return say(&rounding::report(&tables?));
+    }
+    if let Some(configurations) = args.stability {
+        return say(&stability::report(&args.models, configurations)?);
     }
     let depth = if args.quick { Depth::Quick } else { Depth::Full };
     let reports: Result<Vec<Report>, Failure> =

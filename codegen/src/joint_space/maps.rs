@@ -12,15 +12,15 @@ use crate::readings::{raw_angle, relative_euler};
 use crate::symbol::Symbol;
 use crate::system::{JointFrames, System};
 use gyro_model::{Attachment, CoordinateKind};
+use rustc_hash::FxHashMap as HashMap;
 use std::array::from_fn;
-use std::collections::HashMap;
 
 /// Symbols and what they are.
 pub type Values = HashMap<Symbol, ExprId>;
 
 /// Maximal positions and velocities in terms of joint coordinates and rates.
 pub fn of_bodies(system: &mut System, layout: &Layout, carriages: &[Carriage]) -> Values {
-    let mut values = Values::new();
+    let mut values = Values::default();
     let spins = dynamics::spins(system, carriages);
     for (link, carriage) in layout.links.iter().zip(carriages) {
         let slot = carriage.slot;
@@ -59,7 +59,7 @@ pub fn of_bodies(system: &mut System, layout: &Layout, carriages: &[Carriage]) -
 
 /// Sines and cosines by those of half the angle, which the orientations need anyhow.
 fn in_half_angles(system: &mut System, layout: &Layout, values: Values) -> Values {
-    let mut of_angles = Values::new();
+    let mut of_angles = Values::default();
     for scalar in layout.links.iter().flat_map(|link| &link.scalars).filter(|s| s.kind.is_angle()) {
         let x = scalar.place.x;
         let (sine, cosine) = whole(&mut system.graph, x);
@@ -212,7 +212,7 @@ fn orientation_at_zero(system: &mut System, joint: &JointFrames) -> Vec4 {
 /// Joint coordinates and rates in terms of a maximal state that satisfies the constraints. Of an angle on which nothing acts
 /// only the sine and cosine are given.
 pub fn of_joints(system: &mut System, layout: &Layout) -> Values {
-    let mut values = Values::new();
+    let mut values = Values::default();
     for link in &layout.links {
         for scalar in &link.scalars {
             scalar_of_joint(system, scalar, &mut values);
@@ -237,7 +237,7 @@ pub fn of_joints(system: &mut System, layout: &Layout) -> Values {
             values.extend((0..3).map(|k| (Symbol::Rate(place.u + k), w[k])));
         }
     }
-    expanded(system, Values::new(), values)
+    expanded(system, Values::default(), values)
 }
 
 fn scalar_of_joint(system: &mut System, scalar: &Scalar, values: &mut Values) {

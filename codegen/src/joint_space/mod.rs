@@ -134,7 +134,7 @@ impl JointSpace {
         });
         let mut corrected: Vec<_> = corrected.collect();
         corrected
-            .push(("elimination in maximal coordinates".to_owned(), expanded(system, &Values::new(), exact)));
+            .push(("elimination in maximal coordinates".to_owned(), expanded(system, &Values::default(), exact)));
         let (corrected, forms_corrected) = cheapest(&system.graph, corrected);
 
         let tree = (&layout, &carriages[..]);
@@ -240,7 +240,7 @@ fn unit_atoms(system: &mut System, layout: &Layout) -> Vec<Vec<ExprId>> {
 
 /// Everything in terms of joint coordinates and rates.
 fn in_joints(system: &mut System, layout: &Layout, maximal: &Values) -> Values {
-    let mut values = Values::new();
+    let mut values = Values::default();
     for scalar in layout.links.iter().flat_map(|link| &link.scalars) {
         let place = scalar.place.x;
         let x = system.graph.symbol(Symbol::Coordinate(place));

@@ -237,8 +237,9 @@ impl<'a> Reader<'a> {
         if place < size { Ok(Some(source(place))) } else { Err(refused(index)) }
     }
 
-    /// `let (a, b,) = { ...; (a, b,) };`: the bindings inside, of which only some go on.
+    /// `let (a, b,) = { ...; (a, b,) };`: the bindings inside, of which only some go on. The block may be compiled apart.
     fn chunk<'p>(&mut self, names: impl Iterator<Item = &'p Pat>, block: &Expr) -> Result<(), Refusal> {
+        let block = within(block).unwrap_or(block);
         let Expr::Block(inner) = block else { return Err(refused(block)) };
         let Some((Stmt::Expr(Expr::Tuple(handed), None), statements)) = inner.block.stmts.split_last() else {
             return Err(refused(block));
@@ -369,6 +370,14 @@ impl<'a> Reader<'a> {
             right => self.result(right),
         }
     }
+}
+
+/// The block of `gyro_sim::apart(move || { ... })`.
+fn within(expression: &Expr) -> Option<&Expr> {
+    let Expr::Call(call) = expression else { return None };
+    let [Expr::Closure(closure)] = call.args.iter().collect::<Vec<_>>()[..] else { return None };
+    let is_plain = text(expression) == format!("gyro_sim :: apart (move | | {})", text(&closure.body));
+    is_plain.then_some(&*closure.body)
 }
 
 /// The literals of the start: `let k = T::constant; [k(0.5), ...]`.
