@@ -133,8 +133,10 @@ impl JointSpace {
             frames.into_iter().zip(outward(system, &carriages, &of_joints, rates))
         });
         let mut corrected: Vec<_> = corrected.collect();
-        corrected
-            .push(("elimination in maximal coordinates".to_owned(), expanded(system, &Values::default(), exact)));
+        corrected.push((
+            "elimination in maximal coordinates".to_owned(),
+            expanded(system, &Values::default(), exact),
+        ));
         let (corrected, forms_corrected) = cheapest(&system.graph, corrected);
 
         let tree = (&layout, &carriages[..]);
