@@ -8,30 +8,38 @@
 //! * unknowns of eq. (17): 10
 //! * non-zeros: Φ_q 23 of 35, (Φ_r, Φ_π') 14 of 24
 //! * left out: coordinates of `ground` (fixed: folded into constants)
+//! * left out: charts (for trees of revolute, spherical and fixed joints: the run time pivots)
+//! * left out: parameters (all numbers are folded)
+//! * accelerations: by rotations of the bodies, 287 operations, not relative Euler parameters 287
+//! * joint_accelerations: by normal form, 48 operations, not recursion 136
+//! * joint_accelerations_at: by normal form, 81 operations, not recursion 169, recursion on the bodies' spins 179
+//! * corrected_accelerations: by normal form in the bodies' frames, 163 operations, not recursion in the bodies' frames 237, recursion in the global frame 268, normal form in the global frame 196, recursion on the bodies' spins in the bodies' frames 221, recursion on the bodies' spins in the global frame 252, elimination in maximal coordinates 287
 //!
-//! | function | computes | + − | × | ÷ | total | zeros |
-//! |---|---|---|---|---|---|---|
-//! | phi | Φ | 24 | 20 | 0 | 44 | 0 of 5 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 18 | 22 | 0 | 40 | 0 of 23 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 21 | 30 | 0 | 51 | 0 of 14 |
-//! | nu | ν | 0 | 0 | 0 | 0 | 4 of 4 |
-//! | gamma | γ | 39 | 61 | 0 | 100 | 0 of 4 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 30 | 46 | 0 | 76 | 0 of 4 |
-//! | applied_force | (f, n' − w̃'J'w') | 27 | 41 | 0 | 68 | 2 of 6 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 117 | 167 | 3 | 287 | 0 of 6 |
-//! | multipliers | λ, the accelerations being known | 47 | 68 | 1 | 116 | 0 of 4 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 14 | 30 | 0 | 44 | 0 of 9 |
-//! | energy | T and V | 19 | 31 | 0 | 50 | 0 of 2 |
-//! | read_joints | joint coordinates and rates | 14 | 18 | 0 | 32 | 0 of 6 |
-//! | outputs | outputs, the accelerations being known | 78 | 108 | 1 | 187 | 0 of 6 |
-//! | joint_accelerations | u̇ in joint coordinates | 18 | 29 | 1 | 48 | 0 of 2 |
-//! | joint_derivative | ẋ but for u̇ | 0 | 2 | 0 | 2 | 0 of 3 |
-//! | to_maximal | (q, v) of a joint state | 28 | 54 | 0 | 82 | 0 of 14 |
-//! | to_joints | (x, u) of a maximal state | 20 | 26 | 0 | 46 | 0 of 4 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 30 | 50 | 1 | 81 | 0 of 2 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 63 | 99 | 1 | 163 | 0 of 6 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 46 | 64 | 0 | 110 | 0 of 4 |
-//! | corrected_solution | both | 94 | 142 | 1 | 237 | 0 of 10 |
+//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
+//!
+//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
+//! |---|---|---|---|---|---|---|---|---|
+//! | phi | Φ | 24 | 20 | 0 | 44 | 0 of 5 | 60 | 44 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 18 | 22 | 0 | 40 | 0 of 23 | 56 | 40 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 21 | 30 | 0 | 51 | 0 of 14 | 96 | 51 |
+//! | nu | ν | 0 | 0 | 0 | 0 | 4 of 4 | 0 | 0 |
+//! | gamma | γ | 39 | 61 | 0 | 100 | 0 of 4 | 245 | 100 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 30 | 46 | 0 | 76 | 0 of 4 | 135 | 76 |
+//! | applied_force | (f, n' − w̃'J'w') | 27 | 41 | 0 | 68 | 2 of 6 | 138 | 68 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 117 | 167 | 3 | 287 | 0 of 6 | 75890 | 288 |
+//! | multipliers | λ, the accelerations being known | 47 | 68 | 1 | 116 | 0 of 4 | 243 | 116 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 14 | 30 | 0 | 44 | 0 of 9 | 44 | 44 |
+//! | energy | T and V | 19 | 31 | 0 | 50 | 0 of 2 | 85 | 50 |
+//! | read_joints | joint coordinates and rates | 14 | 18 | 0 | 32 | 0 of 6 | 54 | 32 |
+//! | outputs | outputs, the accelerations being known | 78 | 108 | 1 | 187 | 0 of 6 | 1995 | 187 |
+//! | joint_accelerations | u̇ in joint coordinates | 18 | 29 | 1 | 48 | 0 of 2 | 137 | 49 |
+//! | joint_derivative | ẋ but for u̇ | 0 | 2 | 0 | 2 | 0 of 3 | 2 | 2 |
+//! | to_maximal | (q, v) of a joint state | 28 | 54 | 0 | 82 | 0 of 14 | 431 | 82 |
+//! | to_joints | (x, u) of a maximal state | 20 | 26 | 0 | 46 | 0 of 4 | 104 | 46 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 30 | 50 | 1 | 81 | 0 of 2 | 551 | 82 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 63 | 99 | 1 | 163 | 0 of 6 | 7374 | 164 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 46 | 64 | 0 | 110 | 0 of 4 | 197 | 110 |
+//! | corrected_solution | both | 94 | 142 | 1 | 237 | 0 of 10 | 28664 | 238 |
 //!
 //! # Proof
 //!
