@@ -11,7 +11,7 @@ use crate::freedom::{Freedom, Parent, Twist};
 use crate::graph::{ExprId, Graph};
 use crate::ldl::Elimination;
 use crate::linear::{UNIT3, Vec3, ZERO3};
-use crate::normal_form::normal_form;
+use crate::normal_form::{normal_form, normal_form_of};
 use crate::null_space::{Arm, Basis, EliminatedTree, Excitation, Inertia};
 use crate::outputs::time_derivative;
 use crate::symbol::Symbol;
@@ -99,12 +99,12 @@ impl Reduced {
         let forces = self.generalised_forces(system);
         let graph = &mut system.graph;
         let mut elimination = Elimination::new(matrix, forces);
-        elimination.rewrite(|old| normal_form(graph, unit, &old));
+        elimination.rewrite(|old, divisors| normal_form_of(graph, unit, old, divisors));
         for unknown in self.rates.iter().flatten().rev().copied() {
             let is_constant = graph.as_constant(elimination.diagonal(unknown)).is_some();
             elimination.pivot(graph, unknown);
             if is_constant {
-                elimination.rewrite(|old| normal_form(graph, unit, &old));
+                elimination.rewrite(|old, divisors| normal_form_of(graph, unit, old, divisors));
             }
         }
         let solution = elimination.substitute_back(graph);

@@ -26,8 +26,8 @@
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
 //! | newton_step | dependent positions, one Newton step | 200 | 330 | 3 | 533 | 6 of 21 |
 //! | solve_velocities | dependent velocities, eq. (19) | 102 | 173 | 3 | 278 | 6 of 18 |
-//! | joint_accelerations | u̇ in joint coordinates | 21 | 48 | 1 | 70 | 0 of 3 |
-//! | joint_derivative | ẋ but for u̇ | 160 | 287 | 2 | 449 | 0 of 4 |
+//! | joint_accelerations | u̇ in joint coordinates | 20 | 47 | 1 | 68 | 0 of 3 |
+//! | joint_derivative | ẋ but for u̇ | 159 | 286 | 2 | 447 | 0 of 4 |
 //! | to_maximal | (q, v) of a joint state | 32 | 72 | 0 | 104 | 12 of 39 |
 //! | to_joints | (x, u) of a maximal state | 65 | 77 | 0 | 142 | 0 of 6 |
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 34 | 70 | 1 | 105 | 0 of 3 |
@@ -2386,7 +2386,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for DrivenGyroscope<T> {
     fn solution(&self) -> Self::Solution {
         [T::constant(0.0); 33]
     }
-    /// Writes u̇: 70 operations (21 ±, 48 ×, 1 ÷) and 8 functions.
+    /// Writes u̇: 68 operations (20 ±, 47 ×, 1 ÷) and 8 functions.
     fn joint_accelerations(&self, t: T, x: &Self::Joints, out: &mut Self::Rates) {
         let k = T::constant;
         let x0 = x[0];
@@ -2394,42 +2394,45 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for DrivenGyroscope<T> {
         let u0 = x[3];
         let u1 = x[4];
         let u2 = x[5];
-        let t0 = k(12.566370614359172) * t;
-        let t1 = t0.sin();
-        let t2 = k(6.314572895816972e-6) - k(6.314572895816972e-6) * (t1 * t1);
-        let t3 = x0.sin();
-        let t4 = t3 * t2;
-        let t5 = x1.cos();
-        let t6 = k(0.1) * t1;
-        let t7 = k(0.0001) * t6.sin() + t5 * t4;
-        let t8 = k(9.476794145926002e-5) * t1;
+        let t0 = x0.cos();
+        let t1 = k(12.566370614359172) * t;
+        let t2 = t1.sin();
+        let t3 = k(0.1) * t2;
+        let t4 = t3.sin();
+        let t5 = t1.cos();
+        let t6 = t5 * t0;
+        let t7 = x1.cos();
+        let t8 = t7 * t6;
         let t9 = x1.sin();
-        let t10 = x0.cos();
-        let t11 = t0.cos();
-        let t12 = t11 * t10;
-        let t13 = u0 * t9;
-        let t14 = t11 * t3;
-        let t15 = k(1.2566370614359172) * ((u2 + t13) * t14)
-            + u1 * (u2 - k(0.20025) * (t13 + k(1.2566370614359172) * (t5 * t12)));
-        let t16 = k(1e-5) * t5;
-        let t17 = t16 * t15 + t10 * (t5 * (t9 * t8 + t7) + k(0.5001562988433885) * t4);
-        let t18 = t5 * t5;
-        let t19 = t17 / (k(2e-6) + k(6.00125e-6) * t18);
-        let t20 = k(0.0001) * t6.cos() + t9 * (t2 - k(3.99875e-6) * (u0 * u0));
-        let t21 = u0 * t16 - k(1.2566370614359173e-5) * (t9 * t12);
-        let t22 = u2 * t21 + t3 * (t8 + t9 * t7) - t5 * t20;
-        let t23 = k(1.2566370614359173e-5)
-            * (t5 * (k(12.566370614359172) * (t1 * t10) + u0 * t14)) - u1 * t21;
-        *out = [
-            -t19,
-            k(166631.95167673402)
-                * (t22
-                    - k(1.0049954898833748e-5)
-                        * (t12 * (u0 * (k(1.2503907471084714) - t18)))),
-            t9 * t19 + k(100000.0) * t23,
-        ];
+        let t10 = u0 * t9;
+        let t11 = k(0.020025)
+            * (u1 * (t10 - k(1.2566370614359172) * (k(3.9739061945541905) * u2 - t8)))
+            - t4 * t0;
+        let t12 = t2 * t0;
+        let t13 = x0.sin();
+        let t14 = t5 * t13;
+        let t15 = k(1.2566370614359173e-5) * u2 + k(6.314572895816972e-6) * t8;
+        let t16 = (k(3.1582734083485947e-6) * t6
+            + t7 * (k(1.2566370614359173e-5) * t10 + t15)) * t14
+            + k(9.476794145926002e-5) * (t7 * (t9 * t12 - k(1.05520916103247) * t11));
+        let t17 = t7 * t7;
+        let t18 = t16 / (k(2e-6) + k(6.00125e-6) * t17);
+        let t19 = t7
+            * (t3.cos() - k(0.0399875) * (u0 * (k(2.500781494216943) * u2 + t10)));
+        let t20 = t6
+            * (t9 * t15
+                + k(1.0049954898833748e-5) * (u0 * (k(1.2503907471084714) - t17)))
+            - k(0.0001) * (t13 * (k(0.9476794145926002) * t2 + t4 * t9) - t19);
+        let t21 = k(0.00015791367041742975)
+            * (t7
+                * (t12
+                    - k(0.06332573977646111)
+                        * (u0 * (u1 - k(1.2566370614359172) * t14))));
+        let t22 = t9 * t18
+            + k(100000.0) * (k(1.2566370614359173e-5) * (t6 * (u1 * t9)) + t21);
+        *out = [-t18, -(k(166631.95167673402) * t20), t22];
     }
-    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 449 operations (160 ±, 287 ×, 2 ÷) and 18 functions.
+    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 447 operations (159 ±, 286 ×, 2 ÷) and 18 functions.
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
         let mut rates = gyro_sim::JointSpace::rates(self);
         gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
@@ -2499,127 +2502,134 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for DrivenGyroscope<T> {
         let t55 = k(1.0) - t37 * t53;
         let t56 = u0 * t55 - t54 * t52;
         let t57 = x1.cos();
-        let t58 = k(6.314572895816972e-6) - k(6.314572895816972e-6) * (t3 * t3);
-        let t59 = x0.sin();
-        let t60 = t59 * t58;
-        let t61 = k(0.0001) * t15 + t57 * t60;
-        let t62 = k(9.476794145926002e-5) * t3;
-        let t63 = x1.sin();
-        let t64 = t16 * t33;
-        let t65 = u0 * t63;
-        let t66 = t16 * t59;
-        let t67 = k(1.2566370614359172) * ((u2 + t65) * t66)
-            + u1 * (u2 - k(0.20025) * (t65 + k(1.2566370614359172) * (t57 * t64)));
-        let t68 = k(1e-5) * t57;
-        let t69 = t68 * t67
-            + t33 * (t57 * (t63 * t62 + t61) + k(0.5001562988433885) * t60);
-        let t70 = t57 * t57;
-        let t71 = t69 / (k(2e-6) + k(6.00125e-6) * t70);
-        let t72 = t63 * t71;
-        let t73 = t72 + t57 * t35 - u1 * t56;
-        let t74 = k(0.5) * x2;
-        let t75 = t74.sin();
-        let t76 = t74.cos();
-        let t77 = t39 * t76 + t40 * t75;
-        let t78 = t40 * t76 - t39 * t75;
-        let t79 = t78 * t78;
-        let t80 = k(2.0) * (k(0.5) - (t79 + t77 * t77));
-        let t81 = t43 * t76 - t45 * t75;
-        let t82 = t78 * t81;
-        let t83 = t45 * t76 + t43 * t75;
-        let t84 = t77 * t83;
-        let t85 = k(2.0) * (t84 + t82);
-        let t86 = t78 * t83;
-        let t87 = t77 * t81;
-        let t88 = k(2.0) * (t87 - t86);
-        let t89 = u0 * t68 - k(1.2566370614359173e-5) * (t63 * t64);
-        let t90 = k(1.2566370614359173e-5)
-            * (t57 * (k(12.566370614359172) * (t3 * t33) + u0 * t66)) - u1 * t89;
-        let t91 = k(1e-5) * (t72 + k(100000.0) * t90 - t73);
-        let t92 = k(2.0) * (t84 - t82);
-        let t93 = k(2.0) * (k(0.5) - (t79 + t83 * t83));
-        let t94 = t78 * t77;
-        let t95 = t83 * t81;
-        let t96 = k(2.0) * (t95 + t94);
-        let t97 = k(2.0) * t75;
-        let t98 = t76 * t97;
-        let t99 = k(1.0) - t75 * t97;
-        let t100 = t99 * t51 - t98 * t56;
-        let t101 = u0 * t54 + t55 * t52;
-        let t102 = u2 + t101;
-        let t103 = t57 * t71 - t63 * t35 + u1 * t101;
-        let t104 = x2.cos();
-        let t105 = u0 * t52;
-        let t106 = t34 * t59 - t105;
-        let t107 = t57 * (k(0.0001) * t19 + t63 * (t58 - k(3.99875e-6) * (u0 * u0)));
-        let t108 = u2 * t89 + t59 * (t62 + t63 * t61) - t107
-            - k(1.0049954898833748e-5) * (t64 * (u0 * (k(1.2503907471084714) - t70)));
-        let t109 = k(166631.95167673402) * t108 - t106;
-        let t110 = x2.sin();
-        let t111 = t110 * t109 - t104 * t103 + u2 * t100 + t102 * t100;
-        let t112 = k(5e-6) * t111;
-        let t113 = t112 * (t50 * t96 - (t47 * t93 + t42 * t92))
-            + t91 * (t50 * t88 + (t47 * t85 + t42 * t80));
-        let t114 = k(2.0) * (t87 + t86);
-        let t115 = k(2.0) * (t95 - t94);
-        let t116 = k(2.0) * (k(0.5) - (t79 + t81 * t81));
-        let t117 = t98 * t51 + t99 * t56;
-        let t118 = t104 * t109 + t110 * t103 - u2 * t117 - t102 * t117;
-        let t119 = k(5e-6) * t118;
-        let t120 = t119 * (t50 * t116 - (t47 * t115 - t42 * t114)) - t113;
-        let t121 = t120 + k(1e-6) * (t73 + t56 * t51);
-        let t122 = t46 - t44;
+        let t58 = t16 * t33;
+        let t59 = t57 * t58;
+        let t60 = x1.sin();
+        let t61 = u0 * t60;
+        let t62 = k(0.020025)
+            * (u1 * (t61 - k(1.2566370614359172) * (k(3.9739061945541905) * u2 - t59)))
+            - t15 * t33;
+        let t63 = t3 * t33;
+        let t64 = x0.sin();
+        let t65 = t16 * t64;
+        let t66 = k(1.2566370614359173e-5) * u2 + k(6.314572895816972e-6) * t59;
+        let t67 = (k(3.1582734083485947e-6) * t58
+            + t57 * (k(1.2566370614359173e-5) * t61 + t66)) * t65
+            + k(9.476794145926002e-5) * (t57 * (t60 * t63 - k(1.05520916103247) * t62));
+        let t68 = t57 * t57;
+        let t69 = t67 / (k(2e-6) + k(6.00125e-6) * t68);
+        let t70 = t60 * t69;
+        let t71 = t70 + t57 * t35 - u1 * t56;
+        let t72 = k(0.5) * x2;
+        let t73 = t72.sin();
+        let t74 = t72.cos();
+        let t75 = t39 * t74 + t40 * t73;
+        let t76 = t40 * t74 - t39 * t73;
+        let t77 = t76 * t76;
+        let t78 = k(2.0) * (k(0.5) - (t77 + t75 * t75));
+        let t79 = t43 * t74 - t45 * t73;
+        let t80 = t76 * t79;
+        let t81 = t45 * t74 + t43 * t73;
+        let t82 = t75 * t81;
+        let t83 = k(2.0) * (t82 + t80);
+        let t84 = t76 * t81;
+        let t85 = t75 * t79;
+        let t86 = k(2.0) * (t85 - t84);
+        let t87 = k(0.00015791367041742975)
+            * (t57
+                * (t63
+                    - k(0.06332573977646111)
+                        * (u0 * (u1 - k(1.2566370614359172) * t65))));
+        let t88 = t70
+            + k(100000.0) * (k(1.2566370614359173e-5) * (t58 * (u1 * t60)) + t87) - t71;
+        let t89 = k(1e-5) * t88;
+        let t90 = k(2.0) * (t82 - t80);
+        let t91 = k(2.0) * (k(0.5) - (t77 + t81 * t81));
+        let t92 = t76 * t75;
+        let t93 = t81 * t79;
+        let t94 = k(2.0) * (t93 + t92);
+        let t95 = k(2.0) * t73;
+        let t96 = t74 * t95;
+        let t97 = k(1.0) - t73 * t95;
+        let t98 = t97 * t51 - t96 * t56;
+        let t99 = u0 * t54 + t55 * t52;
+        let t100 = u2 + t99;
+        let t101 = t57 * t69 - t60 * t35 + u1 * t99;
+        let t102 = x2.cos();
+        let t103 = u0 * t52;
+        let t104 = t34 * t64 - t103;
+        let t105 = t64 * (k(0.9476794145926002) * t3 + t15 * t60)
+            - t57 * (t19 - k(0.0399875) * (u0 * (k(2.500781494216943) * u2 + t61)));
+        let t106 = t58
+            * (t60 * t66
+                + k(1.0049954898833748e-5) * (u0 * (k(1.2503907471084714) - t68)))
+            - k(0.0001) * t105;
+        let t107 = k(166631.95167673402) * t106 + t104;
+        let t108 = x2.sin();
+        let t109 = t108 * t107 + t102 * t101 - u2 * t98 - t100 * t98;
+        let t110 = k(5e-6) * t109;
+        let t111 = t110 * (t50 * t94 - (t47 * t91 + t42 * t90))
+            - t89 * (t50 * t86 + (t47 * t83 + t42 * t78));
+        let t112 = k(2.0) * (t85 + t84);
+        let t113 = k(2.0) * (t93 - t92);
+        let t114 = k(2.0) * (k(0.5) - (t77 + t79 * t79));
+        let t115 = t96 * t51 + t97 * t56;
+        let t116 = t102 * t107 - t108 * t101 + u2 * t115 + t100 * t115;
+        let t117 = k(5e-6) * t116;
+        let t118 = t117 * (t50 * t114 - (t47 * t113 - t42 * t112)) - t111;
+        let t119 = t118 - k(1e-6) * (t71 + t56 * t51);
+        let t120 = t46 - t44;
+        let t121 = k(2.0) * t120;
+        let t122 = k(0.5) - (t41 + t45 * t45);
         let t123 = k(2.0) * t122;
-        let t124 = k(0.5) - (t41 + t45 * t45);
-        let t125 = k(2.0) * t124;
-        let t126 = t40 * t39;
-        let t127 = t45 * t43;
-        let t128 = t127 + t126;
-        let t129 = k(2.0) * t128;
-        let t130 = t112 * (t129 * t96 + (t125 * t93 + t123 * t92))
-            + t91 * (t129 * t88 - (t125 * t85 + t123 * t80));
-        let t131 = t119 * (t129 * t116 + (t125 * t115 - t123 * t114)) - t130;
-        let t132 = k(0.000125) * t56;
-        let t133 = k(0.000125) * t51;
-        let t134 = t51 * t133 + t56 * t132;
-        let t135 = t132 * t101;
-        let t136 = t133 * t101;
-        let t137 = t49 + t48;
-        let t138 = k(2.0) * t137;
-        let t139 = k(0.00025) * t137;
-        let t140 = k(0.00025) * t122;
-        let t141 = t109 * t140 + t103 * t139
-            + (t138 * t136 + (t123 * t135 + t42 * t134));
-        let t142 = k(0.08) * t141;
-        let t143 = t127 - t126;
-        let t144 = k(2.0) * t143;
-        let t145 = k(0.00025) * t143;
-        let t146 = k(0.00025) * t124;
-        let t147 = t109 * t146 - t103 * t145
-            - (t144 * t136 - (t125 * t135 + t47 * t134));
-        let t148 = k(0.8) - k(0.08) * t147;
-        let t149 = k(0.5) - (t41 + t43 * t43);
-        let t150 = k(2.0) * t149;
-        let t151 = k(0.00025) * t149;
-        let t152 = k(0.00025) * t128;
-        let t153 = t109 * t152 - t103 * t151
-            - (t150 * t136 - (t129 * t135 - t50 * t134));
-        let t154 = k(0.08) * t153;
-        let t155 = t151 * t154 - (t145 * t148 + t139 * t142) - t131 - k(2e-6) * t103;
-        let t156 = t155 * (t27 * t129 - (t24 * t125 + t23 * t123))
-            - t121 * (t27 * t50 + (t24 * t47 + t23 * t42));
-        let t157 = t112 * (t150 * t96 + (t144 * t93 - t138 * t92))
-            + t91 * (t150 * t88 - (t144 * t85 - t138 * t80));
-        let t158 = t119 * (t150 * t116 + (t144 * t115 + t138 * t114)) - t157;
-        let t159 = t152 * t154 - (t146 * t148 - t140 * t142) + t158
-            + k(1e-6) * (t109 + t56 * t101);
-        let t160 = t159 * (t27 * t150 - (t24 * t144 - t23 * t138)) - t156;
-        let t161 = t155 * (t22 * t129 + (t21 * t125 - t28 * t123))
-            - t121 * (t22 * t50 - (t21 * t47 - t28 * t42));
-        let t162 = t159 * (t22 * t150 + (t21 * t144 + t28 * t138)) - t161;
-        let t163 = (t162 - k(1e-6) * (t105 + t106)) * (t28 * t30)
-            + (t160 + k(2e-6) * t35) * (t23 * t30);
-        *dx = [u0, u1, u2, rates[0], rates[1], rates[2], t163 * t20];
+        let t124 = t40 * t39;
+        let t125 = t45 * t43;
+        let t126 = t125 + t124;
+        let t127 = k(2.0) * t126;
+        let t128 = t110 * (t127 * t94 + (t123 * t91 + t121 * t90))
+            - t89 * (t127 * t86 - (t123 * t83 + t121 * t78));
+        let t129 = t117 * (t127 * t114 + (t123 * t113 - t121 * t112)) - t128;
+        let t130 = k(0.000125) * t56;
+        let t131 = k(0.000125) * t51;
+        let t132 = t51 * t131 + t56 * t130;
+        let t133 = t130 * t99;
+        let t134 = t131 * t99;
+        let t135 = t49 + t48;
+        let t136 = k(2.0) * t135;
+        let t137 = k(0.00025) * t135;
+        let t138 = k(0.00025) * t120;
+        let t139 = t107 * t138 - t101 * t137
+            - (t136 * t134 + (t121 * t133 + t42 * t132));
+        let t140 = k(0.08) * t139;
+        let t141 = t125 - t124;
+        let t142 = k(2.0) * t141;
+        let t143 = k(0.00025) * t141;
+        let t144 = k(0.00025) * t122;
+        let t145 = t107 * t144 + t101 * t143
+            + (t142 * t134 - (t123 * t133 + t47 * t132));
+        let t146 = k(0.8) + k(0.08) * t145;
+        let t147 = k(0.5) - (t41 + t43 * t43);
+        let t148 = k(2.0) * t147;
+        let t149 = k(0.00025) * t147;
+        let t150 = k(0.00025) * t126;
+        let t151 = t107 * t150 + t101 * t149
+            + (t148 * t134 - (t127 * t133 - t50 * t132));
+        let t152 = k(0.08) * t151;
+        let t153 = t149 * t152 + (t143 * t146 - t137 * t140) - t129 + k(2e-6) * t101;
+        let t154 = t153 * (t27 * t127 - (t24 * t123 + t23 * t121))
+            - t119 * (t27 * t50 + (t24 * t47 + t23 * t42));
+        let t155 = t110 * (t148 * t94 + (t142 * t91 - t136 * t90))
+            - t89 * (t148 * t86 - (t142 * t83 - t136 * t78));
+        let t156 = t117 * (t148 * t114 + (t142 * t113 + t136 * t112)) - t155;
+        let t157 = t150 * t152 + (t144 * t146 + t138 * t140) + t156
+            + k(1e-6) * (t107 - t56 * t99);
+        let t158 = t157 * (t27 * t148 - (t24 * t142 - t23 * t136)) - t154;
+        let t159 = t153 * (t22 * t127 + (t21 * t123 - t28 * t121))
+            - t119 * (t22 * t50 - (t21 * t47 - t28 * t42));
+        let t160 = t157 * (t22 * t148 + (t21 * t142 + t28 * t136)) - t159;
+        let t161 = (t160 + k(1e-6) * (t103 + t104)) * (t28 * t30)
+            + (t158 - k(2e-6) * t35) * (t23 * t30);
+        *dx = [u0, u1, u2, rates[0], rates[1], rates[2], -(t161 * t20)];
     }
     /// Writes the maximal state of a joint state: 104 operations (32 ±, 72 ×, 0 ÷) and 10 functions.
     fn to_maximal(&self, t: T, x: &Self::Joints, y: &mut Self::State) {

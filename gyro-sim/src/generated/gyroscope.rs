@@ -27,14 +27,14 @@
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
 //! | newton_step | dependent positions, one Newton step | 193 | 318 | 3 | 514 | 6 of 21 |
 //! | solve_velocities | dependent velocities, eq. (19) | 96 | 158 | 3 | 257 | 6 of 18 |
-//! | joint_accelerations | u̇ in joint coordinates | 5 | 12 | 1 | 18 | 0 of 3 |
+//! | joint_accelerations | u̇ in joint coordinates | 5 | 14 | 1 | 20 | 0 of 3 |
 //! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 |
 //! | to_maximal | (q, v) of a joint state | 24 | 54 | 0 | 78 | 16 of 39 |
 //! | to_joints | (x, u) of a maximal state | 63 | 72 | 0 | 135 | 0 of 6 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 14 | 23 | 1 | 38 | 0 of 3 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 56 | 92 | 1 | 149 | 6 of 18 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 14 | 25 | 1 | 40 | 0 of 3 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 56 | 93 | 1 | 150 | 6 of 18 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 54 | 80 | 0 | 134 | 0 of 15 |
-//! | corrected_solution | both | 88 | 142 | 1 | 231 | 6 of 33 |
+//! | corrected_solution | both | 88 | 143 | 1 | 232 | 6 of 33 |
 //!
 //! # Proof
 //!
@@ -2084,7 +2084,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gyroscope<T> {
     fn solution(&self) -> Self::Solution {
         [T::constant(0.0); 33]
     }
-    /// Writes u̇: 18 operations (5 ±, 12 ×, 1 ÷) and 2 functions.
+    /// Writes u̇: 20 operations (5 ±, 14 ×, 1 ÷) and 2 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
         let k = T::constant;
         let x1 = x[1];
@@ -2092,15 +2092,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gyroscope<T> {
         let u1 = x[4];
         let u2 = x[5];
         let t0 = x1.cos();
-        let t1 = u1 * t0;
-        let t2 = x1.sin();
-        let t3 = u0 * t2;
-        let t4 = k(1.6663195167673401)
-            * ((u2 - k(0.20025) * t3) / (k(1.3332639033534681) - t2 * t2));
+        let t1 = k(1e-5) * t0;
+        let t2 = u1 * t1;
+        let t3 = x1.sin();
+        let t4 = u0 * t3;
+        let t5 = (u2 - k(0.20025) * t4) * t2 / (k(2e-6) + k(6.00125e-6) * (t0 * t0));
         *out = [
-            -(t4 * t1),
-            -(k(1.6663195167673401) * (t0 * (k(10.0) - u0 * (u2 + k(0.399875) * t3)))),
-            -(t1 * (u0 - t2 * t4)),
+            -t5,
+            -(k(166631.95167673402) * (t1 * (k(10.0) - u0 * (u2 + k(0.399875) * t4)))),
+            t3 * t5 - k(100000.0) * (u0 * t2),
         ];
     }
     /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -2276,7 +2276,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gyroscope<T> {
         x[4] = inner_ring_wz - outer_ring_wz;
         x[5] = rotor_wx - inner_ring_wx;
     }
-    /// Writes u̇ at a state that satisfies the constraints: 38 operations (14 ±, 23 ×, 1 ÷).
+    /// Writes u̇ at a state that satisfies the constraints: 40 operations (14 ±, 25 ×, 1 ÷).
     fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2296,22 +2296,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gyroscope<T> {
             + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
         let t1 = k(2.0) * t0;
         let t2 = k(1.0) - t0 * t1;
-        let t3 = (outer_ring_wz - inner_ring_wz) * t2;
-        let t4 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+        let t3 = k(1e-5) * t2;
+        let t4 = (outer_ring_wz - inner_ring_wz) * t3;
+        let t5 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
             + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
-        let t5 = t4 * t1;
-        let t6 = outer_ring_wy * t5;
-        let t7 = inner_ring_wx - rotor_wx;
-        let t8 = k(1.6663195167673401)
-            * ((t7 - k(0.20025) * t6) / (k(1.3332639033534681) - t5 * t5));
+        let t6 = t5 * t1;
+        let t7 = outer_ring_wy * t6;
+        let t8 = inner_ring_wx - rotor_wx;
+        let t9 = (t8 - k(0.20025) * t7) * t4 / (k(2e-6) + k(6.00125e-6) * (t2 * t2));
         *out = [
-            -(t8 * t3),
-            -(k(1.6663195167673401)
-                * (t2 * (k(10.0) + outer_ring_wy * (t7 + k(0.399875) * t6)))),
-            t3 * (outer_ring_wy - t5 * t8),
+            -t9,
+            -(k(166631.95167673402)
+                * (t3 * (k(10.0) + outer_ring_wy * (t8 + k(0.399875) * t7)))),
+            k(100000.0) * (outer_ring_wy * t4) - t6 * t9,
         ];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 149 operations (56 ±, 92 ×, 1 ÷).
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 150 operations (56 ±, 93 ×, 1 ÷).
     fn corrected_accelerations(
         &self,
         _t: T,
@@ -2345,50 +2345,50 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gyroscope<T> {
             + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
         let t2 = k(2.0) * t1;
         let t3 = k(1.0) - t1 * t2;
-        let t4 = outer_ring_wz - inner_ring_wz;
-        let t5 = t4 * t3;
-        let t6 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+        let t4 = k(1e-5) * t3;
+        let t5 = outer_ring_wz - inner_ring_wz;
+        let t6 = t5 * t4;
+        let t7 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
             + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
-        let t7 = t6 * t2;
-        let t8 = outer_ring_wy * t7;
-        let t9 = inner_ring_wx - rotor_wx;
-        let t10 = k(1.6663195167673401)
-            * ((t9 - k(0.20025) * t8) / (k(1.3332639033534681) - t7 * t7));
-        let t11 = t10 * t5;
+        let t8 = t7 * t2;
+        let t9 = outer_ring_wy * t8;
+        let t10 = inner_ring_wx - rotor_wx;
+        let t11 = (t10 - k(0.20025) * t9) * t6 / (k(2e-6) + k(6.00125e-6) * (t3 * t3));
         let t12 = outer_ring_wx * outer_ring_wy;
-        let t13 = inner_ring_wy * t4 + (t0 * t3 - t7 * t11);
-        let t14 = inner_ring_wx * t4 - (t0 * t7 + t3 * t11);
-        let t15 = t12
-            - k(1.6663195167673401)
-                * (t3 * (k(10.0) + outer_ring_wy * (t9 + k(0.399875) * t8)));
-        let t16 = k(0.000125) * t15;
-        let t17 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+        let t13 = t8 * t11;
+        let t14 = inner_ring_wy * t5 - (t13 - t0 * t3);
+        let t15 = inner_ring_wx * t5 - (t0 * t8 + t3 * t11);
+        let t16 = t12
+            - k(166631.95167673402)
+                * (t4 * (k(10.0) + outer_ring_wy * (t10 + k(0.399875) * t9)));
+        let t17 = k(0.000125) * t16;
+        let t18 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
             - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
-        let t18 = k(2.0) * t17;
-        let t19 = k(1.0) - t17 * t18;
-        let t20 = k(0.000125) * t14;
-        let t21 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+        let t19 = k(2.0) * t18;
+        let t20 = k(1.0) - t18 * t19;
+        let t21 = k(0.000125) * t15;
+        let t22 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
             + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
-        let t22 = t21 * t18;
-        let t23 = k(0.000125) * inner_ring_wy;
-        let t24 = inner_ring_wx * t23;
-        let t25 = k(0.000125) * inner_ring_wz;
-        let t26 = inner_ring_wx * t25;
-        let t27 = t26 * t22 - t24 * t19 - (t22 * t20 + t19 * t16);
-        let t28 = rotor_e0 * rotor_e3;
-        let t29 = rotor_e1 * rotor_e2;
-        let t30 = inner_ring_wy * t23 + inner_ring_wz * t25;
-        let t31 = rotor_e0 * rotor_e0;
-        let t32 = k(2.0) * (k(0.5) - (t31 + rotor_e1 * rotor_e1)) * t30
-            - k(2.0) * (t29 - t28) * t27;
-        let t33 = t26 * t19 + t24 * t22 - (t19 * t20 - t22 * t16);
-        let t34 = rotor_e0 * rotor_e2;
-        let t35 = rotor_e1 * rotor_e3;
-        let t36 = k(2.0) * (t29 + t28) * t30
-            - k(2.0) * (k(0.5) - (t31 + rotor_e2 * rotor_e2)) * t27;
-        let t37 = rotor_e0 * rotor_e1;
-        let t38 = rotor_e2 * rotor_e3;
-        let t39 = k(2.0) * (t35 - t34) * t30 + k(2.0) * (t38 + t37) * t27;
+        let t23 = t22 * t19;
+        let t24 = k(0.000125) * inner_ring_wy;
+        let t25 = inner_ring_wx * t24;
+        let t26 = k(0.000125) * inner_ring_wz;
+        let t27 = inner_ring_wx * t26;
+        let t28 = t27 * t23 - t25 * t20 - (t23 * t21 + t20 * t17);
+        let t29 = rotor_e0 * rotor_e3;
+        let t30 = rotor_e1 * rotor_e2;
+        let t31 = inner_ring_wy * t24 + inner_ring_wz * t26;
+        let t32 = rotor_e0 * rotor_e0;
+        let t33 = k(2.0) * (k(0.5) - (t32 + rotor_e1 * rotor_e1)) * t31
+            - k(2.0) * (t30 - t29) * t28;
+        let t34 = t27 * t20 + t25 * t23 - (t20 * t21 - t23 * t17);
+        let t35 = rotor_e0 * rotor_e2;
+        let t36 = rotor_e1 * rotor_e3;
+        let t37 = k(2.0) * (t30 + t29) * t31
+            - k(2.0) * (k(0.5) - (t32 + rotor_e2 * rotor_e2)) * t28;
+        let t38 = rotor_e0 * rotor_e1;
+        let t39 = rotor_e2 * rotor_e3;
+        let t40 = k(2.0) * (t36 - t35) * t31 + k(2.0) * (t39 + t38) * t28;
         *out = [
             k(0.0),
             k(0.0),
@@ -2399,15 +2399,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gyroscope<T> {
             k(0.0),
             k(0.0),
             k(0.0),
-            -t13,
-            t14,
+            -t14,
             t15,
-            k(2.0) * (t35 + t34) * t33 + t32,
-            k(2.0) * (t38 - t37) * t33 - t36,
-            -(k(2.0) * (k(0.5) - (t31 + rotor_e3 * rotor_e3)) * t33 + t39),
-            t5 * (outer_ring_wy - t7 * t10) - t13,
-            -(rotor_wz * t9 + (t22 * t15 - t19 * t14)),
-            rotor_wy * t9 + (t19 * t15 + t22 * t14),
+            t16,
+            k(2.0) * (t36 + t35) * t34 + t33,
+            k(2.0) * (t39 - t38) * t34 - t37,
+            -(k(2.0) * (k(0.5) - (t32 + rotor_e3 * rotor_e3)) * t34 + t40),
+            -(t13 - k(100000.0) * (outer_ring_wy * t6) + t14),
+            -(rotor_wz * t10 + (t23 * t16 - t20 * t15)),
+            rotor_wy * t10 + (t20 * t16 + t23 * t15),
         ];
     }
     /// Writes λ: 134 operations (54 ±, 80 ×, 0 ÷).
@@ -2523,7 +2523,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gyroscope<T> {
             -t21,
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 231 operations (88 ±, 142 ×, 1 ÷).
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 232 operations (88 ±, 143 ×, 1 ÷).
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2552,84 +2552,84 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gyroscope<T> {
             + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
         let t2 = k(2.0) * t1;
         let t3 = k(1.0) - t1 * t2;
-        let t4 = outer_ring_wz - inner_ring_wz;
-        let t5 = t4 * t3;
-        let t6 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+        let t4 = k(1e-5) * t3;
+        let t5 = outer_ring_wz - inner_ring_wz;
+        let t6 = t5 * t4;
+        let t7 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
             + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
-        let t7 = t6 * t2;
-        let t8 = outer_ring_wy * t7;
-        let t9 = inner_ring_wx - rotor_wx;
-        let t10 = k(1.6663195167673401)
-            * ((t9 - k(0.20025) * t8) / (k(1.3332639033534681) - t7 * t7));
-        let t11 = t10 * t5;
+        let t8 = t7 * t2;
+        let t9 = outer_ring_wy * t8;
+        let t10 = inner_ring_wx - rotor_wx;
+        let t11 = (t10 - k(0.20025) * t9) * t6 / (k(2e-6) + k(6.00125e-6) * (t3 * t3));
         let t12 = outer_ring_wx * outer_ring_wy;
-        let t13 = inner_ring_wy * t4 + (t0 * t3 - t7 * t11);
-        let t14 = inner_ring_wx * t4 - (t0 * t7 + t3 * t11);
-        let t15 = t12
-            - k(1.6663195167673401)
-                * (t3 * (k(10.0) + outer_ring_wy * (t9 + k(0.399875) * t8)));
-        let t16 = k(0.000125) * t15;
-        let t17 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+        let t13 = t8 * t11;
+        let t14 = inner_ring_wy * t5 - (t13 - t0 * t3);
+        let t15 = inner_ring_wx * t5 - (t0 * t8 + t3 * t11);
+        let t16 = t12
+            - k(166631.95167673402)
+                * (t4 * (k(10.0) + outer_ring_wy * (t10 + k(0.399875) * t9)));
+        let t17 = k(0.000125) * t16;
+        let t18 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
             - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
-        let t18 = k(2.0) * t17;
-        let t19 = k(1.0) - t17 * t18;
-        let t20 = k(0.000125) * t14;
-        let t21 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+        let t19 = k(2.0) * t18;
+        let t20 = k(1.0) - t18 * t19;
+        let t21 = k(0.000125) * t15;
+        let t22 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
             + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
-        let t22 = t21 * t18;
-        let t23 = k(0.000125) * inner_ring_wy;
-        let t24 = inner_ring_wx * t23;
-        let t25 = k(0.000125) * inner_ring_wz;
-        let t26 = inner_ring_wx * t25;
-        let t27 = t26 * t22 - t24 * t19 - (t22 * t20 + t19 * t16);
-        let t28 = rotor_e0 * rotor_e3;
-        let t29 = rotor_e1 * rotor_e2;
-        let t30 = inner_ring_wy * t23 + inner_ring_wz * t25;
-        let t31 = rotor_e0 * rotor_e0;
-        let t32 = k(2.0) * (k(0.5) - (t31 + rotor_e1 * rotor_e1)) * t30
-            - k(2.0) * (t29 - t28) * t27;
-        let t33 = t26 * t19 + t24 * t22 - (t19 * t20 - t22 * t16);
-        let t34 = rotor_e0 * rotor_e2;
-        let t35 = rotor_e1 * rotor_e3;
-        let t36 = k(2.0) * (t35 + t34) * t33 + t32;
-        let t37 = k(2.0) * (t29 + t28) * t30
-            - k(2.0) * (k(0.5) - (t31 + rotor_e2 * rotor_e2)) * t27;
-        let t38 = rotor_e0 * rotor_e1;
-        let t39 = rotor_e2 * rotor_e3;
-        let t40 = k(2.0) * (t39 - t38) * t33 - t37;
-        let t41 = k(2.0) * (t35 - t34) * t30 + k(2.0) * (t39 + t38) * t27;
-        let t42 = k(2.0) * (k(0.5) - (t31 + rotor_e3 * rotor_e3)) * t33 + t41;
-        let t43 = t5 * (outer_ring_wy - t7 * t10) - t13;
-        let t44 = rotor_wz * t9 + (t22 * t15 - t19 * t14);
-        let t45 = rotor_wy * t9 + (t19 * t15 + t22 * t14);
-        let t46 = k(0.08) * t36;
-        let t47 = k(0.8) + k(0.08) * t40;
-        let t48 = k(0.1) + t47;
-        let t49 = k(0.08) * t42;
-        let t50 = k(5e-6) * (rotor_wx * rotor_wy - t45);
-        let t51 = k(5e-6) * (rotor_wx * rotor_wz - t44);
-        let t52 = t22 * t51 + t19 * t50;
-        let t53 = inner_ring_e0 * inner_ring_e1;
-        let t54 = inner_ring_e2 * inner_ring_e3;
-        let t55 = inner_ring_e0 * inner_ring_e0;
-        let t56 = k(0.00025)
-            * (inner_ring_e1 * inner_ring_e2 - inner_ring_e0 * inner_ring_e3) * t46
-            - k(0.00025) * (k(0.5) - (t55 + inner_ring_e2 * inner_ring_e2)) * t47;
-        let t57 = t56 - k(0.00025) * (t54 + t53) * t49 - t52
-            + k(1e-6) * (inner_ring_wx * inner_ring_wy + t15);
-        let t58 = k(2.0) * outer_ring_e2;
-        let t59 = outer_ring_e0 * t58;
-        let t60 = t19 * t51 - t22 * t50;
-        let t61 = k(0.00025)
-            * (inner_ring_e1 * inner_ring_e3 + inner_ring_e0 * inner_ring_e2) * t46
-            + k(0.00025) * (t54 - t53) * t47;
-        let t62 = t61
-            + k(0.00025) * (k(0.5) - (t55 + inner_ring_e3 * inner_ring_e3)) * t49 - t60;
-        let t63 = t62 - k(2e-6) * t14;
-        let t64 = k(1e-5) * t43 - k(1e-6) * (inner_ring_wy * inner_ring_wz + t13);
-        let t65 = t3 * t64 - t7 * t63;
-        let t66 = t65 - k(2e-6) * t0;
-        let t67 = k(1.0) - outer_ring_e2 * t58;
+        let t23 = t22 * t19;
+        let t24 = k(0.000125) * inner_ring_wy;
+        let t25 = inner_ring_wx * t24;
+        let t26 = k(0.000125) * inner_ring_wz;
+        let t27 = inner_ring_wx * t26;
+        let t28 = t27 * t23 - t25 * t20 - (t23 * t21 + t20 * t17);
+        let t29 = rotor_e0 * rotor_e3;
+        let t30 = rotor_e1 * rotor_e2;
+        let t31 = inner_ring_wy * t24 + inner_ring_wz * t26;
+        let t32 = rotor_e0 * rotor_e0;
+        let t33 = k(2.0) * (k(0.5) - (t32 + rotor_e1 * rotor_e1)) * t31
+            - k(2.0) * (t30 - t29) * t28;
+        let t34 = t27 * t20 + t25 * t23 - (t20 * t21 - t23 * t17);
+        let t35 = rotor_e0 * rotor_e2;
+        let t36 = rotor_e1 * rotor_e3;
+        let t37 = k(2.0) * (t36 + t35) * t34 + t33;
+        let t38 = k(2.0) * (t30 + t29) * t31
+            - k(2.0) * (k(0.5) - (t32 + rotor_e2 * rotor_e2)) * t28;
+        let t39 = rotor_e0 * rotor_e1;
+        let t40 = rotor_e2 * rotor_e3;
+        let t41 = k(2.0) * (t40 - t39) * t34 - t38;
+        let t42 = k(2.0) * (t36 - t35) * t31 + k(2.0) * (t40 + t39) * t28;
+        let t43 = k(2.0) * (k(0.5) - (t32 + rotor_e3 * rotor_e3)) * t34 + t42;
+        let t44 = t13 - k(100000.0) * (outer_ring_wy * t6) + t14;
+        let t45 = rotor_wz * t10 + (t23 * t16 - t20 * t15);
+        let t46 = rotor_wy * t10 + (t20 * t16 + t23 * t15);
+        let t47 = k(0.08) * t37;
+        let t48 = k(0.8) + k(0.08) * t41;
+        let t49 = k(0.1) + t48;
+        let t50 = k(0.08) * t43;
+        let t51 = k(5e-6) * (rotor_wx * rotor_wy - t46);
+        let t52 = k(5e-6) * (rotor_wx * rotor_wz - t45);
+        let t53 = t23 * t52 + t20 * t51;
+        let t54 = inner_ring_e0 * inner_ring_e1;
+        let t55 = inner_ring_e2 * inner_ring_e3;
+        let t56 = inner_ring_e0 * inner_ring_e0;
+        let t57 = k(0.00025)
+            * (inner_ring_e1 * inner_ring_e2 - inner_ring_e0 * inner_ring_e3) * t47
+            - k(0.00025) * (k(0.5) - (t56 + inner_ring_e2 * inner_ring_e2)) * t48;
+        let t58 = t57 - k(0.00025) * (t55 + t54) * t50 - t53
+            + k(1e-6) * (inner_ring_wx * inner_ring_wy + t16);
+        let t59 = k(2.0) * outer_ring_e2;
+        let t60 = outer_ring_e0 * t59;
+        let t61 = t20 * t52 - t23 * t51;
+        let t62 = k(0.00025)
+            * (inner_ring_e1 * inner_ring_e3 + inner_ring_e0 * inner_ring_e2) * t47
+            + k(0.00025) * (t55 - t54) * t48;
+        let t63 = t62
+            + k(0.00025) * (k(0.5) - (t56 + inner_ring_e3 * inner_ring_e3)) * t50 - t61;
+        let t64 = t63 - k(2e-6) * t15;
+        let t65 = k(1e-5) * t44 + k(1e-6) * (inner_ring_wy * inner_ring_wz + t14);
+        let t66 = t3 * t65 + t8 * t64;
+        let t67 = t66 + k(2e-6) * t0;
+        let t68 = k(1.0) - outer_ring_e2 * t59;
         *out = [
             k(0.0),
             k(0.0),
@@ -2640,30 +2640,30 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gyroscope<T> {
             k(0.0),
             k(0.0),
             k(0.0),
-            -t13,
-            t14,
+            -t14,
             t15,
-            t36,
-            t40,
-            -t42,
-            t43,
+            t16,
+            t37,
+            t41,
+            -t43,
             -t44,
-            t45,
-            -t46,
-            -(k(0.1) + t48),
-            t49,
-            -(t67 * t66 + t59 * t57),
-            t67 * t57 - t59 * t66,
-            -t46,
-            -t48,
-            t49,
-            t7 * t64 + t3 * t63,
-            t65,
-            -t46,
+            -t45,
+            t46,
             -t47,
-            t49,
-            t52,
-            t60,
+            -(k(0.1) + t49),
+            t50,
+            t68 * t67 - t60 * t58,
+            t60 * t67 + t68 * t58,
+            -t47,
+            -t49,
+            t50,
+            t3 * t64 - t8 * t65,
+            -t66,
+            -t47,
+            -t48,
+            t50,
+            t53,
+            t61,
         ];
     }
 }

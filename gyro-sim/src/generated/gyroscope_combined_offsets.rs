@@ -2411,49 +2411,49 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
         let u0 = x[3];
         let u1 = x[4];
         let u2 = x[5];
-        let t0 = x2.cos();
-        let t1 = x2.sin();
-        let t2 = t1 * (k(1.4e-9) * t0 + k(4.8e-9) * t1);
-        let t3 = k(2.52e-9) + (k(4.4e-10) * t1 - (t2 + k(1.08e-9) * t0));
+        let t0 = x2.sin();
+        let t1 = x2.cos();
+        let t2 = t1 * (k(1.4e-9) * t0 - k(4.8e-9) * t1);
+        let t3 = k(2.28e-9) + (k(1.08e-9) * t1 + (t2 - k(4.4e-10) * t0));
         let t4 = x1.sin();
-        let t5 = k(3e-10) * t0 - k(4e-10) * t1;
-        let t6 = k(6e-11) - t5;
+        let t5 = k(4e-10) * t0 - k(3e-10) * t1;
+        let t6 = k(6e-11) + t5;
         let t7 = x1.cos();
-        let t8 = k(1.2e-9) * t1 + k(1.6e-9) * t0;
-        let t9 = t1 * (k(4.8e-9) * t0 - k(1.4e-9) * t1);
+        let t8 = k(1.2e-9) * t0 + k(1.6e-9) * t1;
+        let t9 = t1 * (k(4.8e-9) * t0 + k(1.4e-9) * t1);
         let t10 = t9 - t8;
-        let t11 = k(4.00335e-6) + t10;
+        let t11 = k(4.00195e-6) + t10;
         let t12 = k(0.5) * t8;
         let t13 = k(2e-10) - t12;
         let t14 = t4 * t13;
         let t15 = u0 * (t13 - k(2.0) * (t4 * (t14 + t7 * t11)));
         let t16 = t7 * t5;
-        let t17 = k(2.4e-9) - t2;
+        let t17 = k(2.4e-9) + t2;
         let t18 = k(2.0) * t5 - t17;
-        let t19 = u0 * (t17 - (t4 * (t16 - t4 * t18) + k(0.3) * t8));
+        let t19 = u0 * (t17 - (t4 * (t16 - t4 * t18) - k(0.3) * t8));
         let t20 = k(2.0)
-            * (t19 + (t9 - k(1.2) * (k(4.168166666666667e-6) - t5)) * (u1 * t7));
+            * (t19 - (t9 - k(1.2) * (k(4.1693333333333335e-6) + t5)) * (u1 * t7));
         let t21 = t20
-            - u2 * (t16 + k(1.16e-9) * (t4 * (t1 - k(0.10344827586206896) * t0)));
-        let t22 = u2 * t21 + u1 * (t15 - u1 * (t7 * t6 - t4 * t3));
+            - u2 * (t16 + k(1.2e-10) * (t4 * (t1 - k(9.666666666666666) * t0)));
+        let t22 = u2 * t21 - u1 * (t15 - u1 * (t7 * t6 + t4 * t3));
         let t23 = u1 * t18;
         let t24 = t7 * t8;
-        let t25 = u0 * (t24 + (t4 * t12 - t7 * (k(1.00064e-5) + k(2.0) * t9)));
-        let t26 = k(400000.0) * t16 + u1 * (t25 - t23) - u0 * t19;
+        let t25 = u0 * (t24 + (t4 * t12 - t7 * (k(1.00036e-5) + k(2.0) * t9)));
+        let t26 = k(400000.0) * t16 - u1 * (t25 + t23) - u0 * t19;
         let t27 = k(0.25) * t24
-            - k(1.2e-10) * (t4 * (k(9.666666666666666) * t0 + (t1 - k(83375.0))));
+            - k(1.16e-9) * (t4 * (k(0.10344827586206896) * t0 + (t1 - k(8625.0))));
         let t28 = k(99950.02498750624) * t27;
-        let t29 = u2 * (t25 - k(2.0) * t23 + k(0.25) * (u2 * t8)) + k(2e-5) * t7;
+        let t29 = u2 * (t25 + k(2.0) * t23 + k(0.25) * (u2 * t8)) + k(2e-5) * t7;
         let t30 = k(99950.02498750624) * t5;
         let t31 = t30 * t26 - (t29 + k(0.5) * (u0 * t15) - k(200000.0) * t14);
-        let t32 = t30 * t27 + (t7 * t3 + t4 * t6);
-        let t33 = k(1.0) / (t5 * t30 - (k(6.00345e-6) + t10));
+        let t32 = t30 * t27 + (t7 * t3 - t4 * t6);
+        let t33 = k(1.0) / (t5 * t30 - (k(6.00205e-6) + t10));
         let t34 = t33 * t32;
-        let t35 = k(8.001922e-6) - k(2.4) * t5 - t4 * (t7 * t13 - t4 * t11);
+        let t35 = k(8.003322e-6) + k(2.4) * t5 - t4 * (t7 * t13 - t4 * t11);
         let t36 = (t34 * t31 - (t28 * t26 - t22))
             / (t32 * t34 - (t27 * t28 + (t9 - t35)));
         let t37 = t34 * t36 - t33 * t31;
-        *out = [t36, t37, t30 * t37 - (t28 * t36 - k(99950.02498750624) * t26)];
+        *out = [-t36, t37, t28 * t36 - k(99950.02498750624) * t26 - t30 * t37];
     }
     /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
@@ -2696,56 +2696,56 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
         let t0 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
             - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
         let t1 = k(2.0) * t0;
-        let t2 = k(1.0) - t0 * t1;
-        let t3 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+        let t2 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
             + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
-        let t4 = t3 * t1;
-        let t5 = t4 * (k(1.4e-9) * t2 - k(4.8e-9) * t4);
-        let t6 = k(2.52e-9) - (k(4.4e-10) * t4 - (t5 - k(1.08e-9) * t2));
+        let t3 = t2 * t1;
+        let t4 = k(1.0) - t0 * t1;
+        let t5 = t4 * (k(1.4e-9) * t3 + k(4.8e-9) * t4);
+        let t6 = k(2.28e-9) + (k(1.08e-9) * t4 - (t5 - k(4.4e-10) * t3));
         let t7 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
             + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
         let t8 = k(2.0) * t7;
         let t9 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
             + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
         let t10 = t9 * t8;
-        let t11 = k(3e-10) * t2 + k(4e-10) * t4;
+        let t11 = k(4e-10) * t3 + k(3e-10) * t4;
         let t12 = k(6e-11) - t11;
         let t13 = k(1.0) - t7 * t8;
         let t14 = outer_ring_wz - inner_ring_wz;
-        let t15 = k(1.2e-9) * t4 - k(1.6e-9) * t2;
-        let t16 = t4 * (k(4.8e-9) * t2 + k(1.4e-9) * t4);
+        let t15 = k(1.2e-9) * t3 - k(1.6e-9) * t4;
+        let t16 = t4 * (k(4.8e-9) * t3 - k(1.4e-9) * t4);
         let t17 = t16 - t15;
-        let t18 = k(4.00335e-6) - t17;
+        let t18 = k(4.00195e-6) - t17;
         let t19 = k(0.5) * t15;
         let t20 = k(2e-10) + t19;
         let t21 = t10 * t20;
         let t22 = outer_ring_wy * (t20 - k(2.0) * (t10 * (t21 - t13 * t18)));
         let t23 = t13 * t11;
         let t24 = inner_ring_wx - rotor_wx;
-        let t25 = k(2.4e-9) + t5;
-        let t26 = k(2.0) * t11 - t25;
-        let t27 = outer_ring_wy * (t25 + (t10 * (t23 + t10 * t26) + k(0.3) * t15));
+        let t25 = k(2.4e-9) - t5;
+        let t26 = k(2.0) * t11 + t25;
+        let t27 = outer_ring_wy * (t25 - (t10 * (t23 + t10 * t26) + k(0.3) * t15));
         let t28 = k(2.0)
-            * (t27 + (t16 + k(1.2) * (k(4.168166666666667e-6) - t11)) * (t14 * t13));
+            * (t27 - (t16 + k(1.2) * (k(4.1693333333333335e-6) - t11)) * (t14 * t13));
         let t29 = t28
-            + t24 * (t23 + k(1.16e-9) * (t10 * (t4 + k(0.10344827586206896) * t2)));
-        let t30 = t24 * t29 + t14 * (t22 + t14 * (t13 * t12 + t10 * t6));
+            - t24 * (t23 + k(1.2e-10) * (t10 * (t4 + k(9.666666666666666) * t3)));
+        let t30 = t24 * t29 - t14 * (t22 + t14 * (t13 * t12 - t10 * t6));
         let t31 = t14 * t26;
         let t32 = t13 * t15;
         let t33 = outer_ring_wy
-            * (t32 - (t10 * t19 - t13 * (k(1.00064e-5) - k(2.0) * t16)));
-        let t34 = k(400000.0) * t23 + t14 * (t33 - t31) - outer_ring_wy * t27;
+            * (t32 - (t10 * t19 - t13 * (k(1.00036e-5) - k(2.0) * t16)));
+        let t34 = k(400000.0) * t23 + t14 * (t33 - t31) + outer_ring_wy * t27;
         let t35 = k(0.25) * t32
-            - k(1.2e-10) * (t10 * (k(9.666666666666666) * t2 - (t4 + k(83375.0))));
+            + k(1.16e-9) * (t10 * (k(0.10344827586206896) * t3 - (t4 - k(8625.0))));
         let t36 = k(99950.02498750624) * t35;
         let t37 = t24 * (t33 - k(2.0) * t31 - k(0.25) * (t24 * t15)) + k(2e-5) * t13;
         let t38 = k(99950.02498750624) * t11;
         let t39 = t38 * t34 - (t37 + k(0.5) * (outer_ring_wy * t22) + k(200000.0) * t21);
-        let t40 = t38 * t35 - (t13 * t6 - t10 * t12);
-        let t41 = k(1.0) / (t11 * t38 - (k(6.00345e-6) - t17));
+        let t40 = t38 * t35 + (t13 * t6 + t10 * t12);
+        let t41 = k(1.0) / (t11 * t38 - (k(6.00205e-6) - t17));
         let t42 = t41 * t40;
-        let t43 = k(8.001922e-6) - k(2.4) * t11 + t10 * (t13 * t20 + t10 * t18);
-        let t44 = (t42 * t39 - (t36 * t34 - t30))
+        let t43 = k(8.003322e-6) - k(2.4) * t11 + t10 * (t13 * t20 + t10 * t18);
+        let t44 = (t42 * t39 - (t36 * t34 + t30))
             / (t40 * t42 - (t35 * t36 - (t16 + t43)));
         let t45 = t42 * t44 - t41 * t39;
         *out = [-t44, t45, t38 * t45 - (t36 * t44 - k(99950.02498750624) * t34)];
@@ -2783,56 +2783,56 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
         let t1 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
             - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
         let t2 = k(2.0) * t1;
-        let t3 = k(1.0) - t1 * t2;
-        let t4 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+        let t3 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
             + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
-        let t5 = t4 * t2;
-        let t6 = t5 * (k(1.4e-9) * t3 - k(4.8e-9) * t5);
-        let t7 = k(2.52e-9) - (k(4.4e-10) * t5 - (t6 - k(1.08e-9) * t3));
+        let t4 = t3 * t2;
+        let t5 = k(1.0) - t1 * t2;
+        let t6 = t5 * (k(1.4e-9) * t4 + k(4.8e-9) * t5);
+        let t7 = k(2.28e-9) + (k(1.08e-9) * t5 - (t6 - k(4.4e-10) * t4));
         let t8 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
             + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
         let t9 = k(2.0) * t8;
         let t10 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
             + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
         let t11 = t10 * t9;
-        let t12 = k(3e-10) * t3 + k(4e-10) * t5;
+        let t12 = k(4e-10) * t4 + k(3e-10) * t5;
         let t13 = k(6e-11) - t12;
         let t14 = k(1.0) - t8 * t9;
         let t15 = outer_ring_wz - inner_ring_wz;
-        let t16 = k(1.2e-9) * t5 - k(1.6e-9) * t3;
-        let t17 = t5 * (k(4.8e-9) * t3 + k(1.4e-9) * t5);
+        let t16 = k(1.2e-9) * t4 - k(1.6e-9) * t5;
+        let t17 = t5 * (k(4.8e-9) * t4 - k(1.4e-9) * t5);
         let t18 = t17 - t16;
-        let t19 = k(4.00335e-6) - t18;
+        let t19 = k(4.00195e-6) - t18;
         let t20 = k(0.5) * t16;
         let t21 = k(2e-10) + t20;
         let t22 = t11 * t21;
         let t23 = outer_ring_wy * (t21 - k(2.0) * (t11 * (t22 - t14 * t19)));
         let t24 = t14 * t12;
         let t25 = inner_ring_wx - rotor_wx;
-        let t26 = k(2.4e-9) + t6;
-        let t27 = k(2.0) * t12 - t26;
-        let t28 = outer_ring_wy * (t26 + (t11 * (t24 + t11 * t27) + k(0.3) * t16));
+        let t26 = k(2.4e-9) - t6;
+        let t27 = k(2.0) * t12 + t26;
+        let t28 = outer_ring_wy * (t26 - (t11 * (t24 + t11 * t27) + k(0.3) * t16));
         let t29 = k(2.0)
-            * (t28 + (t17 + k(1.2) * (k(4.168166666666667e-6) - t12)) * (t15 * t14));
+            * (t28 - (t17 + k(1.2) * (k(4.1693333333333335e-6) - t12)) * (t15 * t14));
         let t30 = t29
-            + t25 * (t24 + k(1.16e-9) * (t11 * (t5 + k(0.10344827586206896) * t3)));
-        let t31 = t25 * t30 + t15 * (t23 + t15 * (t14 * t13 + t11 * t7));
+            - t25 * (t24 + k(1.2e-10) * (t11 * (t5 + k(9.666666666666666) * t4)));
+        let t31 = t25 * t30 - t15 * (t23 + t15 * (t14 * t13 - t11 * t7));
         let t32 = t15 * t27;
         let t33 = t14 * t16;
         let t34 = outer_ring_wy
-            * (t33 - (t11 * t20 - t14 * (k(1.00064e-5) - k(2.0) * t17)));
-        let t35 = k(400000.0) * t24 + t15 * (t34 - t32) - outer_ring_wy * t28;
+            * (t33 - (t11 * t20 - t14 * (k(1.00036e-5) - k(2.0) * t17)));
+        let t35 = k(400000.0) * t24 + t15 * (t34 - t32) + outer_ring_wy * t28;
         let t36 = k(0.25) * t33
-            - k(1.2e-10) * (t11 * (k(9.666666666666666) * t3 - (t5 + k(83375.0))));
+            + k(1.16e-9) * (t11 * (k(0.10344827586206896) * t4 - (t5 - k(8625.0))));
         let t37 = k(99950.02498750624) * t36;
         let t38 = t25 * (t34 - k(2.0) * t32 - k(0.25) * (t25 * t16)) + k(2e-5) * t14;
         let t39 = k(99950.02498750624) * t12;
         let t40 = t39 * t35 - (t38 + k(0.5) * (outer_ring_wy * t23) + k(200000.0) * t22);
-        let t41 = t39 * t36 - (t14 * t7 - t11 * t13);
-        let t42 = k(1.0) / (t12 * t39 - (k(6.00345e-6) - t18));
+        let t41 = t39 * t36 + (t14 * t7 + t11 * t13);
+        let t42 = k(1.0) / (t12 * t39 - (k(6.00205e-6) - t18));
         let t43 = t42 * t41;
-        let t44 = k(8.001922e-6) - k(2.4) * t12 + t11 * (t14 * t21 + t11 * t19);
-        let t45 = (t43 * t40 - (t37 * t35 - t31))
+        let t44 = k(8.003322e-6) - k(2.4) * t12 + t11 * (t14 * t21 + t11 * t19);
+        let t45 = (t43 * t40 - (t37 * t35 + t31))
             / (t41 * t43 - (t36 * t37 - (t17 + t44)));
         let t46 = outer_ring_wx * outer_ring_wy;
         let t47 = inner_ring_wy * t15 + (t0 * t14 - t11 * t45);
@@ -2845,8 +2845,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
         let t54 = k(5e-5) * inner_ring_wx - k(0.000125) * inner_ring_wy;
         let t55 = inner_ring_wy * t54 - inner_ring_wz * t53
             - (rotor_wy * t52 - rotor_wz * t51);
-        let t56 = rotor_wz * t25 + (t5 * t50 - t3 * t48);
-        let t57 = rotor_wy * t25 + (t3 * t50 + t5 * t48);
+        let t56 = rotor_wz * t25 + (t4 * t50 - t5 * t48);
+        let t57 = rotor_wy * t25 + (t5 * t50 + t4 * t48);
         let t58 = k(0.0002) * t57 - k(0.00015) * t56
             + (t55 - (k(5e-5) * t50 + k(3e-5) * t48));
         let t59 = rotor_e0 * rotor_e0;
@@ -2856,15 +2856,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
         let t63 = inner_ring_wz * t62 + inner_ring_wx * t54;
         let t64 = inner_ring_wx * t53 + inner_ring_wy * t62;
         let t65 = k(0.00015) * rotor_wy + k(0.0002) * rotor_wz;
-        let t66 = rotor_wz * t65 + rotor_wx * t52 - (t64 * t5 + t63 * t3);
+        let t66 = rotor_wz * t65 + rotor_wx * t52 - (t64 * t4 + t63 * t5);
         let t67 = t39 * t49 - (t37 * t45 - k(99950.02498750624) * t35) - t47;
-        let t68 = k(0.0001) * t57 + k(0.00015) * t67 - (t66 + (t5 * t61 + t3 * t60));
+        let t68 = k(0.0001) * t57 + k(0.00015) * t67 - (t66 + (t4 * t61 + t5 * t60));
         let t69 = rotor_e0 * rotor_e3;
         let t70 = rotor_e1 * rotor_e2;
         let t71 = k(2.0) * (t70 - t69) * t68
             + k(2.0) * (k(0.5) - (t59 + rotor_e1 * rotor_e1)) * t58;
-        let t72 = rotor_wx * t51 + rotor_wy * t65 - (t64 * t3 - t63 * t5);
-        let t73 = k(0.0001) * t56 + k(0.0002) * t67 + (t72 + (t3 * t61 - t5 * t60));
+        let t72 = rotor_wx * t51 + rotor_wy * t65 - (t64 * t5 - t63 * t4);
+        let t73 = k(0.0001) * t56 + k(0.0002) * t67 + (t72 + (t5 * t61 - t4 * t60));
         let t74 = rotor_e0 * rotor_e2;
         let t75 = rotor_e1 * rotor_e3;
         let t76 = k(2.0) * (k(0.5) - (t59 + rotor_e2 * rotor_e2)) * t68
@@ -3068,56 +3068,56 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
         let t1 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
             - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
         let t2 = k(2.0) * t1;
-        let t3 = k(1.0) - t1 * t2;
-        let t4 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+        let t3 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
             + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
-        let t5 = t4 * t2;
-        let t6 = t5 * (k(1.4e-9) * t3 - k(4.8e-9) * t5);
-        let t7 = k(2.52e-9) - (k(4.4e-10) * t5 - (t6 - k(1.08e-9) * t3));
+        let t4 = t3 * t2;
+        let t5 = k(1.0) - t1 * t2;
+        let t6 = t5 * (k(1.4e-9) * t4 + k(4.8e-9) * t5);
+        let t7 = k(2.28e-9) + (k(1.08e-9) * t5 - (t6 - k(4.4e-10) * t4));
         let t8 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
             + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
         let t9 = k(2.0) * t8;
         let t10 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
             + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
         let t11 = t10 * t9;
-        let t12 = k(3e-10) * t3 + k(4e-10) * t5;
+        let t12 = k(4e-10) * t4 + k(3e-10) * t5;
         let t13 = k(6e-11) - t12;
         let t14 = k(1.0) - t8 * t9;
         let t15 = outer_ring_wz - inner_ring_wz;
-        let t16 = k(1.2e-9) * t5 - k(1.6e-9) * t3;
-        let t17 = t5 * (k(4.8e-9) * t3 + k(1.4e-9) * t5);
+        let t16 = k(1.2e-9) * t4 - k(1.6e-9) * t5;
+        let t17 = t5 * (k(4.8e-9) * t4 - k(1.4e-9) * t5);
         let t18 = t17 - t16;
-        let t19 = k(4.00335e-6) - t18;
+        let t19 = k(4.00195e-6) - t18;
         let t20 = k(0.5) * t16;
         let t21 = k(2e-10) + t20;
         let t22 = t11 * t21;
         let t23 = outer_ring_wy * (t21 - k(2.0) * (t11 * (t22 - t14 * t19)));
         let t24 = t14 * t12;
         let t25 = inner_ring_wx - rotor_wx;
-        let t26 = k(2.4e-9) + t6;
-        let t27 = k(2.0) * t12 - t26;
-        let t28 = outer_ring_wy * (t26 + (t11 * (t24 + t11 * t27) + k(0.3) * t16));
+        let t26 = k(2.4e-9) - t6;
+        let t27 = k(2.0) * t12 + t26;
+        let t28 = outer_ring_wy * (t26 - (t11 * (t24 + t11 * t27) + k(0.3) * t16));
         let t29 = k(2.0)
-            * (t28 + (t17 + k(1.2) * (k(4.168166666666667e-6) - t12)) * (t15 * t14));
+            * (t28 - (t17 + k(1.2) * (k(4.1693333333333335e-6) - t12)) * (t15 * t14));
         let t30 = t29
-            + t25 * (t24 + k(1.16e-9) * (t11 * (t5 + k(0.10344827586206896) * t3)));
-        let t31 = t25 * t30 + t15 * (t23 + t15 * (t14 * t13 + t11 * t7));
+            - t25 * (t24 + k(1.2e-10) * (t11 * (t5 + k(9.666666666666666) * t4)));
+        let t31 = t25 * t30 - t15 * (t23 + t15 * (t14 * t13 - t11 * t7));
         let t32 = t15 * t27;
         let t33 = t14 * t16;
         let t34 = outer_ring_wy
-            * (t33 - (t11 * t20 - t14 * (k(1.00064e-5) - k(2.0) * t17)));
-        let t35 = k(400000.0) * t24 + t15 * (t34 - t32) - outer_ring_wy * t28;
+            * (t33 - (t11 * t20 - t14 * (k(1.00036e-5) - k(2.0) * t17)));
+        let t35 = k(400000.0) * t24 + t15 * (t34 - t32) + outer_ring_wy * t28;
         let t36 = k(0.25) * t33
-            - k(1.2e-10) * (t11 * (k(9.666666666666666) * t3 - (t5 + k(83375.0))));
+            + k(1.16e-9) * (t11 * (k(0.10344827586206896) * t4 - (t5 - k(8625.0))));
         let t37 = k(99950.02498750624) * t36;
         let t38 = t25 * (t34 - k(2.0) * t32 - k(0.25) * (t25 * t16)) + k(2e-5) * t14;
         let t39 = k(99950.02498750624) * t12;
         let t40 = t39 * t35 - (t38 + k(0.5) * (outer_ring_wy * t23) + k(200000.0) * t22);
-        let t41 = t39 * t36 - (t14 * t7 - t11 * t13);
-        let t42 = k(1.0) / (t12 * t39 - (k(6.00345e-6) - t18));
+        let t41 = t39 * t36 + (t14 * t7 + t11 * t13);
+        let t42 = k(1.0) / (t12 * t39 - (k(6.00205e-6) - t18));
         let t43 = t42 * t41;
-        let t44 = k(8.001922e-6) - k(2.4) * t12 + t11 * (t14 * t21 + t11 * t19);
-        let t45 = (t43 * t40 - (t37 * t35 - t31))
+        let t44 = k(8.003322e-6) - k(2.4) * t12 + t11 * (t14 * t21 + t11 * t19);
+        let t45 = (t43 * t40 - (t37 * t35 + t31))
             / (t41 * t43 - (t36 * t37 - (t17 + t44)));
         let t46 = outer_ring_wx * outer_ring_wy;
         let t47 = inner_ring_wy * t15 + (t0 * t14 - t11 * t45);
@@ -3130,8 +3130,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
         let t54 = k(5e-5) * inner_ring_wx - k(0.000125) * inner_ring_wy;
         let t55 = inner_ring_wy * t54 - inner_ring_wz * t53
             - (rotor_wy * t52 - rotor_wz * t51);
-        let t56 = rotor_wz * t25 + (t5 * t50 - t3 * t48);
-        let t57 = rotor_wy * t25 + (t3 * t50 + t5 * t48);
+        let t56 = rotor_wz * t25 + (t4 * t50 - t5 * t48);
+        let t57 = rotor_wy * t25 + (t5 * t50 + t4 * t48);
         let t58 = k(0.0002) * t57 - k(0.00015) * t56
             + (t55 - (k(5e-5) * t50 + k(3e-5) * t48));
         let t59 = rotor_e0 * rotor_e0;
@@ -3142,14 +3142,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
         let t64 = inner_ring_wz * t63 + inner_ring_wx * t54;
         let t65 = inner_ring_wx * t53 + inner_ring_wy * t63;
         let t66 = k(0.00015) * rotor_wy + k(0.0002) * rotor_wz;
-        let t67 = rotor_wz * t66 + rotor_wx * t52 - (t65 * t5 + t64 * t3);
+        let t67 = rotor_wz * t66 + rotor_wx * t52 - (t65 * t4 + t64 * t5);
         let t68 = t39 * t49 - (t37 * t45 - k(99950.02498750624) * t35) - t47;
-        let t69 = k(0.0001) * t57 + k(0.00015) * t68 - (t67 + (t5 * t62 + t3 * t61));
+        let t69 = k(0.0001) * t57 + k(0.00015) * t68 - (t67 + (t4 * t62 + t5 * t61));
         let t70 = rotor_e0 * rotor_e3;
         let t71 = rotor_e1 * rotor_e2;
         let t72 = t71 - t70;
-        let t73 = rotor_wx * t51 + rotor_wy * t66 - (t65 * t3 - t64 * t5);
-        let t74 = k(0.0001) * t56 + k(0.0002) * t68 + (t73 + (t3 * t62 - t5 * t61));
+        let t73 = rotor_wx * t51 + rotor_wy * t66 - (t65 * t5 - t64 * t4);
+        let t74 = k(0.0001) * t56 + k(0.0002) * t68 + (t73 + (t5 * t62 - t4 * t61));
         let t75 = rotor_e0 * rotor_e2;
         let t76 = rotor_e1 * rotor_e3;
         let t77 = t76 + t75;
@@ -3176,7 +3176,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
             - (k(0.0002) * t83 + k(0.0003) * t79) * t90;
         let t96 = t95 + (k(0.0002) * t87 - k(0.0003) * t85) * t92
             - k(5e-6) * (rotor_wx * rotor_wz - t56);
-        let t97 = t5 * t96 + t3 * t94;
+        let t97 = t4 * t96 + t5 * t94;
         let t98 = inner_ring_e0 * inner_ring_e2;
         let t99 = inner_ring_e1 * inner_ring_e3;
         let t100 = t99 - t98;
@@ -3196,7 +3196,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
             - k(1e-6) * (inner_ring_wx * inner_ring_wy + t50);
         let t113 = k(2.0) * outer_ring_e2;
         let t114 = outer_ring_e0 * t113;
-        let t115 = t3 * t96 - t5 * t94;
+        let t115 = t5 * t96 - t4 * t94;
         let t116 = k(0.5) - (t107 + inner_ring_e3 * inner_ring_e3);
         let t117 = t102 - t101;
         let t118 = t99 + t98;

@@ -28,14 +28,14 @@
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
 //! | newton_step | dependent positions, one Newton step | 189 | 314 | 3 | 506 | 9 of 21 |
 //! | solve_velocities | dependent velocities, eq. (19) | 93 | 149 | 3 | 245 | 9 of 18 |
-//! | joint_accelerations | u̇ in joint coordinates | 4 | 12 | 1 | 17 | 0 of 3 |
+//! | joint_accelerations | u̇ in joint coordinates | 4 | 14 | 1 | 19 | 0 of 3 |
 //! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 |
 //! | to_maximal | (q, v) of a joint state | 9 | 27 | 0 | 36 | 22 of 39 |
 //! | to_joints | (x, u) of a maximal state | 63 | 72 | 0 | 135 | 0 of 6 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 13 | 23 | 1 | 37 | 0 of 3 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 30 | 48 | 1 | 79 | 9 of 18 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 13 | 25 | 1 | 39 | 0 of 3 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 30 | 49 | 1 | 80 | 9 of 18 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 37 | 59 | 0 | 96 | 0 of 15 |
-//! | corrected_solution | both | 45 | 74 | 1 | 120 | 18 of 33 |
+//! | corrected_solution | both | 45 | 75 | 1 | 121 | 18 of 33 |
 //!
 //! # Proof
 //!
@@ -1980,7 +1980,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
     fn solution(&self) -> Self::Solution {
         [T::constant(0.0); 33]
     }
-    /// Writes u̇: 17 operations (4 ±, 12 ×, 1 ÷) and 2 functions.
+    /// Writes u̇: 19 operations (4 ±, 14 ×, 1 ÷) and 2 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
         let k = T::constant;
         let x1 = x[1];
@@ -1988,15 +1988,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
         let u1 = x[4];
         let u2 = x[5];
         let t0 = x1.cos();
-        let t1 = u1 * t0;
-        let t2 = x1.sin();
-        let t3 = u0 * t2;
-        let t4 = k(1.6666666666666667)
-            * ((u2 - k(0.2) * t3) / (k(1.3333333333333333) - t2 * t2));
+        let t1 = k(1e-5) * t0;
+        let t2 = u1 * t1;
+        let t3 = x1.sin();
+        let t4 = u0 * t3;
+        let t5 = (u2 - k(0.2) * t4) * t2 / (k(2e-6) + k(6e-6) * (t0 * t0));
         *out = [
-            -(t4 * t1),
-            k(1.6666666666666667) * (u0 * t0 * (u2 + k(0.4) * t3)),
-            -(t1 * (u0 - t2 * t4)),
+            -t5,
+            k(166666.66666666666) * (t1 * (u0 * (u2 + k(0.4) * t4))),
+            t3 * t5 - k(100000.0) * (u0 * t2),
         ];
     }
     /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -2160,7 +2160,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
         x[4] = inner_ring_wz - outer_ring_wz;
         x[5] = rotor_wx - inner_ring_wx;
     }
-    /// Writes u̇ at a state that satisfies the constraints: 37 operations (13 ±, 23 ×, 1 ÷).
+    /// Writes u̇ at a state that satisfies the constraints: 39 operations (13 ±, 25 ×, 1 ÷).
     fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2180,21 +2180,21 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
             + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
         let t1 = k(2.0) * t0;
         let t2 = k(1.0) - t0 * t1;
-        let t3 = (outer_ring_wz - inner_ring_wz) * t2;
-        let t4 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+        let t3 = k(1e-5) * t2;
+        let t4 = (outer_ring_wz - inner_ring_wz) * t3;
+        let t5 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
             + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
-        let t5 = t4 * t1;
-        let t6 = outer_ring_wy * t5;
-        let t7 = inner_ring_wx - rotor_wx;
-        let t8 = k(1.6666666666666667)
-            * ((t7 - k(0.2) * t6) / (k(1.3333333333333333) - t5 * t5));
+        let t6 = t5 * t1;
+        let t7 = outer_ring_wy * t6;
+        let t8 = inner_ring_wx - rotor_wx;
+        let t9 = (t8 - k(0.2) * t7) * t4 / (k(2e-6) + k(6e-6) * (t2 * t2));
         *out = [
-            -(t8 * t3),
-            -(k(1.6666666666666667) * (outer_ring_wy * t2 * (t7 + k(0.4) * t6))),
-            t3 * (outer_ring_wy - t5 * t8),
+            -t9,
+            -(k(166666.66666666666) * (t3 * (outer_ring_wy * (t8 + k(0.4) * t7)))),
+            k(100000.0) * (outer_ring_wy * t4) - t6 * t9,
         ];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 79 operations (30 ±, 48 ×, 1 ÷).
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 80 operations (30 ±, 49 ×, 1 ÷).
     fn corrected_accelerations(
         &self,
         _t: T,
@@ -2228,28 +2228,28 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
             + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
         let t2 = k(2.0) * t1;
         let t3 = k(1.0) - t1 * t2;
-        let t4 = outer_ring_wz - inner_ring_wz;
-        let t5 = t4 * t3;
-        let t6 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+        let t4 = k(1e-5) * t3;
+        let t5 = outer_ring_wz - inner_ring_wz;
+        let t6 = t5 * t4;
+        let t7 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
             + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
-        let t7 = t6 * t2;
-        let t8 = outer_ring_wy * t7;
-        let t9 = inner_ring_wx - rotor_wx;
-        let t10 = k(1.6666666666666667)
-            * ((t9 - k(0.2) * t8) / (k(1.3333333333333333) - t7 * t7));
-        let t11 = t10 * t5;
+        let t8 = t7 * t2;
+        let t9 = outer_ring_wy * t8;
+        let t10 = inner_ring_wx - rotor_wx;
+        let t11 = (t10 - k(0.2) * t9) * t6 / (k(2e-6) + k(6e-6) * (t3 * t3));
         let t12 = outer_ring_wx * outer_ring_wy;
-        let t13 = inner_ring_wy * t4 + (t0 * t3 - t7 * t11);
-        let t14 = inner_ring_wx * t4 - (t0 * t7 + t3 * t11);
-        let t15 = t12
-            - k(1.6666666666666667) * (outer_ring_wy * t3 * (t9 + k(0.4) * t8));
-        let t16 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+        let t13 = t8 * t11;
+        let t14 = inner_ring_wy * t5 - (t13 - t0 * t3);
+        let t15 = inner_ring_wx * t5 - (t0 * t8 + t3 * t11);
+        let t16 = t12
+            - k(166666.66666666666) * (t4 * (outer_ring_wy * (t10 + k(0.4) * t9)));
+        let t17 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
             - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
-        let t17 = k(2.0) * t16;
-        let t18 = k(1.0) - t16 * t17;
-        let t19 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+        let t18 = k(2.0) * t17;
+        let t19 = k(1.0) - t17 * t18;
+        let t20 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
             + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
-        let t20 = t19 * t17;
+        let t21 = t20 * t18;
         *out = [
             k(0.0),
             k(0.0),
@@ -2260,15 +2260,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
             k(0.0),
             k(0.0),
             k(0.0),
-            -t13,
-            t14,
+            -t14,
             t15,
+            t16,
             k(0.0),
             k(0.0),
             k(0.0),
-            t5 * (outer_ring_wy - t7 * t10) - t13,
-            -(rotor_wz * t9 + (t20 * t15 - t18 * t14)),
-            rotor_wy * t9 + (t18 * t15 + t20 * t14),
+            -(t13 - k(100000.0) * (outer_ring_wy * t6) + t14),
+            -(rotor_wz * t10 + (t21 * t16 - t19 * t15)),
+            rotor_wy * t10 + (t19 * t16 + t21 * t15),
         ];
     }
     /// Writes λ: 96 operations (37 ±, 59 ×, 0 ÷).
@@ -2369,7 +2369,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
             -t17,
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 120 operations (45 ±, 74 ×, 1 ÷).
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 121 operations (45 ±, 75 ×, 1 ÷).
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2398,43 +2398,43 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
             + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
         let t2 = k(2.0) * t1;
         let t3 = k(1.0) - t1 * t2;
-        let t4 = outer_ring_wz - inner_ring_wz;
-        let t5 = t4 * t3;
-        let t6 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+        let t4 = k(1e-5) * t3;
+        let t5 = outer_ring_wz - inner_ring_wz;
+        let t6 = t5 * t4;
+        let t7 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
             + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
-        let t7 = t6 * t2;
-        let t8 = outer_ring_wy * t7;
-        let t9 = inner_ring_wx - rotor_wx;
-        let t10 = k(1.6666666666666667)
-            * ((t9 - k(0.2) * t8) / (k(1.3333333333333333) - t7 * t7));
-        let t11 = t10 * t5;
+        let t8 = t7 * t2;
+        let t9 = outer_ring_wy * t8;
+        let t10 = inner_ring_wx - rotor_wx;
+        let t11 = (t10 - k(0.2) * t9) * t6 / (k(2e-6) + k(6e-6) * (t3 * t3));
         let t12 = outer_ring_wx * outer_ring_wy;
-        let t13 = inner_ring_wy * t4 + (t0 * t3 - t7 * t11);
-        let t14 = inner_ring_wx * t4 - (t0 * t7 + t3 * t11);
-        let t15 = t12
-            - k(1.6666666666666667) * (outer_ring_wy * t3 * (t9 + k(0.4) * t8));
-        let t16 = t5 * (outer_ring_wy - t7 * t10) - t13;
-        let t17 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+        let t13 = t8 * t11;
+        let t14 = inner_ring_wy * t5 - (t13 - t0 * t3);
+        let t15 = inner_ring_wx * t5 - (t0 * t8 + t3 * t11);
+        let t16 = t12
+            - k(166666.66666666666) * (t4 * (outer_ring_wy * (t10 + k(0.4) * t9)));
+        let t17 = t13 - k(100000.0) * (outer_ring_wy * t6) + t14;
+        let t18 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
             - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
-        let t18 = k(2.0) * t17;
-        let t19 = k(1.0) - t17 * t18;
-        let t20 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+        let t19 = k(2.0) * t18;
+        let t20 = k(1.0) - t18 * t19;
+        let t21 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
             + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
-        let t21 = t20 * t18;
-        let t22 = rotor_wz * t9 + (t21 * t15 - t19 * t14);
-        let t23 = rotor_wy * t9 + (t19 * t15 + t21 * t14);
-        let t24 = k(5e-6) * (rotor_wx * rotor_wy - t23);
-        let t25 = k(5e-6) * (rotor_wx * rotor_wz - t22);
-        let t26 = t21 * t25 + t19 * t24;
-        let t27 = t26 - k(1e-6) * (inner_ring_wx * inner_ring_wy + t15);
-        let t28 = k(2.0) * outer_ring_e2;
-        let t29 = outer_ring_e0 * t28;
-        let t30 = t19 * t25 - t21 * t24;
-        let t31 = t30 + k(2e-6) * t14;
-        let t32 = k(1e-5) * t16 - k(1e-6) * (inner_ring_wy * inner_ring_wz + t13);
-        let t33 = t3 * t32 + t7 * t31;
-        let t34 = t33 - k(2e-6) * t0;
-        let t35 = k(1.0) - outer_ring_e2 * t28;
+        let t22 = t21 * t19;
+        let t23 = rotor_wz * t10 + (t22 * t16 - t20 * t15);
+        let t24 = rotor_wy * t10 + (t20 * t16 + t22 * t15);
+        let t25 = k(5e-6) * (rotor_wx * rotor_wy - t24);
+        let t26 = k(5e-6) * (rotor_wx * rotor_wz - t23);
+        let t27 = t22 * t26 + t20 * t25;
+        let t28 = t27 - k(1e-6) * (inner_ring_wx * inner_ring_wy + t16);
+        let t29 = k(2.0) * outer_ring_e2;
+        let t30 = outer_ring_e0 * t29;
+        let t31 = t20 * t26 - t22 * t25;
+        let t32 = t31 + k(2e-6) * t15;
+        let t33 = k(1e-5) * t17 + k(1e-6) * (inner_ring_wy * inner_ring_wz + t14);
+        let t34 = t3 * t33 - t8 * t32;
+        let t35 = t34 + k(2e-6) * t0;
+        let t36 = k(1.0) - outer_ring_e2 * t29;
         *out = [
             k(0.0),
             k(0.0),
@@ -2445,30 +2445,30 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
             k(0.0),
             k(0.0),
             k(0.0),
-            -t13,
-            t14,
+            -t14,
             t15,
-            k(0.0),
-            k(0.0),
-            k(0.0),
             t16,
-            -t22,
-            t23,
             k(0.0),
             k(0.0),
             k(0.0),
-            t29 * t27 - t35 * t34,
-            -(t29 * t34 + t35 * t27),
+            -t17,
+            -t23,
+            t24,
             k(0.0),
             k(0.0),
             k(0.0),
-            t7 * t32 - t3 * t31,
-            t33,
+            t36 * t35 + t30 * t28,
+            t30 * t35 - t36 * t28,
             k(0.0),
             k(0.0),
             k(0.0),
-            t26,
-            t30,
+            -(t8 * t33 + t3 * t32),
+            -t34,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t27,
+            t31,
         ];
     }
 }

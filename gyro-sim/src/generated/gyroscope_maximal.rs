@@ -26,14 +26,14 @@
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
 //! | newton_step | dependent positions, one Newton step | 193 | 318 | 3 | 514 | 12 of 28 |
 //! | solve_velocities | dependent velocities, eq. (19) | 112 | 185 | 3 | 300 | 12 of 24 |
-//! | joint_accelerations | u̇ in joint coordinates | 5 | 12 | 1 | 18 | 0 of 3 |
+//! | joint_accelerations | u̇ in joint coordinates | 5 | 14 | 1 | 20 | 0 of 3 |
 //! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 |
 //! | to_maximal | (q, v) of a joint state | 24 | 54 | 0 | 78 | 28 of 52 |
 //! | to_joints | (x, u) of a maximal state | 82 | 95 | 0 | 177 | 0 of 6 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 15 | 23 | 1 | 39 | 0 of 3 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 57 | 92 | 1 | 150 | 12 of 24 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 15 | 25 | 1 | 41 | 0 of 3 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 57 | 93 | 1 | 151 | 12 of 24 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 86 | 125 | 1 | 212 | 0 of 21 |
-//! | corrected_solution | both | 117 | 183 | 2 | 302 | 12 of 45 |
+//! | corrected_solution | both | 117 | 184 | 2 | 303 | 12 of 45 |
 //!
 //! # Proof
 //!
@@ -2623,7 +2623,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
     fn solution(&self) -> Self::Solution {
         [T::constant(0.0); 45]
     }
-    /// Writes u̇: 18 operations (5 ±, 12 ×, 1 ÷) and 2 functions.
+    /// Writes u̇: 20 operations (5 ±, 14 ×, 1 ÷) and 2 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
         let k = T::constant;
         let x1 = x[1];
@@ -2631,15 +2631,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
         let u1 = x[4];
         let u2 = x[5];
         let t0 = x1.cos();
-        let t1 = u1 * t0;
-        let t2 = x1.sin();
-        let t3 = u0 * t2;
-        let t4 = k(1.6663195167673401)
-            * ((u2 - k(0.20025) * t3) / (k(1.3332639033534681) - t2 * t2));
+        let t1 = k(1e-5) * t0;
+        let t2 = u1 * t1;
+        let t3 = x1.sin();
+        let t4 = u0 * t3;
+        let t5 = (u2 - k(0.20025) * t4) * t2 / (k(2e-6) + k(6.00125e-6) * (t0 * t0));
         *out = [
-            -(t4 * t1),
-            -(k(1.6663195167673401) * (t0 * (k(10.0) - u0 * (u2 + k(0.399875) * t3)))),
-            -(t1 * (u0 - t2 * t4)),
+            -t5,
+            -(k(166631.95167673402) * (t1 * (k(10.0) - u0 * (u2 + k(0.399875) * t4)))),
+            t3 * t5 - k(100000.0) * (u0 * t2),
         ];
     }
     /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -2846,7 +2846,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
         x[4] = inner_ring_wz - outer_ring_wz;
         x[5] = rotor_wx - inner_ring_wx;
     }
-    /// Writes u̇ at a state that satisfies the constraints: 39 operations (15 ±, 23 ×, 1 ÷).
+    /// Writes u̇ at a state that satisfies the constraints: 41 operations (15 ±, 25 ×, 1 ÷).
     fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let outer_ring_e0 = y[10];
@@ -2867,22 +2867,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
             + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
         let t1 = k(2.0) * t0;
         let t2 = k(1.0) - t0 * t1;
-        let t3 = (outer_ring_wz - inner_ring_wz) * t2;
-        let t4 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+        let t3 = k(1e-5) * t2;
+        let t4 = (outer_ring_wz - inner_ring_wz) * t3;
+        let t5 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
             + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
-        let t5 = t4 * t1;
-        let t6 = base_wy - outer_ring_wy;
-        let t7 = t6 * t5;
-        let t8 = inner_ring_wx - rotor_wx;
-        let t9 = k(1.6663195167673401)
-            * ((t8 + k(0.20025) * t7) / (k(1.3332639033534681) - t5 * t5));
+        let t6 = t5 * t1;
+        let t7 = base_wy - outer_ring_wy;
+        let t8 = t7 * t6;
+        let t9 = inner_ring_wx - rotor_wx;
+        let t10 = (t9 + k(0.20025) * t8) * t4 / (k(2e-6) + k(6.00125e-6) * (t2 * t2));
         *out = [
-            -(t9 * t3),
-            -(k(1.6663195167673401) * (t2 * (k(10.0) - t6 * (t8 - k(0.399875) * t7)))),
-            -(t3 * (t6 + t5 * t9)),
+            -t10,
+            -(k(166631.95167673402) * (t3 * (k(10.0) - t7 * (t9 - k(0.399875) * t8)))),
+            -(t6 * t10 + k(100000.0) * (t7 * t4)),
         ];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 150 operations (57 ±, 92 ×, 1 ÷).
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 151 operations (57 ±, 93 ×, 1 ÷).
     fn corrected_accelerations(
         &self,
         _t: T,
@@ -2918,49 +2918,49 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
             + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
         let t3 = k(2.0) * t2;
         let t4 = k(1.0) - t2 * t3;
-        let t5 = outer_ring_wz - inner_ring_wz;
-        let t6 = t5 * t4;
-        let t7 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+        let t5 = k(1e-5) * t4;
+        let t6 = outer_ring_wz - inner_ring_wz;
+        let t7 = t6 * t5;
+        let t8 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
             + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
-        let t8 = t7 * t3;
-        let t9 = t0 * t8;
-        let t10 = inner_ring_wx - rotor_wx;
-        let t11 = k(1.6663195167673401)
-            * ((t10 + k(0.20025) * t9) / (k(1.3332639033534681) - t8 * t8));
-        let t12 = t11 * t6;
+        let t9 = t8 * t3;
+        let t10 = t0 * t9;
+        let t11 = inner_ring_wx - rotor_wx;
+        let t12 = (t11 + k(0.20025) * t10) * t7 / (k(2e-6) + k(6.00125e-6) * (t4 * t4));
         let t13 = outer_ring_wx * t0;
-        let t14 = inner_ring_wy * t5 - (t4 * t1 + t8 * t12);
-        let t15 = inner_ring_wx * t5 + (t8 * t1 - t4 * t12);
-        let t16 = k(1.6663195167673401)
-            * (t4 * (k(10.0) - t0 * (t10 - k(0.399875) * t9))) + t13;
-        let t17 = k(0.000125) * t16;
-        let t18 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+        let t14 = t9 * t12;
+        let t15 = inner_ring_wy * t6 - (t14 + t4 * t1);
+        let t16 = inner_ring_wx * t6 + (t9 * t1 - t4 * t12);
+        let t17 = k(166631.95167673402)
+            * (t5 * (k(10.0) - t0 * (t11 - k(0.399875) * t10))) + t13;
+        let t18 = k(0.000125) * t17;
+        let t19 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
             - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
-        let t19 = k(2.0) * t18;
-        let t20 = k(1.0) - t18 * t19;
-        let t21 = k(0.000125) * t15;
-        let t22 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+        let t20 = k(2.0) * t19;
+        let t21 = k(1.0) - t19 * t20;
+        let t22 = k(0.000125) * t16;
+        let t23 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
             + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
-        let t23 = t22 * t19;
-        let t24 = k(0.000125) * inner_ring_wy;
-        let t25 = inner_ring_wx * t24;
-        let t26 = k(0.000125) * inner_ring_wz;
-        let t27 = inner_ring_wx * t26;
-        let t28 = t27 * t23 - t25 * t20 - (t23 * t21 - t20 * t17);
-        let t29 = rotor_e0 * rotor_e3;
-        let t30 = rotor_e1 * rotor_e2;
-        let t31 = inner_ring_wy * t24 + inner_ring_wz * t26;
-        let t32 = rotor_e0 * rotor_e0;
-        let t33 = k(2.0) * (k(0.5) - (t32 + rotor_e1 * rotor_e1)) * t31
-            - k(2.0) * (t30 - t29) * t28;
-        let t34 = t27 * t20 + t25 * t23 - (t20 * t21 + t23 * t17);
-        let t35 = rotor_e0 * rotor_e2;
-        let t36 = rotor_e1 * rotor_e3;
-        let t37 = k(2.0) * (t30 + t29) * t31
-            - k(2.0) * (k(0.5) - (t32 + rotor_e2 * rotor_e2)) * t28;
-        let t38 = rotor_e0 * rotor_e1;
-        let t39 = rotor_e2 * rotor_e3;
-        let t40 = k(2.0) * (t36 - t35) * t31 + k(2.0) * (t39 + t38) * t28;
+        let t24 = t23 * t20;
+        let t25 = k(0.000125) * inner_ring_wy;
+        let t26 = inner_ring_wx * t25;
+        let t27 = k(0.000125) * inner_ring_wz;
+        let t28 = inner_ring_wx * t27;
+        let t29 = t28 * t24 - t26 * t21 - (t24 * t22 - t21 * t18);
+        let t30 = rotor_e0 * rotor_e3;
+        let t31 = rotor_e1 * rotor_e2;
+        let t32 = inner_ring_wy * t25 + inner_ring_wz * t27;
+        let t33 = rotor_e0 * rotor_e0;
+        let t34 = k(2.0) * (k(0.5) - (t33 + rotor_e1 * rotor_e1)) * t32
+            - k(2.0) * (t31 - t30) * t29;
+        let t35 = t28 * t21 + t26 * t24 - (t21 * t22 + t24 * t18);
+        let t36 = rotor_e0 * rotor_e2;
+        let t37 = rotor_e1 * rotor_e3;
+        let t38 = k(2.0) * (t31 + t30) * t32
+            - k(2.0) * (k(0.5) - (t33 + rotor_e2 * rotor_e2)) * t29;
+        let t39 = rotor_e0 * rotor_e1;
+        let t40 = rotor_e2 * rotor_e3;
+        let t41 = k(2.0) * (t37 - t36) * t32 + k(2.0) * (t40 + t39) * t29;
         *out = [
             k(0.0),
             k(0.0),
@@ -2977,15 +2977,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
             k(0.0),
             k(0.0),
             k(0.0),
-            -t14,
-            t15,
-            -t16,
-            k(2.0) * (t36 + t35) * t34 + t33,
-            k(2.0) * (t39 - t38) * t34 - t37,
-            -(k(2.0) * (k(0.5) - (t32 + rotor_e3 * rotor_e3)) * t34 + t40),
-            -(t6 * (t0 + t8 * t11) + t14),
-            t23 * t16 + t20 * t15 - rotor_wz * t10,
-            rotor_wy * t10 - (t20 * t16 - t23 * t15),
+            -t15,
+            t16,
+            -t17,
+            k(2.0) * (t37 + t36) * t35 + t34,
+            k(2.0) * (t40 - t39) * t35 - t38,
+            -(k(2.0) * (k(0.5) - (t33 + rotor_e3 * rotor_e3)) * t35 + t41),
+            -(t14 + k(100000.0) * (t0 * t7) + t15),
+            t24 * t17 + t21 * t16 - rotor_wz * t11,
+            rotor_wy * t11 - (t21 * t17 - t24 * t16),
         ];
     }
     /// Writes λ: 212 operations (86 ±, 125 ×, 1 ÷).
@@ -3147,7 +3147,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
             -t24,
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 302 operations (117 ±, 183 ×, 2 ÷).
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 303 operations (117 ±, 184 ×, 2 ÷).
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let base_e0 = y[3];
@@ -3182,107 +3182,107 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
             + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
         let t3 = k(2.0) * t2;
         let t4 = k(1.0) - t2 * t3;
-        let t5 = outer_ring_wz - inner_ring_wz;
-        let t6 = t5 * t4;
-        let t7 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+        let t5 = k(1e-5) * t4;
+        let t6 = outer_ring_wz - inner_ring_wz;
+        let t7 = t6 * t5;
+        let t8 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
             + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
-        let t8 = t7 * t3;
-        let t9 = t0 * t8;
-        let t10 = inner_ring_wx - rotor_wx;
-        let t11 = k(1.6663195167673401)
-            * ((t10 + k(0.20025) * t9) / (k(1.3332639033534681) - t8 * t8));
-        let t12 = t11 * t6;
+        let t9 = t8 * t3;
+        let t10 = t0 * t9;
+        let t11 = inner_ring_wx - rotor_wx;
+        let t12 = (t11 + k(0.20025) * t10) * t7 / (k(2e-6) + k(6.00125e-6) * (t4 * t4));
         let t13 = outer_ring_wx * t0;
-        let t14 = inner_ring_wy * t5 - (t4 * t1 + t8 * t12);
-        let t15 = inner_ring_wx * t5 + (t8 * t1 - t4 * t12);
-        let t16 = k(1.6663195167673401)
-            * (t4 * (k(10.0) - t0 * (t10 - k(0.399875) * t9))) + t13;
-        let t17 = k(0.000125) * t16;
-        let t18 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+        let t14 = t9 * t12;
+        let t15 = inner_ring_wy * t6 - (t14 + t4 * t1);
+        let t16 = inner_ring_wx * t6 + (t9 * t1 - t4 * t12);
+        let t17 = k(166631.95167673402)
+            * (t5 * (k(10.0) - t0 * (t11 - k(0.399875) * t10))) + t13;
+        let t18 = k(0.000125) * t17;
+        let t19 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
             - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
-        let t19 = k(2.0) * t18;
-        let t20 = k(1.0) - t18 * t19;
-        let t21 = k(0.000125) * t15;
-        let t22 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+        let t20 = k(2.0) * t19;
+        let t21 = k(1.0) - t19 * t20;
+        let t22 = k(0.000125) * t16;
+        let t23 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
             + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
-        let t23 = t22 * t19;
-        let t24 = k(0.000125) * inner_ring_wy;
-        let t25 = inner_ring_wx * t24;
-        let t26 = k(0.000125) * inner_ring_wz;
-        let t27 = inner_ring_wx * t26;
-        let t28 = t27 * t23 - t25 * t20 - (t23 * t21 - t20 * t17);
-        let t29 = rotor_e0 * rotor_e3;
-        let t30 = rotor_e1 * rotor_e2;
-        let t31 = inner_ring_wy * t24 + inner_ring_wz * t26;
-        let t32 = rotor_e0 * rotor_e0;
-        let t33 = k(2.0) * (k(0.5) - (t32 + rotor_e1 * rotor_e1)) * t31
-            - k(2.0) * (t30 - t29) * t28;
-        let t34 = t27 * t20 + t25 * t23 - (t20 * t21 + t23 * t17);
-        let t35 = rotor_e0 * rotor_e2;
-        let t36 = rotor_e1 * rotor_e3;
-        let t37 = k(2.0) * (t36 + t35) * t34 + t33;
-        let t38 = k(2.0) * (t30 + t29) * t31
-            - k(2.0) * (k(0.5) - (t32 + rotor_e2 * rotor_e2)) * t28;
-        let t39 = rotor_e0 * rotor_e1;
-        let t40 = rotor_e2 * rotor_e3;
-        let t41 = k(2.0) * (t40 - t39) * t34 - t38;
-        let t42 = k(2.0) * (t36 - t35) * t31 + k(2.0) * (t40 + t39) * t28;
-        let t43 = k(2.0) * (k(0.5) - (t32 + rotor_e3 * rotor_e3)) * t34 + t42;
-        let t44 = t6 * (t0 + t8 * t11) + t14;
-        let t45 = rotor_wz * t10 - (t23 * t16 + t20 * t15);
-        let t46 = rotor_wy * t10 - (t20 * t16 - t23 * t15);
-        let t47 = k(0.08) * t37;
-        let t48 = k(0.8) + k(0.08) * t41;
-        let t49 = k(0.1) + t48;
+        let t24 = t23 * t20;
+        let t25 = k(0.000125) * inner_ring_wy;
+        let t26 = inner_ring_wx * t25;
+        let t27 = k(0.000125) * inner_ring_wz;
+        let t28 = inner_ring_wx * t27;
+        let t29 = t28 * t24 - t26 * t21 - (t24 * t22 - t21 * t18);
+        let t30 = rotor_e0 * rotor_e3;
+        let t31 = rotor_e1 * rotor_e2;
+        let t32 = inner_ring_wy * t25 + inner_ring_wz * t27;
+        let t33 = rotor_e0 * rotor_e0;
+        let t34 = k(2.0) * (k(0.5) - (t33 + rotor_e1 * rotor_e1)) * t32
+            - k(2.0) * (t31 - t30) * t29;
+        let t35 = t28 * t21 + t26 * t24 - (t21 * t22 + t24 * t18);
+        let t36 = rotor_e0 * rotor_e2;
+        let t37 = rotor_e1 * rotor_e3;
+        let t38 = k(2.0) * (t37 + t36) * t35 + t34;
+        let t39 = k(2.0) * (t31 + t30) * t32
+            - k(2.0) * (k(0.5) - (t33 + rotor_e2 * rotor_e2)) * t29;
+        let t40 = rotor_e0 * rotor_e1;
+        let t41 = rotor_e2 * rotor_e3;
+        let t42 = k(2.0) * (t41 - t40) * t35 - t39;
+        let t43 = k(2.0) * (t37 - t36) * t32 + k(2.0) * (t41 + t40) * t29;
+        let t44 = k(2.0) * (k(0.5) - (t33 + rotor_e3 * rotor_e3)) * t35 + t43;
+        let t45 = t14 + k(100000.0) * (t0 * t7) + t15;
+        let t46 = rotor_wz * t11 - (t24 * t17 + t21 * t16);
+        let t47 = rotor_wy * t11 - (t21 * t17 - t24 * t16);
+        let t48 = k(0.08) * t38;
+        let t49 = k(0.8) + k(0.08) * t42;
         let t50 = k(0.1) + t49;
-        let t51 = k(0.08) * t43;
-        let t52 = k(5e-6) * (rotor_wx * rotor_wy - t46);
-        let t53 = k(5e-6) * (rotor_wx * rotor_wz - t45);
-        let t54 = t23 * t53 + t20 * t52;
-        let t55 = inner_ring_e0 * inner_ring_e1;
-        let t56 = inner_ring_e2 * inner_ring_e3;
-        let t57 = inner_ring_e0 * inner_ring_e0;
-        let t58 = k(0.00025)
-            * (inner_ring_e1 * inner_ring_e2 - inner_ring_e0 * inner_ring_e3) * t47
-            - k(0.00025) * (k(0.5) - (t57 + inner_ring_e2 * inner_ring_e2)) * t48;
-        let t59 = t58 - k(0.00025) * (t56 + t55) * t51 - t54
-            + k(1e-6) * (inner_ring_wx * inner_ring_wy - t16);
-        let t60 = t59 - k(1e-6) * (outer_ring_wx * outer_ring_wy + t13);
-        let t61 = base_e2 * outer_ring_e0 + base_e3 * outer_ring_e1
+        let t51 = k(0.1) + t50;
+        let t52 = k(0.08) * t44;
+        let t53 = k(5e-6) * (rotor_wx * rotor_wy - t47);
+        let t54 = k(5e-6) * (rotor_wx * rotor_wz - t46);
+        let t55 = t24 * t54 + t21 * t53;
+        let t56 = inner_ring_e0 * inner_ring_e1;
+        let t57 = inner_ring_e2 * inner_ring_e3;
+        let t58 = inner_ring_e0 * inner_ring_e0;
+        let t59 = k(0.00025)
+            * (inner_ring_e1 * inner_ring_e2 - inner_ring_e0 * inner_ring_e3) * t48
+            - k(0.00025) * (k(0.5) - (t58 + inner_ring_e2 * inner_ring_e2)) * t49;
+        let t60 = t59 - k(0.00025) * (t57 + t56) * t52 - t55
+            + k(1e-6) * (inner_ring_wx * inner_ring_wy - t17);
+        let t61 = t60 - k(1e-6) * (outer_ring_wx * outer_ring_wy + t13);
+        let t62 = base_e2 * outer_ring_e0 + base_e3 * outer_ring_e1
             - base_e0 * outer_ring_e2 - base_e1 * outer_ring_e3;
-        let t62 = k(2.0) * t61;
-        let t63 = k(1.0) - t61 * t62;
-        let t64 = t20 * t53 - t23 * t52;
-        let t65 = k(0.00025)
-            * (inner_ring_e1 * inner_ring_e3 + inner_ring_e0 * inner_ring_e2) * t47
-            + k(0.00025) * (t56 - t55) * t48;
-        let t66 = t65
-            + k(0.00025) * (k(0.5) - (t57 + inner_ring_e3 * inner_ring_e3)) * t51 - t64;
-        let t67 = t66 - k(2e-6) * t15;
-        let t68 = k(1e-5) * t44 + k(1e-6) * (inner_ring_wy * inner_ring_wz + t14);
-        let t69 = t4 * t68 + t8 * t67;
-        let t70 = t69 - k(2e-6) * t1;
-        let t71 = base_e0 * outer_ring_e0 + base_e1 * outer_ring_e1
+        let t63 = k(2.0) * t62;
+        let t64 = k(1.0) - t62 * t63;
+        let t65 = t21 * t54 - t24 * t53;
+        let t66 = k(0.00025)
+            * (inner_ring_e1 * inner_ring_e3 + inner_ring_e0 * inner_ring_e2) * t48
+            + k(0.00025) * (t57 - t56) * t49;
+        let t67 = t66
+            + k(0.00025) * (k(0.5) - (t58 + inner_ring_e3 * inner_ring_e3)) * t52 - t65;
+        let t68 = t67 - k(2e-6) * t16;
+        let t69 = k(1e-5) * t45 + k(1e-6) * (inner_ring_wy * inner_ring_wz + t15);
+        let t70 = t4 * t69 + t9 * t68;
+        let t71 = t70 - k(2e-6) * t1;
+        let t72 = base_e0 * outer_ring_e0 + base_e1 * outer_ring_e1
             + base_e2 * outer_ring_e2 + base_e3 * outer_ring_e3;
-        let t72 = t71 * t62;
-        let t73 = t72 * t70 - t63 * t60;
-        let t74 = base_e3 * base_e3;
-        let t75 = base_e2 * base_e2;
-        let t76 = base_e0 * base_e0;
-        let t77 = t76 + base_e1 * base_e1;
-        let t78 = k(2.0) / (base_e0 * (t77 + (t75 + t74)));
-        let t79 = base_e0 * base_e2;
-        let t80 = base_e1 * base_e3;
-        let t81 = t8 * t68 - t4 * t67;
-        let t82 = t81 + k(1e-6) * (outer_ring_wx * outer_ring_wz - t12);
-        let t83 = base_e0 * base_e3;
-        let t84 = base_e1 * base_e2;
-        let t85 = t63 * t70 + t72 * t60;
-        let t86 = t77 * t78 * t85 - (t84 - t83) * t78 * t82 + (t80 + t79) * t78 * t73;
-        let t87 = base_e0 * base_e1;
-        let t88 = base_e2 * base_e3;
-        let t89 = (t84 + t83) * t78 * t85 - (t76 + t75) * t78 * t82;
-        let t90 = (t80 - t79) * t78 * t85 - (t88 + t87) * t78 * t82;
+        let t73 = t72 * t63;
+        let t74 = t73 * t71 - t64 * t61;
+        let t75 = base_e3 * base_e3;
+        let t76 = base_e2 * base_e2;
+        let t77 = base_e0 * base_e0;
+        let t78 = t77 + base_e1 * base_e1;
+        let t79 = k(2.0) / (base_e0 * (t78 + (t76 + t75)));
+        let t80 = base_e0 * base_e2;
+        let t81 = base_e1 * base_e3;
+        let t82 = t9 * t69 - t4 * t68;
+        let t83 = t82 + k(1e-6) * (outer_ring_wx * outer_ring_wz - t12);
+        let t84 = base_e0 * base_e3;
+        let t85 = base_e1 * base_e2;
+        let t86 = t64 * t71 + t73 * t61;
+        let t87 = t78 * t79 * t86 - (t85 - t84) * t79 * t83 + (t81 + t80) * t79 * t74;
+        let t88 = base_e0 * base_e1;
+        let t89 = base_e2 * base_e3;
+        let t90 = (t85 + t84) * t79 * t86 - (t77 + t76) * t79 * t83;
+        let t91 = (t81 - t80) * t79 * t86 - (t89 + t88) * t79 * t83;
         *out = [
             k(0.0),
             k(0.0),
@@ -3299,36 +3299,36 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
             k(0.0),
             k(0.0),
             k(0.0),
-            -t14,
-            t15,
-            -t16,
-            t37,
-            t41,
-            -t43,
+            -t15,
+            t16,
+            -t17,
+            t38,
+            t42,
             -t44,
             -t45,
-            t46,
-            -t47,
-            -(k(0.01) + t50),
-            t51,
-            t86,
-            t89 + (t88 - t87) * t78 * t73,
-            t90 + (t76 + t74) * t78 * t73,
-            -t47,
-            -t50,
-            t51,
-            t85,
-            -t73,
-            -t47,
-            -t49,
-            t51,
-            -t81,
-            -t69,
-            -t47,
+            -t46,
+            t47,
             -t48,
-            t51,
-            t54,
-            t64,
+            -(k(0.01) + t51),
+            t52,
+            t87,
+            t90 + (t89 - t88) * t79 * t74,
+            t91 + (t77 + t75) * t79 * t74,
+            -t48,
+            -t51,
+            t52,
+            t86,
+            -t74,
+            -t48,
+            -t50,
+            t52,
+            -t82,
+            -t70,
+            -t48,
+            -t49,
+            t52,
+            t55,
+            t65,
         ];
     }
 }

@@ -27,14 +27,14 @@
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
 //! | newton_step | dependent positions, one Newton step | 193 | 321 | 3 | 517 | 6 of 21 |
 //! | solve_velocities | dependent velocities, eq. (19) | 96 | 158 | 3 | 257 | 6 of 18 |
-//! | joint_accelerations | u̇ in joint coordinates | 12 | 18 | 2 | 32 | 0 of 3 |
+//! | joint_accelerations | u̇ in joint coordinates | 11 | 19 | 2 | 32 | 0 of 3 |
 //! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 |
 //! | to_maximal | (q, v) of a joint state | 24 | 57 | 0 | 81 | 16 of 39 |
 //! | to_joints | (x, u) of a maximal state | 63 | 72 | 0 | 135 | 0 of 6 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 21 | 29 | 2 | 52 | 0 of 3 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 63 | 97 | 2 | 162 | 6 of 18 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 20 | 30 | 2 | 52 | 0 of 3 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 62 | 98 | 2 | 162 | 6 of 18 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 55 | 90 | 0 | 145 | 0 of 15 |
-//! | corrected_solution | both | 98 | 159 | 2 | 259 | 6 of 33 |
+//! | corrected_solution | both | 97 | 160 | 2 | 259 | 6 of 33 |
 //!
 //! # Proof
 //!
@@ -2110,7 +2110,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
     fn solution(&self) -> Self::Solution {
         [T::constant(0.0); 33]
     }
-    /// Writes u̇: 32 operations (12 ±, 18 ×, 2 ÷) and 2 functions.
+    /// Writes u̇: 32 operations (11 ±, 19 ×, 2 ÷) and 2 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
         let k = T::constant;
         let x1 = x[1];
@@ -2123,13 +2123,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
         let t3 = u0 * t2;
         let t4 = self.rotor_offset * self.rotor_mass;
         let t5 = self.rotor_offset * t4;
-        let t6 = self.ring_axial_inertia + t5;
-        let t7 = self.ring_diametral_inertia - t6;
-        let t8 = self.ring_diametral_inertia + k(5e-6);
-        let t9 = (u2 + k(200000.0) * (t7 * t3)) * t1
-            / (t8 + (t6 - (k(5e-6) - t7) * (t2 * t2)));
-        let t10 = self.gravity * t4 - u0 * (k(1e-5) * u2 + (k(5e-6) + t7) * t3);
-        *out = [-t9, -(t0 * t10 / (t5 + t8)), t2 * t9 - k(100000.0) * (u0 * t1)];
+        let t6 = self.ring_axial_inertia - (self.ring_diametral_inertia - t5);
+        let t7 = (u2 - k(200000.0) * (t6 * t3)) * t1
+            / (k(2.0) * self.ring_diametral_inertia + (k(5e-6) + t6) * (t0 * t0));
+        let t8 = self.gravity * t4 - u0 * (k(1e-5) * u2 + (k(5e-6) - t6) * t3);
+        *out = [
+            -t7,
+            -(t0 * t8 / (t5 + (self.ring_diametral_inertia + k(5e-6)))),
+            t2 * t7 - k(100000.0) * (u0 * t1),
+        ];
     }
     /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
@@ -2304,7 +2306,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
         x[4] = inner_ring_wz - outer_ring_wz;
         x[5] = rotor_wx - inner_ring_wx;
     }
-    /// Writes u̇ at a state that satisfies the constraints: 52 operations (21 ±, 29 ×, 2 ÷).
+    /// Writes u̇ at a state that satisfies the constraints: 52 operations (20 ±, 30 ×, 2 ÷).
     fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2331,21 +2333,19 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
         let t6 = outer_ring_wy * t5;
         let t7 = self.rotor_offset * self.rotor_mass;
         let t8 = self.rotor_offset * t7;
-        let t9 = self.ring_axial_inertia + t8;
-        let t10 = self.ring_diametral_inertia - t9;
-        let t11 = inner_ring_wx - rotor_wx;
-        let t12 = self.ring_diametral_inertia + k(5e-6);
-        let t13 = (t11 + k(200000.0) * (t10 * t6)) * t3
-            / (t12 + (t9 - (k(5e-6) - t10) * (t5 * t5)));
-        let t14 = self.gravity * t7
-            + outer_ring_wy * ((k(5e-6) + t10) * t6 + k(1e-5) * t11);
+        let t9 = self.ring_axial_inertia - (self.ring_diametral_inertia - t8);
+        let t10 = inner_ring_wx - rotor_wx;
+        let t11 = (t10 - k(200000.0) * (t9 * t6)) * t3
+            / (k(2.0) * self.ring_diametral_inertia + (k(5e-6) + t9) * (t2 * t2));
+        let t12 = self.gravity * t7
+            + outer_ring_wy * ((k(5e-6) - t9) * t6 + k(1e-5) * t10);
         *out = [
-            -t13,
-            -(t2 * t14 / (t8 + t12)),
-            k(100000.0) * (outer_ring_wy * t3) - t5 * t13,
+            -t11,
+            -(t2 * t12 / (t8 + (self.ring_diametral_inertia + k(5e-6)))),
+            k(100000.0) * (outer_ring_wy * t3) - t5 * t11,
         ];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 162 operations (63 ±, 97 ×, 2 ÷).
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 162 operations (62 ±, 98 ×, 2 ÷).
     fn corrected_accelerations(
         &self,
         _t: T,
@@ -2387,66 +2387,64 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
         let t8 = outer_ring_wy * t7;
         let t9 = self.rotor_offset * self.rotor_mass;
         let t10 = self.rotor_offset * t9;
-        let t11 = self.ring_axial_inertia + t10;
-        let t12 = self.ring_diametral_inertia - t11;
-        let t13 = inner_ring_wx - rotor_wx;
-        let t14 = self.ring_diametral_inertia + k(5e-6);
-        let t15 = (t13 + k(200000.0) * (t12 * t8)) * t5
-            / (t14 + (t11 - (k(5e-6) - t12) * (t7 * t7)));
-        let t16 = outer_ring_wx * outer_ring_wy;
-        let t17 = t7 * t15;
-        let t18 = inner_ring_wy * t4 - (t17 - t0 * t3);
-        let t19 = inner_ring_wx * t4 - (t0 * t7 + t3 * t15);
-        let t20 = self.gravity * t9
-            + outer_ring_wy * ((k(5e-6) + t12) * t8 + k(1e-5) * t13);
-        let t21 = t16 - t3 * t20 / (t10 + t14);
-        let t22 = self.rotor_offset * t21;
-        let t23 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+        let t11 = self.ring_axial_inertia - (self.ring_diametral_inertia - t10);
+        let t12 = inner_ring_wx - rotor_wx;
+        let t13 = (t12 - k(200000.0) * (t11 * t8)) * t5
+            / (k(2.0) * self.ring_diametral_inertia + (k(5e-6) + t11) * (t3 * t3));
+        let t14 = outer_ring_wx * outer_ring_wy;
+        let t15 = t7 * t13;
+        let t16 = inner_ring_wy * t4 - (t15 - t0 * t3);
+        let t17 = inner_ring_wx * t4 - (t0 * t7 + t3 * t13);
+        let t18 = self.gravity * t9
+            + outer_ring_wy * ((k(5e-6) - t11) * t8 + k(1e-5) * t12);
+        let t19 = t14 - t3 * t18 / (t10 + (self.ring_diametral_inertia + k(5e-6)));
+        let t20 = self.rotor_offset * t19;
+        let t21 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
             - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
-        let t24 = k(2.0) * t23;
-        let t25 = k(1.0) - t23 * t24;
-        let t26 = self.rotor_offset * t19;
-        let t27 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+        let t22 = k(2.0) * t21;
+        let t23 = k(1.0) - t21 * t22;
+        let t24 = self.rotor_offset * t17;
+        let t25 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
             + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
-        let t28 = t27 * t24;
-        let t29 = inner_ring_wy * self.rotor_offset;
+        let t26 = t25 * t22;
+        let t27 = inner_ring_wy * self.rotor_offset;
+        let t28 = inner_ring_wx * t27;
+        let t29 = inner_ring_wz * self.rotor_offset;
         let t30 = inner_ring_wx * t29;
-        let t31 = inner_ring_wz * self.rotor_offset;
-        let t32 = inner_ring_wx * t31;
-        let t33 = t32 * t28 - t30 * t25 - (t28 * t26 + t25 * t22);
-        let t34 = rotor_e0 * rotor_e3;
-        let t35 = rotor_e1 * rotor_e2;
-        let t36 = inner_ring_wy * t29 + inner_ring_wz * t31;
-        let t37 = rotor_e0 * rotor_e0;
-        let t38 = k(2.0) * (k(0.5) - (t37 + rotor_e1 * rotor_e1)) * t36
-            - k(2.0) * (t35 - t34) * t33;
-        let t39 = t32 * t25 + t30 * t28 - (t25 * t26 - t28 * t22);
-        let t40 = rotor_e0 * rotor_e2;
-        let t41 = rotor_e1 * rotor_e3;
-        let t42 = k(2.0) * (t35 + t34) * t36
-            - k(2.0) * (k(0.5) - (t37 + rotor_e2 * rotor_e2)) * t33;
-        let t43 = rotor_e0 * rotor_e1;
-        let t44 = rotor_e2 * rotor_e3;
-        let t45 = k(2.0) * (t41 - t40) * t36 + k(2.0) * (t44 + t43) * t33;
+        let t31 = t30 * t26 - t28 * t23 - (t26 * t24 + t23 * t20);
+        let t32 = rotor_e0 * rotor_e3;
+        let t33 = rotor_e1 * rotor_e2;
+        let t34 = inner_ring_wy * t27 + inner_ring_wz * t29;
+        let t35 = rotor_e0 * rotor_e0;
+        let t36 = k(2.0) * (k(0.5) - (t35 + rotor_e1 * rotor_e1)) * t34
+            - k(2.0) * (t33 - t32) * t31;
+        let t37 = t30 * t23 + t28 * t26 - (t23 * t24 - t26 * t20);
+        let t38 = rotor_e0 * rotor_e2;
+        let t39 = rotor_e1 * rotor_e3;
+        let t40 = k(2.0) * (t33 + t32) * t34
+            - k(2.0) * (k(0.5) - (t35 + rotor_e2 * rotor_e2)) * t31;
+        let t41 = rotor_e0 * rotor_e1;
+        let t42 = rotor_e2 * rotor_e3;
+        let t43 = k(2.0) * (t39 - t38) * t34 + k(2.0) * (t42 + t41) * t31;
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t0,
-            -t15,
-            t16,
+            -t13,
+            t14,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t18,
+            -t16,
+            t17,
             t19,
-            t21,
-            k(2.0) * (t41 + t40) * t39 + t38,
-            k(2.0) * (t44 - t43) * t39 - t42,
-            -(k(2.0) * (k(0.5) - (t37 + rotor_e3 * rotor_e3)) * t39 + t45),
-            -(t17 - k(100000.0) * (outer_ring_wy * t5) + t18),
-            -(rotor_wz * t13 + (t28 * t21 - t25 * t19)),
-            rotor_wy * t13 + (t25 * t21 + t28 * t19),
+            k(2.0) * (t39 + t38) * t37 + t36,
+            k(2.0) * (t42 - t41) * t37 - t40,
+            -(k(2.0) * (k(0.5) - (t35 + rotor_e3 * rotor_e3)) * t37 + t43),
+            -(t15 - k(100000.0) * (outer_ring_wy * t5) + t16),
+            -(rotor_wz * t12 + (t26 * t19 - t23 * t17)),
+            rotor_wy * t12 + (t23 * t19 + t26 * t17),
         ];
     }
     /// Writes λ: 145 operations (55 ±, 90 ×, 0 ÷).
@@ -2569,7 +2567,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
             -t23,
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 259 operations (98 ±, 159 ×, 2 ÷).
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 259 operations (97 ±, 160 ×, 2 ÷).
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2606,122 +2604,120 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
         let t8 = outer_ring_wy * t7;
         let t9 = self.rotor_offset * self.rotor_mass;
         let t10 = self.rotor_offset * t9;
-        let t11 = self.ring_axial_inertia + t10;
-        let t12 = self.ring_diametral_inertia - t11;
-        let t13 = inner_ring_wx - rotor_wx;
-        let t14 = self.ring_diametral_inertia + k(5e-6);
-        let t15 = (t13 + k(200000.0) * (t12 * t8)) * t5
-            / (t14 + (t11 - (k(5e-6) - t12) * (t7 * t7)));
-        let t16 = outer_ring_wx * outer_ring_wy;
-        let t17 = t7 * t15;
-        let t18 = inner_ring_wy * t4 - (t17 - t0 * t3);
-        let t19 = inner_ring_wx * t4 - (t0 * t7 + t3 * t15);
-        let t20 = self.gravity * t9
-            + outer_ring_wy * ((k(5e-6) + t12) * t8 + k(1e-5) * t13);
-        let t21 = t16 - t3 * t20 / (t10 + t14);
-        let t22 = self.rotor_offset * t21;
-        let t23 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+        let t11 = self.ring_axial_inertia - (self.ring_diametral_inertia - t10);
+        let t12 = inner_ring_wx - rotor_wx;
+        let t13 = (t12 - k(200000.0) * (t11 * t8)) * t5
+            / (k(2.0) * self.ring_diametral_inertia + (k(5e-6) + t11) * (t3 * t3));
+        let t14 = outer_ring_wx * outer_ring_wy;
+        let t15 = t7 * t13;
+        let t16 = inner_ring_wy * t4 - (t15 - t0 * t3);
+        let t17 = inner_ring_wx * t4 - (t0 * t7 + t3 * t13);
+        let t18 = self.gravity * t9
+            + outer_ring_wy * ((k(5e-6) - t11) * t8 + k(1e-5) * t12);
+        let t19 = t14 - t3 * t18 / (t10 + (self.ring_diametral_inertia + k(5e-6)));
+        let t20 = self.rotor_offset * t19;
+        let t21 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
             - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
-        let t24 = k(2.0) * t23;
-        let t25 = k(1.0) - t23 * t24;
-        let t26 = self.rotor_offset * t19;
-        let t27 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+        let t22 = k(2.0) * t21;
+        let t23 = k(1.0) - t21 * t22;
+        let t24 = self.rotor_offset * t17;
+        let t25 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
             + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
-        let t28 = t27 * t24;
-        let t29 = inner_ring_wy * self.rotor_offset;
+        let t26 = t25 * t22;
+        let t27 = inner_ring_wy * self.rotor_offset;
+        let t28 = inner_ring_wx * t27;
+        let t29 = inner_ring_wz * self.rotor_offset;
         let t30 = inner_ring_wx * t29;
-        let t31 = inner_ring_wz * self.rotor_offset;
-        let t32 = inner_ring_wx * t31;
-        let t33 = t32 * t28 - t30 * t25 - (t28 * t26 + t25 * t22);
-        let t34 = rotor_e0 * rotor_e3;
-        let t35 = rotor_e1 * rotor_e2;
-        let t36 = inner_ring_wy * t29 + inner_ring_wz * t31;
-        let t37 = rotor_e0 * rotor_e0;
-        let t38 = k(2.0) * (k(0.5) - (t37 + rotor_e1 * rotor_e1)) * t36
-            - k(2.0) * (t35 - t34) * t33;
-        let t39 = t32 * t25 + t30 * t28 - (t25 * t26 - t28 * t22);
-        let t40 = rotor_e0 * rotor_e2;
-        let t41 = rotor_e1 * rotor_e3;
-        let t42 = k(2.0) * (t41 + t40) * t39 + t38;
-        let t43 = k(2.0) * (t35 + t34) * t36
-            - k(2.0) * (k(0.5) - (t37 + rotor_e2 * rotor_e2)) * t33;
-        let t44 = rotor_e0 * rotor_e1;
-        let t45 = rotor_e2 * rotor_e3;
-        let t46 = k(2.0) * (t45 - t44) * t39 - t43;
-        let t47 = k(2.0) * (t41 - t40) * t36 + k(2.0) * (t45 + t44) * t33;
-        let t48 = k(2.0) * (k(0.5) - (t37 + rotor_e3 * rotor_e3)) * t39 + t47;
-        let t49 = t17 - k(100000.0) * (outer_ring_wy * t5) + t18;
-        let t50 = rotor_wz * t13 + (t28 * t21 - t25 * t19);
-        let t51 = rotor_wy * t13 + (t25 * t21 + t28 * t19);
-        let t52 = self.rotor_mass * t42;
-        let t53 = self.gravity * self.rotor_mass + self.rotor_mass * t46;
-        let t54 = k(0.01) * self.gravity;
-        let t55 = t54 + t53;
-        let t56 = self.rotor_mass * t48;
-        let t57 = self.ring_axial_inertia - self.ring_diametral_inertia;
-        let t58 = k(5e-6) * (rotor_wx * rotor_wy - t51);
-        let t59 = k(5e-6) * (rotor_wx * rotor_wz - t50);
-        let t60 = t28 * t59 + t25 * t58;
-        let t61 = inner_ring_e0 * inner_ring_e1;
-        let t62 = inner_ring_e2 * inner_ring_e3;
-        let t63 = inner_ring_e0 * inner_ring_e0;
-        let t64 = k(2.0)
+        let t31 = t30 * t26 - t28 * t23 - (t26 * t24 + t23 * t20);
+        let t32 = rotor_e0 * rotor_e3;
+        let t33 = rotor_e1 * rotor_e2;
+        let t34 = inner_ring_wy * t27 + inner_ring_wz * t29;
+        let t35 = rotor_e0 * rotor_e0;
+        let t36 = k(2.0) * (k(0.5) - (t35 + rotor_e1 * rotor_e1)) * t34
+            - k(2.0) * (t33 - t32) * t31;
+        let t37 = t30 * t23 + t28 * t26 - (t23 * t24 - t26 * t20);
+        let t38 = rotor_e0 * rotor_e2;
+        let t39 = rotor_e1 * rotor_e3;
+        let t40 = k(2.0) * (t39 + t38) * t37 + t36;
+        let t41 = k(2.0) * (t33 + t32) * t34
+            - k(2.0) * (k(0.5) - (t35 + rotor_e2 * rotor_e2)) * t31;
+        let t42 = rotor_e0 * rotor_e1;
+        let t43 = rotor_e2 * rotor_e3;
+        let t44 = k(2.0) * (t43 - t42) * t37 - t41;
+        let t45 = k(2.0) * (t39 - t38) * t34 + k(2.0) * (t43 + t42) * t31;
+        let t46 = k(2.0) * (k(0.5) - (t35 + rotor_e3 * rotor_e3)) * t37 + t45;
+        let t47 = t15 - k(100000.0) * (outer_ring_wy * t5) + t16;
+        let t48 = rotor_wz * t12 + (t26 * t19 - t23 * t17);
+        let t49 = rotor_wy * t12 + (t23 * t19 + t26 * t17);
+        let t50 = self.rotor_mass * t40;
+        let t51 = self.gravity * self.rotor_mass + self.rotor_mass * t44;
+        let t52 = k(0.01) * self.gravity;
+        let t53 = t52 + t51;
+        let t54 = self.rotor_mass * t46;
+        let t55 = self.ring_axial_inertia - self.ring_diametral_inertia;
+        let t56 = k(5e-6) * (rotor_wx * rotor_wy - t49);
+        let t57 = k(5e-6) * (rotor_wx * rotor_wz - t48);
+        let t58 = t26 * t57 + t23 * t56;
+        let t59 = inner_ring_e0 * inner_ring_e1;
+        let t60 = inner_ring_e2 * inner_ring_e3;
+        let t61 = inner_ring_e0 * inner_ring_e0;
+        let t62 = k(2.0)
             * (inner_ring_e1 * inner_ring_e2 - inner_ring_e0 * inner_ring_e3)
-            * self.rotor_offset * t52
-            - k(2.0) * (k(0.5) - (t63 + inner_ring_e2 * inner_ring_e2))
-                * self.rotor_offset * t53;
-        let t65 = t64 - k(2.0) * (t62 + t61) * self.rotor_offset * t56 - t60
-            + (inner_ring_wx * inner_ring_wy * t57 + self.ring_diametral_inertia * t21);
-        let t66 = t65 - (t16 * t57 - t16 * self.ring_diametral_inertia);
-        let t67 = k(2.0) * outer_ring_e2;
-        let t68 = outer_ring_e0 * t67;
-        let t69 = t25 * t59 - t28 * t58;
-        let t70 = k(2.0)
+            * self.rotor_offset * t50
+            - k(2.0) * (k(0.5) - (t61 + inner_ring_e2 * inner_ring_e2))
+                * self.rotor_offset * t51;
+        let t63 = t62 - k(2.0) * (t60 + t59) * self.rotor_offset * t54 - t58
+            + (inner_ring_wx * inner_ring_wy * t55 + self.ring_diametral_inertia * t19);
+        let t64 = t63 - (t14 * t55 - t14 * self.ring_diametral_inertia);
+        let t65 = k(2.0) * outer_ring_e2;
+        let t66 = outer_ring_e0 * t65;
+        let t67 = t23 * t57 - t26 * t56;
+        let t68 = k(2.0)
             * (inner_ring_e1 * inner_ring_e3 + inner_ring_e0 * inner_ring_e2)
-            * self.rotor_offset * t52 + k(2.0) * (t62 - t61) * self.rotor_offset * t53;
-        let t71 = t70
-            + k(2.0) * (k(0.5) - (t63 + inner_ring_e3 * inner_ring_e3))
-                * self.rotor_offset * t56;
-        let t72 = t71 - t69 - self.ring_axial_inertia * t19;
-        let t73 = k(1e-5) * t49
-            + (inner_ring_wy * inner_ring_wz * t57 + self.ring_diametral_inertia * t18);
-        let t74 = t3 * t73 + t7 * t72;
-        let t75 = t74 + t0 * self.ring_axial_inertia;
-        let t76 = k(1.0) - outer_ring_e2 * t67;
+            * self.rotor_offset * t50 + k(2.0) * (t60 - t59) * self.rotor_offset * t51;
+        let t69 = t68
+            + k(2.0) * (k(0.5) - (t61 + inner_ring_e3 * inner_ring_e3))
+                * self.rotor_offset * t54;
+        let t70 = t69 - t67 - self.ring_axial_inertia * t17;
+        let t71 = k(1e-5) * t47
+            + (inner_ring_wy * inner_ring_wz * t55 + self.ring_diametral_inertia * t16);
+        let t72 = t3 * t71 + t7 * t70;
+        let t73 = t72 + t0 * self.ring_axial_inertia;
+        let t74 = k(1.0) - outer_ring_e2 * t65;
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t0,
-            -t15,
-            t16,
+            -t13,
+            t14,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t18,
+            -t16,
+            t17,
             t19,
-            t21,
-            t42,
-            t46,
+            t40,
+            t44,
+            -t46,
+            -t47,
             -t48,
-            -t49,
+            t49,
             -t50,
-            t51,
-            -t52,
-            -(t54 + t55),
-            t56,
-            t76 * t75 - t68 * t66,
-            t68 * t75 + t76 * t66,
-            -t52,
-            -t55,
-            t56,
-            t3 * t72 - t7 * t73,
-            -t74,
-            -t52,
+            -(t52 + t53),
+            t54,
+            t74 * t73 - t66 * t64,
+            t66 * t73 + t74 * t64,
+            -t50,
             -t53,
-            t56,
-            t60,
-            t69,
+            t54,
+            t3 * t70 - t7 * t71,
+            -t72,
+            -t50,
+            -t51,
+            t54,
+            t58,
+            t67,
         ];
     }
 }

@@ -27,14 +27,14 @@
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
 //! | newton_step | dependent positions, one Newton step | 193 | 323 | 3 | 519 | 6 of 21 |
 //! | solve_velocities | dependent velocities, eq. (19) | 96 | 158 | 3 | 257 | 6 of 18 |
-//! | joint_accelerations | u̇ in joint coordinates | 19 | 42 | 2 | 63 | 0 of 3 |
+//! | joint_accelerations | u̇ in joint coordinates | 18 | 41 | 2 | 61 | 0 of 3 |
 //! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 |
 //! | to_maximal | (q, v) of a joint state | 24 | 54 | 0 | 78 | 16 of 39 |
 //! | to_joints | (x, u) of a maximal state | 63 | 72 | 0 | 135 | 0 of 6 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 35 | 64 | 2 | 101 | 0 of 3 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 66 | 113 | 2 | 181 | 6 of 18 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 34 | 63 | 2 | 99 | 0 of 3 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 65 | 112 | 2 | 179 | 6 of 18 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 54 | 80 | 0 | 134 | 0 of 15 |
-//! | corrected_solution | both | 90 | 154 | 2 | 246 | 6 of 33 |
+//! | corrected_solution | both | 89 | 153 | 2 | 244 | 6 of 33 |
 //!
 //! # Proof
 //!
@@ -2070,7 +2070,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
     fn solution(&self) -> Self::Solution {
         [T::constant(0.0); 33]
     }
-    /// Writes u̇: 63 operations (19 ±, 42 ×, 2 ÷) and 4 functions.
+    /// Writes u̇: 61 operations (18 ±, 41 ×, 2 ÷) and 4 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
         let k = T::constant;
         let x1 = x[1];
@@ -2080,27 +2080,26 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
         let u2 = x[5];
         let t0 = x1.sin();
         let t1 = u0 * t0;
-        let t2 = k(6.4e-9) * u2;
-        let t3 = t2 + k(3.2e-9) * t1;
-        let t4 = x2.cos();
-        let t5 = x1.cos();
-        let t6 = u0 * t5;
-        let t7 = x2.sin();
-        let t8 = t2 * (u1 * t7) - k(0.00016) * t0;
-        let t9 = t7 * (t8 + t6 * (t4 * t3)) + k(1e-5) * (u1 * (u2 - k(0.2) * t1));
-        let t10 = t7 * t7;
-        let t11 = t6 * (t10 * t3 - k(1.00064e-5) * (u2 + k(0.4000639590661976) * t1))
-            - t4 * t8;
-        let t12 = k(3.2e-9) * t5;
-        let t13 = t7 * t4;
-        let t14 = t13 * t12;
-        let t15 = k(1.0) / (k(6.0032e-6) - k(3.2e-9) * t10);
-        let t16 = t15 * t14;
-        let t17 = (t16 * t11 + t5 * t9)
-            / (t14 * t16 - (k(2e-6) + t12 * (t5 * (k(1875.0) + t10))));
-        let t18 = k(0.00016) * (t5 * (t7 + k(4e-5) * (u0 * u1 * (k(1563.5) - t10))));
-        let t19 = k(99968.01023672425) * (k(3.2e-9) * (t13 * (u1 * u1 - t6 * t6)) + t18);
-        *out = [t17, t16 * t17 - t15 * t11, -(t0 * t17 + t19)];
+        let t2 = x2.cos();
+        let t3 = k(3.2e-9) * t2;
+        let t4 = x1.cos();
+        let t5 = u0 * t4;
+        let t6 = k(0.00016) - t5 * (u0 * t3);
+        let t7 = k(6.4e-9) * (t5 * (u2 * t2)) - t0 * t6;
+        let t8 = x2.sin();
+        let t9 = t2 * t2;
+        let t10 = k(6.4e-9) * u1;
+        let t11 = u2 * t10;
+        let t12 = t11 * (k(1563.5) - t9) + (t8 * t7 - k(2e-6) * (u1 * t1));
+        let t13 = k(1e-5) * (t5 * (u2 + k(0.4) * t1)) + t2 * (t8 * t11 + t7);
+        let t14 = t8 * t3;
+        let t15 = t4 * t14;
+        let t16 = k(1.0) / (k(6e-6) + t2 * t3);
+        let t17 = t16 * t15;
+        let t18 = t15 * t17 - (k(2e-6) + k(3.2e-9) * ((k(1876.0) - t9) * (t4 * t4)));
+        let t19 = (t17 * t13 - t4 * t12) / t18;
+        let t20 = u1 * u1 * t14 + t4 * (t10 * (u0 * (k(1562.5) + t9)) + t8 * t6);
+        *out = [-t19, t16 * t13 - t17 * t19, t0 * t19 - k(99968.01023672425) * t20];
     }
     /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
@@ -2283,7 +2282,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
         x[4] = inner_ring_wz - outer_ring_wz;
         x[5] = rotor_wx - inner_ring_wx;
     }
-    /// Writes u̇ at a state that satisfies the constraints: 101 operations (35 ±, 64 ×, 2 ÷).
+    /// Writes u̇ at a state that satisfies the constraints: 99 operations (34 ±, 63 ×, 2 ÷).
     fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2310,38 +2309,36 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
             + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
         let t3 = t2 * t1;
         let t4 = outer_ring_wy * t3;
-        let t5 = inner_ring_wx - rotor_wx;
-        let t6 = outer_ring_wz - inner_ring_wz;
-        let t7 = k(6.4e-9) * t5;
-        let t8 = k(3.2e-9) * t4 + t7;
-        let t9 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+        let t5 = outer_ring_wz - inner_ring_wz;
+        let t6 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
             - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
-        let t10 = k(2.0) * t9;
-        let t11 = k(1.0) - t9 * t10;
-        let t12 = k(1.0) - t0 * t1;
-        let t13 = outer_ring_wy * t12;
-        let t14 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+        let t7 = k(2.0) * t6;
+        let t8 = k(1.0) - t6 * t7;
+        let t9 = k(3.2e-9) * t8;
+        let t10 = k(1.0) - t0 * t1;
+        let t11 = outer_ring_wy * t10;
+        let t12 = k(0.00016) - t11 * (outer_ring_wy * t9);
+        let t13 = inner_ring_wx - rotor_wx;
+        let t14 = k(6.4e-9) * (t11 * (t13 * t8)) - t3 * t12;
+        let t15 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
             + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
-        let t15 = t14 * t10;
-        let t16 = t6 * t15 * t7 - k(0.00016) * t3;
-        let t17 = t15 * (t16 + t13 * (t11 * t8)) + k(1e-5) * (t6 * (t5 - k(0.2) * t4));
-        let t18 = t15 * t15;
-        let t19 = t13 * (t18 * t8 - k(1.00064e-5) * (t5 + k(0.4000639590661976) * t4))
-            - t11 * t16;
-        let t20 = k(3.2e-9) * t12;
-        let t21 = t15 * t11;
-        let t22 = t21 * t20;
-        let t23 = k(1.0) / (k(6.0032e-6) - k(3.2e-9) * t18);
-        let t24 = t23 * t22;
-        let t25 = (t24 * t19 + t12 * t17)
-            / (t22 * t24 - (k(2e-6) + t20 * (t12 * (k(1875.0) + t18))));
-        let t26 = k(0.00016)
-            * (t12 * (t15 + k(4e-5) * ((k(1563.5) - t18) * (outer_ring_wy * t6))));
-        let t27 = k(99968.01023672425)
-            * (k(3.2e-9) * (t21 * (t6 * t6 - t13 * t13)) + t26);
-        *out = [t25, t23 * t19 - t24 * t25, t3 * t25 + t27];
+        let t16 = t15 * t7;
+        let t17 = t8 * t8;
+        let t18 = k(6.4e-9) * t5;
+        let t19 = t13 * t18;
+        let t20 = t19 * (k(1563.5) - t17) + (t16 * t14 - k(2e-6) * (t5 * t4));
+        let t21 = k(1e-5) * (t11 * (t13 + k(0.4) * t4)) + t8 * (t16 * t19 + t14);
+        let t22 = t16 * t9;
+        let t23 = t10 * t22;
+        let t24 = k(1.0) / (k(6e-6) + t8 * t9);
+        let t25 = t24 * t23;
+        let t26 = t23 * t25 - (k(2e-6) + k(3.2e-9) * ((k(1876.0) - t17) * (t10 * t10)));
+        let t27 = (t25 * t21 - t10 * t20) / t26;
+        let t28 = t22 * (t5 * t5)
+            + t10 * (t18 * (outer_ring_wy * (k(1562.5) + t17)) + t16 * t12);
+        *out = [-t27, t25 * t27 - t24 * t21, k(99968.01023672425) * t28 - t3 * t27];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 181 operations (66 ±, 113 ×, 2 ÷).
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 179 operations (65 ±, 112 ×, 2 ÷).
     fn corrected_accelerations(
         &self,
         _t: T,
@@ -2378,78 +2375,76 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
             + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
         let t4 = t3 * t2;
         let t5 = outer_ring_wy * t4;
-        let t6 = inner_ring_wx - rotor_wx;
-        let t7 = outer_ring_wz - inner_ring_wz;
-        let t8 = k(6.4e-9) * t6;
-        let t9 = k(3.2e-9) * t5 + t8;
-        let t10 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+        let t6 = outer_ring_wz - inner_ring_wz;
+        let t7 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
             - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
-        let t11 = k(2.0) * t10;
-        let t12 = k(1.0) - t10 * t11;
-        let t13 = k(1.0) - t1 * t2;
-        let t14 = outer_ring_wy * t13;
-        let t15 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+        let t8 = k(2.0) * t7;
+        let t9 = k(1.0) - t7 * t8;
+        let t10 = k(3.2e-9) * t9;
+        let t11 = k(1.0) - t1 * t2;
+        let t12 = outer_ring_wy * t11;
+        let t13 = k(0.00016) - t12 * (outer_ring_wy * t10);
+        let t14 = inner_ring_wx - rotor_wx;
+        let t15 = k(6.4e-9) * (t12 * (t14 * t9)) - t4 * t13;
+        let t16 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
             + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
-        let t16 = t15 * t11;
-        let t17 = t7 * t16 * t8 - k(0.00016) * t4;
-        let t18 = t16 * (t17 + t14 * (t12 * t9)) + k(1e-5) * (t7 * (t6 - k(0.2) * t5));
-        let t19 = t16 * t16;
-        let t20 = t14 * (t19 * t9 - k(1.00064e-5) * (t6 + k(0.4000639590661976) * t5))
-            - t12 * t17;
-        let t21 = k(3.2e-9) * t13;
-        let t22 = t16 * t12;
-        let t23 = t22 * t21;
-        let t24 = k(1.0) / (k(6.0032e-6) - k(3.2e-9) * t19);
-        let t25 = t24 * t23;
-        let t26 = (t25 * t20 + t13 * t18)
-            / (t23 * t25 - (k(2e-6) + t21 * (t13 * (k(1875.0) + t19))));
-        let t27 = outer_ring_wx * outer_ring_wy;
-        let t28 = t4 * t26;
-        let t29 = inner_ring_wy * t7 + (t28 + t0 * t13);
-        let t30 = inner_ring_wx * t7 - (t0 * t4 - t13 * t26);
-        let t31 = t27 - (t25 * t26 - t24 * t20);
-        let t32 = rotor_wy * t6 + (t12 * t31 + t16 * t30);
-        let t33 = k(0.0002) * rotor_wx;
-        let t34 = rotor_wy * t33 - k(0.0002) * t32;
-        let t35 = rotor_e0 * rotor_e0;
-        let t36 = k(0.0002) * rotor_wz;
-        let t37 = rotor_wz * t36 + rotor_wx * t33;
-        let t38 = rotor_e0 * rotor_e3;
-        let t39 = rotor_e1 * rotor_e2;
-        let t40 = k(2.0) * (t39 - t38) * t37
-            + k(2.0) * (k(0.5) - (t35 + rotor_e1 * rotor_e1)) * t34;
-        let t41 = k(0.00016)
-            * (t13 * (t16 + k(4e-5) * ((k(1563.5) - t19) * (outer_ring_wy * t7))));
-        let t42 = k(99968.01023672425)
-            * (k(3.2e-9) * (t22 * (t7 * t7 - t14 * t14)) + t41);
-        let t43 = t28 + t42 - t29;
-        let t44 = rotor_wy * t36 + k(0.0002) * t43;
-        let t45 = rotor_e0 * rotor_e2;
-        let t46 = rotor_e1 * rotor_e3;
-        let t47 = k(2.0) * (k(0.5) - (t35 + rotor_e2 * rotor_e2)) * t37
-            + k(2.0) * (t39 + t38) * t34;
-        let t48 = rotor_e0 * rotor_e1;
-        let t49 = rotor_e2 * rotor_e3;
-        let t50 = k(2.0) * (t49 + t48) * t37 - k(2.0) * (t46 - t45) * t34;
+        let t17 = t16 * t8;
+        let t18 = t9 * t9;
+        let t19 = k(6.4e-9) * t6;
+        let t20 = t14 * t19;
+        let t21 = t20 * (k(1563.5) - t18) + (t17 * t15 - k(2e-6) * (t6 * t5));
+        let t22 = k(1e-5) * (t12 * (t14 + k(0.4) * t5)) + t9 * (t17 * t20 + t15);
+        let t23 = t17 * t10;
+        let t24 = t11 * t23;
+        let t25 = k(1.0) / (k(6e-6) + t9 * t10);
+        let t26 = t25 * t24;
+        let t27 = t24 * t26 - (k(2e-6) + k(3.2e-9) * ((k(1876.0) - t18) * (t11 * t11)));
+        let t28 = (t26 * t22 - t11 * t21) / t27;
+        let t29 = outer_ring_wx * outer_ring_wy;
+        let t30 = t4 * t28;
+        let t31 = inner_ring_wy * t6 - (t30 - t0 * t11);
+        let t32 = inner_ring_wx * t6 - (t0 * t4 + t11 * t28);
+        let t33 = t29 + (t26 * t28 - t25 * t22);
+        let t34 = rotor_wy * t14 + (t9 * t33 + t17 * t32);
+        let t35 = k(0.0002) * rotor_wx;
+        let t36 = rotor_wy * t35 - k(0.0002) * t34;
+        let t37 = rotor_e0 * rotor_e0;
+        let t38 = k(0.0002) * rotor_wz;
+        let t39 = rotor_wz * t38 + rotor_wx * t35;
+        let t40 = rotor_e0 * rotor_e3;
+        let t41 = rotor_e1 * rotor_e2;
+        let t42 = k(2.0) * (t41 - t40) * t39
+            + k(2.0) * (k(0.5) - (t37 + rotor_e1 * rotor_e1)) * t36;
+        let t43 = t23 * (t6 * t6)
+            + t11 * (t19 * (outer_ring_wy * (k(1562.5) + t18)) + t17 * t13);
+        let t44 = t30 - k(99968.01023672425) * t43 + t31;
+        let t45 = rotor_wy * t38 - k(0.0002) * t44;
+        let t46 = rotor_e0 * rotor_e2;
+        let t47 = rotor_e1 * rotor_e3;
+        let t48 = k(2.0) * (k(0.5) - (t37 + rotor_e2 * rotor_e2)) * t39
+            + k(2.0) * (t41 + t40) * t36;
+        let t49 = rotor_e0 * rotor_e1;
+        let t50 = rotor_e2 * rotor_e3;
+        let t51 = k(2.0) * (t50 + t49) * t39 - k(2.0) * (t47 - t46) * t36;
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t0,
-            t26,
-            t27,
+            -t28,
+            t29,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t29,
-            t30,
-            t31,
-            t40 - k(2.0) * (t46 + t45) * t44,
-            -(k(2.0) * (t49 - t48) * t44 + t47),
-            k(2.0) * (k(0.5) - (t35 + rotor_e3 * rotor_e3)) * t44 + t50,
-            t43,
-            -(rotor_wz * t6 + (t16 * t31 - t12 * t30)),
+            -t31,
             t32,
+            t33,
+            t42 - k(2.0) * (t47 + t46) * t45,
+            -(k(2.0) * (t50 - t49) * t45 + t48),
+            k(2.0) * (k(0.5) - (t37 + rotor_e3 * rotor_e3)) * t45 + t51,
+            -t44,
+            -(rotor_wz * t14 + (t17 * t33 - t9 * t32)),
+            t34,
         ];
     }
     /// Writes λ: 134 operations (54 ±, 80 ×, 0 ÷).
@@ -2559,7 +2554,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
             -t23,
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 246 operations (90 ±, 154 ×, 2 ÷).
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 244 operations (89 ±, 153 ×, 2 ÷).
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2591,118 +2586,116 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
             + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
         let t4 = t3 * t2;
         let t5 = outer_ring_wy * t4;
-        let t6 = inner_ring_wx - rotor_wx;
-        let t7 = outer_ring_wz - inner_ring_wz;
-        let t8 = k(6.4e-9) * t6;
-        let t9 = k(3.2e-9) * t5 + t8;
-        let t10 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+        let t6 = outer_ring_wz - inner_ring_wz;
+        let t7 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
             - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
-        let t11 = k(2.0) * t10;
-        let t12 = k(1.0) - t10 * t11;
-        let t13 = k(1.0) - t1 * t2;
-        let t14 = outer_ring_wy * t13;
-        let t15 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+        let t8 = k(2.0) * t7;
+        let t9 = k(1.0) - t7 * t8;
+        let t10 = k(3.2e-9) * t9;
+        let t11 = k(1.0) - t1 * t2;
+        let t12 = outer_ring_wy * t11;
+        let t13 = k(0.00016) - t12 * (outer_ring_wy * t10);
+        let t14 = inner_ring_wx - rotor_wx;
+        let t15 = k(6.4e-9) * (t12 * (t14 * t9)) - t4 * t13;
+        let t16 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
             + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
-        let t16 = t15 * t11;
-        let t17 = t7 * t16 * t8 - k(0.00016) * t4;
-        let t18 = t16 * (t17 + t14 * (t12 * t9)) + k(1e-5) * (t7 * (t6 - k(0.2) * t5));
-        let t19 = t16 * t16;
-        let t20 = t14 * (t19 * t9 - k(1.00064e-5) * (t6 + k(0.4000639590661976) * t5))
-            - t12 * t17;
-        let t21 = k(3.2e-9) * t13;
-        let t22 = t16 * t12;
-        let t23 = t22 * t21;
-        let t24 = k(1.0) / (k(6.0032e-6) - k(3.2e-9) * t19);
-        let t25 = t24 * t23;
-        let t26 = (t25 * t20 + t13 * t18)
-            / (t23 * t25 - (k(2e-6) + t21 * (t13 * (k(1875.0) + t19))));
-        let t27 = outer_ring_wx * outer_ring_wy;
-        let t28 = t4 * t26;
-        let t29 = inner_ring_wy * t7 + (t28 + t0 * t13);
-        let t30 = inner_ring_wx * t7 - (t0 * t4 - t13 * t26);
-        let t31 = t27 - (t25 * t26 - t24 * t20);
-        let t32 = rotor_wy * t6 + (t12 * t31 + t16 * t30);
-        let t33 = k(0.0002) * rotor_wx;
-        let t34 = rotor_wy * t33 - k(0.0002) * t32;
-        let t35 = rotor_e0 * rotor_e0;
-        let t36 = k(0.5) - (t35 + rotor_e1 * rotor_e1);
-        let t37 = k(0.0002) * rotor_wz;
-        let t38 = rotor_wz * t37 + rotor_wx * t33;
-        let t39 = rotor_e0 * rotor_e3;
-        let t40 = rotor_e1 * rotor_e2;
-        let t41 = k(0.00016)
-            * (t13 * (t16 + k(4e-5) * ((k(1563.5) - t19) * (outer_ring_wy * t7))));
-        let t42 = k(99968.01023672425)
-            * (k(3.2e-9) * (t22 * (t7 * t7 - t14 * t14)) + t41);
-        let t43 = t28 + t42 - t29;
-        let t44 = rotor_wy * t37 + k(0.0002) * t43;
-        let t45 = rotor_e0 * rotor_e2;
-        let t46 = rotor_e1 * rotor_e3;
-        let t47 = t46 + t45;
-        let t48 = k(2.0) * t47 * t44 - (k(2.0) * (t40 - t39) * t38 + k(2.0) * t36 * t34);
-        let t49 = t40 + t39;
-        let t50 = k(2.0) * (k(0.5) - (t35 + rotor_e2 * rotor_e2)) * t38
-            + k(2.0) * t49 * t34;
-        let t51 = rotor_e0 * rotor_e1;
-        let t52 = rotor_e2 * rotor_e3;
-        let t53 = t52 - t51;
-        let t54 = k(2.0) * t53 * t44 + t50;
-        let t55 = t46 - t45;
-        let t56 = k(0.5) - (t35 + rotor_e3 * rotor_e3);
-        let t57 = k(2.0) * t56 * t44 + (k(2.0) * (t52 + t51) * t38 - k(2.0) * t55 * t34);
-        let t58 = rotor_wz * t6 + (t16 * t31 - t12 * t30);
-        let t59 = k(0.08) * t48;
-        let t60 = k(0.8) - k(0.08) * t54;
-        let t61 = k(0.1) + t60;
-        let t62 = k(0.08) * t57;
-        let t63 = k(0.0004) * t36 * t59 + k(0.0004) * t49 * t60 + k(0.0004) * t55 * t62;
-        let t64 = t63 - k(5e-6) * (rotor_wx * rotor_wy - t32);
-        let t65 = k(5e-6) * (rotor_wx * rotor_wz - t58);
-        let t66 = t16 * t65 - t12 * t64;
-        let t67 = t66 - k(1e-6) * (inner_ring_wx * inner_ring_wy + t31);
-        let t68 = k(2.0) * outer_ring_e2;
-        let t69 = outer_ring_e0 * t68;
-        let t70 = t12 * t65 + t16 * t64;
-        let t71 = t70 + k(2e-6) * t30;
-        let t72 = k(0.0004) * t47 * t59 - k(0.0004) * t53 * t60 + k(0.0004) * t56 * t62;
-        let t73 = t72 + k(1e-5) * t43 - k(1e-6) * (inner_ring_wy * inner_ring_wz + t29);
-        let t74 = t13 * t73 + t4 * t71;
-        let t75 = t74 - k(2e-6) * t0;
-        let t76 = k(1.0) - outer_ring_e2 * t68;
+        let t17 = t16 * t8;
+        let t18 = t9 * t9;
+        let t19 = k(6.4e-9) * t6;
+        let t20 = t14 * t19;
+        let t21 = t20 * (k(1563.5) - t18) + (t17 * t15 - k(2e-6) * (t6 * t5));
+        let t22 = k(1e-5) * (t12 * (t14 + k(0.4) * t5)) + t9 * (t17 * t20 + t15);
+        let t23 = t17 * t10;
+        let t24 = t11 * t23;
+        let t25 = k(1.0) / (k(6e-6) + t9 * t10);
+        let t26 = t25 * t24;
+        let t27 = t24 * t26 - (k(2e-6) + k(3.2e-9) * ((k(1876.0) - t18) * (t11 * t11)));
+        let t28 = (t26 * t22 - t11 * t21) / t27;
+        let t29 = outer_ring_wx * outer_ring_wy;
+        let t30 = t4 * t28;
+        let t31 = inner_ring_wy * t6 - (t30 - t0 * t11);
+        let t32 = inner_ring_wx * t6 - (t0 * t4 + t11 * t28);
+        let t33 = t29 + (t26 * t28 - t25 * t22);
+        let t34 = rotor_wy * t14 + (t9 * t33 + t17 * t32);
+        let t35 = k(0.0002) * rotor_wx;
+        let t36 = rotor_wy * t35 - k(0.0002) * t34;
+        let t37 = rotor_e0 * rotor_e0;
+        let t38 = k(0.5) - (t37 + rotor_e1 * rotor_e1);
+        let t39 = k(0.0002) * rotor_wz;
+        let t40 = rotor_wz * t39 + rotor_wx * t35;
+        let t41 = rotor_e0 * rotor_e3;
+        let t42 = rotor_e1 * rotor_e2;
+        let t43 = t23 * (t6 * t6)
+            + t11 * (t19 * (outer_ring_wy * (k(1562.5) + t18)) + t17 * t13);
+        let t44 = t30 - k(99968.01023672425) * t43 + t31;
+        let t45 = rotor_wy * t39 - k(0.0002) * t44;
+        let t46 = rotor_e0 * rotor_e2;
+        let t47 = rotor_e1 * rotor_e3;
+        let t48 = t47 + t46;
+        let t49 = k(2.0) * t48 * t45 - (k(2.0) * (t42 - t41) * t40 + k(2.0) * t38 * t36);
+        let t50 = t42 + t41;
+        let t51 = k(2.0) * (k(0.5) - (t37 + rotor_e2 * rotor_e2)) * t40
+            + k(2.0) * t50 * t36;
+        let t52 = rotor_e0 * rotor_e1;
+        let t53 = rotor_e2 * rotor_e3;
+        let t54 = t53 - t52;
+        let t55 = k(2.0) * t54 * t45 + t51;
+        let t56 = t47 - t46;
+        let t57 = k(0.5) - (t37 + rotor_e3 * rotor_e3);
+        let t58 = k(2.0) * t57 * t45 + (k(2.0) * (t53 + t52) * t40 - k(2.0) * t56 * t36);
+        let t59 = rotor_wz * t14 + (t17 * t33 - t9 * t32);
+        let t60 = k(0.08) * t49;
+        let t61 = k(0.8) - k(0.08) * t55;
+        let t62 = k(0.1) + t61;
+        let t63 = k(0.08) * t58;
+        let t64 = k(0.0004) * t38 * t60 + k(0.0004) * t50 * t61 + k(0.0004) * t56 * t63;
+        let t65 = t64 - k(5e-6) * (rotor_wx * rotor_wy - t34);
+        let t66 = k(5e-6) * (rotor_wx * rotor_wz - t59);
+        let t67 = t17 * t66 - t9 * t65;
+        let t68 = t67 - k(1e-6) * (inner_ring_wx * inner_ring_wy + t33);
+        let t69 = k(2.0) * outer_ring_e2;
+        let t70 = outer_ring_e0 * t69;
+        let t71 = t9 * t66 + t17 * t65;
+        let t72 = t71 + k(2e-6) * t32;
+        let t73 = k(0.0004) * t48 * t60 - k(0.0004) * t54 * t61 + k(0.0004) * t57 * t63;
+        let t74 = t73 - k(1e-5) * t44 - k(1e-6) * (inner_ring_wy * inner_ring_wz + t31);
+        let t75 = t11 * t74 + t4 * t72;
+        let t76 = t75 - k(2e-6) * t0;
+        let t77 = k(1.0) - outer_ring_e2 * t69;
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t0,
-            t26,
-            t27,
+            -t28,
+            t29,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t29,
-            t30,
-            t31,
-            -t48,
-            -t54,
-            t57,
-            t43,
-            -t58,
+            -t31,
             t32,
-            t59,
-            -(k(0.1) + t61),
+            t33,
+            -t49,
+            -t55,
+            t58,
+            -t44,
+            -t59,
+            t34,
+            t60,
+            -(k(0.1) + t62),
+            -t63,
+            t70 * t68 - t77 * t76,
+            -(t70 * t76 + t77 * t68),
+            t60,
             -t62,
-            t69 * t67 - t76 * t75,
-            -(t69 * t75 + t76 * t67),
-            t59,
+            -t63,
+            t4 * t74 - t11 * t72,
+            t75,
+            t60,
             -t61,
-            -t62,
-            t4 * t73 - t13 * t71,
-            t74,
-            t59,
-            -t60,
-            -t62,
-            t66,
-            t70,
+            -t63,
+            t67,
+            t71,
         ];
     }
 }

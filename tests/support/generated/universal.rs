@@ -839,20 +839,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Universal<T> {
         let x1 = x[1];
         let u0 = x[2];
         let u1 = x[3];
-        let t0 = x1.cos();
-        let t1 = x1.sin();
-        let t2 = u0 * (k(0.5) - t1 * (t1 + k(8.455) * t0));
-        let t3 = k(0.0032) * (u1 * (k(25.0) * t2 - u1 * (t1 + k(4.0625) * t0)));
+        let t0 = x1.sin();
+        let t1 = x1.cos();
+        let t2 = u0 * (k(0.5) - t1 * (t1 - k(8.455) * t0));
+        let t3 = k(0.013)
+            * (u1
+                * (k(6.153846153846154) * t2 + u1 * (t1 + k(0.24615384615384617) * t0)));
         let t4 = x0.cos();
         let t5 = k(1.5) * x0 - (k(0.3) + k(0.3924) * t4)
-            + k(0.5886) * (x0.sin() * (t1 + k(13.333333333333334) * t0));
-        let t6 = k(0.05) * u1 + k(7.848) * (t4 * (t1 - k(0.075) * t0))
-            - k(0.04) * (u0 * t2);
-        let t7 = k(0.013) * t1 - k(0.0032) * t0;
+            + k(7.848) * (x0.sin() * (t1 + k(0.075) * t0));
+        let t6 = k(0.05) * u1 - k(0.5886) * (t4 * (t1 - k(13.333333333333334) * t0))
+            + k(0.04) * (u0 * t2);
+        let t7 = k(0.013) * t0 - k(0.0032) * t1;
         let t8 = k(2.6191723415400734) * t7;
         let t9 = t7 * t8
-            - (k(0.3708) - k(0.3382) * (t1 * (t1 - k(0.11827321111768184) * t0)));
-        let t10 = (t8 * t6 + (t5 + t3)) / t9;
+            - (k(0.0326) + k(0.3382) * (t1 * (t1 + k(0.11827321111768184) * t0)));
+        let t10 = (t8 * t6 + (t5 - t3)) / t9;
         *out = [t10, t8 * t10 - k(2.6191723415400734) * t6];
     }
     /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 2 operations (0 ±, 2 ×, 0 ÷).
@@ -969,30 +971,33 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Universal<T> {
         let bob_wy = y[11];
         let bob_wz = y[12];
         let turn0 = y[14];
-        let t0 = bob_e0 * bob_e0;
-        let t1 = k(0.5) - (t0 + bob_e1 * bob_e1);
-        let t2 = bob_e1 * bob_e3 + bob_e0 * bob_e2;
+        let t0 = bob_e1 * bob_e3 + bob_e0 * bob_e2;
+        let t1 = bob_e0 * bob_e0;
+        let t2 = k(0.5) - (t1 + bob_e1 * bob_e1);
         let t3 = k(2.0) * t2;
-        let t4 = k(2.0) * (bob_e1 * bob_e2 - bob_e0 * bob_e3) * bob_wy
-            - k(2.0) * t1 * bob_wx;
-        let t5 = t3 * bob_wz + t4;
-        let t6 = t5 * (k(0.5) - t3 * (t3 - k(16.91) * t1));
-        let t7 = k(0.0032) * (bob_wy * (k(25.0) * t6 - bob_wy * (t3 - k(8.125) * t1)));
+        let t4 = k(2.0) * (bob_e1 * bob_e2 - bob_e0 * bob_e3) * bob_wy - t3 * bob_wx;
+        let t5 = k(2.0) * t0 * bob_wz + t4;
+        let t6 = t5 * (k(0.5) - t3 * (t3 + k(16.91) * t0));
+        let t7 = k(0.013)
+            * (bob_wy
+                * (k(6.153846153846154) * t6
+                    - bob_wy * (t3 - k(0.49230769230769234) * t0)));
         let t8 = k(2.0) * (bob_e2 * bob_e3 + bob_e0 * bob_e1);
         let t9 = turn0.cos();
-        let t10 = k(0.5) - (t0 + bob_e2 * bob_e2);
+        let t10 = k(0.5) - (t1 + bob_e2 * bob_e2);
         let t11 = k(2.0) * t10;
         let t12 = turn0.sin();
         let t13 = (t8 * t9 + t11 * t12).atan2(t8 * t12 - t11 * t9);
         let t14 = k(0.3) - k(0.7848) * t10 - k(1.5) * (turn0 + t13)
-            - k(0.5886) * (t8 * (t3 - k(26.666666666666668) * t1));
-        let t15 = k(0.05) * bob_wy - k(7.848) * (t11 * (t3 + k(0.15) * t1))
-            - k(0.04) * (t5 * t6);
-        let t16 = k(0.026) * t2 + k(0.0064) * t1;
+            + k(7.848) * (t8 * (t3 - k(0.15) * t0));
+        let t15 = k(0.05) * bob_wy
+            - k(0.5886) * (t11 * (t3 + k(26.666666666666668) * t0))
+            + k(0.04) * (t5 * t6);
+        let t16 = k(0.026) * t0 + k(0.0064) * t2;
         let t17 = k(2.6191723415400734) * t16;
         let t18 = t16 * t17
-            - (k(0.3708) - k(0.3382) * (t3 * (t3 + k(0.23654642223536368) * t1)));
-        let t19 = (t17 * t15 - (t14 - t7)) / t18;
+            - (k(0.0326) + k(0.3382) * (t3 * (t3 - k(0.23654642223536368) * t0)));
+        let t19 = (t17 * t15 - (t14 + t7)) / t18;
         *out = [t19, t17 * t19 - k(2.6191723415400734) * t15];
     }
     /// Writes (s̈, ẇ') at a state that satisfies the constraints: 163 operations (63 ±, 99 ×, 1 ÷) and 3 functions.
@@ -1025,12 +1030,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Universal<T> {
         let t11 = t2 * t10;
         let t12 = t9 * t10;
         let t13 = t10 * (t2 * t12 - t9 * t11) - (bob_wx * t12 + bob_wz * t11);
-        let t14 = t10 * (k(0.5) - t9 * (t9 - k(16.91) * t1));
+        let t14 = t10 * (k(0.5) - t2 * (t2 + k(16.91) * t8));
         let t15 = k(0.5) - (t0 + bob_e2 * bob_e2);
         let t16 = k(2.0) * t15;
-        let t17 = k(0.05) * bob_wy - k(7.848) * (t16 * (t9 + k(0.15) * t1))
-            - k(0.04) * (t10 * t14);
-        let t18 = k(0.0032) * (bob_wy * (k(25.0) * t14 - bob_wy * (t9 - k(8.125) * t1)));
+        let t17 = k(0.05) * bob_wy
+            - k(0.5886) * (t16 * (t2 + k(26.666666666666668) * t8))
+            + k(0.04) * (t10 * t14);
+        let t18 = k(0.013)
+            * (bob_wy
+                * (k(6.153846153846154) * t14
+                    - bob_wy * (t2 - k(0.49230769230769234) * t8)));
         let t19 = bob_e0 * bob_e1;
         let t20 = bob_e2 * bob_e3;
         let t21 = k(2.0) * (t20 + t19);
@@ -1038,12 +1047,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Universal<T> {
         let t23 = turn0.sin();
         let t24 = (t21 * t22 + t16 * t23).atan2(t21 * t23 - t16 * t22);
         let t25 = k(0.3) - k(0.7848) * t15 - k(1.5) * (turn0 + t24)
-            - k(0.5886) * (t21 * (t9 - k(26.666666666666668) * t1));
+            + k(7.848) * (t21 * (t2 - k(0.15) * t8));
         let t26 = k(0.026) * t8 + k(0.0064) * t1;
         let t27 = k(2.6191723415400734) * t26;
         let t28 = t26 * t27
-            - (k(0.3708) - k(0.3382) * (t9 * (t9 + k(0.23654642223536368) * t1)));
-        let t29 = (t27 * t17 - (t25 - t18)) / t28;
+            - (k(0.0326) + k(0.3382) * (t2 * (t2 - k(0.23654642223536368) * t8)));
+        let t29 = (t27 * t17 - (t25 + t18)) / t28;
         let t30 = t27 * t29 - k(2.6191723415400734) * t17 + t13;
         let t31 = t10 * (t2 * bob_wy) - (bob_wx * bob_wy + bob_wy * t11) - t9 * t29;
         let t32 = k(0.03) * bob_wz + k(0.4) * bob_wx;
@@ -1148,13 +1157,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Universal<T> {
         let t12 = t2 * t11;
         let t13 = t10 * t11;
         let t14 = t11 * (t2 * t13 - t10 * t12) - (bob_wx * t13 + bob_wz * t12);
-        let t15 = t11 * (k(0.5) - t10 * (t10 - k(16.91) * t1));
+        let t15 = t11 * (k(0.5) - t2 * (t2 + k(16.91) * t9));
         let t16 = k(0.5) - (t0 + bob_e2 * bob_e2);
         let t17 = k(2.0) * t16;
-        let t18 = k(0.05) * bob_wy - k(7.848) * (t17 * (t10 + k(0.15) * t1))
-            - k(0.04) * (t11 * t15);
-        let t19 = k(0.0032)
-            * (bob_wy * (k(25.0) * t15 - bob_wy * (t10 - k(8.125) * t1)));
+        let t18 = k(0.05) * bob_wy
+            - k(0.5886) * (t17 * (t2 + k(26.666666666666668) * t9))
+            + k(0.04) * (t11 * t15);
+        let t19 = k(0.013)
+            * (bob_wy
+                * (k(6.153846153846154) * t15
+                    - bob_wy * (t2 - k(0.49230769230769234) * t9)));
         let t20 = bob_e0 * bob_e1;
         let t21 = bob_e2 * bob_e3;
         let t22 = t21 + t20;
@@ -1164,12 +1176,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Universal<T> {
         let t26 = (t23 * t24 + t17 * t25).atan2(t23 * t25 - t17 * t24);
         let t27 = turn0 + t26;
         let t28 = k(0.3) - k(0.7848) * t16 - k(1.5) * t27
-            - k(0.5886) * (t23 * (t10 - k(26.666666666666668) * t1));
+            + k(7.848) * (t23 * (t2 - k(0.15) * t9));
         let t29 = k(0.026) * t9 + k(0.0064) * t1;
         let t30 = k(2.6191723415400734) * t29;
         let t31 = t29 * t30
-            - (k(0.3708) - k(0.3382) * (t10 * (t10 + k(0.23654642223536368) * t1)));
-        let t32 = (t30 * t18 - (t28 - t19)) / t31;
+            - (k(0.0326) + k(0.3382) * (t2 * (t2 - k(0.23654642223536368) * t9)));
+        let t32 = (t30 * t18 - (t28 + t19)) / t31;
         let t33 = t30 * t32 - k(2.6191723415400734) * t18 + t14;
         let t34 = bob_wx * bob_wy;
         let t35 = t11 * (t2 * bob_wy) - (t34 + bob_wy * t12) - t10 * t32;
