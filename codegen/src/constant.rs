@@ -7,13 +7,24 @@ use gyro_model::{Rational, to_f64};
 use num_bigint::{BigInt, BigUint, Sign};
 use num_traits::{One, Signed, ToPrimitive, Zero};
 use std::fmt;
+use std::hash::{Hash, Hasher};
 
 /// `coefficient · √radicand`.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Constant {
     coefficient: Rational,
     /// At least one; free of the squares of small primes, so that equal constants are equal in this form too.
     radicand: BigUint,
+}
+
+/// Rationals are in lowest terms, so that their parts tell them apart: to expand them into continued fractions, as [`Rational`]
+/// does for the sake of others, takes long.
+impl Hash for Constant {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.coefficient.numer().hash(state);
+        self.coefficient.denom().hash(state);
+        self.radicand.hash(state);
+    }
 }
 
 /// Squares of primes up to this bound are taken out of a radicand. Two equal constants whose radicands differ by the square
@@ -62,6 +73,13 @@ impl Constant {
     }
 
     pub fn mul(&self, other: &Self) -> Self {
+        // Most factors of formulas are one.
+        if self.is_one() {
+            return other.clone();
+        }
+        if other.is_one() {
+            return self.clone();
+        }
         let coefficient = &self.coefficient * &other.coefficient;
         if self.radicand.is_one() || other.radicand.is_one() {
             return Self::new(coefficient, &self.radicand * &other.radicand);

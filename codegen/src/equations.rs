@@ -11,6 +11,7 @@ use crate::normal_form::vanishes;
 use crate::outputs::{self, Sources};
 use crate::partition::Partition;
 use crate::schedule::cheapest;
+use crate::sheet::Form;
 use crate::symbol::Symbol;
 use crate::system::System;
 use crate::{coordinate, null_space, readings, saddle};
@@ -31,12 +32,16 @@ pub struct Equations<'m> {
     pub phi: Vec<ExprId>,
     pub phi_q: Sparse,
     pub phi_pi: Sparse,
+    /// Entries of Φ_π' that are zero for unit Euler parameters and were left out.
+    pub n_vanishing: usize,
     pub nu: Vec<ExprId>,
     pub gamma: Vec<ExprId>,
     pub velocity_residual: Vec<ExprId>,
     pub applied_force: Vec<ExprId>,
     /// (s̈, ẇ') of each slot.
     pub accelerations: Vec<ExprId>,
+    /// The ways of writing them that were compared.
+    pub forms: Vec<Form>,
     /// Multipliers that are found with the accelerations.
     pub closing: Vec<ExprId>,
     /// All multipliers, the accelerations being known.
@@ -98,23 +103,29 @@ impl<'m> Equations<'m> {
         let graph = &mut system.graph;
         let mut phi_pi = non_zeros(&expand_matrix(&mut expansion, graph, &kinematics.phi_pi));
         // A product of two vectors of one body does not change as the body turns.
+        let n_derived = phi_pi.len();
         phi_pi.retain(|&(.., entry)| !vanishes(graph, &euler, entry));
         let solved: Vec<_> = solution.accelerations.iter().chain(&solution.closing).copied().collect();
         let mut relative = Expansion::with_values(&definitions, by_euler_parameters);
-        let candidates = vec![expansion.all(graph, &solved), relative.all(graph, &solved)];
-        let mut solved = cheapest(graph, candidates);
+        let candidates = vec![
+            ("rotations of the bodies".to_owned(), expansion.all(graph, &solved)),
+            ("relative Euler parameters".to_owned(), relative.all(graph, &solved)),
+        ];
+        let (mut solved, forms) = cheapest(graph, candidates);
         let closing = solved.split_off(solution.accelerations.len());
         let all_phi: Vec<_> = kinematics.phi.iter().chain(&kinematics.normalisations).copied().collect();
         Self {
             model,
             phi: expansion.all(graph, &all_phi),
             phi_q: non_zeros(&expand_matrix(&mut expansion, graph, &kinematics.phi_q)),
+            n_vanishing: n_derived - phi_pi.len(),
             phi_pi,
             nu: expansion.all(graph, &kinematics.nu),
             gamma: expansion.all(graph, &kinematics.gamma),
             velocity_residual: expansion.all(graph, &kinematics.velocity_residual),
             applied_force: expansion.all(graph, &dynamics.applied_force),
             accelerations: solved,
+            forms,
             closing,
             lambda: expansion.all(graph, &solution.lambda),
             position_rates,

@@ -70,6 +70,9 @@ mod steering;
 mod symbol;
 mod system;
 
+pub use schedule::{Operations, Passes};
+pub use sheet::{Form, Function, Reduction, Sheet, large};
+
 use gyro_model::{AssemblyError, Diagnostics, Model};
 use std::fmt;
 
@@ -84,6 +87,8 @@ pub struct Module {
     pub code: String,
     /// The exact constant behind each literal of the code, one a line: `0.7071067811865476 = 1/2*sqrt(2)`.
     pub constants: String,
+    /// What was generated, as data: the head of the file shows it.
+    pub sheet: Sheet,
 }
 
 impl Module {
@@ -167,6 +172,6 @@ pub fn generate_by(elimination: Elimination, file_name: &str, model: &Model) -> 
     let start = model.assemble().map_err(Error::Start)?;
     let equations = equations::Equations::derive(model, elimination, &start);
     let type_name = module::type_name(&model.name);
-    let module::Text { code, constants } = module::write(file_name, &type_name, &equations, &start);
-    Ok(Module { name: model.name.clone(), type_name, code, constants })
+    let module::Text { code, constants, sheet } = module::write(file_name, &type_name, &equations, &start);
+    Ok(Module { name: model.name.clone(), type_name, code, constants, sheet })
 }

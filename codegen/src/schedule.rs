@@ -1,21 +1,26 @@
 //! From a set of expressions to a straight-line program: what gets a name, in which order, and what it costs.
 
 use crate::graph::{ExprId, Graph, Node};
+use crate::sheet::Form;
 use rustc_hash::FxHashMap as HashMap;
 use std::fmt;
 
 /// Arithmetic operations of a program. A negation is free; a product with a reciprocal that nobody else uses is one division.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Operations {
+    /// Sums and differences.
     pub additions: usize,
+    /// Products.
     pub multiplications: usize,
+    /// Quotients.
     pub divisions: usize,
+    /// Square roots, sines and the like.
     pub functions: usize,
 }
 
 impl Operations {
     /// Counts each shared expression once.
-    pub fn count(graph: &Graph, roots: &[ExprId]) -> Self {
+    pub(crate) fn count(graph: &Graph, roots: &[ExprId]) -> Self {
         let uses = Uses::count(graph, roots);
         let mut operations = Self::default();
         for &id in &uses.order {
@@ -50,13 +55,48 @@ impl fmt::Display for Operations {
     }
 }
 
-/// The set of roots that takes the fewest operations.
-pub fn cheapest(graph: &Graph, candidates: Vec<Vec<ExprId>>) -> Vec<ExprId> {
-    let cost = |roots: &Vec<ExprId>| {
-        let operations = Operations::count(graph, roots);
-        (operations.functions, operations.total())
+/// Operations on the way to a program, + − × ÷ together. Constants are folded and zeros and ones vanish as expressions are built:
+/// there is no pass before that.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Passes {
+    /// Every expression written out wherever it is used; the largest number if there are more.
+    pub written_out: u64,
+    /// Equal expressions computed once.
+    pub shared: usize,
+    /// Products with reciprocals that nobody else uses written as quotients: what is emitted.
+    pub emitted: usize,
+}
+
+impl Passes {
+    pub(crate) fn count(graph: &Graph, roots: &[ExprId]) -> Self {
+        let is_operation =
+            |id: ExprId| matches!(graph.node(id), Node::Add(..) | Node::Mul(..) | Node::Recip(_));
+        let order = graph.reachable(roots);
+        let mut sizes: HashMap<ExprId, u64> = HashMap::default();
+        for &id in &order {
+            let operands = graph.node(id).operands().map(|operand| sizes[&operand]);
+            sizes.insert(id, operands.fold(u64::from(is_operation(id)), u64::saturating_add));
+        }
+        Self {
+            written_out: roots.iter().fold(0, |sum, root| sizes[root].saturating_add(sum)),
+            shared: order.iter().filter(|&&id| is_operation(id)).count(),
+            emitted: Operations::count(graph, roots).total(),
+        }
+    }
+}
+
+/// The set of roots that takes the fewest operations, and what each would have taken.
+pub fn cheapest(graph: &Graph, candidates: Vec<(String, Vec<ExprId>)>) -> (Vec<ExprId>, Vec<Form>) {
+    let costs: Vec<_> = candidates.iter().map(|(_, roots)| Operations::count(graph, roots)).collect();
+    let cost = |&k: &usize| (costs[k].functions, costs[k].total());
+    let taken = (0..candidates.len()).min_by_key(cost).expect("there is a candidate");
+    let form = |(k, (name, _)): (usize, &(String, _))| Form {
+        name: name.clone(),
+        operations: costs[k],
+        is_taken: k == taken,
     };
-    candidates.into_iter().min_by_key(cost).expect("there is a recursion")
+    let forms = candidates.iter().enumerate().map(form).collect();
+    (candidates.into_iter().nth(taken).expect("it is one of them").1, forms)
 }
 
 /// How often each reachable expression is used.
@@ -133,5 +173,36 @@ impl Program {
             inline_size.insert(id, if named { 0 } else { own });
         }
         Self { uses, temporaries }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::symbol::Symbol;
+
+    /// (x + y)² / z, and once more.
+    #[test]
+    fn each_pass_saves_what_it_says() {
+        let mut graph = Graph::new();
+        let [x, y, z] = [0, 1, 2].map(|k| graph.symbol(Symbol::Coordinate(k)));
+        let sum = graph.add(x, y);
+        let square = graph.mul(sum, sum);
+        let inverse = graph.recip(z);
+        let quotient = graph.mul(square, inverse);
+        let passes = Passes::count(&graph, &[quotient]);
+        assert_eq!(passes, Passes { written_out: 5, shared: 4, emitted: 3 });
+        assert_eq!(Passes::count(&graph, &[quotient, quotient]), Passes { written_out: 10, ..passes });
+    }
+
+    #[test]
+    fn what_is_too_large_to_count_is_the_largest_number() {
+        let mut graph = Graph::new();
+        let mut power = graph.symbol(Symbol::Coordinate(0));
+        for _ in 0..100 {
+            power = graph.mul(power, power);
+        }
+        let passes = Passes::count(&graph, &[power]);
+        assert_eq!((passes.written_out, passes.shared), (u64::MAX, 100));
     }
 }

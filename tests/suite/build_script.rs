@@ -70,6 +70,9 @@ gyro-sim = {{ path = {gyro_sim:?} }}
 
 [build-dependencies]
 gyro-codegen = {{ path = {gyro_codegen:?} }}
+
+[profile.dev]
+debug = false
 "
     );
     let files = [
@@ -77,6 +80,7 @@ gyro-codegen = {{ path = {gyro_codegen:?} }}
         ("build.rs", fixture("build.rs")),
         ("src/main.rs", fixture("main.rs")),
         ("double-pendulum.toml", pendulum.to_owned()),
+        ("hinge.toml", fixture("hinge.toml")),
         ("chain.toml", chain()),
     ];
     files.iter().for_each(|(name, text)| fs::write(folder.join(name), text).unwrap());

@@ -52,9 +52,11 @@ fn random_state<M: JointSpace<Scalar = f64>>(model: &Model, mechanism: &M, rando
 /// rad/s or m/s.
 const RATE: f64 = 3.0;
 
-/// Rounding of some hundred operations; of accelerations, on states without luck.
-const MAPS: f64 = 1e-12;
-const ACCELERATIONS: f64 = 1e-9;
+/// Rounding of some hundred operations, relative to the largest number: of maps at most 4e-15 is seen, of accelerations 5e-13, of
+/// multipliers 4e-11 (the cylindrical joint), each with a factor of some twenty or more for states without luck.
+const MAPS: f64 = 1e-13;
+const ACCELERATIONS: f64 = 1e-11;
+const MULTIPLIERS: f64 = 1e-9;
 /// Central differences with a step of 1e-5.
 const DIFFERENCES: f64 = 1e-7;
 
@@ -129,7 +131,7 @@ fn check<M: JointSpace<Scalar = f64> + Partition>(page: &str, mechanism: &M) {
     println!(
         "{page}: Φ {maps}, back {back}, (s̈, ẇ') {accelerations}, u̇ {rates}, ẏ {derivative}, slope {slope}, λ {multipliers}"
     );
-    let allowed = [MAPS, MAPS, ACCELERATIONS, ACCELERATIONS, ACCELERATIONS, DIFFERENCES, ACCELERATIONS];
+    let allowed = [MAPS, MAPS, ACCELERATIONS, ACCELERATIONS, ACCELERATIONS, DIFFERENCES, MULTIPLIERS];
     assert!(worst.iter().zip(allowed).all(|(worst, allowed)| *worst <= allowed), "{page}: {worst:?}");
 }
 

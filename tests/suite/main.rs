@@ -20,4 +20,5 @@ mod reactions;
 mod recursive_twin;
 mod robustness;
 mod scalars;
+mod solved;
 mod terms;

@@ -1,6 +1,7 @@
 //! Mechanisms on a base that is moved: motion and work against Newton and Euler along a chain, in 31 digits.
 
-use gyro_reference::{BaseMotion, Chain, ChainSample, Link, Sinusoid, moving_base};
+use crate::solved::{ROLLING, ROLLING_AND_PITCHING, Solved};
+use gyro_reference::{BaseMotion, Chain, ChainSample, Link, Sinusoid};
 use gyro_runner::energy_error;
 use gyro_sim_suite::{
     Engine, PAPER, Run, check, check_pairs, coordinate, generated, model, output, played, simulate, times,
@@ -20,9 +21,9 @@ const ARM: f64 = 1e-9;
 const REACTIONS: f64 = 1e-8;
 
 /// Angles and rates of the rings and the rotor, the work of whoever moves the base, and the balance.
-fn check_gyroscope(page: &str, mechanism: &Engine, chain: &Chain<3>) -> Run {
+fn check_gyroscope(page: &str, mechanism: &Engine, reference: &Solved) -> Run {
     let run = simulate(mechanism, &model(page), &PAPER);
-    let reference = chain.solve(&times(&run));
+    let reference = reference.at(&run);
     let angles = |k: usize| reference[k].positions.to_vec();
     check(&format!("{page}: angles"), &run, ANGLES, |k, sample| {
         ((0..3).map(|joint| coordinate(sample, joint).0).collect(), angles(k))
@@ -30,7 +31,7 @@ fn check_gyroscope(page: &str, mechanism: &Engine, chain: &Chain<3>) -> Run {
     check(&format!("{page}: rates"), &run, RATES, |k, sample| {
         ((0..3).map(|joint| coordinate(sample, joint).1).collect(), reference[k].rates.to_vec())
     });
-    check_work(page, &run, &reference);
+    check_work(page, &run, reference);
     run
 }
 
@@ -47,24 +48,20 @@ fn check_work<const N: usize>(what: &str, run: &Run, reference: &[ChainSample<N>
 
 #[test]
 fn the_gyroscope_on_a_rolling_base() {
-    let run = check_gyroscope("driven-gyroscope", &generated("driven-gyroscope"), &moving_base::rolling());
+    let run = check_gyroscope("driven-gyroscope", &generated("driven-gyroscope"), &ROLLING);
     // The base does work that matters.
     assert!(run.samples.iter().any(|sample| sample.work.abs() > 1e-5 * run.samples[0].kinetic));
 }
 
 #[test]
 fn the_gyroscope_on_a_base_that_rolls_and_pitches() {
-    let chain = moving_base::rolling_and_pitching();
-    check_gyroscope("pitching-gyroscope", &generated("pitching-gyroscope"), &chain);
+    check_gyroscope("pitching-gyroscope", &generated("pitching-gyroscope"), &ROLLING_AND_PITCHING);
 }
 
 #[test]
 fn another_motion_of_the_base_does_not_pass() {
     // The check must be able to fail.
-    let wrong = || {
-        let chain = moving_base::rolling();
-        check_gyroscope("pitching-gyroscope", &generated("pitching-gyroscope"), &chain)
-    };
+    let wrong = || check_gyroscope("pitching-gyroscope", &generated("pitching-gyroscope"), &ROLLING);
     assert!(std::panic::catch_unwind(wrong).is_err());
 }
 

@@ -1,7 +1,8 @@
 //! What bearings bear and sensors read, against Newton's and Euler's laws.
 
-use gyro_reference::{Chain, Pendulum, moving_base};
-use gyro_sim_suite::{Engine, PAPER, check, generated, model, output, played, simulate, times};
+use crate::solved::{RESTING, ROLLING, ROLLING_AND_PITCHING, Solved};
+use gyro_reference::{Pendulum, moving_base};
+use gyro_sim_suite::{Engine, PAPER, Run, check, generated, model, output, played, simulate, times};
 
 /// N and N·m, as the issue asks; m/s and m/s² for what is at the tip.
 const REACTION: f64 = 1e-9;
@@ -45,30 +46,30 @@ fn the_pendulum_hangs_on_its_bearing() {
     });
 }
 
-fn check_bearings(page: &str, mechanism: &Engine, chain: &Chain<3>) {
+fn check_bearings(page: &str, mechanism: &Engine, reference: &Solved) -> Run {
     let run = simulate(mechanism, &model(page), &PAPER);
-    let reference = chain.solve(&times(&run));
+    let samples = reference.at(&run);
     check(&format!("{page}: bearings"), &run, REACTION, |k, sample| {
         let found = ["alpha_load", "beta_load", "phi_load"].map(|name| output(mechanism, sample, name));
-        (found.concat(), moving_base::bearing_reactions(&reference[k]).concat())
+        (found.concat(), moving_base::bearing_reactions(&samples[k]).concat())
     });
     check(&format!("{page}: sensor"), &run, SENSOR, |k, sample| {
-        let reading = chain.inertial_reading(&reference[k], 1, [0.01, 0.005, -0.002]);
+        let reading = reference.chain.inertial_reading(&samples[k], 1, [0.01, 0.005, -0.002]);
         (output(mechanism, sample, "sensor"), [reading.specific_force, reading.angular_rate].concat())
     });
+    run
 }
 
 #[test]
 fn the_gyroscope_hangs_on_its_bearings() {
-    check_bearings("gyroscope-bearings", &generated("gyroscope-bearings"), &moving_base::resting());
+    check_bearings("gyroscope-bearings", &generated("gyroscope-bearings"), &RESTING);
 }
 
 #[test]
 fn the_gyroscope_on_a_base_that_moves_hangs_on_its_bearings() {
-    let (mechanism, chain) = (generated("pitching-bearings"), moving_base::rolling_and_pitching());
-    check_bearings("pitching-bearings", &mechanism, &chain);
-    let run = simulate(&mechanism, &model("pitching-bearings"), &PAPER);
-    let reference = chain.solve(&times(&run));
+    let mechanism = generated("pitching-bearings");
+    let run = check_bearings("pitching-bearings", &mechanism, &ROLLING_AND_PITCHING);
+    let reference = ROLLING_AND_PITCHING.at(&run);
     check("pitching-bearings: power", &run, POWER, |k, sample| {
         (output(&mechanism, sample, "powers"), vec![0.0, reference[k].base_power])
     });
@@ -78,6 +79,6 @@ fn the_gyroscope_on_a_base_that_moves_hangs_on_its_bearings() {
 fn a_bearing_on_another_base_bears_something_else() {
     // The check must be able to fail.
     let mechanism = generated("gyroscope-bearings");
-    let wrong = || check_bearings("gyroscope-bearings", &mechanism, &moving_base::rolling());
+    let wrong = || check_bearings("gyroscope-bearings", &mechanism, &ROLLING);
     assert!(std::panic::catch_unwind(std::panic::AssertUnwindSafe(wrong)).is_err());
 }

@@ -182,12 +182,14 @@ fn row(model: &Model, module: &Module, name: &str, program: &Program) -> String 
     )
 }
 
+/// Nor what the operations were before the last pass.
 fn without_words(line: &str) -> String {
-    let mut cells: Vec<&str> = line.split(" | ").collect();
+    let mut cells: Vec<&str> = line.trim_end_matches(" |").split(" | ").collect();
     if cells.len() > 2 {
         cells.remove(1);
     }
-    cells.join(" | ")
+    cells.truncate(6);
+    cells.join(" | ") + " |"
 }
 
 fn non_zeros(model: &Model, module: &Module) -> String {

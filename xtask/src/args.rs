@@ -16,6 +16,7 @@ pub(crate) struct Cli {
 pub(crate) enum Command {
     Generate(GenerateArgs),
     Simulate(SimulateArgs),
+    Inspect(InspectArgs),
     Import(ImportArgs),
     Verify(VerifyArgs),
     Performance(PerformanceArgs),
@@ -69,6 +70,27 @@ pub(crate) struct VerifyArgs {
     #[arg(long)]
     pub(crate) quick: bool,
     /// Print one JSON array and nothing else
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// Show what is generated from a model, what is left out, and what each element of the model costs
+///
+/// Prints coordinates, equations and degrees of freedom; of each function the operations before and after each pass and the bytes of
+/// machine code; and the operations of the same model without one of its elements, or with more parameters. Writes no module.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  cargo xtask inspect models/gyroscope.toml
+  cargo xtask inspect ~/gimbal.toml --no-compile     no machine code: at once
+  cargo xtask inspect models/four-bar.toml --json")]
+pub(crate) struct InspectArgs {
+    /// Model page, anywhere on disk
+    #[arg(value_name = "MODEL")]
+    pub(crate) model: PathBuf,
+    /// Leave out the machine code, for which the module has to be compiled
+    #[arg(long)]
+    pub(crate) no_compile: bool,
+    /// Print one JSON object on standard output and nothing else
     #[arg(long)]
     pub(crate) json: bool,
 }

@@ -66,7 +66,8 @@ fn outputs(model: &Model, values: &[f64]) -> Map<String, Value> {
     object
 }
 
-fn redundant(model: &Model) -> Vec<Value> {
+/// The rows that were dropped.
+pub(crate) fn redundant(model: &Model) -> Vec<Value> {
     let rows = model.redundant.iter().map(|dropped| {
         let (kind, name) = remarks::kind_and_name(model, dropped.row.owner);
         let shared = dropped.shared_with.iter().map(|o| remarks::kind_and_name(model, *o).1);

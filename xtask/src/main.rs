@@ -8,8 +8,10 @@ mod files;
 mod fit;
 mod generate;
 mod inputs;
+mod inspect;
 mod json;
 mod linear;
+mod machine_code;
 mod nested;
 mod performance;
 mod plot;
@@ -23,6 +25,7 @@ mod spectrum;
 mod stability;
 mod summary;
 mod urdf;
+mod variants;
 mod verify;
 mod words;
 
@@ -34,6 +37,7 @@ fn main() -> ExitCode {
     let outcome = match Cli::parse().command {
         Command::Generate(args) => generate::generate(&args),
         Command::Simulate(args) => simulate::simulate(&args),
+        Command::Inspect(args) => inspect::inspect(&args),
         Command::Import(args) => urdf::import(&args),
         Command::Performance(args) => performance::performance(&args),
         Command::Verify(args) => verify::verify_models(&args),

@@ -1,4 +1,4 @@
-//! Compiles a generated mechanism into a small program and runs it.
+//! Compiles a generated mechanism into a small program and runs it, or into a library to look at.
 //!
 //! Each module gets a package of its own, named by a hash of its text, under `target/simulate/programs` of the
 //! workspace; all of them share one build folder, so that only the first has to wait for `gyro-sim`. Whether anything
@@ -6,10 +6,10 @@
 
 use crate::args::Precision;
 use crate::failure::Failure;
-use crate::files;
 use crate::progress::Spinner;
 use crate::scene::Scene;
 use crate::verify::verify_quickly;
+use crate::{files, machine_code};
 use gyro_codegen::Module;
 use gyro_runner::protocol::{Reply, Request};
 use gyro_runner::{Event, Summary};
@@ -24,31 +24,49 @@ use std::process::{Command, Stdio};
 pub(crate) fn simulate(scene: &Scene, tell: impl FnMut(Event<'_>)) -> Result<Summary, Failure> {
     let module = gyro_codegen::generate_model(&scene.page_name, &scene.page)
         .map_err(|e| Failure::Usage(e.to_string()))?;
-    let package = Package::new(&module, scene.precision);
+    let package = Package::program(&module, scene.precision);
     if !package.is_there() {
         verify_quickly(&scene.page, &module)?;
     }
-    let program = build(&package)?;
+    build(&package)?;
+    let program = package.built(&format!("{}{}", package.name, std::env::consts::EXE_SUFFIX));
     let request =
         Request { settings: scene.settings, parameters: scene.parameters(), start: scene.start.clone() };
     converse(&program, &request, tell)
+}
+
+/// Compiles the functions of these names for `f64`, optimised; the library, in which each has its symbol.
+pub(crate) fn library(module: &Module, names: &[&str]) -> Result<PathBuf, Failure> {
+    let root = machine_code::library(&module.type_name, names);
+    let package = Package::new(module, "lib.rs", root);
+    build(&package)?;
+    Ok(package.built(&format!("lib{}.rlib", package.name.replace('-', "_"))))
 }
 
 /// The files of a package.
 struct Package {
     name: String,
     manifest: String,
-    main: String,
+    /// Name and text of the file at its root.
+    root: (&'static str, String),
     mechanism: String,
 }
 
 impl Package {
-    fn new(module: &Module, precision: Precision) -> Self {
-        let main = main(&module.type_name, precision);
+    fn program(module: &Module, precision: Precision) -> Self {
+        Self::new(module, "main.rs", main(&module.type_name, precision))
+    }
+
+    fn new(module: &Module, file: &'static str, root: String) -> Self {
         let mut hasher = DefaultHasher::new();
-        (&main, &module.code).hash(&mut hasher);
+        (&root, &module.code).hash(&mut hasher);
         let name = format!("{}-{:016x}", module.name, hasher.finish());
-        Self { manifest: manifest(&name), name, main, mechanism: module.code.clone() }
+        Self { manifest: manifest(&name), name, root: (file, root), mechanism: module.code.clone() }
+    }
+
+    /// Where Cargo puts what it builds.
+    fn built(&self, file: &str) -> PathBuf {
+        target().join("release").join(file)
     }
 
     fn folder(&self) -> PathBuf {
@@ -111,22 +129,25 @@ fn cache() -> PathBuf {
     files::root().join("target").join("simulate")
 }
 
-/// Brings a package up to date; returns the program.
-fn build(package: &Package) -> Result<PathBuf, Failure> {
-    let cache = cache();
-    let (folder, target) = (package.folder(), cache.join("build"));
+fn target() -> PathBuf {
+    cache().join("build")
+}
+
+/// Brings a package up to date.
+fn build(package: &Package) -> Result<(), Failure> {
+    let (cache, folder) = (cache(), package.folder());
     let said = |e: std::io::Error| Failure::Run(format!("{} cannot be used: {e}", cache.display()));
     fs::create_dir_all(folder.join("src")).map_err(said)?;
     let lock = File::create(cache.join("lock")).map_err(said)?;
     // Released when the file is closed at the end of this function. Two runs at once take turns at building.
     lock.lock().map_err(said)?;
     files::write(&folder.join("Cargo.toml"), &package.manifest)?;
-    files::write(&folder.join("src").join("main.rs"), &package.main)?;
+    let (file, root) = &package.root;
+    files::write(&folder.join("src").join(file), root)?;
     files::write(&folder.join("src").join("mechanism.rs"), &package.mechanism)?;
     copy_lock_file(&folder).map_err(said)?;
     let _spinner = Spinner::new(format!("compiling {}", package.name));
-    compile(&folder, &target)?;
-    Ok(target.join("release").join(format!("{}{}", package.name, std::env::consts::EXE_SUFFIX)))
+    compile(&folder, &target())
 }
 
 /// The workspace's versions hold here too. Cargo drops from its copy what the package does not need.
@@ -210,6 +231,7 @@ fn listen(output: impl BufRead, tell: &mut impl FnMut(Event<'_>)) -> Result<Opti
 #[cfg(test)]
 mod tests {
     use super::*;
+    use gyro_codegen::Sheet;
 
     fn heard(text: &str) -> (Result<Option<Summary>, Failure>, usize) {
         let mut n_samples = 0;
@@ -239,8 +261,9 @@ mod tests {
             type_name: "Top".to_owned(),
             code: code.to_owned(),
             constants: String::new(),
+            sheet: Sheet::default(),
         };
-        let name = |code, precision| Package::new(&module(code), precision).name;
+        let name = |code, precision| Package::program(&module(code), precision).name;
         assert_eq!(name("a", Precision::F64), name("a", Precision::F64));
         assert_ne!(name("a", Precision::F64), name("b", Precision::F64));
         assert_ne!(name("a", Precision::F64), name("a", Precision::F32));

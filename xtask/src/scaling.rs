@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use crate::files;
+use crate::machine_code;
 use crate::performance::{cargo, folder, output, said, three};
 use crate::progress::Spinner;
 use std::fmt::Write as _;
@@ -183,7 +184,9 @@ impl Place {
             }
         }
         for chain in chains {
-            chain.bytes = bytes(&built.join("release").join(format!("libchain_{}.rlib", chain.bodies)));
+            let library = built.join("release").join(format!("libchain_{}.rlib", chain.bodies));
+            chain.bytes =
+                machine_code::bytes(&library).map(|bytes| bytes.get("accelerations").copied().unwrap_or(0));
         }
         Ok(())
     }
@@ -226,38 +229,28 @@ fn manifest(name: &str, ours: &[(&str, &str)], beside: &[String]) -> String {
     text
 }
 
-/// The functions of the module for `f64`: without these nothing would be compiled.
+/// What is compiled of a chain: all but joint coordinates.
+const COMPILED: [&str; 12] = [
+    "accelerations",
+    "multipliers",
+    "derivative",
+    "phi",
+    "phi_q",
+    "gamma",
+    "velocity_residual",
+    "energy",
+    "read_joints",
+    "chart vectors",
+    "newton_step",
+    "solve_velocities",
+];
+
 fn library(bodies: usize) -> String {
+    let functions = machine_code::library(&format!("Chain{bodies}"), &COMPILED);
     format!(
-        "#[allow(warnings, clippy::all)]
-mod mechanism;
-
-use gyro_sim::{{Energy, Equations, Error, Mechanism, Ode, Partition}};
-
-pub type Chain = mechanism::Chain{bodies}<f64>;
-type State = <Chain as Ode>::State;
-type Rows = <Chain as Mechanism>::Rows;
-type Accelerations = <Chain as Equations>::Accelerations;
-
-pub fn start() -> State {{ Chain::default().start() }}
-pub fn buffer() -> Accelerations {{ Chain::default().accelerations_buffer() }}
-#[inline(never)]
-pub fn accelerations(y: &State, out: &mut Accelerations) {{ Chain::default().accelerations(0.0, y, out) }}
-pub fn multipliers(y: &State, a: &Accelerations, out: &mut Rows) {{ Chain::default().multipliers(0.0, y, a, out) }}
-pub fn derivative(y: &State, dy: &mut State) {{ Chain::default().derivative(0.0, y, dy) }}
-pub fn phi(y: &State, out: &mut <Chain as Mechanism>::Constraints) {{ Chain::default().phi(0.0, y, out) }}
-pub fn phi_q(y: &State, out: &mut <Chain as Equations>::PhiQ) {{ Chain::default().phi_q(0.0, y, out) }}
-pub fn gamma(y: &State, out: &mut Rows) {{ Chain::default().gamma(0.0, y, out) }}
-pub fn velocity_residual(y: &State, out: &mut Rows) {{ Chain::default().velocity_residual(0.0, y, out) }}
-pub fn energy(y: &State) -> Energy<f64> {{ Chain::default().energy(0.0, y) }}
-pub fn read_joints(y: &State, out: &mut <Chain as Mechanism>::Readings) {{ Chain::default().read_joints(0.0, y, out) }}
-pub fn independent(y: &State) -> <Chain as Partition>::Independent {{ Chain::default().independent(0.0, y) }}
-pub fn newton_step(i: &<Chain as Partition>::Independent, y: &mut State) -> Result<(), Error> {{
-    Chain::default().newton_step(0.0, i, y)
-}}
-pub fn solve_velocities(i: &<Chain as Partition>::Independent, y: &mut State) -> Result<(), Error> {{
-    Chain::default().solve_velocities(0.0, i, y)
-}}
+        "{functions}
+pub fn start() -> State {{ Module::default().start() }}
+pub fn buffer() -> Accelerations {{ Module::default().accelerations_buffer() }}
 "
     )
 }
@@ -280,9 +273,10 @@ fn main() {
             "    let model = gyro_model::read(\"page.toml\", include_str!(\"../../chain_{bodies}/page.toml\")).expect(\"a page\");
     let y = chain_{bodies}::start();
     let mut out = chain_{bodies}::buffer();
-    chain_{bodies}::accelerations(&y, &mut out);
+    let chain = chain_{bodies}::Module::default();
+    chain_{bodies}::accelerations(&chain, 0.0, &y, &mut out);
     let expected = out.as_ref()[..{n_v}].to_vec();
-    kernels.push(Kernel::new(\"\", \"\", None, move || chain_{bodies}::accelerations(black_box(&y), black_box(&mut out))));
+    kernels.push(Kernel::new(\"\", \"\", None, move || chain_{bodies}::accelerations(&chain, 0.0, black_box(&y), black_box(&mut out))));
     kernels.push(twin(Recursive::<f64>::new(&model).expect(\"a tree\"), &expected));
     kernels.push(twin(Careful::<f64>::new(&model).expect(\"a tree\"), &expected));
 ",
@@ -311,17 +305,6 @@ fn twin<M: Equations<Scalar = f64> + Ode<State = Vec<f64>> + 'static>(twin: M, e
 fn flops(module: &str) -> String {
     let row = module.lines().find(|line| line.starts_with("//! | accelerations |")).unwrap_or_default();
     row.split('|').nth(6).unwrap_or_default().trim().to_owned()
-}
-
-/// Machine code of what is named accelerations; none without `nm`.
-fn bytes(library: &Path) -> Option<u64> {
-    let symbols = output(Command::new("nm").args(["--print-size", "--demangle"]).arg(library)).ok()?;
-    let size = |line: &str| {
-        let [_, size, kind, name] = line.splitn(4, ' ').collect::<Vec<_>>().try_into().ok()?;
-        let is_code = matches!(kind, "t" | "T") && name.contains("::accelerations");
-        is_code.then(|| u64::from_str_radix(size, 16).ok()).flatten()
-    };
-    Some(symbols.lines().filter_map(size).sum())
 }
 
 /// CPU time of all children that have ended, s: on a shared machine the time of day says little. Zero where the system does not

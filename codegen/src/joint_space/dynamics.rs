@@ -11,9 +11,11 @@ use crate::freedom::{Freedom, Parent, Twist};
 use crate::graph::{ExprId, Graph};
 use crate::ldl::Elimination;
 use crate::linear::{UNIT3, Vec3, ZERO3};
-use crate::normal_form::{normal_form, normal_form_of};
+use crate::normal_form::normal_form_of;
 use crate::null_space::{Arm, Basis, EliminatedTree, Excitation, Inertia};
 use crate::outputs::time_derivative;
+use crate::schedule::Operations;
+use crate::sheet::Reduction;
 use crate::symbol::Symbol;
 use crate::system::System;
 use gyro_model::JointCoordinate;
@@ -94,12 +96,23 @@ impl Reduced {
     }
 
     /// u̇ by factoring the reduced mass matrix, all entries in polynomial normal form as long as pivots are constant.
-    pub fn factored(&self, system: &mut System, unit: &[Vec<ExprId>]) -> Vec<ExprId> {
+    pub fn factored(
+        &self,
+        system: &mut System,
+        unit: &[Vec<ExprId>],
+        reductions: &mut Vec<Reduction>,
+    ) -> Vec<ExprId> {
         let matrix = self.mass_matrix(system);
         let forces = self.generalised_forces(system);
         let graph = &mut system.graph;
+        let mut reduced = |graph: &mut Graph, what, (old, divisors): (&[ExprId], &[bool])| {
+            let new = normal_form_of(graph, unit, old, divisors);
+            let [before, after] = [old, &new].map(|roots| Operations::count(graph, roots).total());
+            reductions.push(Reduction { what, before, after });
+            new
+        };
         let mut elimination = Elimination::new(matrix, forces);
-        elimination.rewrite(|old, divisors| normal_form_of(graph, unit, old, divisors));
+        elimination.rewrite(|old, divisors| reduced(graph, "mass matrix and forces", (old, divisors)));
         for unknown in self.rates.iter().flatten().rev().copied() {
             let is_constant = graph.as_constant(elimination.diagonal(unknown)).is_some();
             elimination.pivot(graph, unknown);
@@ -108,7 +121,7 @@ impl Reduced {
             }
         }
         let solution = elimination.substitute_back(graph);
-        normal_form(graph, unit, &solution)
+        reduced(graph, "solution", (&solution, &[]))
     }
 
     fn scattered(&self, rates: &[Vec<ExprId>]) -> Vec<ExprId> {

@@ -23,6 +23,7 @@ use crate::kinematics::Kinematics;
 use crate::linear::{UNIT3, Vec3, ZERO3, transposed};
 use crate::null_space::Arm;
 use crate::schedule::cheapest;
+use crate::sheet::{Form, Reduction};
 use crate::symbol::Symbol;
 use crate::system::System;
 use carriage::Carriage;
@@ -34,6 +35,9 @@ use std::array::from_fn;
 /// Beyond this many rates the polynomials of a reduced mass matrix are seldom shorter than the recursion, and take long to work
 /// out: they are not tried.
 const MAX_FACTORED: usize = 4;
+
+/// As the data sheet calls it.
+const NORMAL_FORM: &str = "normal form";
 
 /// What `gyro_sim::JointSpace` asks of a generated tree, as final expressions.
 #[derive(Debug)]
@@ -57,12 +61,29 @@ pub struct JointSpace {
     pub reduced: Vec<ExprId>,
     /// The joint state at the start.
     pub start: Vec<f64>,
+    /// Bodies that are described in a frame that does not turn with them.
+    pub invariant: Vec<usize>,
+    /// What was compared for accelerations, accelerations_at and corrected.
+    forms: [Vec<Form>; 3],
+    /// What the normal form made of the accelerations' parts.
+    reductions: Vec<Reduction>,
 }
 
 impl JointSpace {
     /// Whether joint coordinates describe the mechanism.
     pub fn covers(system: &System) -> bool {
         system.tree.is_open() && closing_rows(system).is_empty()
+    }
+
+    /// The forms of a function that were compared, and what the normal form did for it.
+    pub fn choice(&self, function: &str) -> (Vec<Form>, Vec<Reduction>) {
+        let [accelerations, at, corrected] = &self.forms;
+        match function {
+            "joint_accelerations" => (accelerations.clone(), self.reductions.clone()),
+            "joint_accelerations_at" => (at.clone(), Vec::new()),
+            "corrected_accelerations" => (corrected.clone(), Vec::new()),
+            _ => Default::default(),
+        }
     }
 
     /// `exact` are the accelerations at any state, `power` that of the maximal form.
@@ -89,23 +110,34 @@ impl JointSpace {
         };
         let spins = dynamics::spins(system, &carriages_of_dynamics);
         let from_rates = reduced(system, &spins);
-        let mut candidates = vec![from_rates.recursion(system)];
+        let mut candidates = vec![("recursion", from_rates.recursion(system))];
+        let mut reductions = Vec::new();
         let unit = unit_atoms(system, &layout);
         if layout.n_rates <= MAX_FACTORED {
-            candidates.push(from_rates.factored(system, &unit));
+            candidates.push((NORMAL_FORM, from_rates.factored(system, &unit, &mut reductions)));
         }
-        let of_rates = candidates.iter().map(|roots| expanded(system, &in_joints, roots)).collect();
-        let accelerations = cheapest(&system.graph, of_rates);
+        let of_rates = (candidates.iter())
+            .map(|(name, roots)| ((*name).to_owned(), expanded(system, &in_joints, roots)))
+            .collect();
+        let (accelerations, forms) = cheapest(&system.graph, of_rates);
 
         // A maximal state has the angular velocities at hand.
         let spins = spins_at_hand(system, &layout, &carriages_of_dynamics, &invariant);
-        candidates.push(reduced(system, &spins).recursion(system));
-        let at: Vec<_> = candidates.iter().map(|roots| expanded(system, &of_joints, roots)).collect();
-        let accelerations_at = cheapest(&system.graph, at.clone());
-        let mut corrected: Vec<_> =
-            at.iter().flat_map(|rates| outward(system, &carriages, &of_joints, rates)).collect();
-        corrected.push(expanded(system, &Values::default(), exact));
-        let corrected = cheapest(&system.graph, corrected);
+        candidates.push(("recursion on the bodies' spins", reduced(system, &spins).recursion(system)));
+        let at: Vec<_> = (candidates.iter())
+            .map(|(name, roots)| ((*name).to_owned(), expanded(system, &of_joints, roots)))
+            .collect();
+        let (accelerations_at, forms_at) = cheapest(&system.graph, at.clone());
+        let corrected = at.iter().flat_map(|(name, rates)| {
+            let frames = ["the bodies' frames", "the global frame"].map(|frame| format!("{name} in {frame}"));
+            frames.into_iter().zip(outward(system, &carriages, &of_joints, rates))
+        });
+        let mut corrected: Vec<_> = corrected.collect();
+        corrected.push((
+            "elimination in maximal coordinates".to_owned(),
+            expanded(system, &Values::default(), exact),
+        ));
+        let (corrected, forms_corrected) = cheapest(&system.graph, corrected);
 
         let tree = (&layout, &carriages[..]);
         let multipliers = multipliers::of(system, kinematics, dynamics, tree, &unit);
@@ -119,7 +151,13 @@ impl JointSpace {
         derivative.extend(power.map(of_power));
         let reduced = maps::reduced(system, &layout);
         let reduced = Expansion::new(&system.definitions).all(&mut system.graph, &reduced);
+        let is_invariant = |link: &&layout::LinkCoordinates| {
+            link.scalars.iter().any(|scalar| invariant.contains(&scalar.place.x))
+        };
         Self {
+            invariant: layout.links.iter().filter(is_invariant).map(|link| link.link.body).collect(),
+            forms: [forms, forms_at, forms_corrected],
+            reductions,
             accelerations,
             multipliers,
             solution,

@@ -15,7 +15,7 @@ use crate::equations::Equations;
 use crate::functions::Functions;
 use crate::graph::ExprId;
 use crate::schedule::Operations;
-use crate::sheet;
+use crate::sheet::Sheet;
 use crate::symbol::Symbol;
 use gyro_model::Start;
 use proc_macro2::{Ident, TokenStream};
@@ -36,10 +36,11 @@ pub fn type_name(module_name: &str) -> String {
     if ["Self", "T"].contains(&name.as_str()) { format!("{name}_") } else { name }
 }
 
-/// The text of a module and the exact constants of its literals.
+/// The text of a module, the exact constants of its literals and its data sheet.
 pub struct Text {
     pub code: String,
     pub constants: String,
+    pub sheet: Sheet,
 }
 
 /// Writes the files.
@@ -48,11 +49,11 @@ pub fn write(file_name: &str, type_name: &str, equations: &Equations, start: &St
     let module = ModuleWriter { equations, type_name, functions: Functions::of(equations), constants };
     let tokens = module.tokens(start);
     let file = syn::parse2(tokens).expect("the emitted tokens are Rust");
-    let sheet = sheet::write(file_name, equations, &module.functions);
-    let code = format!("{sheet}\n{}", prettyplease::unparse(&file));
+    let sheet = Sheet::of(equations, &module.functions);
+    let code = format!("{}\n{}", sheet.head(file_name), prettyplease::unparse(&file));
     let constants = module.constants.into_inner();
     let lines = constants.into_iter().map(|(literal, exact)| format!("{literal} = {exact}\n"));
-    Text { code, constants: lines.collect() }
+    Text { code, constants: lines.collect(), sheet }
 }
 
 fn table_of(symbol: &Symbol) -> Option<usize> {

@@ -4,7 +4,9 @@
 
 use gyro_model::Model;
 use gyro_mutants::{STALE, generate_model, switch_on};
-use gyro_verifier::{Depth, Finding, Report, verify};
+use gyro_verifier::module::Module;
+use gyro_verifier::proof::{Claim, Decider, Verdict, prime};
+use gyro_verifier::{Depth, verify};
 use std::collections::HashMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
@@ -34,13 +36,22 @@ fn page(name: &str) -> Model {
     gyro_model::read_with(name, &text, &mut load).expect("a good page")
 }
 
-/// What the verifier says of what the generator writes with a fault; `None` if it writes nothing.
-fn report(model: &Model, fault: usize) -> Option<Report> {
+/// What the generator writes with a fault; `None` if it writes nothing.
+fn written(model: &Model, fault: usize) -> Option<gyro_mutants::Module> {
     switch_on(fault);
     let module = catch_unwind(AssertUnwindSafe(|| generate_model("mutant", model).ok()));
     switch_on(0);
-    let module = module.ok().flatten()?;
-    Some(verify(model, &module.code, &module.constants, Depth::Quick))
+    module.ok().flatten()
+}
+
+/// Seed of the primes and points.
+const SEED: u64 = 13;
+
+/// Whether a claim about a module is refuted; the first that is ends the search. `None` if the prime has not enough bits.
+fn is_refuted<const L: usize>(model: &Model, module: &Module) -> Option<bool> {
+    let decider = Decider::<L>::new(model, prime(model, module, SEED).ok()?);
+    let mut verdicts = Claim::all(module).into_iter().map(|claim| decider.decide(module, claim, 1, SEED));
+    Some(verdicts.any(|verdict| matches!(verdict, Verdict::Refuted { .. } | Verdict::Divides { .. })))
 }
 
 /// What became of a fault.
@@ -53,12 +64,15 @@ enum Fate {
 }
 
 fn fate(model: &Model, fault: usize, harmless: Option<&'static str>) -> Fate {
+    let Some(text) = written(model, fault) else { return Fate::Unwritten };
+    if let Some(why) = harmless {
+        let report = verify(model, &text.code, &text.constants, Depth::Quick);
+        return if report.is_proved() { Fate::Harmless(why) } else { Fate::Survived };
+    }
     // The formulas must be refuted: that a fault shows in the structure of the text does not count.
-    match (report(model, fault), harmless) {
-        (Some(report), None) if report.findings.iter().any(Finding::is_refuted) => Fate::Refuted,
-        (Some(report), None) if report.findings.is_empty() => Fate::Unwritten,
-        (None, None) => Fate::Unwritten,
-        (Some(report), Some(why)) if report.findings.iter().all(Finding::is_proved) => Fate::Harmless(why),
+    let Ok(module) = Module::read(model, &text.code, &text.constants) else { return Fate::Unwritten };
+    match is_refuted::<9>(model, &module).or_else(|| is_refuted::<36>(model, &module)) {
+        Some(true) => Fate::Refuted,
         _ => Fate::Survived,
     }
 }
@@ -70,7 +84,8 @@ fn fates(k: usize, n: usize) -> Vec<(String, Fate)> {
     let fates = faults.map(|(index, (what, name, harmless))| {
         let model = models.entry(name).or_insert_with(|| {
             let model = page(name);
-            let report = report(&model, 0).expect("a module without faults");
+            let right = written(&model, 0).expect("a module without faults");
+            let report = verify(&model, &right.code, &right.constants, Depth::Quick);
             assert!(report.is_proved(), "{report}");
             model
         });

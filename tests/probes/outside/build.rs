@@ -12,10 +12,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         fs::write(Path::new(&out).join(&module.name).with_extension("rs"), module.as_item())?;
     }
     // Names that mean something to Rust or to the run time must not break a module.
-    let page = fs::read_to_string("double-pendulum.toml")?;
+    let page = fs::read_to_string("hinge.toml")?;
     let mut odd_names = String::new();
     for name in ["mechanism", "equations", "error", "result", "default", "core", "gyro_sim", "t", "k", "self_"] {
-        let renamed = page.replace("name = \"double_pendulum\"", &format!("name = \"{name}\""));
+        let renamed = page.replace("name = \"hinge\"", &format!("name = \"{name}\""));
         assert!(renamed != page, "the page has another name");
         odd_names += &gyro_codegen::generate("odd.toml", &renamed)?.as_item();
     }

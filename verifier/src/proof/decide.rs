@@ -192,6 +192,9 @@ impl<'a, const L: usize> Decider<'a, L> {
         for point in 0..u64::from(points) {
             self.test(statements, seed.wrapping_add(point << 32), &mut refutations);
         }
+        if refutations.iter().all(Option::is_some) {
+            return refutations.into_iter().flatten().collect();
+        }
         let degrees = statements.degrees_log2();
         let bits = self.prime.value().bits() as f64 - 1.0;
         let proved = |degree_log2: f64| Verdict::Proved {

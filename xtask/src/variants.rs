@@ -1,0 +1,165 @@
+//! A model without one of its elements, or with more of its numbers tunable: what an element costs is the difference.
+
+use gyro_model::{Joint, JointEnd, Model, Number, Parameter, Rational, Support, analyse};
+
+/// A model with one thing changed.
+#[derive(Debug)]
+pub(crate) struct Variant {
+    /// What is different, in words.
+    pub(crate) what: String,
+    /// The model; why there is none, if it cannot be assembled.
+    pub(crate) model: Result<Model, String>,
+}
+
+/// All variants of a model, one element at a time.
+pub(crate) fn variants(model: &Model) -> Vec<Variant> {
+    let mut changes = Changes { model, variants: Vec::new() };
+    changes.without_elements();
+    changes.without_offsets();
+    changes.with_bodies_at_rest();
+    changes.with_free_numbers();
+    changes.variants
+}
+
+struct Changes<'a> {
+    model: &'a Model,
+    variants: Vec<Variant>,
+}
+
+impl Changes<'_> {
+    fn add(&mut self, what: String, change: impl FnOnce(&mut Model)) {
+        let mut model = self.model.clone();
+        change(&mut model);
+        // Other rows may depend on each other now.
+        let model = analyse(&model).map_err(|error| error.to_string()).map(|analysis| {
+            model.redundant = analysis.redundant;
+            model
+        });
+        self.variants.push(Variant { what, model });
+    }
+
+    /// Gravity, friction, forces, outputs.
+    fn without_elements(&mut self) {
+        let model = self.model;
+        if !are_zero(&model.gravity) {
+            self.add("without gravity".to_owned(), |model| model.gravity = zeros());
+        }
+        for (index, joint) in model.joints.iter().enumerate().filter(|(_, joint)| !joint.friction.is_zero()) {
+            self.add(format!("without the friction of `{}`", joint.name), |model| {
+                model.joints[index].friction = Number::integer(0);
+            });
+        }
+        for (index, force) in model.forces.iter().enumerate() {
+            self.add(format!("without force `{}`", force.name), |model| {
+                model.forces.remove(index);
+            });
+        }
+        for (index, output) in model.outputs.iter().enumerate() {
+            self.add(format!("without output `{}`", output.name), |model| {
+                model.outputs.remove(index);
+            });
+        }
+    }
+
+    /// Each joint point at its body's mass centre.
+    fn without_offsets(&mut self) {
+        let ends: [fn(&mut Joint) -> &mut JointEnd; 2] =
+            [|joint| &mut joint.first, |joint| &mut joint.second];
+        for (index, joint) in self.model.joints.iter().enumerate() {
+            for (end, of) in [&joint.first, &joint.second].into_iter().zip(ends) {
+                if !are_zero(&end.point) {
+                    let body = &self.model.bodies[end.body].name;
+                    self.add(format!("without the offset of `{}` on `{body}`", joint.name), |model| {
+                        of(&mut model.joints[index]).point = zeros();
+                    });
+                }
+            }
+        }
+    }
+
+    /// What is driven or constrained, fixed and folded.
+    fn with_bodies_at_rest(&mut self) {
+        for (index, body) in self.model.bodies.iter().enumerate() {
+            if matches!(body.support, Support::Driven | Support::Constrained) {
+                self.add(format!("with `{}` fixed", body.name), |model| {
+                    let body = &mut model.bodies[index];
+                    (body.support, body.motion) = (Support::Fixed, None);
+                });
+            }
+        }
+    }
+
+    /// Numbers that are not zero become parameters.
+    fn with_free_numbers(&mut self) {
+        self.add("with free masses and inertias".to_owned(), |model| {
+            let bodies = model.bodies.iter_mut().filter(|body| body.support.has_coordinates());
+            let numbers = bodies.flat_map(|body| [&mut body.mass].into_iter().chain(&mut body.inertia));
+            free(numbers, &mut model.parameters);
+        });
+        self.add("with free joint points".to_owned(), |model| {
+            let ends = model.joints.iter_mut().flat_map(|joint| [&mut joint.first, &mut joint.second]);
+            free(ends.flat_map(|end| &mut end.point), &mut model.parameters);
+        });
+        self.add("with a free geometry".to_owned(), |model| {
+            let ends = model.joints.iter_mut().flat_map(|joint| [&mut joint.first, &mut joint.second]);
+            let vectors = ends.flat_map(|end| [&mut end.point, &mut end.axis, &mut end.zero]);
+            free(vectors.flatten(), &mut model.parameters);
+        });
+    }
+}
+
+fn zeros() -> [Number; 3] {
+    [0; 3].map(Number::integer)
+}
+
+fn are_zero(numbers: &[Number]) -> bool {
+    numbers.iter().all(Number::is_zero)
+}
+
+/// Each number that is written out, and not zero, becomes a parameter of its own.
+fn free<'a>(numbers: impl Iterator<Item = &'a mut Number>, parameters: &mut Vec<Parameter>) {
+    for number in numbers {
+        let Number::Exact(value) = number else { continue };
+        if *value == Rational::default() {
+            continue;
+        }
+        let (index, value) = (parameters.len(), value.clone());
+        parameters.push(Parameter { name: format!("free_{index}"), value });
+        *number = Number::Parameter { index, negated: false };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::files;
+
+    fn words(page: &str) -> Vec<String> {
+        let model = crate::scene::read(&files::root().join(page)).unwrap();
+        let variants = variants(&model);
+        assert!(variants.iter().all(|variant| variant.model.is_ok()), "{page}");
+        variants.into_iter().map(|variant| variant.what).collect()
+    }
+
+    #[test]
+    fn every_element_has_its_variant() {
+        let of_viscous = words("models/gyroscope-viscous.toml");
+        for what in [
+            "without gravity",
+            "without the friction of `alpha`",
+            "without the offset of `beta` on `inner_ring`",
+            "with free masses and inertias",
+            "with a free geometry",
+        ] {
+            assert!(of_viscous.iter().any(|known| known == what), "{what}: {of_viscous:?}");
+        }
+        let of_driven = words("models/driven-gyroscope.toml");
+        assert!(of_driven.iter().any(|what| what.ends_with("fixed")), "{of_driven:?}");
+    }
+
+    #[test]
+    fn a_linkage_without_an_arm_cannot_be_assembled() {
+        let model = crate::scene::read(&files::root().join("models/four-bar.toml")).unwrap();
+        assert!(variants(&model).iter().any(|variant| variant.model.is_err()));
+    }
+}
