@@ -58,6 +58,8 @@ pub mod charts;
 mod error;
 #[cfg(feature = "generated")]
 pub mod generated;
+#[cfg(feature = "lanes")]
+pub mod lanes;
 mod mechanism;
 mod partition;
 pub mod pivoting;
@@ -69,8 +71,8 @@ mod violation;
 
 pub use error::Error;
 pub use mechanism::{
-    Coordinate, Energy, Equations, JointForm, JointInfo, JointSpace, Mechanism, Ode, OutputInfo, Owner,
-    Partition, Ports, RowInfo, Storage,
+    Charted, Coordinate, Energy, Equations, JointForm, JointInfo, JointSpace, Mechanism, Ode, OutputInfo,
+    Owner, Partition, Ports, RowInfo, Storage,
 };
 pub use partition::{Direct, Partitioned};
 pub use rk4::Rk4;

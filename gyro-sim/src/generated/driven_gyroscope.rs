@@ -336,6 +336,204 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for DrivenGyroscope<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 9]
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 332 operations (121 ±, 210 ×, 1 ÷) and 4 functions.
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_sx = y[21];
+        let outer_ring_sy = y[22];
+        let outer_ring_sz = y[23];
+        let inner_ring_sx = y[27];
+        let inner_ring_sy = y[28];
+        let inner_ring_sz = y[29];
+        let rotor_sx = y[33];
+        let rotor_sy = y[34];
+        let rotor_sz = y[35];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        let outer_ring_dwx = accelerations[3];
+        let outer_ring_dwz = accelerations[5];
+        let inner_ring_dwx = accelerations[9];
+        let inner_ring_dwy = accelerations[10];
+        let inner_ring_dwz = accelerations[11];
+        let rotor_dsx = accelerations[12];
+        let rotor_dsy = accelerations[13];
+        let rotor_dsz = accelerations[14];
+        let rotor_dwx = accelerations[15];
+        let rotor_dwy = accelerations[16];
+        let rotor_dwz = accelerations[17];
+        let t0 = rotor_e0 * rotor_e0;
+        let t1 = k(2.0) * (k(0.5) - (t0 + rotor_e1 * rotor_e1));
+        let t2 = inner_ring_e0 * inner_ring_e0;
+        let t3 = k(2.0) * (k(0.5) - (t2 + inner_ring_e1 * inner_ring_e1));
+        let t4 = rotor_e0 * rotor_e3;
+        let t5 = rotor_e1 * rotor_e2;
+        let t6 = k(2.0) * (t5 + t4);
+        let t7 = inner_ring_e0 * inner_ring_e3;
+        let t8 = inner_ring_e1 * inner_ring_e2;
+        let t9 = k(2.0) * (t8 + t7);
+        let t10 = rotor_e0 * rotor_e2;
+        let t11 = rotor_e1 * rotor_e3;
+        let t12 = k(2.0) * (t11 - t10);
+        let t13 = inner_ring_e0 * inner_ring_e2;
+        let t14 = inner_ring_e1 * inner_ring_e3;
+        let t15 = k(2.0) * (t14 - t13);
+        let t16 = k(1e-5) * rotor_dwx;
+        let t17 = k(2.0) * (t5 - t4);
+        let t18 = k(2.0) * (k(0.5) - (t0 + rotor_e2 * rotor_e2));
+        let t19 = rotor_e0 * rotor_e1;
+        let t20 = rotor_e2 * rotor_e3;
+        let t21 = k(2.0) * (t20 + t19);
+        let t22 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
+        let t23 = t22 * (t15 * t21 - (t9 * t18 + t3 * t17))
+            + t16 * (t15 * t12 + (t9 * t6 + t3 * t1));
+        let t24 = k(2.0) * (t11 + t10);
+        let t25 = k(2.0) * (t20 - t19);
+        let t26 = k(2.0) * (k(0.5) - (t0 + rotor_e3 * rotor_e3));
+        let t27 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
+        let t28 = t27 * (t15 * t26 - (t9 * t25 - t3 * t24)) + t23;
+        let t29 = k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx) - t28;
+        let t30 = outer_ring_e0 * outer_ring_e0;
+        let t31 = k(2.0) * (k(0.5) - (t30 + outer_ring_e1 * outer_ring_e1));
+        let t32 = k(2.0)
+            * (outer_ring_e1 * outer_ring_e2 + outer_ring_e0 * outer_ring_e3);
+        let t33 = outer_ring_e0 * outer_ring_e2;
+        let t34 = outer_ring_e1 * outer_ring_e3;
+        let t35 = k(2.0) * (t34 - t33);
+        let t36 = t8 - t7;
+        let t37 = k(2.0) * t36;
+        let t38 = k(0.5) - (t2 + inner_ring_e2 * inner_ring_e2);
+        let t39 = k(2.0) * t38;
+        let t40 = inner_ring_e0 * inner_ring_e1;
+        let t41 = inner_ring_e2 * inner_ring_e3;
+        let t42 = t41 + t40;
+        let t43 = k(2.0) * t42;
+        let t44 = t22 * (t43 * t21 + (t37 * t17 + t39 * t18))
+            + t16 * (t43 * t12 - (t39 * t6 + t37 * t1));
+        let t45 = t27 * (t43 * t26 - (t37 * t24 - t39 * t25)) + t44;
+        let t46 = t14 + t13;
+        let t47 = k(0.08) * rotor_dsx;
+        let t48 = t41 - t40;
+        let t49 = k(0.8) + k(0.08) * rotor_dsy;
+        let t50 = k(0.5) - (t2 + inner_ring_e3 * inner_ring_e3);
+        let t51 = k(0.08) * rotor_dsz;
+        let t52 = t51 * (k(0.00025) * t50)
+            - (t49 * (k(0.00025) * t48) + t47 * (k(0.00025) * t46));
+        let t53 = k(2e-6) * inner_ring_dwy + (t52 + t45);
+        let t54 = (t35 * t43 - (t32 * t39 + t31 * t37)) * t53
+            - (t35 * t15 + (t32 * t9 + t31 * t3)) * t29;
+        let t55 = k(2.0) * t46;
+        let t56 = k(2.0) * t48;
+        let t57 = k(2.0) * t50;
+        let t58 = t22 * (t57 * t21 - (t55 * t17 - t56 * t18))
+            + t16 * (t57 * t12 - (t56 * t6 - t55 * t1));
+        let t59 = t27 * (t55 * t24 + t56 * t25 + t57 * t26) + t58;
+        let t60 = t51 * (k(0.00025) * t42)
+            - (t49 * (k(0.00025) * t38) - t47 * (k(0.00025) * t36));
+        let t61 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz)
+            + (t60 - t59);
+        let t62 = (t35 * t57 - (t32 * t56 - t31 * t55)) * t61 - t54;
+        let t63 = k(2.0) * (k(0.5) - (t30 + outer_ring_e3 * outer_ring_e3));
+        let t64 = k(12.566370614359172) * t;
+        let t65 = k(0.1) * t64.sin();
+        let t66 = t65.cos();
+        let t67 = outer_ring_e0 * outer_ring_e1;
+        let t68 = outer_ring_e2 * outer_ring_e3;
+        let t69 = k(2.0) * (t68 - t67);
+        let t70 = t65.sin();
+        let t71 = k(2.0) * (t34 + t33);
+        let t72 = t71 * (t70 * t32 - t66 * t35) + t31 * (t70 * t69 + t66 * t63);
+        let t73 = k(1.0) / t72;
+        let t74 = (t63 * t43 - (t71 * t37 - t69 * t39)) * t53
+            - (t63 * t15 - (t69 * t9 - t71 * t3)) * t29;
+        let t75 = (t71 * t55 + t69 * t56 + t63 * t57) * t61 - t74;
+        let t76 = t71 * t73
+            * (k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz) - t75)
+            + t31 * t73 * (k(2e-6) * outer_ring_dwx - t62);
+        let t77 = k(1.2566370614359172) * t64.cos();
+        let t78 = k(2.0) * (k(0.5) - (t30 + outer_ring_e2 * outer_ring_e2)) * (t77 * t66)
+            - k(2.0) * (t68 + t67) * (t77 * t70);
+        *dy = [
+            outer_ring_sx,
+            outer_ring_sy,
+            outer_ring_sz,
+            -(k(0.5)
+                * (outer_ring_e1 * outer_ring_wx + outer_ring_e2 * outer_ring_wy
+                    + outer_ring_e3 * outer_ring_wz)),
+            k(0.5)
+                * (outer_ring_e0 * outer_ring_wx - outer_ring_e3 * outer_ring_wy
+                    + outer_ring_e2 * outer_ring_wz),
+            k(0.5)
+                * (outer_ring_e3 * outer_ring_wx + outer_ring_e0 * outer_ring_wy
+                    - outer_ring_e1 * outer_ring_wz),
+            -(k(0.5)
+                * (outer_ring_e2 * outer_ring_wx - outer_ring_e1 * outer_ring_wy
+                    - outer_ring_e0 * outer_ring_wz)),
+            inner_ring_sx,
+            inner_ring_sy,
+            inner_ring_sz,
+            -(k(0.5)
+                * (inner_ring_e1 * inner_ring_wx + inner_ring_e2 * inner_ring_wy
+                    + inner_ring_e3 * inner_ring_wz)),
+            k(0.5)
+                * (inner_ring_e0 * inner_ring_wx - inner_ring_e3 * inner_ring_wy
+                    + inner_ring_e2 * inner_ring_wz),
+            k(0.5)
+                * (inner_ring_e3 * inner_ring_wx + inner_ring_e0 * inner_ring_wy
+                    - inner_ring_e1 * inner_ring_wz),
+            -(k(0.5)
+                * (inner_ring_e2 * inner_ring_wx - inner_ring_e1 * inner_ring_wy
+                    - inner_ring_e0 * inner_ring_wz)),
+            rotor_sx,
+            rotor_sy,
+            rotor_sz,
+            -(k(0.5)
+                * (rotor_e1 * rotor_wx + rotor_e2 * rotor_wy + rotor_e3 * rotor_wz)),
+            k(0.5) * (rotor_e0 * rotor_wx - rotor_e3 * rotor_wy + rotor_e2 * rotor_wz),
+            k(0.5) * (rotor_e3 * rotor_wx + rotor_e0 * rotor_wy - rotor_e1 * rotor_wz),
+            -(k(0.5)
+                * (rotor_e2 * rotor_wx - rotor_e1 * rotor_wy - rotor_e0 * rotor_wz)),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            accelerations[6],
+            accelerations[7],
+            accelerations[8],
+            accelerations[9],
+            accelerations[10],
+            accelerations[11],
+            accelerations[12],
+            accelerations[13],
+            accelerations[14],
+            accelerations[15],
+            accelerations[16],
+            accelerations[17],
+            t78 * t76,
+        ];
+    }
     /// Writes Φ: 113 operations (51 ±, 62 ×, 0 ÷) and 3 functions.
     fn phi(&self, t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
@@ -780,9 +978,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for DrivenGyroscope<T> {
         y[39]
     }
 }
-impl<T: gyro_sim::Scalar> DrivenGyroscope<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Charted for DrivenGyroscope<T> {
+    type Vectors = [[T; 4]; 3];
     /// The four-vectors whose largest components are the special Euler parameters: 0 operations (0 ±, 0 ×, 0 ÷).
-    fn chart_vectors(&self, y: &[T; 40]) -> [[T; 4]; 3] {
+    fn chart_vectors(&self, y: &Self::State) -> Self::Vectors {
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
         let outer_ring_e2 = y[5];
@@ -801,23 +1000,8 @@ impl<T: gyro_sim::Scalar> DrivenGyroscope<T> {
             [-rotor_e1, rotor_e0, rotor_e3, -rotor_e2],
         ]
     }
-}
-impl<T: gyro_sim::Real> gyro_sim::Partition for DrivenGyroscope<T> {
-    type Independent = gyro_sim::charts::Charts<3>;
-    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
-        gyro_sim::charts::best(&self.chart_vectors(y))
-    }
-    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
-        gyro_sim::charts::follow(&self.chart_vectors(y), choice)
-    }
     /// One Newton step of the dependent positions: 533 operations (200 ±, 330 ×, 3 ÷) and 3 functions.
-    fn newton_step(
-        &self,
-        t: T,
-        choice: &Self::Independent,
-        y: &mut Self::State,
-    ) -> ::core::result::Result<(), gyro_sim::Error> {
-        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
+    fn newton_step_on(&self, t: T, charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -1026,15 +1210,9 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for DrivenGyroscope<T> {
         y[18] = -t148;
         y[19] = -t149;
         y[20] = -t150;
-        Ok(())
     }
     /// Solves eq. (19) for the dependent velocities: 278 operations (102 ±, 173 ×, 3 ÷) and 4 functions.
-    fn solve_velocities(
-        &self,
-        t: T,
-        _choice: &Self::Independent,
-        y: &mut Self::State,
-    ) -> ::core::result::Result<(), gyro_sim::Error> {
+    fn solve_velocities_on(&self, t: T, _charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -1155,205 +1333,43 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for DrivenGyroscope<T> {
         y[35] = k(0.000125) * (t50 * t57 + t43 * inner_ring_wz);
         y[37] = rotor_wy - t83 * (t66 * t75) - t81 * (t74 * t75);
         y[38] = rotor_wz + t83 * (t73 * t75) + t81 * (t72 * t75);
+    }
+}
+impl<T: gyro_sim::Real> gyro_sim::Partition for DrivenGyroscope<T> {
+    type Independent = gyro_sim::charts::Charts<3>;
+    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
+        gyro_sim::charts::best(&gyro_sim::Charted::chart_vectors(self, y))
+    }
+    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
+        gyro_sim::charts::follow(&gyro_sim::Charted::chart_vectors(self, y), choice)
+    }
+    fn newton_step(
+        &self,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::newton_step_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
         Ok(())
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 332 operations (121 ±, 210 ×, 1 ÷) and 4 functions.
-    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = gyro_sim::Equations::velocities(self);
-        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
-        let k = T::constant;
-        let outer_ring_e0 = y[3];
-        let outer_ring_e1 = y[4];
-        let outer_ring_e2 = y[5];
-        let outer_ring_e3 = y[6];
-        let inner_ring_e0 = y[10];
-        let inner_ring_e1 = y[11];
-        let inner_ring_e2 = y[12];
-        let inner_ring_e3 = y[13];
-        let rotor_e0 = y[17];
-        let rotor_e1 = y[18];
-        let rotor_e2 = y[19];
-        let rotor_e3 = y[20];
-        let outer_ring_sx = y[21];
-        let outer_ring_sy = y[22];
-        let outer_ring_sz = y[23];
-        let inner_ring_sx = y[27];
-        let inner_ring_sy = y[28];
-        let inner_ring_sz = y[29];
-        let rotor_sx = y[33];
-        let rotor_sy = y[34];
-        let rotor_sz = y[35];
-        let outer_ring_wx = y[24];
-        let outer_ring_wy = y[25];
-        let outer_ring_wz = y[26];
-        let inner_ring_wx = y[30];
-        let inner_ring_wy = y[31];
-        let inner_ring_wz = y[32];
-        let rotor_wx = y[36];
-        let rotor_wy = y[37];
-        let rotor_wz = y[38];
-        let outer_ring_dwx = accelerations[3];
-        let outer_ring_dwz = accelerations[5];
-        let inner_ring_dwx = accelerations[9];
-        let inner_ring_dwy = accelerations[10];
-        let inner_ring_dwz = accelerations[11];
-        let rotor_dsx = accelerations[12];
-        let rotor_dsy = accelerations[13];
-        let rotor_dsz = accelerations[14];
-        let rotor_dwx = accelerations[15];
-        let rotor_dwy = accelerations[16];
-        let rotor_dwz = accelerations[17];
-        let t0 = rotor_e0 * rotor_e0;
-        let t1 = k(2.0) * (k(0.5) - (t0 + rotor_e1 * rotor_e1));
-        let t2 = inner_ring_e0 * inner_ring_e0;
-        let t3 = k(2.0) * (k(0.5) - (t2 + inner_ring_e1 * inner_ring_e1));
-        let t4 = rotor_e0 * rotor_e3;
-        let t5 = rotor_e1 * rotor_e2;
-        let t6 = k(2.0) * (t5 + t4);
-        let t7 = inner_ring_e0 * inner_ring_e3;
-        let t8 = inner_ring_e1 * inner_ring_e2;
-        let t9 = k(2.0) * (t8 + t7);
-        let t10 = rotor_e0 * rotor_e2;
-        let t11 = rotor_e1 * rotor_e3;
-        let t12 = k(2.0) * (t11 - t10);
-        let t13 = inner_ring_e0 * inner_ring_e2;
-        let t14 = inner_ring_e1 * inner_ring_e3;
-        let t15 = k(2.0) * (t14 - t13);
-        let t16 = k(1e-5) * rotor_dwx;
-        let t17 = k(2.0) * (t5 - t4);
-        let t18 = k(2.0) * (k(0.5) - (t0 + rotor_e2 * rotor_e2));
-        let t19 = rotor_e0 * rotor_e1;
-        let t20 = rotor_e2 * rotor_e3;
-        let t21 = k(2.0) * (t20 + t19);
-        let t22 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
-        let t23 = t22 * (t15 * t21 - (t9 * t18 + t3 * t17))
-            + t16 * (t15 * t12 + (t9 * t6 + t3 * t1));
-        let t24 = k(2.0) * (t11 + t10);
-        let t25 = k(2.0) * (t20 - t19);
-        let t26 = k(2.0) * (k(0.5) - (t0 + rotor_e3 * rotor_e3));
-        let t27 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
-        let t28 = t27 * (t15 * t26 - (t9 * t25 - t3 * t24)) + t23;
-        let t29 = k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx) - t28;
-        let t30 = outer_ring_e0 * outer_ring_e0;
-        let t31 = k(2.0) * (k(0.5) - (t30 + outer_ring_e1 * outer_ring_e1));
-        let t32 = k(2.0)
-            * (outer_ring_e1 * outer_ring_e2 + outer_ring_e0 * outer_ring_e3);
-        let t33 = outer_ring_e0 * outer_ring_e2;
-        let t34 = outer_ring_e1 * outer_ring_e3;
-        let t35 = k(2.0) * (t34 - t33);
-        let t36 = t8 - t7;
-        let t37 = k(2.0) * t36;
-        let t38 = k(0.5) - (t2 + inner_ring_e2 * inner_ring_e2);
-        let t39 = k(2.0) * t38;
-        let t40 = inner_ring_e0 * inner_ring_e1;
-        let t41 = inner_ring_e2 * inner_ring_e3;
-        let t42 = t41 + t40;
-        let t43 = k(2.0) * t42;
-        let t44 = t22 * (t43 * t21 + (t37 * t17 + t39 * t18))
-            + t16 * (t43 * t12 - (t39 * t6 + t37 * t1));
-        let t45 = t27 * (t43 * t26 - (t37 * t24 - t39 * t25)) + t44;
-        let t46 = t14 + t13;
-        let t47 = k(0.08) * rotor_dsx;
-        let t48 = t41 - t40;
-        let t49 = k(0.8) + k(0.08) * rotor_dsy;
-        let t50 = k(0.5) - (t2 + inner_ring_e3 * inner_ring_e3);
-        let t51 = k(0.08) * rotor_dsz;
-        let t52 = t51 * (k(0.00025) * t50)
-            - (t49 * (k(0.00025) * t48) + t47 * (k(0.00025) * t46));
-        let t53 = k(2e-6) * inner_ring_dwy + (t52 + t45);
-        let t54 = (t35 * t43 - (t32 * t39 + t31 * t37)) * t53
-            - (t35 * t15 + (t32 * t9 + t31 * t3)) * t29;
-        let t55 = k(2.0) * t46;
-        let t56 = k(2.0) * t48;
-        let t57 = k(2.0) * t50;
-        let t58 = t22 * (t57 * t21 - (t55 * t17 - t56 * t18))
-            + t16 * (t57 * t12 - (t56 * t6 - t55 * t1));
-        let t59 = t27 * (t55 * t24 + t56 * t25 + t57 * t26) + t58;
-        let t60 = t51 * (k(0.00025) * t42)
-            - (t49 * (k(0.00025) * t38) - t47 * (k(0.00025) * t36));
-        let t61 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz)
-            + (t60 - t59);
-        let t62 = (t35 * t57 - (t32 * t56 - t31 * t55)) * t61 - t54;
-        let t63 = k(2.0) * (k(0.5) - (t30 + outer_ring_e3 * outer_ring_e3));
-        let t64 = k(12.566370614359172) * t;
-        let t65 = k(0.1) * t64.sin();
-        let t66 = t65.cos();
-        let t67 = outer_ring_e0 * outer_ring_e1;
-        let t68 = outer_ring_e2 * outer_ring_e3;
-        let t69 = k(2.0) * (t68 - t67);
-        let t70 = t65.sin();
-        let t71 = k(2.0) * (t34 + t33);
-        let t72 = t71 * (t70 * t32 - t66 * t35) + t31 * (t70 * t69 + t66 * t63);
-        let t73 = k(1.0) / t72;
-        let t74 = (t63 * t43 - (t71 * t37 - t69 * t39)) * t53
-            - (t63 * t15 - (t69 * t9 - t71 * t3)) * t29;
-        let t75 = (t71 * t55 + t69 * t56 + t63 * t57) * t61 - t74;
-        let t76 = t71 * t73
-            * (k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz) - t75)
-            + t31 * t73 * (k(2e-6) * outer_ring_dwx - t62);
-        let t77 = k(1.2566370614359172) * t64.cos();
-        let t78 = k(2.0) * (k(0.5) - (t30 + outer_ring_e2 * outer_ring_e2)) * (t77 * t66)
-            - k(2.0) * (t68 + t67) * (t77 * t70);
-        *dy = [
-            outer_ring_sx,
-            outer_ring_sy,
-            outer_ring_sz,
-            -(k(0.5)
-                * (outer_ring_e1 * outer_ring_wx + outer_ring_e2 * outer_ring_wy
-                    + outer_ring_e3 * outer_ring_wz)),
-            k(0.5)
-                * (outer_ring_e0 * outer_ring_wx - outer_ring_e3 * outer_ring_wy
-                    + outer_ring_e2 * outer_ring_wz),
-            k(0.5)
-                * (outer_ring_e3 * outer_ring_wx + outer_ring_e0 * outer_ring_wy
-                    - outer_ring_e1 * outer_ring_wz),
-            -(k(0.5)
-                * (outer_ring_e2 * outer_ring_wx - outer_ring_e1 * outer_ring_wy
-                    - outer_ring_e0 * outer_ring_wz)),
-            inner_ring_sx,
-            inner_ring_sy,
-            inner_ring_sz,
-            -(k(0.5)
-                * (inner_ring_e1 * inner_ring_wx + inner_ring_e2 * inner_ring_wy
-                    + inner_ring_e3 * inner_ring_wz)),
-            k(0.5)
-                * (inner_ring_e0 * inner_ring_wx - inner_ring_e3 * inner_ring_wy
-                    + inner_ring_e2 * inner_ring_wz),
-            k(0.5)
-                * (inner_ring_e3 * inner_ring_wx + inner_ring_e0 * inner_ring_wy
-                    - inner_ring_e1 * inner_ring_wz),
-            -(k(0.5)
-                * (inner_ring_e2 * inner_ring_wx - inner_ring_e1 * inner_ring_wy
-                    - inner_ring_e0 * inner_ring_wz)),
-            rotor_sx,
-            rotor_sy,
-            rotor_sz,
-            -(k(0.5)
-                * (rotor_e1 * rotor_wx + rotor_e2 * rotor_wy + rotor_e3 * rotor_wz)),
-            k(0.5) * (rotor_e0 * rotor_wx - rotor_e3 * rotor_wy + rotor_e2 * rotor_wz),
-            k(0.5) * (rotor_e3 * rotor_wx + rotor_e0 * rotor_wy - rotor_e1 * rotor_wz),
-            -(k(0.5)
-                * (rotor_e2 * rotor_wx - rotor_e1 * rotor_wy - rotor_e0 * rotor_wz)),
-            accelerations[0],
-            accelerations[1],
-            accelerations[2],
-            accelerations[3],
-            accelerations[4],
-            accelerations[5],
-            accelerations[6],
-            accelerations[7],
-            accelerations[8],
-            accelerations[9],
-            accelerations[10],
-            accelerations[11],
-            accelerations[12],
-            accelerations[13],
-            accelerations[14],
-            accelerations[15],
-            accelerations[16],
-            accelerations[17],
-            t78 * t76,
-        ];
+    fn solve_velocities(
+        &self,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::solve_velocities_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
+        Ok(())
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenGyroscope<T> {

@@ -136,6 +136,37 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for FreeBody<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 0]
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let body_e0 = y[3];
+        let body_e1 = y[4];
+        let body_e2 = y[5];
+        let body_e3 = y[6];
+        let body_sx = y[7];
+        let body_sy = y[8];
+        let body_sz = y[9];
+        let body_wx = y[10];
+        let body_wy = y[11];
+        let body_wz = y[12];
+        *dy = [
+            body_sx,
+            body_sy,
+            body_sz,
+            -(k(0.5) * (body_e1 * body_wx + body_e2 * body_wy + body_e3 * body_wz)),
+            k(0.5) * (body_e0 * body_wx - body_e3 * body_wy + body_e2 * body_wz),
+            k(0.5) * (body_e3 * body_wx + body_e0 * body_wy - body_e1 * body_wz),
+            -(k(0.5) * (body_e2 * body_wx - body_e1 * body_wy - body_e0 * body_wz)),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+        ];
+    }
     /// Writes Φ: 8 operations (4 ±, 4 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
@@ -217,32 +248,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for FreeBody<T> {
         T::constant(0.0)
     }
 }
-impl<T: gyro_sim::Scalar> FreeBody<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Charted for FreeBody<T> {
+    type Vectors = [[T; 4]; 1];
     /// The four-vectors whose largest components are the special Euler parameters: 0 operations (0 ±, 0 ×, 0 ÷).
-    fn chart_vectors(&self, y: &[T; 13]) -> [[T; 4]; 1] {
+    fn chart_vectors(&self, y: &Self::State) -> Self::Vectors {
         let body_e0 = y[3];
         let body_e1 = y[4];
         let body_e2 = y[5];
         let body_e3 = y[6];
         [[body_e0, body_e1, body_e2, body_e3]]
     }
-}
-impl<T: gyro_sim::Real> gyro_sim::Partition for FreeBody<T> {
-    type Independent = gyro_sim::charts::Charts<1>;
-    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
-        gyro_sim::charts::best(&self.chart_vectors(y))
-    }
-    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
-        gyro_sim::charts::follow(&self.chart_vectors(y), choice)
-    }
     /// One Newton step of the dependent positions: 25 operations (11 ±, 13 ×, 1 ÷).
-    fn newton_step(
-        &self,
-        _t: T,
-        choice: &Self::Independent,
-        y: &mut Self::State,
-    ) -> ::core::result::Result<(), gyro_sim::Error> {
-        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
+    fn newton_step_on(&self, _t: T, charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let body_e0 = y[3];
         let body_e1 = y[4];
@@ -261,47 +278,45 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for FreeBody<T> {
         y[4] = body_e1 + chart0_1 * t2;
         y[5] = body_e2 + chart0_2 * t2;
         y[6] = body_e3 + chart0_3 * t2;
-        Ok(())
     }
     /// Solves eq. (19) for the dependent velocities: 0 operations (0 ±, 0 ×, 0 ÷).
-    fn solve_velocities(
+    fn solve_velocities_on(&self, _t: T, _charts: &Self::Vectors, _y: &mut Self::State) {}
+}
+impl<T: gyro_sim::Real> gyro_sim::Partition for FreeBody<T> {
+    type Independent = gyro_sim::charts::Charts<1>;
+    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
+        gyro_sim::charts::best(&gyro_sim::Charted::chart_vectors(self, y))
+    }
+    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
+        gyro_sim::charts::follow(&gyro_sim::Charted::chart_vectors(self, y), choice)
+    }
+    fn newton_step(
         &self,
-        _t: T,
-        _choice: &Self::Independent,
-        _y: &mut Self::State,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
     ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::newton_step_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
         Ok(())
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
-    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = gyro_sim::Equations::velocities(self);
-        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
-        let k = T::constant;
-        let body_e0 = y[3];
-        let body_e1 = y[4];
-        let body_e2 = y[5];
-        let body_e3 = y[6];
-        let body_sx = y[7];
-        let body_sy = y[8];
-        let body_sz = y[9];
-        let body_wx = y[10];
-        let body_wy = y[11];
-        let body_wz = y[12];
-        *dy = [
-            body_sx,
-            body_sy,
-            body_sz,
-            -(k(0.5) * (body_e1 * body_wx + body_e2 * body_wy + body_e3 * body_wz)),
-            k(0.5) * (body_e0 * body_wx - body_e3 * body_wy + body_e2 * body_wz),
-            k(0.5) * (body_e3 * body_wx + body_e0 * body_wy - body_e1 * body_wz),
-            -(k(0.5) * (body_e2 * body_wx - body_e1 * body_wy - body_e0 * body_wz)),
-            accelerations[0],
-            accelerations[1],
-            accelerations[2],
-            accelerations[3],
-            accelerations[4],
-            accelerations[5],
-        ];
+    fn solve_velocities(
+        &self,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::solve_velocities_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
+        Ok(())
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for FreeBody<T> {

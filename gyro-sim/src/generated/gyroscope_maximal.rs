@@ -268,6 +268,124 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMaximal<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 9]
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 96 operations (32 ±, 64 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let base_e0 = y[3];
+        let base_e1 = y[4];
+        let base_e2 = y[5];
+        let base_e3 = y[6];
+        let outer_ring_e0 = y[10];
+        let outer_ring_e1 = y[11];
+        let outer_ring_e2 = y[12];
+        let outer_ring_e3 = y[13];
+        let inner_ring_e0 = y[17];
+        let inner_ring_e1 = y[18];
+        let inner_ring_e2 = y[19];
+        let inner_ring_e3 = y[20];
+        let rotor_e0 = y[24];
+        let rotor_e1 = y[25];
+        let rotor_e2 = y[26];
+        let rotor_e3 = y[27];
+        let base_sx = y[28];
+        let base_sy = y[29];
+        let base_sz = y[30];
+        let outer_ring_sx = y[34];
+        let outer_ring_sy = y[35];
+        let outer_ring_sz = y[36];
+        let inner_ring_sx = y[40];
+        let inner_ring_sy = y[41];
+        let inner_ring_sz = y[42];
+        let rotor_sx = y[46];
+        let rotor_sy = y[47];
+        let rotor_sz = y[48];
+        let base_wx = y[31];
+        let base_wy = y[32];
+        let base_wz = y[33];
+        let outer_ring_wx = y[37];
+        let outer_ring_wy = y[38];
+        let outer_ring_wz = y[39];
+        let inner_ring_wx = y[43];
+        let inner_ring_wy = y[44];
+        let inner_ring_wz = y[45];
+        let rotor_wx = y[49];
+        let rotor_wy = y[50];
+        let rotor_wz = y[51];
+        *dy = [
+            base_sx,
+            base_sy,
+            base_sz,
+            -(k(0.5) * (base_e1 * base_wx + base_e2 * base_wy + base_e3 * base_wz)),
+            k(0.5) * (base_e0 * base_wx - base_e3 * base_wy + base_e2 * base_wz),
+            k(0.5) * (base_e3 * base_wx + base_e0 * base_wy - base_e1 * base_wz),
+            -(k(0.5) * (base_e2 * base_wx - base_e1 * base_wy - base_e0 * base_wz)),
+            outer_ring_sx,
+            outer_ring_sy,
+            outer_ring_sz,
+            -(k(0.5)
+                * (outer_ring_e1 * outer_ring_wx + outer_ring_e2 * outer_ring_wy
+                    + outer_ring_e3 * outer_ring_wz)),
+            k(0.5)
+                * (outer_ring_e0 * outer_ring_wx - outer_ring_e3 * outer_ring_wy
+                    + outer_ring_e2 * outer_ring_wz),
+            k(0.5)
+                * (outer_ring_e3 * outer_ring_wx + outer_ring_e0 * outer_ring_wy
+                    - outer_ring_e1 * outer_ring_wz),
+            -(k(0.5)
+                * (outer_ring_e2 * outer_ring_wx - outer_ring_e1 * outer_ring_wy
+                    - outer_ring_e0 * outer_ring_wz)),
+            inner_ring_sx,
+            inner_ring_sy,
+            inner_ring_sz,
+            -(k(0.5)
+                * (inner_ring_e1 * inner_ring_wx + inner_ring_e2 * inner_ring_wy
+                    + inner_ring_e3 * inner_ring_wz)),
+            k(0.5)
+                * (inner_ring_e0 * inner_ring_wx - inner_ring_e3 * inner_ring_wy
+                    + inner_ring_e2 * inner_ring_wz),
+            k(0.5)
+                * (inner_ring_e3 * inner_ring_wx + inner_ring_e0 * inner_ring_wy
+                    - inner_ring_e1 * inner_ring_wz),
+            -(k(0.5)
+                * (inner_ring_e2 * inner_ring_wx - inner_ring_e1 * inner_ring_wy
+                    - inner_ring_e0 * inner_ring_wz)),
+            rotor_sx,
+            rotor_sy,
+            rotor_sz,
+            -(k(0.5)
+                * (rotor_e1 * rotor_wx + rotor_e2 * rotor_wy + rotor_e3 * rotor_wz)),
+            k(0.5) * (rotor_e0 * rotor_wx - rotor_e3 * rotor_wy + rotor_e2 * rotor_wz),
+            k(0.5) * (rotor_e3 * rotor_wx + rotor_e0 * rotor_wy - rotor_e1 * rotor_wz),
+            -(k(0.5)
+                * (rotor_e2 * rotor_wx - rotor_e1 * rotor_wy - rotor_e0 * rotor_wz)),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            accelerations[6],
+            accelerations[7],
+            accelerations[8],
+            accelerations[9],
+            accelerations[10],
+            accelerations[11],
+            accelerations[12],
+            accelerations[13],
+            accelerations[14],
+            accelerations[15],
+            accelerations[16],
+            accelerations[17],
+            accelerations[18],
+            accelerations[19],
+            accelerations[20],
+            accelerations[21],
+            accelerations[22],
+            accelerations[23],
+        ];
+    }
     /// Writes Φ: 148 operations (68 ±, 80 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
@@ -817,9 +935,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMaximal<T> {
         T::constant(0.0)
     }
 }
-impl<T: gyro_sim::Scalar> GyroscopeMaximal<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeMaximal<T> {
+    type Vectors = [[T; 4]; 3];
     /// The four-vectors whose largest components are the special Euler parameters: 0 operations (0 ±, 0 ×, 0 ÷).
-    fn chart_vectors(&self, y: &[T; 52]) -> [[T; 4]; 3] {
+    fn chart_vectors(&self, y: &Self::State) -> Self::Vectors {
         let outer_ring_e0 = y[10];
         let outer_ring_e1 = y[11];
         let outer_ring_e2 = y[12];
@@ -838,23 +957,8 @@ impl<T: gyro_sim::Scalar> GyroscopeMaximal<T> {
             [-rotor_e1, rotor_e0, rotor_e3, -rotor_e2],
         ]
     }
-}
-impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeMaximal<T> {
-    type Independent = gyro_sim::charts::Charts<3>;
-    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
-        gyro_sim::charts::best(&self.chart_vectors(y))
-    }
-    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
-        gyro_sim::charts::follow(&self.chart_vectors(y), choice)
-    }
     /// One Newton step of the dependent positions: 514 operations (193 ±, 318 ×, 3 ÷).
-    fn newton_step(
-        &self,
-        _t: T,
-        choice: &Self::Independent,
-        y: &mut Self::State,
-    ) -> ::core::result::Result<(), gyro_sim::Error> {
-        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
+    fn newton_step_on(&self, _t: T, charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let outer_ring_e0 = y[10];
         let outer_ring_e1 = y[11];
@@ -1061,15 +1165,9 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeMaximal<T> {
         y[25] = -t141;
         y[26] = -t142;
         y[27] = -t143;
-        Ok(())
     }
     /// Solves eq. (19) for the dependent velocities: 300 operations (112 ±, 185 ×, 3 ÷).
-    fn solve_velocities(
-        &self,
-        _t: T,
-        _choice: &Self::Independent,
-        y: &mut Self::State,
-    ) -> ::core::result::Result<(), gyro_sim::Error> {
+    fn solve_velocities_on(&self, _t: T, _charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let base_e0 = y[3];
         let base_e1 = y[4];
@@ -1204,125 +1302,43 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeMaximal<T> {
         y[48] = k(0.000125) * (t54 * t61 + t47 * inner_ring_wz);
         y[50] = rotor_wy - t87 * (t70 * t79) - t85 * (t78 * t79);
         y[51] = rotor_wz + t87 * (t77 * t79) + t85 * (t76 * t79);
+    }
+}
+impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeMaximal<T> {
+    type Independent = gyro_sim::charts::Charts<3>;
+    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
+        gyro_sim::charts::best(&gyro_sim::Charted::chart_vectors(self, y))
+    }
+    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
+        gyro_sim::charts::follow(&gyro_sim::Charted::chart_vectors(self, y), choice)
+    }
+    fn newton_step(
+        &self,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::newton_step_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
         Ok(())
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 96 operations (32 ±, 64 ×, 0 ÷).
-    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = gyro_sim::Equations::velocities(self);
-        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
-        let k = T::constant;
-        let base_e0 = y[3];
-        let base_e1 = y[4];
-        let base_e2 = y[5];
-        let base_e3 = y[6];
-        let outer_ring_e0 = y[10];
-        let outer_ring_e1 = y[11];
-        let outer_ring_e2 = y[12];
-        let outer_ring_e3 = y[13];
-        let inner_ring_e0 = y[17];
-        let inner_ring_e1 = y[18];
-        let inner_ring_e2 = y[19];
-        let inner_ring_e3 = y[20];
-        let rotor_e0 = y[24];
-        let rotor_e1 = y[25];
-        let rotor_e2 = y[26];
-        let rotor_e3 = y[27];
-        let base_sx = y[28];
-        let base_sy = y[29];
-        let base_sz = y[30];
-        let outer_ring_sx = y[34];
-        let outer_ring_sy = y[35];
-        let outer_ring_sz = y[36];
-        let inner_ring_sx = y[40];
-        let inner_ring_sy = y[41];
-        let inner_ring_sz = y[42];
-        let rotor_sx = y[46];
-        let rotor_sy = y[47];
-        let rotor_sz = y[48];
-        let base_wx = y[31];
-        let base_wy = y[32];
-        let base_wz = y[33];
-        let outer_ring_wx = y[37];
-        let outer_ring_wy = y[38];
-        let outer_ring_wz = y[39];
-        let inner_ring_wx = y[43];
-        let inner_ring_wy = y[44];
-        let inner_ring_wz = y[45];
-        let rotor_wx = y[49];
-        let rotor_wy = y[50];
-        let rotor_wz = y[51];
-        *dy = [
-            base_sx,
-            base_sy,
-            base_sz,
-            -(k(0.5) * (base_e1 * base_wx + base_e2 * base_wy + base_e3 * base_wz)),
-            k(0.5) * (base_e0 * base_wx - base_e3 * base_wy + base_e2 * base_wz),
-            k(0.5) * (base_e3 * base_wx + base_e0 * base_wy - base_e1 * base_wz),
-            -(k(0.5) * (base_e2 * base_wx - base_e1 * base_wy - base_e0 * base_wz)),
-            outer_ring_sx,
-            outer_ring_sy,
-            outer_ring_sz,
-            -(k(0.5)
-                * (outer_ring_e1 * outer_ring_wx + outer_ring_e2 * outer_ring_wy
-                    + outer_ring_e3 * outer_ring_wz)),
-            k(0.5)
-                * (outer_ring_e0 * outer_ring_wx - outer_ring_e3 * outer_ring_wy
-                    + outer_ring_e2 * outer_ring_wz),
-            k(0.5)
-                * (outer_ring_e3 * outer_ring_wx + outer_ring_e0 * outer_ring_wy
-                    - outer_ring_e1 * outer_ring_wz),
-            -(k(0.5)
-                * (outer_ring_e2 * outer_ring_wx - outer_ring_e1 * outer_ring_wy
-                    - outer_ring_e0 * outer_ring_wz)),
-            inner_ring_sx,
-            inner_ring_sy,
-            inner_ring_sz,
-            -(k(0.5)
-                * (inner_ring_e1 * inner_ring_wx + inner_ring_e2 * inner_ring_wy
-                    + inner_ring_e3 * inner_ring_wz)),
-            k(0.5)
-                * (inner_ring_e0 * inner_ring_wx - inner_ring_e3 * inner_ring_wy
-                    + inner_ring_e2 * inner_ring_wz),
-            k(0.5)
-                * (inner_ring_e3 * inner_ring_wx + inner_ring_e0 * inner_ring_wy
-                    - inner_ring_e1 * inner_ring_wz),
-            -(k(0.5)
-                * (inner_ring_e2 * inner_ring_wx - inner_ring_e1 * inner_ring_wy
-                    - inner_ring_e0 * inner_ring_wz)),
-            rotor_sx,
-            rotor_sy,
-            rotor_sz,
-            -(k(0.5)
-                * (rotor_e1 * rotor_wx + rotor_e2 * rotor_wy + rotor_e3 * rotor_wz)),
-            k(0.5) * (rotor_e0 * rotor_wx - rotor_e3 * rotor_wy + rotor_e2 * rotor_wz),
-            k(0.5) * (rotor_e3 * rotor_wx + rotor_e0 * rotor_wy - rotor_e1 * rotor_wz),
-            -(k(0.5)
-                * (rotor_e2 * rotor_wx - rotor_e1 * rotor_wy - rotor_e0 * rotor_wz)),
-            accelerations[0],
-            accelerations[1],
-            accelerations[2],
-            accelerations[3],
-            accelerations[4],
-            accelerations[5],
-            accelerations[6],
-            accelerations[7],
-            accelerations[8],
-            accelerations[9],
-            accelerations[10],
-            accelerations[11],
-            accelerations[12],
-            accelerations[13],
-            accelerations[14],
-            accelerations[15],
-            accelerations[16],
-            accelerations[17],
-            accelerations[18],
-            accelerations[19],
-            accelerations[20],
-            accelerations[21],
-            accelerations[22],
-            accelerations[23],
-        ];
+    fn solve_velocities(
+        &self,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::solve_velocities_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
+        Ok(())
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {

@@ -353,6 +353,221 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for PitchingGyroscope<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 9]
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 369 operations (132 ±, 236 ×, 1 ÷) and 8 functions.
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_sx = y[21];
+        let outer_ring_sy = y[22];
+        let outer_ring_sz = y[23];
+        let inner_ring_sx = y[27];
+        let inner_ring_sy = y[28];
+        let inner_ring_sz = y[29];
+        let rotor_sx = y[33];
+        let rotor_sy = y[34];
+        let rotor_sz = y[35];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        let outer_ring_dwx = accelerations[3];
+        let outer_ring_dwz = accelerations[5];
+        let inner_ring_dwx = accelerations[9];
+        let inner_ring_dwy = accelerations[10];
+        let inner_ring_dwz = accelerations[11];
+        let rotor_dsx = accelerations[12];
+        let rotor_dsy = accelerations[13];
+        let rotor_dsz = accelerations[14];
+        let rotor_dwx = accelerations[15];
+        let rotor_dwy = accelerations[16];
+        let rotor_dwz = accelerations[17];
+        let t0 = rotor_e0 * rotor_e0;
+        let t1 = k(2.0) * (k(0.5) - (t0 + rotor_e1 * rotor_e1));
+        let t2 = inner_ring_e0 * inner_ring_e0;
+        let t3 = k(2.0) * (k(0.5) - (t2 + inner_ring_e1 * inner_ring_e1));
+        let t4 = rotor_e0 * rotor_e3;
+        let t5 = rotor_e1 * rotor_e2;
+        let t6 = k(2.0) * (t5 + t4);
+        let t7 = inner_ring_e0 * inner_ring_e3;
+        let t8 = inner_ring_e1 * inner_ring_e2;
+        let t9 = k(2.0) * (t8 + t7);
+        let t10 = rotor_e0 * rotor_e2;
+        let t11 = rotor_e1 * rotor_e3;
+        let t12 = k(2.0) * (t11 - t10);
+        let t13 = inner_ring_e0 * inner_ring_e2;
+        let t14 = inner_ring_e1 * inner_ring_e3;
+        let t15 = k(2.0) * (t14 - t13);
+        let t16 = k(1e-5) * rotor_dwx;
+        let t17 = k(2.0) * (t5 - t4);
+        let t18 = k(2.0) * (k(0.5) - (t0 + rotor_e2 * rotor_e2));
+        let t19 = rotor_e0 * rotor_e1;
+        let t20 = rotor_e2 * rotor_e3;
+        let t21 = k(2.0) * (t20 + t19);
+        let t22 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
+        let t23 = t22 * (t15 * t21 - (t9 * t18 + t3 * t17))
+            + t16 * (t15 * t12 + (t9 * t6 + t3 * t1));
+        let t24 = k(2.0) * (t11 + t10);
+        let t25 = k(2.0) * (t20 - t19);
+        let t26 = k(2.0) * (k(0.5) - (t0 + rotor_e3 * rotor_e3));
+        let t27 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
+        let t28 = t27 * (t15 * t26 - (t9 * t25 - t3 * t24)) + t23;
+        let t29 = k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx) - t28;
+        let t30 = outer_ring_e0 * outer_ring_e0;
+        let t31 = k(2.0) * (k(0.5) - (t30 + outer_ring_e1 * outer_ring_e1));
+        let t32 = outer_ring_e0 * outer_ring_e3;
+        let t33 = outer_ring_e1 * outer_ring_e2;
+        let t34 = k(2.0) * (t33 + t32);
+        let t35 = outer_ring_e0 * outer_ring_e2;
+        let t36 = outer_ring_e1 * outer_ring_e3;
+        let t37 = k(2.0) * (t36 - t35);
+        let t38 = t8 - t7;
+        let t39 = k(2.0) * t38;
+        let t40 = k(0.5) - (t2 + inner_ring_e2 * inner_ring_e2);
+        let t41 = k(2.0) * t40;
+        let t42 = inner_ring_e0 * inner_ring_e1;
+        let t43 = inner_ring_e2 * inner_ring_e3;
+        let t44 = t43 + t42;
+        let t45 = k(2.0) * t44;
+        let t46 = t22 * (t45 * t21 + (t39 * t17 + t41 * t18))
+            + t16 * (t45 * t12 - (t41 * t6 + t39 * t1));
+        let t47 = t27 * (t45 * t26 - (t39 * t24 - t41 * t25)) + t46;
+        let t48 = t14 + t13;
+        let t49 = k(0.08) * rotor_dsx;
+        let t50 = t43 - t42;
+        let t51 = k(0.8) + k(0.08) * rotor_dsy;
+        let t52 = k(0.5) - (t2 + inner_ring_e3 * inner_ring_e3);
+        let t53 = k(0.08) * rotor_dsz;
+        let t54 = t53 * (k(0.00025) * t52)
+            - (t51 * (k(0.00025) * t50) + t49 * (k(0.00025) * t48));
+        let t55 = k(2e-6) * inner_ring_dwy + (t54 + t47);
+        let t56 = (t37 * t45 - (t34 * t41 + t31 * t39)) * t55
+            - (t37 * t15 + (t34 * t9 + t31 * t3)) * t29;
+        let t57 = k(2.0) * t48;
+        let t58 = k(2.0) * t50;
+        let t59 = k(2.0) * t52;
+        let t60 = t22 * (t59 * t21 - (t57 * t17 - t58 * t18))
+            + t16 * (t59 * t12 - (t58 * t6 - t57 * t1));
+        let t61 = t27 * (t57 * t24 + t58 * t25 + t59 * t26) + t60;
+        let t62 = t53 * (k(0.00025) * t44)
+            - (t51 * (k(0.00025) * t40) - t49 * (k(0.00025) * t38));
+        let t63 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz)
+            + (t62 - t61);
+        let t64 = (t37 * t59 - (t34 * t58 - t31 * t57)) * t63 - t56;
+        let t65 = k(2e-6) * outer_ring_dwx - t64;
+        let t66 = k(18.84955592153876) * t;
+        let t67 = k(0.05) * t66.sin();
+        let t68 = t67.cos();
+        let t69 = t67.sin();
+        let t70 = k(12.566370614359172) * t;
+        let t71 = k(0.1) * t70.sin();
+        let t72 = t71.cos();
+        let t73 = t72 * t69;
+        let t74 = t71.sin();
+        let t75 = t74 * t69;
+        let t76 = t75 * t37 + (t73 * t34 - t68 * t31);
+        let t77 = k(2.0) * (k(0.5) - (t30 + outer_ring_e3 * outer_ring_e3));
+        let t78 = outer_ring_e0 * outer_ring_e1;
+        let t79 = outer_ring_e2 * outer_ring_e3;
+        let t80 = k(2.0) * (t79 - t78);
+        let t81 = t74 * t80 + t72 * t77;
+        let t82 = k(2.0) * (t36 + t35);
+        let t83 = t68 * t82 + t73 * t80 - t75 * t77;
+        let t84 = t74 * t34 - t72 * t37;
+        let t85 = k(1.0) / (t84 * t83 - t81 * t76);
+        let t86 = (t77 * t45 - (t82 * t39 - t80 * t41)) * t55
+            - (t77 * t15 - (t80 * t9 - t82 * t3)) * t29;
+        let t87 = (t82 * t57 + t80 * t58 + t77 * t59) * t63 - t86;
+        let t88 = k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz) - t87;
+        let t89 = k(1.2566370614359172) * t70.cos();
+        let t90 = t89 * t74;
+        let t91 = k(2.0) * (t79 + t78);
+        let t92 = t89 * t72;
+        let t93 = k(2.0) * (k(0.5) - (t30 + outer_ring_e2 * outer_ring_e2));
+        let t94 = (t93 * t92 - t91 * t90) * (t83 * t85 * t88 - t76 * t85 * t65);
+        let t95 = k(0.9424777960769379) * t66.cos();
+        let t96 = t95 * t68;
+        let t97 = k(2.0) * (t33 - t32) * (t95 * t69) - t93 * (t69 * t90 - t72 * t96);
+        let t98 = (t91 * (t69 * t92 + t74 * t96) - t97)
+            * (t81 * t85 * t88 - t84 * t85 * t65);
+        *dy = [
+            outer_ring_sx,
+            outer_ring_sy,
+            outer_ring_sz,
+            -(k(0.5)
+                * (outer_ring_e1 * outer_ring_wx + outer_ring_e2 * outer_ring_wy
+                    + outer_ring_e3 * outer_ring_wz)),
+            k(0.5)
+                * (outer_ring_e0 * outer_ring_wx - outer_ring_e3 * outer_ring_wy
+                    + outer_ring_e2 * outer_ring_wz),
+            k(0.5)
+                * (outer_ring_e3 * outer_ring_wx + outer_ring_e0 * outer_ring_wy
+                    - outer_ring_e1 * outer_ring_wz),
+            -(k(0.5)
+                * (outer_ring_e2 * outer_ring_wx - outer_ring_e1 * outer_ring_wy
+                    - outer_ring_e0 * outer_ring_wz)),
+            inner_ring_sx,
+            inner_ring_sy,
+            inner_ring_sz,
+            -(k(0.5)
+                * (inner_ring_e1 * inner_ring_wx + inner_ring_e2 * inner_ring_wy
+                    + inner_ring_e3 * inner_ring_wz)),
+            k(0.5)
+                * (inner_ring_e0 * inner_ring_wx - inner_ring_e3 * inner_ring_wy
+                    + inner_ring_e2 * inner_ring_wz),
+            k(0.5)
+                * (inner_ring_e3 * inner_ring_wx + inner_ring_e0 * inner_ring_wy
+                    - inner_ring_e1 * inner_ring_wz),
+            -(k(0.5)
+                * (inner_ring_e2 * inner_ring_wx - inner_ring_e1 * inner_ring_wy
+                    - inner_ring_e0 * inner_ring_wz)),
+            rotor_sx,
+            rotor_sy,
+            rotor_sz,
+            -(k(0.5)
+                * (rotor_e1 * rotor_wx + rotor_e2 * rotor_wy + rotor_e3 * rotor_wz)),
+            k(0.5) * (rotor_e0 * rotor_wx - rotor_e3 * rotor_wy + rotor_e2 * rotor_wz),
+            k(0.5) * (rotor_e3 * rotor_wx + rotor_e0 * rotor_wy - rotor_e1 * rotor_wz),
+            -(k(0.5)
+                * (rotor_e2 * rotor_wx - rotor_e1 * rotor_wy - rotor_e0 * rotor_wz)),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            accelerations[6],
+            accelerations[7],
+            accelerations[8],
+            accelerations[9],
+            accelerations[10],
+            accelerations[11],
+            accelerations[12],
+            accelerations[13],
+            accelerations[14],
+            accelerations[15],
+            accelerations[16],
+            accelerations[17],
+            t98 + t94,
+        ];
+    }
     /// Writes Φ: 122 operations (53 ±, 69 ×, 0 ÷) and 6 functions.
     fn phi(&self, t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
@@ -820,9 +1035,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for PitchingGyroscope<T> {
         y[39]
     }
 }
-impl<T: gyro_sim::Scalar> PitchingGyroscope<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Charted for PitchingGyroscope<T> {
+    type Vectors = [[T; 4]; 3];
     /// The four-vectors whose largest components are the special Euler parameters: 0 operations (0 ±, 0 ×, 0 ÷).
-    fn chart_vectors(&self, y: &[T; 40]) -> [[T; 4]; 3] {
+    fn chart_vectors(&self, y: &Self::State) -> Self::Vectors {
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
         let outer_ring_e2 = y[5];
@@ -841,23 +1057,8 @@ impl<T: gyro_sim::Scalar> PitchingGyroscope<T> {
             [-rotor_e1, rotor_e0, rotor_e3, -rotor_e2],
         ]
     }
-}
-impl<T: gyro_sim::Real> gyro_sim::Partition for PitchingGyroscope<T> {
-    type Independent = gyro_sim::charts::Charts<3>;
-    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
-        gyro_sim::charts::best(&self.chart_vectors(y))
-    }
-    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
-        gyro_sim::charts::follow(&self.chart_vectors(y), choice)
-    }
     /// One Newton step of the dependent positions: 552 operations (206 ±, 343 ×, 3 ÷) and 6 functions.
-    fn newton_step(
-        &self,
-        t: T,
-        choice: &Self::Independent,
-        y: &mut Self::State,
-    ) -> ::core::result::Result<(), gyro_sim::Error> {
-        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
+    fn newton_step_on(&self, t: T, charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -1076,15 +1277,9 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for PitchingGyroscope<T> {
         y[18] = -t160;
         y[19] = -t161;
         y[20] = -t162;
-        Ok(())
     }
     /// Solves eq. (19) for the dependent velocities: 312 operations (113 ±, 196 ×, 3 ÷) and 8 functions.
-    fn solve_velocities(
-        &self,
-        t: T,
-        _choice: &Self::Independent,
-        y: &mut Self::State,
-    ) -> ::core::result::Result<(), gyro_sim::Error> {
+    fn solve_velocities_on(&self, t: T, _charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -1219,222 +1414,43 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for PitchingGyroscope<T> {
         y[35] = k(0.000125) * (t64 * t71 + t57 * inner_ring_wz);
         y[37] = rotor_wy - t97 * (t80 * t89) - t95 * (t88 * t89);
         y[38] = rotor_wz + t97 * (t87 * t89) + t95 * (t86 * t89);
+    }
+}
+impl<T: gyro_sim::Real> gyro_sim::Partition for PitchingGyroscope<T> {
+    type Independent = gyro_sim::charts::Charts<3>;
+    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
+        gyro_sim::charts::best(&gyro_sim::Charted::chart_vectors(self, y))
+    }
+    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
+        gyro_sim::charts::follow(&gyro_sim::Charted::chart_vectors(self, y), choice)
+    }
+    fn newton_step(
+        &self,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::newton_step_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
         Ok(())
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 369 operations (132 ±, 236 ×, 1 ÷) and 8 functions.
-    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = gyro_sim::Equations::velocities(self);
-        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
-        let k = T::constant;
-        let outer_ring_e0 = y[3];
-        let outer_ring_e1 = y[4];
-        let outer_ring_e2 = y[5];
-        let outer_ring_e3 = y[6];
-        let inner_ring_e0 = y[10];
-        let inner_ring_e1 = y[11];
-        let inner_ring_e2 = y[12];
-        let inner_ring_e3 = y[13];
-        let rotor_e0 = y[17];
-        let rotor_e1 = y[18];
-        let rotor_e2 = y[19];
-        let rotor_e3 = y[20];
-        let outer_ring_sx = y[21];
-        let outer_ring_sy = y[22];
-        let outer_ring_sz = y[23];
-        let inner_ring_sx = y[27];
-        let inner_ring_sy = y[28];
-        let inner_ring_sz = y[29];
-        let rotor_sx = y[33];
-        let rotor_sy = y[34];
-        let rotor_sz = y[35];
-        let outer_ring_wx = y[24];
-        let outer_ring_wy = y[25];
-        let outer_ring_wz = y[26];
-        let inner_ring_wx = y[30];
-        let inner_ring_wy = y[31];
-        let inner_ring_wz = y[32];
-        let rotor_wx = y[36];
-        let rotor_wy = y[37];
-        let rotor_wz = y[38];
-        let outer_ring_dwx = accelerations[3];
-        let outer_ring_dwz = accelerations[5];
-        let inner_ring_dwx = accelerations[9];
-        let inner_ring_dwy = accelerations[10];
-        let inner_ring_dwz = accelerations[11];
-        let rotor_dsx = accelerations[12];
-        let rotor_dsy = accelerations[13];
-        let rotor_dsz = accelerations[14];
-        let rotor_dwx = accelerations[15];
-        let rotor_dwy = accelerations[16];
-        let rotor_dwz = accelerations[17];
-        let t0 = rotor_e0 * rotor_e0;
-        let t1 = k(2.0) * (k(0.5) - (t0 + rotor_e1 * rotor_e1));
-        let t2 = inner_ring_e0 * inner_ring_e0;
-        let t3 = k(2.0) * (k(0.5) - (t2 + inner_ring_e1 * inner_ring_e1));
-        let t4 = rotor_e0 * rotor_e3;
-        let t5 = rotor_e1 * rotor_e2;
-        let t6 = k(2.0) * (t5 + t4);
-        let t7 = inner_ring_e0 * inner_ring_e3;
-        let t8 = inner_ring_e1 * inner_ring_e2;
-        let t9 = k(2.0) * (t8 + t7);
-        let t10 = rotor_e0 * rotor_e2;
-        let t11 = rotor_e1 * rotor_e3;
-        let t12 = k(2.0) * (t11 - t10);
-        let t13 = inner_ring_e0 * inner_ring_e2;
-        let t14 = inner_ring_e1 * inner_ring_e3;
-        let t15 = k(2.0) * (t14 - t13);
-        let t16 = k(1e-5) * rotor_dwx;
-        let t17 = k(2.0) * (t5 - t4);
-        let t18 = k(2.0) * (k(0.5) - (t0 + rotor_e2 * rotor_e2));
-        let t19 = rotor_e0 * rotor_e1;
-        let t20 = rotor_e2 * rotor_e3;
-        let t21 = k(2.0) * (t20 + t19);
-        let t22 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
-        let t23 = t22 * (t15 * t21 - (t9 * t18 + t3 * t17))
-            + t16 * (t15 * t12 + (t9 * t6 + t3 * t1));
-        let t24 = k(2.0) * (t11 + t10);
-        let t25 = k(2.0) * (t20 - t19);
-        let t26 = k(2.0) * (k(0.5) - (t0 + rotor_e3 * rotor_e3));
-        let t27 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
-        let t28 = t27 * (t15 * t26 - (t9 * t25 - t3 * t24)) + t23;
-        let t29 = k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx) - t28;
-        let t30 = outer_ring_e0 * outer_ring_e0;
-        let t31 = k(2.0) * (k(0.5) - (t30 + outer_ring_e1 * outer_ring_e1));
-        let t32 = outer_ring_e0 * outer_ring_e3;
-        let t33 = outer_ring_e1 * outer_ring_e2;
-        let t34 = k(2.0) * (t33 + t32);
-        let t35 = outer_ring_e0 * outer_ring_e2;
-        let t36 = outer_ring_e1 * outer_ring_e3;
-        let t37 = k(2.0) * (t36 - t35);
-        let t38 = t8 - t7;
-        let t39 = k(2.0) * t38;
-        let t40 = k(0.5) - (t2 + inner_ring_e2 * inner_ring_e2);
-        let t41 = k(2.0) * t40;
-        let t42 = inner_ring_e0 * inner_ring_e1;
-        let t43 = inner_ring_e2 * inner_ring_e3;
-        let t44 = t43 + t42;
-        let t45 = k(2.0) * t44;
-        let t46 = t22 * (t45 * t21 + (t39 * t17 + t41 * t18))
-            + t16 * (t45 * t12 - (t41 * t6 + t39 * t1));
-        let t47 = t27 * (t45 * t26 - (t39 * t24 - t41 * t25)) + t46;
-        let t48 = t14 + t13;
-        let t49 = k(0.08) * rotor_dsx;
-        let t50 = t43 - t42;
-        let t51 = k(0.8) + k(0.08) * rotor_dsy;
-        let t52 = k(0.5) - (t2 + inner_ring_e3 * inner_ring_e3);
-        let t53 = k(0.08) * rotor_dsz;
-        let t54 = t53 * (k(0.00025) * t52)
-            - (t51 * (k(0.00025) * t50) + t49 * (k(0.00025) * t48));
-        let t55 = k(2e-6) * inner_ring_dwy + (t54 + t47);
-        let t56 = (t37 * t45 - (t34 * t41 + t31 * t39)) * t55
-            - (t37 * t15 + (t34 * t9 + t31 * t3)) * t29;
-        let t57 = k(2.0) * t48;
-        let t58 = k(2.0) * t50;
-        let t59 = k(2.0) * t52;
-        let t60 = t22 * (t59 * t21 - (t57 * t17 - t58 * t18))
-            + t16 * (t59 * t12 - (t58 * t6 - t57 * t1));
-        let t61 = t27 * (t57 * t24 + t58 * t25 + t59 * t26) + t60;
-        let t62 = t53 * (k(0.00025) * t44)
-            - (t51 * (k(0.00025) * t40) - t49 * (k(0.00025) * t38));
-        let t63 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz)
-            + (t62 - t61);
-        let t64 = (t37 * t59 - (t34 * t58 - t31 * t57)) * t63 - t56;
-        let t65 = k(2e-6) * outer_ring_dwx - t64;
-        let t66 = k(18.84955592153876) * t;
-        let t67 = k(0.05) * t66.sin();
-        let t68 = t67.cos();
-        let t69 = t67.sin();
-        let t70 = k(12.566370614359172) * t;
-        let t71 = k(0.1) * t70.sin();
-        let t72 = t71.cos();
-        let t73 = t72 * t69;
-        let t74 = t71.sin();
-        let t75 = t74 * t69;
-        let t76 = t75 * t37 + (t73 * t34 - t68 * t31);
-        let t77 = k(2.0) * (k(0.5) - (t30 + outer_ring_e3 * outer_ring_e3));
-        let t78 = outer_ring_e0 * outer_ring_e1;
-        let t79 = outer_ring_e2 * outer_ring_e3;
-        let t80 = k(2.0) * (t79 - t78);
-        let t81 = t74 * t80 + t72 * t77;
-        let t82 = k(2.0) * (t36 + t35);
-        let t83 = t68 * t82 + t73 * t80 - t75 * t77;
-        let t84 = t74 * t34 - t72 * t37;
-        let t85 = k(1.0) / (t84 * t83 - t81 * t76);
-        let t86 = (t77 * t45 - (t82 * t39 - t80 * t41)) * t55
-            - (t77 * t15 - (t80 * t9 - t82 * t3)) * t29;
-        let t87 = (t82 * t57 + t80 * t58 + t77 * t59) * t63 - t86;
-        let t88 = k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz) - t87;
-        let t89 = k(1.2566370614359172) * t70.cos();
-        let t90 = t89 * t74;
-        let t91 = k(2.0) * (t79 + t78);
-        let t92 = t89 * t72;
-        let t93 = k(2.0) * (k(0.5) - (t30 + outer_ring_e2 * outer_ring_e2));
-        let t94 = (t93 * t92 - t91 * t90) * (t83 * t85 * t88 - t76 * t85 * t65);
-        let t95 = k(0.9424777960769379) * t66.cos();
-        let t96 = t95 * t68;
-        let t97 = k(2.0) * (t33 - t32) * (t95 * t69) - t93 * (t69 * t90 - t72 * t96);
-        let t98 = (t91 * (t69 * t92 + t74 * t96) - t97)
-            * (t81 * t85 * t88 - t84 * t85 * t65);
-        *dy = [
-            outer_ring_sx,
-            outer_ring_sy,
-            outer_ring_sz,
-            -(k(0.5)
-                * (outer_ring_e1 * outer_ring_wx + outer_ring_e2 * outer_ring_wy
-                    + outer_ring_e3 * outer_ring_wz)),
-            k(0.5)
-                * (outer_ring_e0 * outer_ring_wx - outer_ring_e3 * outer_ring_wy
-                    + outer_ring_e2 * outer_ring_wz),
-            k(0.5)
-                * (outer_ring_e3 * outer_ring_wx + outer_ring_e0 * outer_ring_wy
-                    - outer_ring_e1 * outer_ring_wz),
-            -(k(0.5)
-                * (outer_ring_e2 * outer_ring_wx - outer_ring_e1 * outer_ring_wy
-                    - outer_ring_e0 * outer_ring_wz)),
-            inner_ring_sx,
-            inner_ring_sy,
-            inner_ring_sz,
-            -(k(0.5)
-                * (inner_ring_e1 * inner_ring_wx + inner_ring_e2 * inner_ring_wy
-                    + inner_ring_e3 * inner_ring_wz)),
-            k(0.5)
-                * (inner_ring_e0 * inner_ring_wx - inner_ring_e3 * inner_ring_wy
-                    + inner_ring_e2 * inner_ring_wz),
-            k(0.5)
-                * (inner_ring_e3 * inner_ring_wx + inner_ring_e0 * inner_ring_wy
-                    - inner_ring_e1 * inner_ring_wz),
-            -(k(0.5)
-                * (inner_ring_e2 * inner_ring_wx - inner_ring_e1 * inner_ring_wy
-                    - inner_ring_e0 * inner_ring_wz)),
-            rotor_sx,
-            rotor_sy,
-            rotor_sz,
-            -(k(0.5)
-                * (rotor_e1 * rotor_wx + rotor_e2 * rotor_wy + rotor_e3 * rotor_wz)),
-            k(0.5) * (rotor_e0 * rotor_wx - rotor_e3 * rotor_wy + rotor_e2 * rotor_wz),
-            k(0.5) * (rotor_e3 * rotor_wx + rotor_e0 * rotor_wy - rotor_e1 * rotor_wz),
-            -(k(0.5)
-                * (rotor_e2 * rotor_wx - rotor_e1 * rotor_wy - rotor_e0 * rotor_wz)),
-            accelerations[0],
-            accelerations[1],
-            accelerations[2],
-            accelerations[3],
-            accelerations[4],
-            accelerations[5],
-            accelerations[6],
-            accelerations[7],
-            accelerations[8],
-            accelerations[9],
-            accelerations[10],
-            accelerations[11],
-            accelerations[12],
-            accelerations[13],
-            accelerations[14],
-            accelerations[15],
-            accelerations[16],
-            accelerations[17],
-            t98 + t94,
-        ];
+    fn solve_velocities(
+        &self,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::solve_velocities_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
+        Ok(())
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for PitchingGyroscope<T> {

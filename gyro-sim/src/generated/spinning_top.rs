@@ -143,6 +143,37 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for SpinningTop<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 7]
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let top_e0 = y[3];
+        let top_e1 = y[4];
+        let top_e2 = y[5];
+        let top_e3 = y[6];
+        let top_sx = y[7];
+        let top_sy = y[8];
+        let top_sz = y[9];
+        let top_wx = y[10];
+        let top_wy = y[11];
+        let top_wz = y[12];
+        *dy = [
+            top_sx,
+            top_sy,
+            top_sz,
+            -(k(0.5) * (top_e1 * top_wx + top_e2 * top_wy + top_e3 * top_wz)),
+            k(0.5) * (top_e0 * top_wx - top_e3 * top_wy + top_e2 * top_wz),
+            k(0.5) * (top_e3 * top_wx + top_e0 * top_wy - top_e1 * top_wz),
+            -(k(0.5) * (top_e2 * top_wx - top_e1 * top_wy - top_e0 * top_wz)),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+        ];
+    }
     /// Writes Φ: 22 operations (11 ±, 11 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
@@ -276,32 +307,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for SpinningTop<T> {
         T::constant(0.0)
     }
 }
-impl<T: gyro_sim::Scalar> SpinningTop<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Charted for SpinningTop<T> {
+    type Vectors = [[T; 4]; 1];
     /// The four-vectors whose largest components are the special Euler parameters: 0 operations (0 ±, 0 ×, 0 ÷).
-    fn chart_vectors(&self, y: &[T; 13]) -> [[T; 4]; 1] {
+    fn chart_vectors(&self, y: &Self::State) -> Self::Vectors {
         let top_e0 = y[3];
         let top_e1 = y[4];
         let top_e2 = y[5];
         let top_e3 = y[6];
         [[top_e0, top_e1, top_e2, top_e3]]
     }
-}
-impl<T: gyro_sim::Real> gyro_sim::Partition for SpinningTop<T> {
-    type Independent = gyro_sim::charts::Charts<1>;
-    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
-        gyro_sim::charts::best(&self.chart_vectors(y))
-    }
-    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
-        gyro_sim::charts::follow(&self.chart_vectors(y), choice)
-    }
     /// One Newton step of the dependent positions: 38 operations (15 ±, 22 ×, 1 ÷).
-    fn newton_step(
-        &self,
-        _t: T,
-        choice: &Self::Independent,
-        y: &mut Self::State,
-    ) -> ::core::result::Result<(), gyro_sim::Error> {
-        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
+    fn newton_step_on(&self, _t: T, charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let top_e0 = y[3];
         let top_e1 = y[4];
@@ -326,15 +343,9 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for SpinningTop<T> {
         y[4] = t4;
         y[5] = t3;
         y[6] = t5;
-        Ok(())
     }
     /// Solves eq. (19) for the dependent velocities: 32 operations (11 ±, 21 ×, 0 ÷).
-    fn solve_velocities(
-        &self,
-        _t: T,
-        _choice: &Self::Independent,
-        y: &mut Self::State,
-    ) -> ::core::result::Result<(), gyro_sim::Error> {
+    fn solve_velocities_on(&self, _t: T, _charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let top_e0 = y[3];
         let top_e1 = y[4];
@@ -354,38 +365,43 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for SpinningTop<T> {
         y[7] = t3;
         y[8] = t4;
         y[9] = -t5;
+    }
+}
+impl<T: gyro_sim::Real> gyro_sim::Partition for SpinningTop<T> {
+    type Independent = gyro_sim::charts::Charts<1>;
+    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
+        gyro_sim::charts::best(&gyro_sim::Charted::chart_vectors(self, y))
+    }
+    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
+        gyro_sim::charts::follow(&gyro_sim::Charted::chart_vectors(self, y), choice)
+    }
+    fn newton_step(
+        &self,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::newton_step_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
         Ok(())
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
-    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = gyro_sim::Equations::velocities(self);
-        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
-        let k = T::constant;
-        let top_e0 = y[3];
-        let top_e1 = y[4];
-        let top_e2 = y[5];
-        let top_e3 = y[6];
-        let top_sx = y[7];
-        let top_sy = y[8];
-        let top_sz = y[9];
-        let top_wx = y[10];
-        let top_wy = y[11];
-        let top_wz = y[12];
-        *dy = [
-            top_sx,
-            top_sy,
-            top_sz,
-            -(k(0.5) * (top_e1 * top_wx + top_e2 * top_wy + top_e3 * top_wz)),
-            k(0.5) * (top_e0 * top_wx - top_e3 * top_wy + top_e2 * top_wz),
-            k(0.5) * (top_e3 * top_wx + top_e0 * top_wy - top_e1 * top_wz),
-            -(k(0.5) * (top_e2 * top_wx - top_e1 * top_wy - top_e0 * top_wz)),
-            accelerations[0],
-            accelerations[1],
-            accelerations[2],
-            accelerations[3],
-            accelerations[4],
-            accelerations[5],
-        ];
+    fn solve_velocities(
+        &self,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::solve_velocities_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
+        Ok(())
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for SpinningTop<T> {

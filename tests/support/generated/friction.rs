@@ -226,6 +226,97 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Friction<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 12]
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 87 operations (28 ±, 59 ×, 0 ÷) and 1 functions.
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let disc_e0 = y[3];
+        let disc_e1 = y[4];
+        let disc_e2 = y[5];
+        let disc_e3 = y[6];
+        let ball_e0 = y[10];
+        let ball_e1 = y[11];
+        let ball_e2 = y[12];
+        let ball_e3 = y[13];
+        let carriage_e0 = y[17];
+        let carriage_e1 = y[18];
+        let carriage_e2 = y[19];
+        let carriage_e3 = y[20];
+        let disc_sx = y[21];
+        let disc_sy = y[22];
+        let disc_sz = y[23];
+        let ball_sx = y[27];
+        let ball_sy = y[28];
+        let ball_sz = y[29];
+        let carriage_sx = y[33];
+        let carriage_sy = y[34];
+        let carriage_sz = y[35];
+        let disc_wx = y[24];
+        let disc_wy = y[25];
+        let disc_wz = y[26];
+        let ball_wx = y[30];
+        let ball_wy = y[31];
+        let ball_wz = y[32];
+        let carriage_wx = y[36];
+        let carriage_wy = y[37];
+        let carriage_wz = y[38];
+        let t0 = ball_wx * (k(0.04) * ball_wx) + ball_wy * (k(0.04) * ball_wy)
+            + ball_wz * (k(0.04) * ball_wz);
+        let t1 = t0 + carriage_sy * (k(0.5) * carriage_sy)
+            + disc_wz * (k(0.05) * (k(10.0) * disc_wz).tanh());
+        *dy = [
+            disc_sx,
+            disc_sy,
+            disc_sz,
+            -(k(0.5) * (disc_e1 * disc_wx + disc_e2 * disc_wy + disc_e3 * disc_wz)),
+            k(0.5) * (disc_e0 * disc_wx - disc_e3 * disc_wy + disc_e2 * disc_wz),
+            k(0.5) * (disc_e3 * disc_wx + disc_e0 * disc_wy - disc_e1 * disc_wz),
+            -(k(0.5) * (disc_e2 * disc_wx - disc_e1 * disc_wy - disc_e0 * disc_wz)),
+            ball_sx,
+            ball_sy,
+            ball_sz,
+            -(k(0.5) * (ball_e1 * ball_wx + ball_e2 * ball_wy + ball_e3 * ball_wz)),
+            k(0.5) * (ball_e0 * ball_wx - ball_e3 * ball_wy + ball_e2 * ball_wz),
+            k(0.5) * (ball_e3 * ball_wx + ball_e0 * ball_wy - ball_e1 * ball_wz),
+            -(k(0.5) * (ball_e2 * ball_wx - ball_e1 * ball_wy - ball_e0 * ball_wz)),
+            carriage_sx,
+            carriage_sy,
+            carriage_sz,
+            -(k(0.5)
+                * (carriage_e1 * carriage_wx + carriage_e2 * carriage_wy
+                    + carriage_e3 * carriage_wz)),
+            k(0.5)
+                * (carriage_e0 * carriage_wx - carriage_e3 * carriage_wy
+                    + carriage_e2 * carriage_wz),
+            k(0.5)
+                * (carriage_e3 * carriage_wx + carriage_e0 * carriage_wy
+                    - carriage_e1 * carriage_wz),
+            -(k(0.5)
+                * (carriage_e2 * carriage_wx - carriage_e1 * carriage_wy
+                    - carriage_e0 * carriage_wz)),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            accelerations[6],
+            accelerations[7],
+            accelerations[8],
+            accelerations[9],
+            accelerations[10],
+            accelerations[11],
+            accelerations[12],
+            accelerations[13],
+            accelerations[14],
+            accelerations[15],
+            accelerations[16],
+            accelerations[17],
+            -t1,
+            disc_wz,
+        ];
+    }
     /// Writes Φ: 46 operations (19 ±, 27 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
@@ -549,97 +640,6 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Friction<T> {
         y: &mut Self::State,
     ) -> ::core::result::Result<(), gyro_sim::Error> {
         gyro_sim::pivoting::solve_velocities(self, t, choice, y)
-    }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 87 operations (28 ±, 59 ×, 0 ÷) and 1 functions.
-    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = gyro_sim::Equations::velocities(self);
-        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
-        let k = T::constant;
-        let disc_e0 = y[3];
-        let disc_e1 = y[4];
-        let disc_e2 = y[5];
-        let disc_e3 = y[6];
-        let ball_e0 = y[10];
-        let ball_e1 = y[11];
-        let ball_e2 = y[12];
-        let ball_e3 = y[13];
-        let carriage_e0 = y[17];
-        let carriage_e1 = y[18];
-        let carriage_e2 = y[19];
-        let carriage_e3 = y[20];
-        let disc_sx = y[21];
-        let disc_sy = y[22];
-        let disc_sz = y[23];
-        let ball_sx = y[27];
-        let ball_sy = y[28];
-        let ball_sz = y[29];
-        let carriage_sx = y[33];
-        let carriage_sy = y[34];
-        let carriage_sz = y[35];
-        let disc_wx = y[24];
-        let disc_wy = y[25];
-        let disc_wz = y[26];
-        let ball_wx = y[30];
-        let ball_wy = y[31];
-        let ball_wz = y[32];
-        let carriage_wx = y[36];
-        let carriage_wy = y[37];
-        let carriage_wz = y[38];
-        let t0 = ball_wx * (k(0.04) * ball_wx) + ball_wy * (k(0.04) * ball_wy)
-            + ball_wz * (k(0.04) * ball_wz);
-        let t1 = t0 + carriage_sy * (k(0.5) * carriage_sy)
-            + disc_wz * (k(0.05) * (k(10.0) * disc_wz).tanh());
-        *dy = [
-            disc_sx,
-            disc_sy,
-            disc_sz,
-            -(k(0.5) * (disc_e1 * disc_wx + disc_e2 * disc_wy + disc_e3 * disc_wz)),
-            k(0.5) * (disc_e0 * disc_wx - disc_e3 * disc_wy + disc_e2 * disc_wz),
-            k(0.5) * (disc_e3 * disc_wx + disc_e0 * disc_wy - disc_e1 * disc_wz),
-            -(k(0.5) * (disc_e2 * disc_wx - disc_e1 * disc_wy - disc_e0 * disc_wz)),
-            ball_sx,
-            ball_sy,
-            ball_sz,
-            -(k(0.5) * (ball_e1 * ball_wx + ball_e2 * ball_wy + ball_e3 * ball_wz)),
-            k(0.5) * (ball_e0 * ball_wx - ball_e3 * ball_wy + ball_e2 * ball_wz),
-            k(0.5) * (ball_e3 * ball_wx + ball_e0 * ball_wy - ball_e1 * ball_wz),
-            -(k(0.5) * (ball_e2 * ball_wx - ball_e1 * ball_wy - ball_e0 * ball_wz)),
-            carriage_sx,
-            carriage_sy,
-            carriage_sz,
-            -(k(0.5)
-                * (carriage_e1 * carriage_wx + carriage_e2 * carriage_wy
-                    + carriage_e3 * carriage_wz)),
-            k(0.5)
-                * (carriage_e0 * carriage_wx - carriage_e3 * carriage_wy
-                    + carriage_e2 * carriage_wz),
-            k(0.5)
-                * (carriage_e3 * carriage_wx + carriage_e0 * carriage_wy
-                    - carriage_e1 * carriage_wz),
-            -(k(0.5)
-                * (carriage_e2 * carriage_wx - carriage_e1 * carriage_wy
-                    - carriage_e0 * carriage_wz)),
-            accelerations[0],
-            accelerations[1],
-            accelerations[2],
-            accelerations[3],
-            accelerations[4],
-            accelerations[5],
-            accelerations[6],
-            accelerations[7],
-            accelerations[8],
-            accelerations[9],
-            accelerations[10],
-            accelerations[11],
-            accelerations[12],
-            accelerations[13],
-            accelerations[14],
-            accelerations[15],
-            accelerations[16],
-            accelerations[17],
-            -t1,
-            disc_wz,
-        ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for Friction<T> {

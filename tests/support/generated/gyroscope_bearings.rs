@@ -234,6 +234,101 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeBearings<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 9]
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 72 operations (24 ±, 48 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_sx = y[21];
+        let outer_ring_sy = y[22];
+        let outer_ring_sz = y[23];
+        let inner_ring_sx = y[27];
+        let inner_ring_sy = y[28];
+        let inner_ring_sz = y[29];
+        let rotor_sx = y[33];
+        let rotor_sy = y[34];
+        let rotor_sz = y[35];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        *dy = [
+            outer_ring_sx,
+            outer_ring_sy,
+            outer_ring_sz,
+            -(k(0.5)
+                * (outer_ring_e1 * outer_ring_wx + outer_ring_e2 * outer_ring_wy
+                    + outer_ring_e3 * outer_ring_wz)),
+            k(0.5)
+                * (outer_ring_e0 * outer_ring_wx - outer_ring_e3 * outer_ring_wy
+                    + outer_ring_e2 * outer_ring_wz),
+            k(0.5)
+                * (outer_ring_e3 * outer_ring_wx + outer_ring_e0 * outer_ring_wy
+                    - outer_ring_e1 * outer_ring_wz),
+            -(k(0.5)
+                * (outer_ring_e2 * outer_ring_wx - outer_ring_e1 * outer_ring_wy
+                    - outer_ring_e0 * outer_ring_wz)),
+            inner_ring_sx,
+            inner_ring_sy,
+            inner_ring_sz,
+            -(k(0.5)
+                * (inner_ring_e1 * inner_ring_wx + inner_ring_e2 * inner_ring_wy
+                    + inner_ring_e3 * inner_ring_wz)),
+            k(0.5)
+                * (inner_ring_e0 * inner_ring_wx - inner_ring_e3 * inner_ring_wy
+                    + inner_ring_e2 * inner_ring_wz),
+            k(0.5)
+                * (inner_ring_e3 * inner_ring_wx + inner_ring_e0 * inner_ring_wy
+                    - inner_ring_e1 * inner_ring_wz),
+            -(k(0.5)
+                * (inner_ring_e2 * inner_ring_wx - inner_ring_e1 * inner_ring_wy
+                    - inner_ring_e0 * inner_ring_wz)),
+            rotor_sx,
+            rotor_sy,
+            rotor_sz,
+            -(k(0.5)
+                * (rotor_e1 * rotor_wx + rotor_e2 * rotor_wy + rotor_e3 * rotor_wz)),
+            k(0.5) * (rotor_e0 * rotor_wx - rotor_e3 * rotor_wy + rotor_e2 * rotor_wz),
+            k(0.5) * (rotor_e3 * rotor_wx + rotor_e0 * rotor_wy - rotor_e1 * rotor_wz),
+            -(k(0.5)
+                * (rotor_e2 * rotor_wx - rotor_e1 * rotor_wy - rotor_e0 * rotor_wz)),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            accelerations[6],
+            accelerations[7],
+            accelerations[8],
+            accelerations[9],
+            accelerations[10],
+            accelerations[11],
+            accelerations[12],
+            accelerations[13],
+            accelerations[14],
+            accelerations[15],
+            accelerations[16],
+            accelerations[17],
+        ];
+    }
     /// Writes Φ: 108 operations (50 ±, 58 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
@@ -665,9 +760,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeBearings<T> {
         T::constant(0.0)
     }
 }
-impl<T: gyro_sim::Scalar> GyroscopeBearings<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeBearings<T> {
+    type Vectors = [[T; 4]; 3];
     /// The four-vectors whose largest components are the special Euler parameters: 0 operations (0 ±, 0 ×, 0 ÷).
-    fn chart_vectors(&self, y: &[T; 39]) -> [[T; 4]; 3] {
+    fn chart_vectors(&self, y: &Self::State) -> Self::Vectors {
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
         let outer_ring_e2 = y[5];
@@ -686,23 +782,8 @@ impl<T: gyro_sim::Scalar> GyroscopeBearings<T> {
             [-rotor_e1, rotor_e0, rotor_e3, -rotor_e2],
         ]
     }
-}
-impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeBearings<T> {
-    type Independent = gyro_sim::charts::Charts<3>;
-    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
-        gyro_sim::charts::best(&self.chart_vectors(y))
-    }
-    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
-        gyro_sim::charts::follow(&self.chart_vectors(y), choice)
-    }
     /// One Newton step of the dependent positions: 514 operations (193 ±, 318 ×, 3 ÷).
-    fn newton_step(
-        &self,
-        _t: T,
-        choice: &Self::Independent,
-        y: &mut Self::State,
-    ) -> ::core::result::Result<(), gyro_sim::Error> {
-        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
+    fn newton_step_on(&self, _t: T, charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -902,15 +983,9 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeBearings<T> {
         y[18] = -t141;
         y[19] = -t142;
         y[20] = -t143;
-        Ok(())
     }
     /// Solves eq. (19) for the dependent velocities: 257 operations (96 ±, 158 ×, 3 ÷).
-    fn solve_velocities(
-        &self,
-        _t: T,
-        _choice: &Self::Independent,
-        y: &mut Self::State,
-    ) -> ::core::result::Result<(), gyro_sim::Error> {
+    fn solve_velocities_on(&self, _t: T, _charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -1021,102 +1096,43 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeBearings<T> {
         y[35] = k(0.000125) * (t40 * t47 + t33 * inner_ring_wz);
         y[37] = rotor_wy - t73 * (t56 * t65) - t71 * (t64 * t65);
         y[38] = rotor_wz + t73 * (t63 * t65) + t71 * (t62 * t65);
+    }
+}
+impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeBearings<T> {
+    type Independent = gyro_sim::charts::Charts<3>;
+    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
+        gyro_sim::charts::best(&gyro_sim::Charted::chart_vectors(self, y))
+    }
+    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
+        gyro_sim::charts::follow(&gyro_sim::Charted::chart_vectors(self, y), choice)
+    }
+    fn newton_step(
+        &self,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::newton_step_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
         Ok(())
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 72 operations (24 ±, 48 ×, 0 ÷).
-    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = gyro_sim::Equations::velocities(self);
-        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
-        let k = T::constant;
-        let outer_ring_e0 = y[3];
-        let outer_ring_e1 = y[4];
-        let outer_ring_e2 = y[5];
-        let outer_ring_e3 = y[6];
-        let inner_ring_e0 = y[10];
-        let inner_ring_e1 = y[11];
-        let inner_ring_e2 = y[12];
-        let inner_ring_e3 = y[13];
-        let rotor_e0 = y[17];
-        let rotor_e1 = y[18];
-        let rotor_e2 = y[19];
-        let rotor_e3 = y[20];
-        let outer_ring_sx = y[21];
-        let outer_ring_sy = y[22];
-        let outer_ring_sz = y[23];
-        let inner_ring_sx = y[27];
-        let inner_ring_sy = y[28];
-        let inner_ring_sz = y[29];
-        let rotor_sx = y[33];
-        let rotor_sy = y[34];
-        let rotor_sz = y[35];
-        let outer_ring_wx = y[24];
-        let outer_ring_wy = y[25];
-        let outer_ring_wz = y[26];
-        let inner_ring_wx = y[30];
-        let inner_ring_wy = y[31];
-        let inner_ring_wz = y[32];
-        let rotor_wx = y[36];
-        let rotor_wy = y[37];
-        let rotor_wz = y[38];
-        *dy = [
-            outer_ring_sx,
-            outer_ring_sy,
-            outer_ring_sz,
-            -(k(0.5)
-                * (outer_ring_e1 * outer_ring_wx + outer_ring_e2 * outer_ring_wy
-                    + outer_ring_e3 * outer_ring_wz)),
-            k(0.5)
-                * (outer_ring_e0 * outer_ring_wx - outer_ring_e3 * outer_ring_wy
-                    + outer_ring_e2 * outer_ring_wz),
-            k(0.5)
-                * (outer_ring_e3 * outer_ring_wx + outer_ring_e0 * outer_ring_wy
-                    - outer_ring_e1 * outer_ring_wz),
-            -(k(0.5)
-                * (outer_ring_e2 * outer_ring_wx - outer_ring_e1 * outer_ring_wy
-                    - outer_ring_e0 * outer_ring_wz)),
-            inner_ring_sx,
-            inner_ring_sy,
-            inner_ring_sz,
-            -(k(0.5)
-                * (inner_ring_e1 * inner_ring_wx + inner_ring_e2 * inner_ring_wy
-                    + inner_ring_e3 * inner_ring_wz)),
-            k(0.5)
-                * (inner_ring_e0 * inner_ring_wx - inner_ring_e3 * inner_ring_wy
-                    + inner_ring_e2 * inner_ring_wz),
-            k(0.5)
-                * (inner_ring_e3 * inner_ring_wx + inner_ring_e0 * inner_ring_wy
-                    - inner_ring_e1 * inner_ring_wz),
-            -(k(0.5)
-                * (inner_ring_e2 * inner_ring_wx - inner_ring_e1 * inner_ring_wy
-                    - inner_ring_e0 * inner_ring_wz)),
-            rotor_sx,
-            rotor_sy,
-            rotor_sz,
-            -(k(0.5)
-                * (rotor_e1 * rotor_wx + rotor_e2 * rotor_wy + rotor_e3 * rotor_wz)),
-            k(0.5) * (rotor_e0 * rotor_wx - rotor_e3 * rotor_wy + rotor_e2 * rotor_wz),
-            k(0.5) * (rotor_e3 * rotor_wx + rotor_e0 * rotor_wy - rotor_e1 * rotor_wz),
-            -(k(0.5)
-                * (rotor_e2 * rotor_wx - rotor_e1 * rotor_wy - rotor_e0 * rotor_wz)),
-            accelerations[0],
-            accelerations[1],
-            accelerations[2],
-            accelerations[3],
-            accelerations[4],
-            accelerations[5],
-            accelerations[6],
-            accelerations[7],
-            accelerations[8],
-            accelerations[9],
-            accelerations[10],
-            accelerations[11],
-            accelerations[12],
-            accelerations[13],
-            accelerations[14],
-            accelerations[15],
-            accelerations[16],
-            accelerations[17],
-        ];
+    fn solve_velocities(
+        &self,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::solve_velocities_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
+        Ok(())
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeBearings<T> {

@@ -216,6 +216,101 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Loads<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 5]
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 147 operations (54 ±, 93 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let disc_e0 = y[3];
+        let disc_e1 = y[4];
+        let disc_e2 = y[5];
+        let disc_e3 = y[6];
+        let carriage_e0 = y[10];
+        let carriage_e1 = y[11];
+        let carriage_e2 = y[12];
+        let carriage_e3 = y[13];
+        let disc_sx = y[14];
+        let disc_sy = y[15];
+        let disc_sz = y[16];
+        let carriage_sx = y[20];
+        let carriage_sy = y[21];
+        let carriage_sz = y[22];
+        let disc_wx = y[17];
+        let disc_wy = y[18];
+        let disc_wz = y[19];
+        let carriage_wx = y[23];
+        let carriage_wy = y[24];
+        let carriage_wz = y[25];
+        let t0 = k(0.2) * disc_wz;
+        let t1 = disc_e1 * disc_e2 - disc_e0 * disc_e3;
+        let t2 = k(0.2) * disc_wy;
+        let t3 = disc_e0 * disc_e2;
+        let t4 = disc_e1 * disc_e3;
+        let t5 = disc_sx - (k(2.0) * (t4 + t3) * t2 - k(2.0) * t1 * t0);
+        let t6 = disc_e0 * disc_e0;
+        let t7 = k(0.5) - (t6 + disc_e2 * disc_e2);
+        let t8 = disc_e0 * disc_e1;
+        let t9 = disc_e2 * disc_e3;
+        let t10 = disc_sy - (k(2.0) * (t9 - t8) * t2 + k(2.0) * t7 * t0);
+        let t11 = t9 + t8;
+        let t12 = k(0.5) - (t6 + disc_e3 * disc_e3);
+        let t13 = k(0.6) * t11 * (disc_sz + (k(2.0) * t12 * t2 + k(2.0) * t11 * t0));
+        let t14 = disc_wz * (k(0.02) * t12)
+            - (disc_wy * (k(0.02) * t11) + disc_wx * (k(0.02) * (t4 - t3)));
+        let t15 = t14 + (t13 - (k(0.6) * t7 * t10 - k(0.6) * t1 * t5));
+        let t16 = k(0.1) * carriage_wz;
+        let t17 = carriage_e0 * carriage_e2;
+        let t18 = carriage_e1 * carriage_e3;
+        let t19 = k(0.1) * carriage_wx;
+        let t20 = carriage_e0 * carriage_e0;
+        let t21 = k(2.0) * (k(0.5) - (t20 + carriage_e3 * carriage_e3)) * t19
+            + k(2.0) * (t18 - t17) * t16;
+        let t22 = carriage_e0 * carriage_e3;
+        let t23 = carriage_e1 * carriage_e2;
+        let t24 = k(2.0) * (carriage_e2 * carriage_e3 - carriage_e0 * carriage_e1) * t19
+            - k(2.0) * (t23 + t22) * t16;
+        let t25 = carriage_wy * (k(0.2) * (t23 - t22))
+            - carriage_wx * (k(0.2) * (k(0.5) - (t20 + carriage_e1 * carriage_e1)));
+        let t26 = carriage_wz * (k(0.2) * (t18 + t17)) + t25
+            + (k(5.0) * (carriage_sy + t24) + (carriage_sz - t21));
+        *dy = [
+            disc_sx,
+            disc_sy,
+            disc_sz,
+            -(k(0.5) * (disc_e1 * disc_wx + disc_e2 * disc_wy + disc_e3 * disc_wz)),
+            k(0.5) * (disc_e0 * disc_wx - disc_e3 * disc_wy + disc_e2 * disc_wz),
+            k(0.5) * (disc_e3 * disc_wx + disc_e0 * disc_wy - disc_e1 * disc_wz),
+            -(k(0.5) * (disc_e2 * disc_wx - disc_e1 * disc_wy - disc_e0 * disc_wz)),
+            carriage_sx,
+            carriage_sy,
+            carriage_sz,
+            -(k(0.5)
+                * (carriage_e1 * carriage_wx + carriage_e2 * carriage_wy
+                    + carriage_e3 * carriage_wz)),
+            k(0.5)
+                * (carriage_e0 * carriage_wx - carriage_e3 * carriage_wy
+                    + carriage_e2 * carriage_wz),
+            k(0.5)
+                * (carriage_e3 * carriage_wx + carriage_e0 * carriage_wy
+                    - carriage_e1 * carriage_wz),
+            -(k(0.5)
+                * (carriage_e2 * carriage_wx - carriage_e1 * carriage_wy
+                    - carriage_e0 * carriage_wz)),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            accelerations[6],
+            accelerations[7],
+            accelerations[8],
+            accelerations[9],
+            accelerations[10],
+            accelerations[11],
+            t26 + t15,
+        ];
+    }
     /// Writes Φ: 58 operations (26 ±, 32 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
@@ -496,101 +591,6 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Loads<T> {
         y: &mut Self::State,
     ) -> ::core::result::Result<(), gyro_sim::Error> {
         gyro_sim::pivoting::solve_velocities(self, t, choice, y)
-    }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 147 operations (54 ±, 93 ×, 0 ÷).
-    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = gyro_sim::Equations::velocities(self);
-        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
-        let k = T::constant;
-        let disc_e0 = y[3];
-        let disc_e1 = y[4];
-        let disc_e2 = y[5];
-        let disc_e3 = y[6];
-        let carriage_e0 = y[10];
-        let carriage_e1 = y[11];
-        let carriage_e2 = y[12];
-        let carriage_e3 = y[13];
-        let disc_sx = y[14];
-        let disc_sy = y[15];
-        let disc_sz = y[16];
-        let carriage_sx = y[20];
-        let carriage_sy = y[21];
-        let carriage_sz = y[22];
-        let disc_wx = y[17];
-        let disc_wy = y[18];
-        let disc_wz = y[19];
-        let carriage_wx = y[23];
-        let carriage_wy = y[24];
-        let carriage_wz = y[25];
-        let t0 = k(0.2) * disc_wz;
-        let t1 = disc_e1 * disc_e2 - disc_e0 * disc_e3;
-        let t2 = k(0.2) * disc_wy;
-        let t3 = disc_e0 * disc_e2;
-        let t4 = disc_e1 * disc_e3;
-        let t5 = disc_sx - (k(2.0) * (t4 + t3) * t2 - k(2.0) * t1 * t0);
-        let t6 = disc_e0 * disc_e0;
-        let t7 = k(0.5) - (t6 + disc_e2 * disc_e2);
-        let t8 = disc_e0 * disc_e1;
-        let t9 = disc_e2 * disc_e3;
-        let t10 = disc_sy - (k(2.0) * (t9 - t8) * t2 + k(2.0) * t7 * t0);
-        let t11 = t9 + t8;
-        let t12 = k(0.5) - (t6 + disc_e3 * disc_e3);
-        let t13 = k(0.6) * t11 * (disc_sz + (k(2.0) * t12 * t2 + k(2.0) * t11 * t0));
-        let t14 = disc_wz * (k(0.02) * t12)
-            - (disc_wy * (k(0.02) * t11) + disc_wx * (k(0.02) * (t4 - t3)));
-        let t15 = t14 + (t13 - (k(0.6) * t7 * t10 - k(0.6) * t1 * t5));
-        let t16 = k(0.1) * carriage_wz;
-        let t17 = carriage_e0 * carriage_e2;
-        let t18 = carriage_e1 * carriage_e3;
-        let t19 = k(0.1) * carriage_wx;
-        let t20 = carriage_e0 * carriage_e0;
-        let t21 = k(2.0) * (k(0.5) - (t20 + carriage_e3 * carriage_e3)) * t19
-            + k(2.0) * (t18 - t17) * t16;
-        let t22 = carriage_e0 * carriage_e3;
-        let t23 = carriage_e1 * carriage_e2;
-        let t24 = k(2.0) * (carriage_e2 * carriage_e3 - carriage_e0 * carriage_e1) * t19
-            - k(2.0) * (t23 + t22) * t16;
-        let t25 = carriage_wy * (k(0.2) * (t23 - t22))
-            - carriage_wx * (k(0.2) * (k(0.5) - (t20 + carriage_e1 * carriage_e1)));
-        let t26 = carriage_wz * (k(0.2) * (t18 + t17)) + t25
-            + (k(5.0) * (carriage_sy + t24) + (carriage_sz - t21));
-        *dy = [
-            disc_sx,
-            disc_sy,
-            disc_sz,
-            -(k(0.5) * (disc_e1 * disc_wx + disc_e2 * disc_wy + disc_e3 * disc_wz)),
-            k(0.5) * (disc_e0 * disc_wx - disc_e3 * disc_wy + disc_e2 * disc_wz),
-            k(0.5) * (disc_e3 * disc_wx + disc_e0 * disc_wy - disc_e1 * disc_wz),
-            -(k(0.5) * (disc_e2 * disc_wx - disc_e1 * disc_wy - disc_e0 * disc_wz)),
-            carriage_sx,
-            carriage_sy,
-            carriage_sz,
-            -(k(0.5)
-                * (carriage_e1 * carriage_wx + carriage_e2 * carriage_wy
-                    + carriage_e3 * carriage_wz)),
-            k(0.5)
-                * (carriage_e0 * carriage_wx - carriage_e3 * carriage_wy
-                    + carriage_e2 * carriage_wz),
-            k(0.5)
-                * (carriage_e3 * carriage_wx + carriage_e0 * carriage_wy
-                    - carriage_e1 * carriage_wz),
-            -(k(0.5)
-                * (carriage_e2 * carriage_wx - carriage_e1 * carriage_wy
-                    - carriage_e0 * carriage_wz)),
-            accelerations[0],
-            accelerations[1],
-            accelerations[2],
-            accelerations[3],
-            accelerations[4],
-            accelerations[5],
-            accelerations[6],
-            accelerations[7],
-            accelerations[8],
-            accelerations[9],
-            accelerations[10],
-            accelerations[11],
-            t26 + t15,
-        ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for Loads<T> {

@@ -143,6 +143,38 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Motor<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 3]
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 28 operations (9 ±, 19 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let disc_e0 = y[3];
+        let disc_e1 = y[4];
+        let disc_e2 = y[5];
+        let disc_e3 = y[6];
+        let disc_sx = y[7];
+        let disc_sy = y[8];
+        let disc_sz = y[9];
+        let disc_wx = y[10];
+        let disc_wy = y[11];
+        let disc_wz = y[12];
+        *dy = [
+            disc_sx,
+            disc_sy,
+            disc_sz,
+            -(k(0.5) * (disc_e1 * disc_wx + disc_e2 * disc_wy + disc_e3 * disc_wz)),
+            k(0.5) * (disc_e0 * disc_wx - disc_e3 * disc_wy + disc_e2 * disc_wz),
+            k(0.5) * (disc_e3 * disc_wx + disc_e0 * disc_wy - disc_e1 * disc_wz),
+            -(k(0.5) * (disc_e2 * disc_wx - disc_e1 * disc_wy - disc_e0 * disc_wz)),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            disc_wz * self.torque - disc_wz * (k(0.03) * disc_wz),
+        ];
+    }
     /// Writes Φ: 16 operations (6 ±, 10 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
@@ -286,32 +318,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Motor<T> {
         y[13]
     }
 }
-impl<T: gyro_sim::Scalar> Motor<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Charted for Motor<T> {
+    type Vectors = [[T; 4]; 1];
     /// The four-vectors whose largest components are the special Euler parameters: 0 operations (0 ±, 0 ×, 0 ÷).
-    fn chart_vectors(&self, y: &[T; 14]) -> [[T; 4]; 1] {
+    fn chart_vectors(&self, y: &Self::State) -> Self::Vectors {
         let disc_e0 = y[3];
         let disc_e1 = y[4];
         let disc_e2 = y[5];
         let disc_e3 = y[6];
         [[-disc_e3, disc_e2, -disc_e1, disc_e0]]
     }
-}
-impl<T: gyro_sim::Real> gyro_sim::Partition for Motor<T> {
-    type Independent = gyro_sim::charts::Charts<1>;
-    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
-        gyro_sim::charts::best(&self.chart_vectors(y))
-    }
-    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
-        gyro_sim::charts::follow(&self.chart_vectors(y), choice)
-    }
     /// One Newton step of the dependent positions: 128 operations (47 ±, 80 ×, 1 ÷).
-    fn newton_step(
-        &self,
-        _t: T,
-        choice: &Self::Independent,
-        y: &mut Self::State,
-    ) -> ::core::result::Result<(), gyro_sim::Error> {
-        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
+    fn newton_step_on(&self, _t: T, charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let disc_e0 = y[3];
         let disc_e1 = y[4];
@@ -362,15 +380,9 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Motor<T> {
         y[4] = -t29;
         y[5] = -t30;
         y[6] = -t31;
-        Ok(())
     }
     /// Solves eq. (19) for the dependent velocities: 37 operations (13 ±, 23 ×, 1 ÷).
-    fn solve_velocities(
-        &self,
-        _t: T,
-        _choice: &Self::Independent,
-        y: &mut Self::State,
-    ) -> ::core::result::Result<(), gyro_sim::Error> {
+    fn solve_velocities_on(&self, _t: T, _charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let disc_e0 = y[3];
         let disc_e1 = y[4];
@@ -393,39 +405,43 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Motor<T> {
         y[9] = k(0.0);
         y[10] = disc_wx + t9 * (t2 * t7) - t8 * (t6 * t7);
         y[11] = disc_wy - t9 * (t5 * t7) + t8 * (t3 * t7);
+    }
+}
+impl<T: gyro_sim::Real> gyro_sim::Partition for Motor<T> {
+    type Independent = gyro_sim::charts::Charts<1>;
+    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
+        gyro_sim::charts::best(&gyro_sim::Charted::chart_vectors(self, y))
+    }
+    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
+        gyro_sim::charts::follow(&gyro_sim::Charted::chart_vectors(self, y), choice)
+    }
+    fn newton_step(
+        &self,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::newton_step_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
         Ok(())
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 28 operations (9 ±, 19 ×, 0 ÷).
-    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = gyro_sim::Equations::velocities(self);
-        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
-        let k = T::constant;
-        let disc_e0 = y[3];
-        let disc_e1 = y[4];
-        let disc_e2 = y[5];
-        let disc_e3 = y[6];
-        let disc_sx = y[7];
-        let disc_sy = y[8];
-        let disc_sz = y[9];
-        let disc_wx = y[10];
-        let disc_wy = y[11];
-        let disc_wz = y[12];
-        *dy = [
-            disc_sx,
-            disc_sy,
-            disc_sz,
-            -(k(0.5) * (disc_e1 * disc_wx + disc_e2 * disc_wy + disc_e3 * disc_wz)),
-            k(0.5) * (disc_e0 * disc_wx - disc_e3 * disc_wy + disc_e2 * disc_wz),
-            k(0.5) * (disc_e3 * disc_wx + disc_e0 * disc_wy - disc_e1 * disc_wz),
-            -(k(0.5) * (disc_e2 * disc_wx - disc_e1 * disc_wy - disc_e0 * disc_wz)),
-            accelerations[0],
-            accelerations[1],
-            accelerations[2],
-            accelerations[3],
-            accelerations[4],
-            accelerations[5],
-            disc_wz * self.torque - disc_wz * (k(0.03) * disc_wz),
-        ];
+    fn solve_velocities(
+        &self,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::solve_velocities_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
+        Ok(())
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for Motor<T> {

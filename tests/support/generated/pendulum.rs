@@ -144,6 +144,37 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Pendulum<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 3]
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let rod_e0 = y[3];
+        let rod_e1 = y[4];
+        let rod_e2 = y[5];
+        let rod_e3 = y[6];
+        let rod_sx = y[7];
+        let rod_sy = y[8];
+        let rod_sz = y[9];
+        let rod_wx = y[10];
+        let rod_wy = y[11];
+        let rod_wz = y[12];
+        *dy = [
+            rod_sx,
+            rod_sy,
+            rod_sz,
+            -(k(0.5) * (rod_e1 * rod_wx + rod_e2 * rod_wy + rod_e3 * rod_wz)),
+            k(0.5) * (rod_e0 * rod_wx - rod_e3 * rod_wy + rod_e2 * rod_wz),
+            k(0.5) * (rod_e3 * rod_wx + rod_e0 * rod_wy - rod_e1 * rod_wz),
+            -(k(0.5) * (rod_e2 * rod_wx - rod_e1 * rod_wy - rod_e0 * rod_wz)),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+        ];
+    }
     /// Writes Φ: 24 operations (12 ±, 12 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
@@ -300,32 +331,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Pendulum<T> {
         T::constant(0.0)
     }
 }
-impl<T: gyro_sim::Scalar> Pendulum<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Charted for Pendulum<T> {
+    type Vectors = [[T; 4]; 1];
     /// The four-vectors whose largest components are the special Euler parameters: 0 operations (0 ±, 0 ×, 0 ÷).
-    fn chart_vectors(&self, y: &[T; 13]) -> [[T; 4]; 1] {
+    fn chart_vectors(&self, y: &Self::State) -> Self::Vectors {
         let rod_e0 = y[3];
         let rod_e1 = y[4];
         let rod_e2 = y[5];
         let rod_e3 = y[6];
         [[-rod_e3, rod_e2, -rod_e1, rod_e0]]
     }
-}
-impl<T: gyro_sim::Real> gyro_sim::Partition for Pendulum<T> {
-    type Independent = gyro_sim::charts::Charts<1>;
-    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
-        gyro_sim::charts::best(&self.chart_vectors(y))
-    }
-    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
-        gyro_sim::charts::follow(&self.chart_vectors(y), choice)
-    }
     /// One Newton step of the dependent positions: 138 operations (51 ±, 86 ×, 1 ÷).
-    fn newton_step(
-        &self,
-        _t: T,
-        choice: &Self::Independent,
-        y: &mut Self::State,
-    ) -> ::core::result::Result<(), gyro_sim::Error> {
-        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
+    fn newton_step_on(&self, _t: T, charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let rod_e0 = y[3];
         let rod_e1 = y[4];
@@ -375,15 +392,9 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Pendulum<T> {
         y[4] = -t29;
         y[5] = -t30;
         y[6] = -t31;
-        Ok(())
     }
     /// Solves eq. (19) for the dependent velocities: 63 operations (21 ±, 41 ×, 1 ÷).
-    fn solve_velocities(
-        &self,
-        _t: T,
-        _choice: &Self::Independent,
-        y: &mut Self::State,
-    ) -> ::core::result::Result<(), gyro_sim::Error> {
+    fn solve_velocities_on(&self, _t: T, _charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let rod_e0 = y[3];
         let rod_e1 = y[4];
@@ -413,38 +424,43 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Pendulum<T> {
         y[9] = k(0.5) * t14;
         y[10] = rod_wx + t9 * (t5 * t7) - t8 * (t6 * t7);
         y[11] = t10;
+    }
+}
+impl<T: gyro_sim::Real> gyro_sim::Partition for Pendulum<T> {
+    type Independent = gyro_sim::charts::Charts<1>;
+    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
+        gyro_sim::charts::best(&gyro_sim::Charted::chart_vectors(self, y))
+    }
+    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
+        gyro_sim::charts::follow(&gyro_sim::Charted::chart_vectors(self, y), choice)
+    }
+    fn newton_step(
+        &self,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::newton_step_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
         Ok(())
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
-    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = gyro_sim::Equations::velocities(self);
-        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
-        let k = T::constant;
-        let rod_e0 = y[3];
-        let rod_e1 = y[4];
-        let rod_e2 = y[5];
-        let rod_e3 = y[6];
-        let rod_sx = y[7];
-        let rod_sy = y[8];
-        let rod_sz = y[9];
-        let rod_wx = y[10];
-        let rod_wy = y[11];
-        let rod_wz = y[12];
-        *dy = [
-            rod_sx,
-            rod_sy,
-            rod_sz,
-            -(k(0.5) * (rod_e1 * rod_wx + rod_e2 * rod_wy + rod_e3 * rod_wz)),
-            k(0.5) * (rod_e0 * rod_wx - rod_e3 * rod_wy + rod_e2 * rod_wz),
-            k(0.5) * (rod_e3 * rod_wx + rod_e0 * rod_wy - rod_e1 * rod_wz),
-            -(k(0.5) * (rod_e2 * rod_wx - rod_e1 * rod_wy - rod_e0 * rod_wz)),
-            accelerations[0],
-            accelerations[1],
-            accelerations[2],
-            accelerations[3],
-            accelerations[4],
-            accelerations[5],
-        ];
+    fn solve_velocities(
+        &self,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::solve_velocities_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
+        Ok(())
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for Pendulum<T> {

@@ -141,6 +141,38 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Screw<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 3]
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let nut_e0 = y[3];
+        let nut_e1 = y[4];
+        let nut_e2 = y[5];
+        let nut_e3 = y[6];
+        let nut_sx = y[7];
+        let nut_sy = y[8];
+        let nut_sz = y[9];
+        let nut_wx = y[10];
+        let nut_wy = y[11];
+        let nut_wz = y[12];
+        *dy = [
+            nut_sx,
+            nut_sy,
+            nut_sz,
+            -(k(0.5) * (nut_e1 * nut_wx + nut_e2 * nut_wy + nut_e3 * nut_wz)),
+            k(0.5) * (nut_e0 * nut_wx - nut_e3 * nut_wy + nut_e2 * nut_wz),
+            k(0.5) * (nut_e3 * nut_wx + nut_e0 * nut_wy - nut_e1 * nut_wz),
+            -(k(0.5) * (nut_e2 * nut_wx - nut_e1 * nut_wy - nut_e0 * nut_wz)),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            nut_wz,
+        ];
+    }
     /// Writes Φ: 31 operations (12 ±, 19 ×, 0 ÷) and 3 functions.
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
@@ -322,38 +354,6 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Screw<T> {
         y: &mut Self::State,
     ) -> ::core::result::Result<(), gyro_sim::Error> {
         gyro_sim::pivoting::solve_velocities(self, t, choice, y)
-    }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
-    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = gyro_sim::Equations::velocities(self);
-        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
-        let k = T::constant;
-        let nut_e0 = y[3];
-        let nut_e1 = y[4];
-        let nut_e2 = y[5];
-        let nut_e3 = y[6];
-        let nut_sx = y[7];
-        let nut_sy = y[8];
-        let nut_sz = y[9];
-        let nut_wx = y[10];
-        let nut_wy = y[11];
-        let nut_wz = y[12];
-        *dy = [
-            nut_sx,
-            nut_sy,
-            nut_sz,
-            -(k(0.5) * (nut_e1 * nut_wx + nut_e2 * nut_wy + nut_e3 * nut_wz)),
-            k(0.5) * (nut_e0 * nut_wx - nut_e3 * nut_wy + nut_e2 * nut_wz),
-            k(0.5) * (nut_e3 * nut_wx + nut_e0 * nut_wy - nut_e1 * nut_wz),
-            -(k(0.5) * (nut_e2 * nut_wx - nut_e1 * nut_wy - nut_e0 * nut_wz)),
-            accelerations[0],
-            accelerations[1],
-            accelerations[2],
-            accelerations[3],
-            accelerations[4],
-            accelerations[5],
-            nut_wz,
-        ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for Screw<T> {

@@ -205,6 +205,90 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Stops<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 5]
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 104 operations (42 ±, 59 ×, 3 ÷) and 7 functions.
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let hammer_rz = y[2];
+        let hammer_e0 = y[3];
+        let hammer_e1 = y[4];
+        let hammer_e2 = y[5];
+        let hammer_e3 = y[6];
+        let disc_e0 = y[10];
+        let disc_e1 = y[11];
+        let disc_e2 = y[12];
+        let disc_e3 = y[13];
+        let hammer_sx = y[14];
+        let hammer_sy = y[15];
+        let hammer_sz = y[16];
+        let disc_sx = y[20];
+        let disc_sy = y[21];
+        let disc_sz = y[22];
+        let hammer_wx = y[17];
+        let hammer_wy = y[18];
+        let hammer_wz = y[19];
+        let disc_wx = y[23];
+        let disc_wy = y[24];
+        let disc_wz = y[25];
+        let turn0 = y[27];
+        let t0 = turn0.cos();
+        let t1 = k(2.0) * (k(0.5) - (disc_e0 * disc_e0 + disc_e1 * disc_e1));
+        let t2 = turn0.sin();
+        let t3 = k(2.0) * (disc_e1 * disc_e2 + disc_e0 * disc_e3);
+        let t4 = (t3 * t0 + t1 * t2).atan2(t3 * t2 - t1 * t0);
+        let t5 = turn0 + t4;
+        let t6 = k(15.7) - t5;
+        let t7 = (k(0.0025) + t6 * t6).sqrt();
+        let t8 = disc_wz * (k(0.05) * (k(1.0) - t6 / t7)) - k(25.0) * (t6 - t7);
+        let t9 = hammer_rz - k(0.8);
+        let t10 = (t9 * t9 + k(0.0004)).sqrt();
+        let t11 = k(1500.0) * (t9 + t10) + hammer_sz * (k(1.0) + t9 / t10);
+        let t12 = (hammer_rz * hammer_rz + k(0.0001)).sqrt();
+        let t13 = k(2000.0) * (hammer_rz - t12)
+            + hammer_sz * (k(2.5) * (k(1.0) - hammer_rz / t12));
+        let t14 = k(9.5) + t5;
+        let t15 = disc_wz * (k(20.0) * (t14 - (k(0.0025) + t14 * t14).sqrt()))
+            + (hammer_sz * t13 + hammer_sz * t11 + disc_wz * t8);
+        *dy = [
+            hammer_sx,
+            hammer_sy,
+            hammer_sz,
+            -(k(0.5)
+                * (hammer_e1 * hammer_wx + hammer_e2 * hammer_wy
+                    + hammer_e3 * hammer_wz)),
+            k(0.5)
+                * (hammer_e0 * hammer_wx - hammer_e3 * hammer_wy
+                    + hammer_e2 * hammer_wz),
+            k(0.5)
+                * (hammer_e3 * hammer_wx + hammer_e0 * hammer_wy
+                    - hammer_e1 * hammer_wz),
+            -(k(0.5)
+                * (hammer_e2 * hammer_wx - hammer_e1 * hammer_wy
+                    - hammer_e0 * hammer_wz)),
+            disc_sx,
+            disc_sy,
+            disc_sz,
+            -(k(0.5) * (disc_e1 * disc_wx + disc_e2 * disc_wy + disc_e3 * disc_wz)),
+            k(0.5) * (disc_e0 * disc_wx - disc_e3 * disc_wy + disc_e2 * disc_wz),
+            k(0.5) * (disc_e3 * disc_wx + disc_e0 * disc_wy - disc_e1 * disc_wz),
+            -(k(0.5) * (disc_e2 * disc_wx - disc_e1 * disc_wy - disc_e0 * disc_wz)),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            accelerations[6],
+            accelerations[7],
+            accelerations[8],
+            accelerations[9],
+            accelerations[10],
+            accelerations[11],
+            -t15,
+            disc_wz,
+        ];
+    }
     /// Writes Φ: 37 operations (14 ±, 23 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
@@ -459,90 +543,6 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Stops<T> {
         y: &mut Self::State,
     ) -> ::core::result::Result<(), gyro_sim::Error> {
         gyro_sim::pivoting::solve_velocities(self, t, choice, y)
-    }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 104 operations (42 ±, 59 ×, 3 ÷) and 7 functions.
-    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = gyro_sim::Equations::velocities(self);
-        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
-        let k = T::constant;
-        let hammer_rz = y[2];
-        let hammer_e0 = y[3];
-        let hammer_e1 = y[4];
-        let hammer_e2 = y[5];
-        let hammer_e3 = y[6];
-        let disc_e0 = y[10];
-        let disc_e1 = y[11];
-        let disc_e2 = y[12];
-        let disc_e3 = y[13];
-        let hammer_sx = y[14];
-        let hammer_sy = y[15];
-        let hammer_sz = y[16];
-        let disc_sx = y[20];
-        let disc_sy = y[21];
-        let disc_sz = y[22];
-        let hammer_wx = y[17];
-        let hammer_wy = y[18];
-        let hammer_wz = y[19];
-        let disc_wx = y[23];
-        let disc_wy = y[24];
-        let disc_wz = y[25];
-        let turn0 = y[27];
-        let t0 = turn0.cos();
-        let t1 = k(2.0) * (k(0.5) - (disc_e0 * disc_e0 + disc_e1 * disc_e1));
-        let t2 = turn0.sin();
-        let t3 = k(2.0) * (disc_e1 * disc_e2 + disc_e0 * disc_e3);
-        let t4 = (t3 * t0 + t1 * t2).atan2(t3 * t2 - t1 * t0);
-        let t5 = turn0 + t4;
-        let t6 = k(15.7) - t5;
-        let t7 = (k(0.0025) + t6 * t6).sqrt();
-        let t8 = disc_wz * (k(0.05) * (k(1.0) - t6 / t7)) - k(25.0) * (t6 - t7);
-        let t9 = hammer_rz - k(0.8);
-        let t10 = (t9 * t9 + k(0.0004)).sqrt();
-        let t11 = k(1500.0) * (t9 + t10) + hammer_sz * (k(1.0) + t9 / t10);
-        let t12 = (hammer_rz * hammer_rz + k(0.0001)).sqrt();
-        let t13 = k(2000.0) * (hammer_rz - t12)
-            + hammer_sz * (k(2.5) * (k(1.0) - hammer_rz / t12));
-        let t14 = k(9.5) + t5;
-        let t15 = disc_wz * (k(20.0) * (t14 - (k(0.0025) + t14 * t14).sqrt()))
-            + (hammer_sz * t13 + hammer_sz * t11 + disc_wz * t8);
-        *dy = [
-            hammer_sx,
-            hammer_sy,
-            hammer_sz,
-            -(k(0.5)
-                * (hammer_e1 * hammer_wx + hammer_e2 * hammer_wy
-                    + hammer_e3 * hammer_wz)),
-            k(0.5)
-                * (hammer_e0 * hammer_wx - hammer_e3 * hammer_wy
-                    + hammer_e2 * hammer_wz),
-            k(0.5)
-                * (hammer_e3 * hammer_wx + hammer_e0 * hammer_wy
-                    - hammer_e1 * hammer_wz),
-            -(k(0.5)
-                * (hammer_e2 * hammer_wx - hammer_e1 * hammer_wy
-                    - hammer_e0 * hammer_wz)),
-            disc_sx,
-            disc_sy,
-            disc_sz,
-            -(k(0.5) * (disc_e1 * disc_wx + disc_e2 * disc_wy + disc_e3 * disc_wz)),
-            k(0.5) * (disc_e0 * disc_wx - disc_e3 * disc_wy + disc_e2 * disc_wz),
-            k(0.5) * (disc_e3 * disc_wx + disc_e0 * disc_wy - disc_e1 * disc_wz),
-            -(k(0.5) * (disc_e2 * disc_wx - disc_e1 * disc_wy - disc_e0 * disc_wz)),
-            accelerations[0],
-            accelerations[1],
-            accelerations[2],
-            accelerations[3],
-            accelerations[4],
-            accelerations[5],
-            accelerations[6],
-            accelerations[7],
-            accelerations[8],
-            accelerations[9],
-            accelerations[10],
-            accelerations[11],
-            -t15,
-            disc_wz,
-        ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for Stops<T> {

@@ -143,6 +143,44 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Tether<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 0]
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 40 operations (12 ±, 27 ×, 1 ÷) and 1 functions.
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let bob_rx = y[0];
+        let bob_ry = y[1];
+        let bob_rz = y[2];
+        let bob_e0 = y[3];
+        let bob_e1 = y[4];
+        let bob_e2 = y[5];
+        let bob_e3 = y[6];
+        let bob_sx = y[7];
+        let bob_sy = y[8];
+        let bob_sz = y[9];
+        let bob_wx = y[10];
+        let bob_wy = y[11];
+        let bob_wz = y[12];
+        let t0 = k(1.0) / (bob_rx * bob_rx + bob_ry * bob_ry + bob_rz * bob_rz).sqrt();
+        let t1 = bob_sx * (bob_rx * t0) + bob_sy * (bob_ry * t0)
+            + bob_sz * (bob_rz * t0);
+        *dy = [
+            bob_sx,
+            bob_sy,
+            bob_sz,
+            -(k(0.5) * (bob_e1 * bob_wx + bob_e2 * bob_wy + bob_e3 * bob_wz)),
+            k(0.5) * (bob_e0 * bob_wx - bob_e3 * bob_wy + bob_e2 * bob_wz),
+            k(0.5) * (bob_e3 * bob_wx + bob_e0 * bob_wy - bob_e1 * bob_wz),
+            -(k(0.5) * (bob_e2 * bob_wx - bob_e1 * bob_wy - bob_e0 * bob_wz)),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            -(t1 * (k(0.3) * t1)),
+        ];
+    }
     /// Writes Φ: 8 operations (4 ±, 4 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
@@ -226,32 +264,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Tether<T> {
         y[13]
     }
 }
-impl<T: gyro_sim::Scalar> Tether<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Charted for Tether<T> {
+    type Vectors = [[T; 4]; 1];
     /// The four-vectors whose largest components are the special Euler parameters: 0 operations (0 ±, 0 ×, 0 ÷).
-    fn chart_vectors(&self, y: &[T; 14]) -> [[T; 4]; 1] {
+    fn chart_vectors(&self, y: &Self::State) -> Self::Vectors {
         let bob_e0 = y[3];
         let bob_e1 = y[4];
         let bob_e2 = y[5];
         let bob_e3 = y[6];
         [[bob_e0, bob_e1, bob_e2, bob_e3]]
     }
-}
-impl<T: gyro_sim::Real> gyro_sim::Partition for Tether<T> {
-    type Independent = gyro_sim::charts::Charts<1>;
-    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
-        gyro_sim::charts::best(&self.chart_vectors(y))
-    }
-    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
-        gyro_sim::charts::follow(&self.chart_vectors(y), choice)
-    }
     /// One Newton step of the dependent positions: 25 operations (11 ±, 13 ×, 1 ÷).
-    fn newton_step(
-        &self,
-        _t: T,
-        choice: &Self::Independent,
-        y: &mut Self::State,
-    ) -> ::core::result::Result<(), gyro_sim::Error> {
-        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
+    fn newton_step_on(&self, _t: T, charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let bob_e0 = y[3];
         let bob_e1 = y[4];
@@ -269,54 +293,45 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Tether<T> {
         y[4] = bob_e1 + chart0_1 * t2;
         y[5] = bob_e2 + chart0_2 * t2;
         y[6] = bob_e3 + chart0_3 * t2;
-        Ok(())
     }
     /// Solves eq. (19) for the dependent velocities: 0 operations (0 ±, 0 ×, 0 ÷).
-    fn solve_velocities(
+    fn solve_velocities_on(&self, _t: T, _charts: &Self::Vectors, _y: &mut Self::State) {}
+}
+impl<T: gyro_sim::Real> gyro_sim::Partition for Tether<T> {
+    type Independent = gyro_sim::charts::Charts<1>;
+    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
+        gyro_sim::charts::best(&gyro_sim::Charted::chart_vectors(self, y))
+    }
+    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
+        gyro_sim::charts::follow(&gyro_sim::Charted::chart_vectors(self, y), choice)
+    }
+    fn newton_step(
         &self,
-        _t: T,
-        _choice: &Self::Independent,
-        _y: &mut Self::State,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
     ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::newton_step_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
         Ok(())
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 40 operations (12 ±, 27 ×, 1 ÷) and 1 functions.
-    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = gyro_sim::Equations::velocities(self);
-        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
-        let k = T::constant;
-        let bob_rx = y[0];
-        let bob_ry = y[1];
-        let bob_rz = y[2];
-        let bob_e0 = y[3];
-        let bob_e1 = y[4];
-        let bob_e2 = y[5];
-        let bob_e3 = y[6];
-        let bob_sx = y[7];
-        let bob_sy = y[8];
-        let bob_sz = y[9];
-        let bob_wx = y[10];
-        let bob_wy = y[11];
-        let bob_wz = y[12];
-        let t0 = k(1.0) / (bob_rx * bob_rx + bob_ry * bob_ry + bob_rz * bob_rz).sqrt();
-        let t1 = bob_sx * (bob_rx * t0) + bob_sy * (bob_ry * t0)
-            + bob_sz * (bob_rz * t0);
-        *dy = [
-            bob_sx,
-            bob_sy,
-            bob_sz,
-            -(k(0.5) * (bob_e1 * bob_wx + bob_e2 * bob_wy + bob_e3 * bob_wz)),
-            k(0.5) * (bob_e0 * bob_wx - bob_e3 * bob_wy + bob_e2 * bob_wz),
-            k(0.5) * (bob_e3 * bob_wx + bob_e0 * bob_wy - bob_e1 * bob_wz),
-            -(k(0.5) * (bob_e2 * bob_wx - bob_e1 * bob_wy - bob_e0 * bob_wz)),
-            accelerations[0],
-            accelerations[1],
-            accelerations[2],
-            accelerations[3],
-            accelerations[4],
-            accelerations[5],
-            -(t1 * (k(0.3) * t1)),
-        ];
+    fn solve_velocities(
+        &self,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::solve_velocities_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
+        Ok(())
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for Tether<T> {

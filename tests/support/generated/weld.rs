@@ -184,6 +184,64 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Weld<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 3]
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 48 operations (16 ±, 32 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let inner_e0 = y[3];
+        let inner_e1 = y[4];
+        let inner_e2 = y[5];
+        let inner_e3 = y[6];
+        let outer_e0 = y[10];
+        let outer_e1 = y[11];
+        let outer_e2 = y[12];
+        let outer_e3 = y[13];
+        let inner_sx = y[14];
+        let inner_sy = y[15];
+        let inner_sz = y[16];
+        let outer_sx = y[20];
+        let outer_sy = y[21];
+        let outer_sz = y[22];
+        let inner_wx = y[17];
+        let inner_wy = y[18];
+        let inner_wz = y[19];
+        let outer_wx = y[23];
+        let outer_wy = y[24];
+        let outer_wz = y[25];
+        *dy = [
+            inner_sx,
+            inner_sy,
+            inner_sz,
+            -(k(0.5)
+                * (inner_e1 * inner_wx + inner_e2 * inner_wy + inner_e3 * inner_wz)),
+            k(0.5) * (inner_e0 * inner_wx - inner_e3 * inner_wy + inner_e2 * inner_wz),
+            k(0.5) * (inner_e3 * inner_wx + inner_e0 * inner_wy - inner_e1 * inner_wz),
+            -(k(0.5)
+                * (inner_e2 * inner_wx - inner_e1 * inner_wy - inner_e0 * inner_wz)),
+            outer_sx,
+            outer_sy,
+            outer_sz,
+            -(k(0.5)
+                * (outer_e1 * outer_wx + outer_e2 * outer_wy + outer_e3 * outer_wz)),
+            k(0.5) * (outer_e0 * outer_wx - outer_e3 * outer_wy + outer_e2 * outer_wz),
+            k(0.5) * (outer_e3 * outer_wx + outer_e0 * outer_wy - outer_e1 * outer_wz),
+            -(k(0.5)
+                * (outer_e2 * outer_wx - outer_e1 * outer_wy - outer_e0 * outer_wz)),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            accelerations[6],
+            accelerations[7],
+            accelerations[8],
+            accelerations[9],
+            accelerations[10],
+            accelerations[11],
+        ];
+    }
     /// Writes Φ: 95 operations (46 ±, 49 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
@@ -477,32 +535,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Weld<T> {
         T::constant(0.0)
     }
 }
-impl<T: gyro_sim::Scalar> Weld<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Charted for Weld<T> {
+    type Vectors = [[T; 4]; 1];
     /// The four-vectors whose largest components are the special Euler parameters: 0 operations (0 ±, 0 ×, 0 ÷).
-    fn chart_vectors(&self, y: &[T; 26]) -> [[T; 4]; 1] {
+    fn chart_vectors(&self, y: &Self::State) -> Self::Vectors {
         let inner_e0 = y[3];
         let inner_e1 = y[4];
         let inner_e2 = y[5];
         let inner_e3 = y[6];
         [[-inner_e3, inner_e2, -inner_e1, inner_e0]]
     }
-}
-impl<T: gyro_sim::Real> gyro_sim::Partition for Weld<T> {
-    type Independent = gyro_sim::charts::Charts<1>;
-    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
-        gyro_sim::charts::best(&self.chart_vectors(y))
-    }
-    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
-        gyro_sim::charts::follow(&self.chart_vectors(y), choice)
-    }
     /// One Newton step of the dependent positions: 296 operations (107 ±, 187 ×, 2 ÷).
-    fn newton_step(
-        &self,
-        _t: T,
-        choice: &Self::Independent,
-        y: &mut Self::State,
-    ) -> ::core::result::Result<(), gyro_sim::Error> {
-        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
+    fn newton_step_on(&self, _t: T, charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let inner_e0 = y[3];
         let inner_e1 = y[4];
@@ -615,15 +659,9 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Weld<T> {
         y[11] = -t79;
         y[12] = -t80;
         y[13] = -t78;
-        Ok(())
     }
     /// Solves eq. (19) for the dependent velocities: 206 operations (73 ±, 131 ×, 2 ÷).
-    fn solve_velocities(
-        &self,
-        _t: T,
-        _choice: &Self::Independent,
-        y: &mut Self::State,
-    ) -> ::core::result::Result<(), gyro_sim::Error> {
+    fn solve_velocities_on(&self, _t: T, _charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let inner_e0 = y[3];
         let inner_e1 = y[4];
@@ -707,65 +745,43 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Weld<T> {
         y[23] = t55;
         y[24] = t54;
         y[25] = t56;
+    }
+}
+impl<T: gyro_sim::Real> gyro_sim::Partition for Weld<T> {
+    type Independent = gyro_sim::charts::Charts<1>;
+    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
+        gyro_sim::charts::best(&gyro_sim::Charted::chart_vectors(self, y))
+    }
+    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
+        gyro_sim::charts::follow(&gyro_sim::Charted::chart_vectors(self, y), choice)
+    }
+    fn newton_step(
+        &self,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::newton_step_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
         Ok(())
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 48 operations (16 ±, 32 ×, 0 ÷).
-    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = gyro_sim::Equations::velocities(self);
-        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
-        let k = T::constant;
-        let inner_e0 = y[3];
-        let inner_e1 = y[4];
-        let inner_e2 = y[5];
-        let inner_e3 = y[6];
-        let outer_e0 = y[10];
-        let outer_e1 = y[11];
-        let outer_e2 = y[12];
-        let outer_e3 = y[13];
-        let inner_sx = y[14];
-        let inner_sy = y[15];
-        let inner_sz = y[16];
-        let outer_sx = y[20];
-        let outer_sy = y[21];
-        let outer_sz = y[22];
-        let inner_wx = y[17];
-        let inner_wy = y[18];
-        let inner_wz = y[19];
-        let outer_wx = y[23];
-        let outer_wy = y[24];
-        let outer_wz = y[25];
-        *dy = [
-            inner_sx,
-            inner_sy,
-            inner_sz,
-            -(k(0.5)
-                * (inner_e1 * inner_wx + inner_e2 * inner_wy + inner_e3 * inner_wz)),
-            k(0.5) * (inner_e0 * inner_wx - inner_e3 * inner_wy + inner_e2 * inner_wz),
-            k(0.5) * (inner_e3 * inner_wx + inner_e0 * inner_wy - inner_e1 * inner_wz),
-            -(k(0.5)
-                * (inner_e2 * inner_wx - inner_e1 * inner_wy - inner_e0 * inner_wz)),
-            outer_sx,
-            outer_sy,
-            outer_sz,
-            -(k(0.5)
-                * (outer_e1 * outer_wx + outer_e2 * outer_wy + outer_e3 * outer_wz)),
-            k(0.5) * (outer_e0 * outer_wx - outer_e3 * outer_wy + outer_e2 * outer_wz),
-            k(0.5) * (outer_e3 * outer_wx + outer_e0 * outer_wy - outer_e1 * outer_wz),
-            -(k(0.5)
-                * (outer_e2 * outer_wx - outer_e1 * outer_wy - outer_e0 * outer_wz)),
-            accelerations[0],
-            accelerations[1],
-            accelerations[2],
-            accelerations[3],
-            accelerations[4],
-            accelerations[5],
-            accelerations[6],
-            accelerations[7],
-            accelerations[8],
-            accelerations[9],
-            accelerations[10],
-            accelerations[11],
-        ];
+    fn solve_velocities(
+        &self,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::solve_velocities_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
+        Ok(())
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for Weld<T> {
