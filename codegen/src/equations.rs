@@ -10,10 +10,12 @@ use crate::kinematics::{Kinematics, Matrix, non_zeros};
 use crate::normal_form::vanishes;
 use crate::outputs::{self, Sources};
 use crate::partition::Partition;
+use crate::schedule::cheapest;
 use crate::symbol::Symbol;
 use crate::system::System;
 use crate::{coordinate, null_space, readings, saddle};
 use gyro_model::{Model, Spline, Start};
+use std::collections::HashMap;
 
 /// Non-zeros with their places.
 pub type Sparse = Vec<(usize, usize, ExprId)>;
@@ -85,9 +87,11 @@ impl<'m> Equations<'m> {
         let partition = Partition::covers(&system).then(|| Partition::derive(&mut system, &kinematics));
         let position_rates = position_rates(&mut system);
         let joint_space = JointSpace::covers(&system).then(|| {
-            JointSpace::derive(&mut system, &kinematics, &dynamics, model.has_work().then_some(power), start)
+            let power = model.has_work().then_some(power);
+            JointSpace::derive(&mut system, &kinematics, &dynamics, &solution.accelerations, power, start)
         });
 
+        let by_euler_parameters = relative_rotations(&mut system);
         let definitions = std::mem::take(&mut system.definitions);
         let mut expansion = Expansion::new(&definitions);
         let euler = euler_parameters(&mut system.graph, system.slots.len());
@@ -95,6 +99,11 @@ impl<'m> Equations<'m> {
         let mut phi_pi = non_zeros(&expand_matrix(&mut expansion, graph, &kinematics.phi_pi));
         // A product of two vectors of one body does not change as the body turns.
         phi_pi.retain(|&(.., entry)| !vanishes(graph, &euler, entry));
+        let solved: Vec<_> = solution.accelerations.iter().chain(&solution.closing).copied().collect();
+        let mut relative = Expansion::with_values(&definitions, by_euler_parameters);
+        let candidates = vec![expansion.all(graph, &solved), relative.all(graph, &solved)];
+        let mut solved = cheapest(graph, candidates);
+        let closing = solved.split_off(solution.accelerations.len());
         let all_phi: Vec<_> = kinematics.phi.iter().chain(&kinematics.normalisations).copied().collect();
         Self {
             model,
@@ -105,8 +114,8 @@ impl<'m> Equations<'m> {
             gamma: expansion.all(graph, &kinematics.gamma),
             velocity_residual: expansion.all(graph, &kinematics.velocity_residual),
             applied_force: expansion.all(graph, &dynamics.applied_force),
-            accelerations: expansion.all(graph, &solution.accelerations),
-            closing: expansion.all(graph, &solution.closing),
+            accelerations: solved,
+            closing,
             lambda: expansion.all(graph, &solution.lambda),
             position_rates,
             power: model.has_work().then(|| expansion.of(graph, power)),
@@ -159,6 +168,21 @@ fn position_rates(system: &mut System) -> Vec<ExprId> {
         pose.s.into_iter().chain(p_rate)
     });
     rates.collect()
+}
+
+/// `A_iᵀ A_j = A(p_i* p_j)` of each joint: eq. (4) for unit p, in fewer operations where A_i and A_j are not needed anyhow.
+fn relative_rotations(system: &mut System) -> HashMap<Symbol, ExprId> {
+    let mut values = HashMap::new();
+    for (joint, frames) in system.joints.clone().iter().enumerate() {
+        let p = readings::relative_euler(system, frames);
+        let rotation = system.graph.rotation(&p);
+        for (row, entries) in rotation.iter().enumerate() {
+            for (column, &entry) in entries.iter().enumerate() {
+                values.insert(Symbol::Relative { joint, row, column }, entry);
+            }
+        }
+    }
+    values
 }
 
 fn expand_matrix(expansion: &mut Expansion, graph: &mut Graph, matrix: &Matrix) -> Matrix {

@@ -8,6 +8,7 @@ use crate::differentiate::Derivative;
 use crate::graph::{ExprId, Graph};
 use crate::kinematics::Kinematics;
 use crate::linear::{Mat3, UNIT3, Vec3, ZERO3};
+use crate::steering::Steering;
 use crate::system::{End, JointFrames, System};
 use gyro_model::{Attachment, JointCoordinate, JointKind, Link, RowOwner};
 use std::ops::Range;
@@ -37,6 +38,10 @@ pub struct Freedom {
     pub rows: Range<usize>,
     /// Right inverse: twist `k` changes row `k` at unit rate and no other.
     pub forced: Vec<Twist>,
+    /// The acceleration that the rows force upon the body, its parent at rest: γ times the right inverse.
+    pub bias: Twist,
+    /// The short way to its rotation.
+    pub steering: Option<Steering>,
 }
 
 /// The parent's end of a joint.
@@ -75,13 +80,19 @@ impl Freedom {
         }
     }
 
+    /// In a tree that has no rows, all vectors in the bodies' own frames.
+    pub fn of_tree(slot: usize, parent: Option<Parent>, point: Vec3, free: Vec<Twist>) -> Self {
+        let (frame, bias) = (UNIT3, Twist::ZERO);
+        Self { slot, parent, point, frame, free, rows: 0..0, forced: Vec::new(), bias, steering: None }
+    }
+
     /// Nothing holds the body.
     fn whole(system: &System, slot: usize) -> Self {
         let translations = UNIT3.map(|t| Twist { t, rho: ZERO3 });
         let rotations = UNIT3.map(|rho| Twist { t: ZERO3, rho });
         let free = translations.into_iter().chain(rotations).collect();
         let frame = system.poses[system.slots[slot]].a;
-        Self { slot, parent: None, point: ZERO3, frame, free, rows: 0..0, forced: Vec::new() }
+        Self { frame, ..Self::of_tree(slot, None, ZERO3, free) }
     }
 
     /// The body's own six rows hold it.
@@ -91,9 +102,10 @@ impl Freedom {
         let rotations = right_inverse(&mut system.graph, &gradients, &[]);
         let translations = UNIT3.map(|t| Twist { t, rho: ZERO3 });
         let rotations = rotations.into_iter().map(|rho| Twist { t: ZERO3, rho });
-        let forced = translations.into_iter().chain(rotations).collect();
+        let forced: Vec<_> = translations.into_iter().chain(rotations).collect();
         let frame = system.poses[body].a;
-        Self { slot, parent: None, point: ZERO3, frame, free: Vec::new(), rows, forced }
+        let bias = accelerated(&mut system.graph, &kinematics.gamma[rows.clone()], &forced);
+        Self { frame, rows, forced, bias, ..Self::of_tree(slot, None, ZERO3, Vec::new()) }
     }
 
     /// A joint holds the body. Its rows measure from the first body to the second, whichever of them is nearer to the root.
@@ -120,6 +132,13 @@ impl Freedom {
         let (first, second) = (restraint.arm_of_first(system, &joint), joint.second.point);
         let (point, parent_point) = if reversed { (first, second) } else { (second, first) };
         let sliding = restraint.sliding.into_iter().map(|t| Twist { t, rho: ZERO3 });
+        let forced: Vec<_> = held.into_iter().chain(rotations).collect();
+        let mut bias = accelerated(&mut system.graph, &kinematics.gamma[rows.clone()], &forced);
+        let steering = Steering::of(system, &joint, reversed);
+        if let Some(steering) = &steering {
+            let back = [0, 1, 2].map(|column| joint.relative.map(|row| row[column]));
+            bias.rho = steering.angular_acceleration(&mut system.graph, &back, &UNIT3);
+        }
         Self {
             slot,
             parent: Parent::of(system, &joint, reversed, parent_point),
@@ -127,8 +146,79 @@ impl Freedom {
             frame: system.poses[system.slots[slot]].a,
             free: sliding.chain(turning).collect(),
             rows,
-            forced: held.into_iter().chain(rotations).collect(),
+            forced,
+            bias,
+            steering,
         }
+    }
+}
+
+/// What the rows with these right-hand sides force upon a body.
+fn accelerated(graph: &mut Graph, gamma: &[ExprId], forced: &[Twist]) -> Twist {
+    let parts: Vec<_> = gamma.iter().zip(forced).map(|(&gamma, twist)| twist.scaled(graph, gamma)).collect();
+    parts.iter().fold(Twist::ZERO, |sum, part| sum.plus(graph, part))
+}
+
+impl Freedom {
+    /// The same between the mass centres, all vectors in the global frame.
+    pub fn in_global_frame(&self, system: &mut System) -> Self {
+        let frame_of = |slot: usize| system.poses[system.slots[slot]].a;
+        let (a, of_parent) = (frame_of(self.slot), self.parent.map(|parent| frame_of(parent.slot)));
+        let graph = &mut system.graph;
+        let arm = graph.mat_vec(&a, &self.point);
+        let turned =
+            |graph: &mut Graph, twist: &Twist| Twist { t: twist.t, rho: graph.mat_vec(&a, &twist.rho) };
+        let moved = |graph: &mut Graph, twist: Twist| {
+            let turned = graph.cross(&arm, &twist.rho);
+            Twist { t: graph.add_vec(&twist.t, &turned), ..twist }
+        };
+        let [free, forced] = [&self.free, &self.forced].map(|twists| {
+            let twists = twists.iter().map(|twist| {
+                let turned = turned(graph, twist);
+                moved(graph, turned)
+            });
+            twists.collect()
+        });
+        let mut bias = turned(graph, &self.bias);
+        if let Some(steering) = &self.steering {
+            bias.rho = steering.angular_acceleration(graph, &steering.frame_of_first, &a);
+        }
+        if let Some(((steering, parent), of_parent)) = self.held_point().zip(of_parent) {
+            let arm_of_parent = graph.mat_vec(&of_parent, &parent.point);
+            bias.t = steering.acceleration_of_point(graph, (&of_parent, &arm_of_parent), (&a, &arm));
+        }
+        let bias = moved(graph, bias);
+        let parent = self.parent.zip(of_parent).map(|(parent, a)| {
+            let point = graph.mat_vec(&a, &parent.point);
+            let point = graph.sub_vec(&point, &arm);
+            Parent { slot: parent.slot, point, relative: UNIT3, frame: UNIT3, carried: UNIT3 }
+        });
+        Self { parent, point: ZERO3, frame: UNIT3, free, forced, bias, ..self.clone() }
+    }
+}
+
+impl Freedom {
+    /// For a joint that holds an axis and a point of it to a parent with coordinates.
+    fn held_point(&self) -> Option<(&Steering, &Parent)> {
+        let steering = self.steering.as_ref().filter(|steering| steering.holds_point)?;
+        Some((steering, self.parent.as_ref()?))
+    }
+
+    /// The same with all vectors in the bodies' own frames.
+    pub fn in_own_frames(&self, system: &mut System) -> Self {
+        let a = system.poses[system.slots[self.slot]].a;
+        let graph = &mut system.graph;
+        let mut turned = |twist: &Twist| Twist { t: graph.transposed_vec(&a, &twist.t), rho: twist.rho };
+        let [free, forced] =
+            [&self.free, &self.forced].map(|twists| twists.iter().map(&mut turned).collect());
+        let mut bias = turned(&self.bias);
+        if let Some((steering, parent)) = self.held_point() {
+            let (at_first, at_second) = steering.centripetal(graph, &parent.point, &self.point);
+            let at_first = graph.transposed_vec(&parent.relative, &at_first);
+            bias.t = graph.sub_vec(&at_first, &at_second);
+        }
+        let parent = self.parent.map(|parent| Parent { frame: UNIT3, carried: parent.relative, ..parent });
+        Self { parent, frame: UNIT3, free, forced, bias, ..self.clone() }
     }
 }
 

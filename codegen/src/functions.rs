@@ -31,6 +31,7 @@ pub struct Functions {
     pub joint_accelerations_at: Vec<ExprId>,
     pub corrected_accelerations: Vec<ExprId>,
     pub corrected_multipliers: Vec<ExprId>,
+    pub corrected_solution: Vec<ExprId>,
 }
 
 impl Functions {
@@ -67,6 +68,7 @@ impl Functions {
             joint_accelerations_at: of_joints(|space| &space.accelerations_at),
             corrected_accelerations: of_joints(|space| &space.corrected),
             corrected_multipliers: of_joints(|space| &space.multipliers),
+            corrected_solution: of_joints(|space| &space.solution),
         }
     }
 
@@ -80,7 +82,7 @@ impl Functions {
 
     /// Name, meaning and roots of each that there is, in the order of the data sheet.
     pub fn list(&self) -> Vec<(&'static str, &'static str, &[ExprId])> {
-        let all: [(_, _, &[ExprId]); 23] = [
+        let all: [(_, _, &[ExprId]); 24] = [
             ("phi", "Φ", &self.phi),
             ("phi_q", "Φ_q, non-zeros in (r, p)", &self.phi_q),
             ("phi_pi", "(Φ_r, Φ_π'), non-zeros", &self.phi_pi),
@@ -108,6 +110,7 @@ impl Functions {
                 "λ at such a state and these accelerations",
                 &self.corrected_multipliers,
             ),
+            ("corrected_solution", "both", &self.corrected_solution),
         ];
         all.into_iter().filter(|(.., roots)| !roots.is_empty()).collect()
     }

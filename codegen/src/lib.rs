@@ -66,6 +66,7 @@ mod readings;
 mod saddle;
 mod schedule;
 mod sheet;
+mod steering;
 mod symbol;
 mod system;
 

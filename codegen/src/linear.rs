@@ -38,6 +38,12 @@ impl Graph {
         })
     }
 
+    /// `w × (w × s)`.
+    pub fn centripetal(&mut self, w: &Vec3, s: &Vec3) -> Vec3 {
+        let speed = self.cross(w, s);
+        self.cross(w, &speed)
+    }
+
     pub fn add_vec<const N: usize>(&mut self, a: &[ExprId; N], b: &[ExprId; N]) -> [ExprId; N] {
         std::array::from_fn(|k| self.add(a[k], b[k]))
     }

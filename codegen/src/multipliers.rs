@@ -2,10 +2,10 @@
 
 use crate::closing::{closing_rows, gradient};
 use crate::dynamics::Dynamics;
-use crate::freedom::Twist;
+use crate::freedom::{Freedom, Twist};
 use crate::graph::{ExprId, Graph};
 use crate::kinematics::Kinematics;
-use crate::null_space::{Arm, EliminatedTree, Inertia, minus_applied_force};
+use crate::null_space::{Arm, Inertia, minus_applied_force};
 use crate::symbol::Symbol;
 use crate::system::System;
 use std::array::from_fn;
@@ -15,7 +15,7 @@ pub fn of(
     system: &mut System,
     kinematics: &Kinematics,
     dynamics: &Dynamics,
-    tree: &EliminatedTree,
+    freedoms: &[Freedom],
 ) -> Vec<ExprId> {
     let mut lambda = vec![Graph::ZERO; kinematics.phi.len()];
     let mut lacking: Vec<_> = (0..system.slots.len()).map(|slot| imbalance(system, dynamics, slot)).collect();
@@ -26,8 +26,7 @@ pub fn of(
             *lacking = lacking.plus(&mut system.graph, &taken);
         }
     }
-    for joint in tree.joints.iter().rev() {
-        let freedom = &joint.freedom;
+    for freedom in freedoms.iter().rev() {
         let graph = &mut system.graph;
         let arm = Arm::on_body(graph, freedom);
         let at_joint = arm.wrench(graph, &lacking[freedom.slot]);

@@ -11,8 +11,9 @@ use crate::dynamics::Dynamics;
 use crate::freedom::{Freedom, Parent, Twist};
 use crate::graph::{ExprId, Graph};
 use crate::kinematics::Kinematics;
-use crate::linear::{Mat3, Vec3, ZERO3, transposed};
+use crate::linear::{Mat3, UNIT3, Vec3, ZERO3, transposed};
 use crate::multipliers;
+use crate::schedule::Operations;
 use crate::system::System;
 
 /// Accelerations and what follows from them.
@@ -29,13 +30,54 @@ pub struct Solution {
 /// Solves eq. (17); the result is expressed in symbols that are yet to be expanded.
 pub fn solve(system: &mut System, kinematics: &Kinematics, dynamics: &Dynamics) -> Solution {
     let links = system.tree.links.clone();
-    let freedoms = links.iter().map(|&link| Freedom::of(system, kinematics, link)).collect();
-    let tree = EliminatedTree::new(system, freedoms);
-    let free = tree.accelerations(system, kinematics, dynamics);
-    let (motions, closing) = closing::close(system, kinematics, &tree, free);
-    let accelerations = motions.iter().flat_map(|motion| motion.t.into_iter().chain(motion.rho)).collect();
-    let lambda = multipliers::of(system, kinematics, dynamics, &tree);
+    let freedoms: Vec<_> = links.iter().map(|&link| Freedom::of(system, kinematics, link)).collect();
+    let in_global_frame = freedoms.iter().map(|freedom| freedom.in_global_frame(system)).collect();
+    let in_own_frames = freedoms.iter().map(|freedom| freedom.in_own_frames(system)).collect();
+    let trees = [
+        EliminatedTree::new(system, freedoms.clone(), Basis::Mixed),
+        EliminatedTree::new(system, in_global_frame, Basis::Global),
+        EliminatedTree::new(system, in_own_frames, Basis::Own),
+    ];
+    let solved = trees.map(|tree| {
+        let free = tree.accelerations(system, dynamics);
+        let (motions, closing) = closing::close(system, kinematics, &tree, free);
+        let accelerations = motions.iter().flat_map(|motion| motion.t.into_iter().chain(motion.rho));
+        (accelerations.collect::<Vec<_>>(), closing)
+    });
+    let cost = |(accelerations, closing): &(Vec<_>, Vec<_>)| {
+        Operations::count(&system.graph, &[&accelerations[..], closing].concat()).total()
+    };
+    let (accelerations, closing) = solved.into_iter().min_by_key(cost).expect("three of them");
+    let lambda = multipliers::of(system, kinematics, dynamics, &freedoms);
     Solution { accelerations, closing, lambda }
+}
+
+/// The frames in which an elimination works.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Basis {
+    /// Translations in the global frame, rotations in each body's own: as in eq. (17).
+    Mixed,
+    /// The global frame: nothing is turned on its way from body to body.
+    Global,
+    /// Each body's own: axes, arms and inertias are constants.
+    Own,
+}
+
+/// From the frames of eq. (17) to those of an elimination.
+#[derive(Clone, Copy, Debug)]
+struct Frames {
+    t: Mat3,
+    rho: Mat3,
+}
+
+impl Frames {
+    fn enter(&self, graph: &mut Graph, twist: &Twist) -> Twist {
+        Twist { t: graph.mat_vec(&self.t, &twist.t), rho: graph.mat_vec(&self.rho, &twist.rho) }
+    }
+
+    fn leave(&self, graph: &mut Graph, twist: &Twist) -> Twist {
+        Twist { t: graph.transposed_vec(&self.t, &twist.t), rho: graph.transposed_vec(&self.rho, &twist.rho) }
+    }
 }
 
 /// The trees with the free twists of all joints eliminated.
@@ -43,6 +85,8 @@ pub fn solve(system: &mut System, kinematics: &Kinematics, dynamics: &Dynamics) 
 pub struct EliminatedTree {
     /// Root first.
     pub joints: Vec<EliminatedJoint>,
+    /// Of each slot.
+    frames: Vec<Frames>,
 }
 
 /// What sets a tree in motion.
@@ -67,9 +111,17 @@ pub struct Response {
 
 impl EliminatedTree {
     /// The links come root first.
-    pub fn new(system: &mut System, freedoms: Vec<Freedom>) -> Self {
-        let n_slots = system.slots.len();
-        let mut bodies: Vec<_> = (0..n_slots).map(|slot| Inertia::rigid(system, slot)).collect();
+    pub fn new(system: &mut System, freedoms: Vec<Freedom>, basis: Basis) -> Self {
+        let frames_of = |&body: &usize| match basis {
+            Basis::Mixed => Frames { t: UNIT3, rho: UNIT3 },
+            Basis::Global => Frames { t: UNIT3, rho: system.poses[body].a },
+            Basis::Own => Frames { t: transposed(&system.poses[body].a), rho: UNIT3 },
+        };
+        let frames: Vec<_> = system.slots.iter().map(frames_of).collect();
+        let rigid = |(slot, frames): (usize, &Frames)| {
+            Inertia::rigid(system, slot).turned(&mut system.graph, &frames.rho)
+        };
+        let mut bodies: Vec<_> = frames.iter().enumerate().map(rigid).collect();
         let mut joints = Vec::new();
         for freedom in freedoms.into_iter().rev() {
             let parent = freedom.parent;
@@ -84,22 +136,12 @@ impl EliminatedTree {
             joints.push(joint);
         }
         joints.reverse();
-        Self { joints }
+        Self { joints, frames }
     }
 
     /// The accelerations that the applied forces and the rows of the tree's own joints bring about.
-    fn accelerations(&self, system: &mut System, kinematics: &Kinematics, dynamics: &Dynamics) -> Vec<Twist> {
-        let forced = self
-            .joints
-            .iter()
-            .map(|joint| {
-                let gamma = &kinematics.gamma[joint.freedom.rows.clone()];
-                let parts: Vec<_> = (gamma.iter().zip(&joint.freedom.forced))
-                    .map(|(&gamma, twist)| twist.scaled(&mut system.graph, gamma))
-                    .collect();
-                parts.iter().fold(Twist::ZERO, |sum, part| sum.plus(&mut system.graph, part))
-            })
-            .collect();
+    fn accelerations(&self, system: &mut System, dynamics: &Dynamics) -> Vec<Twist> {
+        let forced = self.joints.iter().map(|joint| joint.freedom.bias).collect();
         let n_slots = system.slots.len();
         let bias = (0..n_slots).map(|slot| minus_applied_force(system, dynamics, slot)).collect();
         let along = vec![Vec::new(); self.joints.len()];
@@ -108,6 +150,9 @@ impl EliminatedTree {
 
     pub fn respond(&self, graph: &mut Graph, excitation: Excitation) -> Response {
         let Excitation { mut bias, forced, along } = excitation;
+        for (bias, frames) in bias.iter_mut().zip(&self.frames) {
+            *bias = frames.enter(graph, bias);
+        }
         let mut loads = Vec::new();
         for ((joint, forced), along) in self.joints.iter().zip(&forced).zip(&along).rev() {
             let (own, on_parent) = joint.yield_to(graph, &bias[joint.freedom.slot], forced, along);
@@ -121,6 +166,9 @@ impl EliminatedTree {
             let (motion, rates) = joint.motion(graph, forced, loads, &response.motions);
             response.motions[joint.freedom.slot] = motion;
             response.rates.push(rates);
+        }
+        for (motion, frames) in response.motions.iter_mut().zip(&self.frames) {
+            *motion = frames.leave(graph, motion);
         }
         response
     }
@@ -236,6 +284,20 @@ impl Inertia {
         Self { mass, linear: [ZERO3; 3], coupling: [ZERO3; 3], angular }
     }
 
+    /// A rigid body in a frame that this one leads to.
+    fn turned(self, graph: &mut Graph, frame: &Mat3) -> Self {
+        if *frame == UNIT3 {
+            return self;
+        }
+        // What is the same in all directions need not be turned.
+        let even = self.angular[0][0];
+        let evenly = UNIT3.map(|row| graph.scale_vec(even, &row));
+        let rest = graph.sub_mat(&self.angular, &evenly);
+        let turned = graph.mat_mul(frame, &rest);
+        let turned = symmetric(&graph.mat_mul(&turned, &transposed(frame)));
+        Self { angular: sum(graph, &evenly, &turned), ..self }
+    }
+
     pub fn add(&mut self, graph: &mut Graph, other: &Self) {
         self.mass = graph.add(self.mass, other.mass);
         self.linear = sum(graph, &self.linear, &other.linear);
@@ -298,8 +360,41 @@ pub struct EliminatedJoint {
 #[derive(Debug)]
 struct Step {
     twist: Twist,
+    /// Which component the twist is, if it is only one: what becomes zero there is then not computed.
+    component: Option<Component>,
     resistance: Twist,
     inverse: ExprId,
+}
+
+/// A component of a twist or wrench.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Component {
+    T(usize),
+    Rho(usize),
+}
+
+impl Component {
+    /// The component along which a twist is one, all others being zero.
+    fn of(twist: &Twist) -> Option<Self> {
+        let all = (0..3).map(Self::T).chain((0..3).map(Self::Rho));
+        let mut others = all.filter(|component| *component.get(twist) != Graph::ZERO);
+        let first = others.next()?;
+        (others.next().is_none() && *first.get(twist) == Graph::ONE).then_some(first)
+    }
+
+    fn get(self, twist: &Twist) -> &ExprId {
+        match self {
+            Self::T(k) => &twist.t[k],
+            Self::Rho(k) => &twist.rho[k],
+        }
+    }
+
+    fn set(self, twist: &mut Twist, value: ExprId) {
+        match self {
+            Self::T(k) => twist.t[k] = value,
+            Self::Rho(k) => twist.rho[k] = value,
+        }
+    }
 }
 
 impl EliminatedJoint {
@@ -311,7 +406,8 @@ impl EliminatedJoint {
         for twist in &freedom.free {
             let resistance = rest.times(graph, twist);
             let pivot = twist.dot(graph, &resistance);
-            let step = Step { twist: *twist, resistance, inverse: graph.recip(pivot) };
+            let (component, inverse) = (Component::of(twist), graph.recip(pivot));
+            let step = Step { twist: *twist, component, resistance, inverse };
             rest = step.eliminate(graph, &rest);
             steps.push(step);
         }
@@ -335,6 +431,9 @@ impl EliminatedJoint {
             let share = graph.mul(load, step.inverse);
             let reaction = step.resistance.scaled(graph, share).negated(graph);
             bias = bias.plus(graph, &reaction);
+            if let Some(component) = step.component {
+                component.set(&mut bias, along.get(k).copied().unwrap_or(Graph::ZERO));
+            }
             loads.push(load);
         }
         let Some(parent) = self.freedom.parent else { return (loads, Twist::ZERO) };
@@ -358,10 +457,7 @@ impl EliminatedJoint {
         }
         let mut rates = Vec::new();
         for (step, load) in self.steps.iter().zip(loads).rev() {
-            let rate = step.release(graph, &motion, *load);
-            let yielded = step.twist.scaled(graph, rate);
-            motion = motion.plus(graph, &yielded);
-            rates.push(rate);
+            rates.push(step.release(graph, &mut motion, *load));
         }
         rates.reverse();
         let arm = Arm::on_body(graph, &self.freedom);
@@ -374,20 +470,46 @@ impl Step {
     fn eliminate(&self, graph: &mut Graph, body: &Inertia) -> Inertia {
         let u = self.resistance;
         let factor = u.scaled(graph, self.inverse);
-        Inertia {
+        let mut rest = Inertia {
             mass: body.mass,
             linear: less_product(graph, &body.linear, &factor.t, &u.t, Symmetry::Symmetric),
             coupling: less_product(graph, &body.coupling, &factor.t, &u.rho, Symmetry::None),
             angular: less_product(graph, &body.angular, &factor.rho, &u.rho, Symmetry::Symmetric),
+        };
+        // Nothing resists the twist any more.
+        match self.component {
+            Some(Component::T(k)) => {
+                (0..3).for_each(|other| {
+                    (rest.linear[k][other], rest.linear[other][k]) = (Graph::ZERO, Graph::ZERO)
+                });
+                rest.linear[k][k] = graph.neg(body.mass);
+                rest.coupling[k] = ZERO3;
+            }
+            Some(Component::Rho(k)) => {
+                (0..3).for_each(|other| {
+                    (rest.angular[k][other], rest.angular[other][k]) = (Graph::ZERO, Graph::ZERO)
+                });
+                rest.coupling.iter_mut().for_each(|row| row[k] = Graph::ZERO);
+            }
+            None => {}
         }
+        rest
     }
 
-    /// How fast the twist accelerates, yielding to the load and to the acceleration so far.
-    fn release(&self, graph: &mut Graph, motion: &Twist, load: ExprId) -> ExprId {
+    /// How fast the twist accelerates, yielding to the load and to the acceleration so far, to which its own is added.
+    fn release(&self, graph: &mut Graph, motion: &mut Twist, load: ExprId) -> ExprId {
+        let own = self.component.map(|component| *component.get(motion));
+        if let Some(component) = self.component {
+            // It does not matter how fast the body would accelerate along a twist that is free.
+            component.set(motion, Graph::ZERO);
+        }
         let inertial = self.resistance.dot(graph, motion);
         let resisting = graph.add(inertial, load);
-        let rate = graph.mul(resisting, self.inverse);
-        graph.neg(rate)
+        let resisted = graph.mul(resisting, self.inverse);
+        let rate = graph.neg(resisted);
+        let yielded = self.twist.scaled(graph, rate);
+        *motion = motion.plus(graph, &yielded);
+        own.map_or(rate, |own| graph.sub(rate, own))
     }
 }
 

@@ -50,6 +50,15 @@ impl fmt::Display for Operations {
     }
 }
 
+/// The set of roots that takes the fewest operations.
+pub fn cheapest(graph: &Graph, candidates: Vec<Vec<ExprId>>) -> Vec<ExprId> {
+    let cost = |roots: &Vec<ExprId>| {
+        let operations = Operations::count(graph, roots);
+        (operations.functions, operations.total())
+    };
+    candidates.into_iter().min_by_key(cost).expect("there is a recursion")
+}
+
 /// How often each reachable expression is used.
 #[derive(Debug)]
 pub struct Uses {

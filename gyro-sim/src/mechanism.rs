@@ -133,11 +133,15 @@ pub trait JointSpace: Equations {
     type Joints: Storage<Self::Scalar>;
     /// One scalar for each rate.
     type Rates: Storage<Self::Scalar>;
+    /// One scalar for each unknown of eq. (17).
+    type Solution: Storage<Self::Scalar>;
 
     /// The assembled start, with all parameters at their defaults.
     fn joint_start(&self) -> Self::Joints;
     /// Zeroed buffer.
     fn rates(&self) -> Self::Rates;
+    /// Zeroed buffer.
+    fn solution(&self) -> Self::Solution;
     /// Writes u̇.
     fn joint_accelerations(&self, t: Self::Scalar, x: &Self::Joints, out: &mut Self::Rates);
     /// Writes the derivative of the joint state: an [`Ode`] by way of [`JointForm`].
@@ -159,6 +163,8 @@ pub trait JointSpace: Equations {
         accelerations: &Self::Velocities,
         lambda: &mut Self::Rows,
     );
+    /// Writes both, (s̈, ẇ') and then λ, and works out only once what they have in common.
+    fn corrected_solution(&self, t: Self::Scalar, y: &Self::State, out: &mut Self::Solution);
 }
 
 /// A tree's joint coordinates as a first-order system, for any explicit integrator.

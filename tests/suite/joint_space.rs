@@ -97,6 +97,11 @@ fn check<M: JointSpace<Scalar = f64> + Partition>(page: &str, mechanism: &M) {
         mechanism.multipliers(t, &y, &exact, &mut lambda);
         mechanism.corrected_multipliers(t, &y, &corrected, &mut short);
         worst[6] = worst[6].max(difference(lambda.as_ref(), short.as_ref()));
+        let mut both = mechanism.solution();
+        mechanism.corrected_solution(t, &y, &mut both);
+        let (v, of_rows) = both.as_ref().split_at(corrected.as_ref().len());
+        worst[2] = worst[2].max(difference(exact.as_ref(), v));
+        worst[6] = worst[6].max(difference(lambda.as_ref(), of_rows));
         let (mut rates, mut rates_at) = (mechanism.rates(), mechanism.rates());
         mechanism.joint_accelerations(t, &x, &mut rates);
         mechanism.joint_accelerations_at(t, &y, &mut rates_at);

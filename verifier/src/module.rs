@@ -49,7 +49,7 @@ pub struct Module {
 }
 
 /// Functions that are straight-line programs, and how they give their results.
-const FUNCTIONS: [(&str, Form); 24] = [
+const FUNCTIONS: [(&str, Form); 25] = [
     ("derivative", Form::Filling),
     ("phi", Form::Filling),
     ("velocity_residual", Form::Filling),
@@ -74,6 +74,7 @@ const FUNCTIONS: [(&str, Form); 24] = [
     ("joint_accelerations_at", Form::Filling),
     ("corrected_accelerations", Form::Filling),
     ("corrected_multipliers", Form::Filling),
+    ("corrected_solution", Form::Filling),
 ];
 
 /// What functions write, where it is not `out`.
@@ -115,8 +116,13 @@ const ACCELERATIONS: Before = Before {
 };
 
 /// Functions that are made for states that satisfy the constraints.
-const ON_CONSTRAINTS: [&str; 4] =
-    ["joint_accelerations_at", "corrected_accelerations", "corrected_derivative", "corrected_multipliers"];
+const ON_CONSTRAINTS: [&str; 5] = [
+    "joint_accelerations_at",
+    "corrected_accelerations",
+    "corrected_derivative",
+    "corrected_multipliers",
+    "corrected_solution",
+];
 
 /// Whether a function is made for states that satisfy the constraints.
 pub fn is_on_constraints(function: &str) -> bool {
@@ -261,6 +267,7 @@ impl Module {
             ("joint_accelerations_at", n_rates),
             ("corrected_accelerations", if self.joints.is_some() { 6 * n } else { 0 }),
             ("corrected_multipliers", if self.joints.is_some() { rows } else { 0 }),
+            ("corrected_solution", if self.joints.is_some() { 6 * n + rows } else { 0 }),
         ];
         let found = |name: &str| self.programs.get(name).map_or(0, |program| program.results.len());
         let patterns = [

@@ -208,8 +208,8 @@ impl Carriage {
         let (of_slider, sign) = if self.slides_on_parent { (of_parent, 2) } else { (own, -2) };
         let (turned, twice) = (graph.cross(of_slider, &speed), graph.integer(sign));
         let coriolis = graph.scale_vec(twice, &turned);
-        let on_parent = centripetal(graph, of_parent, &self.on_parent);
-        let on_body = centripetal(graph, own, &self.on_body);
+        let on_parent = graph.centripetal(of_parent, &self.on_parent);
+        let on_body = graph.centripetal(own, &self.on_body);
         let on_body = graph.neg_vec(&on_body);
         if self.slides_on_parent {
             Bias { on_parent: graph.add_vec(&on_parent, &coriolis), on_body, rho }
@@ -261,12 +261,6 @@ enum Turn {
     None,
     AboutFirst(Vec3),
     AboutSecond(Vec3),
-}
-
-/// `w × (w × s)`.
-pub fn centripetal(graph: &mut Graph, w: &Vec3, s: &Vec3) -> Vec3 {
-    let speed = graph.cross(w, s);
-    graph.cross(w, &speed)
 }
 
 /// `A_iᵀ A_j` in joint coordinates.

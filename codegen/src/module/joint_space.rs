@@ -39,10 +39,18 @@ impl ModuleWriter<'_> {
             &f.corrected_accelerations,
         );
         let multipliers = self.multipliers("corrected_multipliers", "Velocities", &f.corrected_multipliers);
+        let solution = self.filling(
+            "corrected_solution",
+            "Writes (s̈, ẇ') and λ at a state that satisfies the constraints",
+            "Solution",
+            &f.corrected_solution,
+        );
+        let n_solution = index(space.solution.len());
         Some(quote! {
             impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for #name<T> {
                 type Joints = [T; #n_joints];
                 type Rates = [T; #n_rates];
+                type Solution = [T; #n_solution];
 
                 fn joint_start(&self) -> Self::Joints {
                     let k = T::constant;
@@ -50,6 +58,9 @@ impl ModuleWriter<'_> {
                 }
                 fn rates(&self) -> Self::Rates {
                     [T::constant(0.0); #n_rates]
+                }
+                fn solution(&self) -> Self::Solution {
+                    [T::constant(0.0); #n_solution]
                 }
 
                 #accelerations
@@ -59,6 +70,7 @@ impl ModuleWriter<'_> {
                 #at
                 #corrected
                 #multipliers
+                #solution
             }
         })
     }

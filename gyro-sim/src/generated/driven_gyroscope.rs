@@ -18,7 +18,7 @@
 //! | gamma | γ | 135 | 216 | 0 | 351 | 6 of 15 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 94 | 139 | 0 | 233 | 0 of 15 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 231 | 366 | 5 | 602 | 7 of 18 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 192 | 288 | 5 | 485 | 7 of 18 |
 //! | multipliers | λ, the accelerations being known | 116 | 193 | 3 | 312 | 0 of 15 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 121 | 210 | 1 | 332 | 0 of 22 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
@@ -30,9 +30,10 @@
 //! | joint_derivative | ẋ but for u̇ | 160 | 287 | 2 | 449 | 0 of 4 |
 //! | to_maximal | (q, v) of a joint state | 32 | 72 | 0 | 104 | 12 of 39 |
 //! | to_joints | (x, u) of a maximal state | 65 | 77 | 0 | 142 | 0 of 6 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 34 | 71 | 1 | 106 | 0 of 3 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 73 | 130 | 1 | 204 | 7 of 18 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 34 | 70 | 1 | 105 | 0 of 3 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 192 | 289 | 5 | 486 | 7 of 18 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 56 | 86 | 0 | 142 | 0 of 15 |
+//! | corrected_solution | both | 233 | 348 | 5 | 586 | 7 of 33 |
 //!
 //! # Proof
 //!
@@ -49,7 +50,7 @@
 //! * joint_derivative: eqs. (14) and (16) on the constraints
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
-//! * corrected_multipliers: eq. (17) on the constraints
+//! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //!
 //! All of it holds but with a probability below 1e-144.
 //! Not proved: the size of rounding errors.
@@ -2010,7 +2011,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenGyroscope<T> {
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 602 operations (231 ±, 366 ×, 5 ÷) and 4 functions.
+    /// Solves eq. (17): 485 operations (192 ±, 288 ×, 5 ÷) and 4 functions.
     fn accelerations(&self, t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2034,213 +2035,194 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenGyroscope<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = outer_ring_wx * outer_ring_wy;
-        let t1 = outer_ring_e0 * outer_ring_e3;
-        let t2 = outer_ring_e1 * outer_ring_e2;
-        let t3 = k(2.0) * (t2 + t1);
-        let t4 = outer_ring_wz * outer_ring_wz;
-        let t5 = t4 + outer_ring_wx * outer_ring_wx;
-        let t6 = outer_ring_e0 * outer_ring_e0;
-        let t7 = k(2.0) * (k(0.5) - (t6 + outer_ring_e2 * outer_ring_e2));
-        let t8 = outer_ring_wy * outer_ring_wz;
-        let t9 = outer_ring_e0 * outer_ring_e1;
-        let t10 = outer_ring_e2 * outer_ring_e3;
-        let t11 = k(2.0) * (t10 - t9);
-        let t12 = k(12.566370614359172) * t;
-        let t13 = t12.sin();
-        let t14 = k(0.1) * t13;
-        let t15 = t14.sin();
-        let t16 = t14.cos();
-        let t17 = k(1.2566370614359172) * t12.cos();
-        let t18 = t17 * t16;
-        let t19 = t18 * (t11 * outer_ring_wx - t3 * outer_ring_wz);
-        let t20 = t19 + t15 * (t11 * t8 + (t7 * t5 + t3 * t0));
-        let t21 = t17 * t15;
-        let t22 = k(15.791367041742975) * t13;
-        let t23 = outer_ring_e0 * outer_ring_e2;
-        let t24 = outer_ring_e1 * outer_ring_e3;
-        let t25 = k(2.0) * (t24 - t23);
-        let t26 = k(2.0) * (t10 + t9);
-        let t27 = k(2.0) * (k(0.5) - (t6 + outer_ring_e3 * outer_ring_e3));
-        let t28 = t21 * (t27 * outer_ring_wx + t25 * outer_ring_wz);
-        let t29 = t28 - t16 * (t27 * t8 + (t26 * t5 - t25 * t0));
-        let t30 = t26 * (t15 * t22 - t17 * t18) + t28 + t29
-            - (t7 * (t16 * t22 + t17 * t21) + t19 + t20);
-        let t31 = t15 * t11 + t16 * t27;
-        let t32 = k(2.0) * (k(0.5) - (t6 + outer_ring_e1 * outer_ring_e1));
-        let t33 = t15 * t3 - t16 * t25;
-        let t34 = k(2.0) * (t24 + t23);
-        let t35 = k(1.0) / (t34 * t33 + t32 * t31);
-        let t36 = k(2.0) * (t2 - t1);
-        let t37 = t34 * t8 - (t36 * t5 + t32 * t0);
-        let t38 = t33 * t35 * t37 - t32 * t35 * t30;
-        let t39 = rotor_e0 * rotor_e3;
-        let t40 = rotor_e1 * rotor_e2;
-        let t41 = k(2.0) * (t40 - t39);
-        let t42 = inner_ring_e0 * inner_ring_e0;
-        let t43 = k(2.0) * (k(0.5) - (t42 + inner_ring_e1 * inner_ring_e1));
-        let t44 = rotor_e0 * rotor_e0;
-        let t45 = k(2.0) * (k(0.5) - (t44 + rotor_e2 * rotor_e2));
-        let t46 = inner_ring_e0 * inner_ring_e3;
-        let t47 = inner_ring_e1 * inner_ring_e2;
-        let t48 = k(2.0) * (t47 + t46);
-        let t49 = rotor_e0 * rotor_e1;
-        let t50 = rotor_e2 * rotor_e3;
-        let t51 = k(2.0) * (t50 + t49);
-        let t52 = inner_ring_e0 * inner_ring_e2;
-        let t53 = inner_ring_e1 * inner_ring_e3;
-        let t54 = k(2.0) * (t53 - t52);
-        let t55 = t54 * t51 - (t48 * t45 + t43 * t41);
-        let t56 = k(5e-6) * t55;
-        let t57 = rotor_e0 * rotor_e2;
-        let t58 = rotor_e1 * rotor_e3;
-        let t59 = k(2.0) * (t58 + t57);
-        let t60 = k(2.0) * (t50 - t49);
-        let t61 = k(2.0) * (k(0.5) - (t44 + rotor_e3 * rotor_e3));
-        let t62 = t54 * t61 - (t48 * t60 - t43 * t59);
-        let t63 = k(5e-6) * t62;
-        let t64 = inner_ring_e0 * inner_ring_e1;
-        let t65 = inner_ring_e2 * inner_ring_e3;
-        let t66 = t65 - t64;
-        let t67 = k(2.0) * t66;
-        let t68 = t53 + t52;
-        let t69 = k(2.0) * t68;
-        let t70 = k(0.5) - (t42 + inner_ring_e3 * inner_ring_e3);
-        let t71 = k(2.0) * t70;
-        let t72 = t71 * t51 - (t69 * t41 - t67 * t45);
-        let t73 = t69 * t59 + t67 * t60 + t71 * t61;
-        let t74 = t73 * t63 + t72 * t56;
-        let t75 = k(1e-6)
-            + (k(1.25e-9) + (t73 * (k(5e-6) * t73) + t72 * (k(5e-6) * t72)));
-        let t76 = k(1.0) / t75;
-        let t77 = t76 * t74;
-        let t78 = t74 * t77 - (k(1e-6) + (t62 * t63 + t55 * t56));
-        let t79 = t26 * t54 - (t7 * t48 + t36 * t43);
-        let t80 = k(0.5) - (t42 + inner_ring_e2 * inner_ring_e2);
-        let t81 = k(2.0) * t80;
-        let t82 = t47 - t46;
-        let t83 = k(2.0) * t82;
-        let t84 = t65 + t64;
-        let t85 = k(2.0) * t84;
-        let t86 = t85 * t51 + (t83 * t41 + t81 * t45);
-        let t87 = t85 * t61 - (t83 * t59 - t81 * t60);
-        let t88 = k(5e-6) * t86;
-        let t89 = k(5e-6) * t87;
-        let t90 = t73 * t89 + t72 * t88;
-        let t91 = t90 * t77 - (t87 * t63 + t86 * t56);
-        let t92 = t26 * t85 + (t36 * t83 + t7 * t81);
-        let t93 = t74 - t75 * t77;
-        let t94 = t26 * t71 - (t36 * t69 - t7 * t67);
-        let t95 = t94 * t93 - (t92 * t91 + t79 * t78);
-        let t96 = t76 * t90;
-        let t97 = t90 * t96 - (k(2e-6) + (k(1.25e-9) + (t87 * t89 + t86 * t88)));
-        let t98 = t90 - t75 * t96;
-        let t99 = t94 * t98 - (t92 * t97 + t79 * t91);
-        let t100 = t92 * t98 + t79 * t93;
-        let t101 = k(2.0) * (k(0.5) - (t44 + rotor_e1 * rotor_e1));
-        let t102 = k(2.0) * (t40 + t39);
-        let t103 = k(2.0) * (t58 - t57);
-        let t104 = t54 * t103 + (t48 * t102 + t43 * t101);
-        let t105 = inner_ring_wx * inner_ring_wy;
-        let t106 = t85 * t103 - (t81 * t102 + t83 * t101);
-        let t107 = inner_ring_wx * inner_ring_wx;
-        let t108 = inner_ring_wz * inner_ring_wz;
-        let t109 = t71 * t103 - (t67 * t102 - t69 * t101);
-        let t110 = inner_ring_wy * inner_ring_wz;
-        let t111 = rotor_wy * t62 + rotor_wz * t55;
-        let t112 = k(2.0)
-            * (inner_ring_wx * (rotor_wy * t73 + rotor_wz * t72) + inner_ring_wz * t111);
-        let t113 = rotor_wz * rotor_wz + rotor_wy * rotor_wy;
-        let t114 = rotor_wx * rotor_wy;
-        let t115 = rotor_wx * rotor_wz;
-        let t116 = t115 * t87 - (t114 * t86 - t113 * t106) + t112
-            + (t110 * t109 + ((t108 + t107) * t106 - t105 * t104));
-        let t117 = k(1.0) / (t86 * t73 - t87 * t72);
-        let t118 = inner_ring_wx * inner_ring_wz;
-        let t119 = inner_ring_wy * inner_ring_wy;
-        let t120 = t119 + t107;
-        let t121 = k(2.0)
-            * (inner_ring_wx * (rotor_wy * t87 + rotor_wz * t86) - inner_ring_wy * t111);
-        let t122 = t115 * t73 - (t114 * t72 - t113 * t109) - t121
-            + (t120 * t109 + (t110 * t106 + t118 * t104));
-        let t123 = t86 * t117 * t122 - t72 * t117 * t116;
-        let t124 = k(5e-6) * (t115 + t123);
-        let t125 = t87 * t117 * t122 - t73 * t117 * t116;
-        let t126 = k(5e-6) * (t114 + t125);
-        let t127 = t108 + t119;
-        let t128 = t69 * t118 + (t83 * t105 + t43 * t127);
-        let t129 = k(1e-5) * t128;
-        let t130 = k(0.00025) * t82;
-        let t131 = t67 * t118 - (t81 * t105 + t48 * t127);
-        let t132 = k(0.8) + k(1e-5) * t131;
-        let t133 = k(0.00025) * t80;
-        let t134 = t71 * t118 - (t85 * t105 - t54 * t127);
-        let t135 = k(1e-5) * t134;
-        let t136 = k(0.00025) * t84;
-        let t137 = t136 * t135 + (t133 * t132 - t130 * t129) + (t73 * t126 + t72 * t124);
-        let t138 = k(1e-6) * t105 - t137;
-        let t139 = t76 * t138;
-        let t140 = t74 * t139 - (k(1e-6) * t110 - (t62 * t126 + t55 * t124));
-        let t141 = t25 * t71 - (t3 * t67 - t32 * t69);
-        let t142 = t34 * t69 + t11 * t67 + t27 * t71;
-        let t143 = outer_ring_wx * outer_ring_wz;
-        let t144 = t143 * t142
-            - (t0 * t94 - (t4 + outer_ring_wy * outer_ring_wy) * t141);
-        let t145 = t27 * t54 - (t11 * t48 - t34 * t43);
-        let t146 = t27 * t85 - (t34 * t83 - t11 * t81);
-        let t147 = inner_ring_wx * t146 - inner_ring_wy * t145;
-        let t148 = k(2.0)
-            * (outer_ring_wy * t147
-                + outer_ring_wz * (inner_ring_wx * t92 - inner_ring_wy * t79));
-        let t149 = t25 * t54 + (t3 * t48 + t32 * t43);
-        let t150 = t25 * t85 - (t3 * t81 + t32 * t83);
-        let t151 = t120 * t141 + (t110 * t150 + t118 * t149) - t148 + t144;
-        let t152 = k(1.0) / (t149 * t92 - t150 * t79);
-        let t153 = k(2.0)
-            * (outer_ring_wx * t147
-                + outer_ring_wz * (inner_ring_wx * t150 - inner_ring_wy * t149));
-        let t154 = t120 * t94 + (t110 * t92 + t118 * t79) + t153
-            + (t8 * t142 + (t5 * t94 - t0 * t141));
-        let t155 = t149 * t152 * t154 - t79 * t152 * t151;
-        let t156 = t150 * t152 * t154 - t92 * t152 * t151;
-        let t157 = k(0.00025) * t68;
-        let t158 = k(0.00025) * t66;
-        let t159 = k(0.00025) * t70;
-        let t160 = t159 * t135 + (t158 * t132 + t157 * t129) - (t87 * t126 + t86 * t124);
-        let t161 = t92 * (t97 * t156 + t91 * t155 - (t90 * t139 - t160));
-        let t162 = t94 * (t98 * t156 + t93 * t155 - (t138 - t75 * t139));
-        let t163 = t162 - (t161 + t79 * (t91 * t156 + t78 * t155 - t140));
-        let t164 = t92 * (t141 * t98 - (t150 * t97 + t149 * t91))
-            + t79 * (t141 * t93 - (t150 * t91 + t149 * t78));
-        let t165 = t31 * t35 * t37 + t34 * t35 * t30;
-        let t166 = t165 * (t142 * t100 + (t146 * t99 + t145 * t95))
-            - t38 * (t94 * (t150 * t98 + t149 * t93) + t164);
-        let t167 = (t166 + (k(1e-6) * t143 + t163))
-            / (k(1e-6) + (t94 * t100 + (t92 * t99 + t79 * t95)));
-        let t168 = t155 + (t145 * t165 - (t79 * t167 + t149 * t38));
-        let t169 = t156 + (t146 * t165 - (t92 * t167 + t150 * t38));
-        let t170 = t142 * t165 - (t94 * t167 + t141 * t38);
-        let t171 = t76 * (t138 - (t75 * t170 + (t90 * t169 + t74 * t168)));
-        let t172 = t170 + t171;
+        let t0 = outer_ring_e0 * outer_ring_e3;
+        let t1 = outer_ring_e1 * outer_ring_e2;
+        let t2 = k(12.566370614359172) * t;
+        let t3 = k(1.2566370614359172) * t2.cos();
+        let t4 = t3 * (k(2.0) * (t1 - t0));
+        let t5 = outer_ring_wy - t4;
+        let t6 = outer_ring_e0 * outer_ring_e2;
+        let t7 = outer_ring_e1 * outer_ring_e3;
+        let t8 = k(2.0) * (t7 + t6);
+        let t9 = t3 * t8;
+        let t10 = outer_ring_wz - t9;
+        let t11 = outer_ring_e0 * outer_ring_e0;
+        let t12 = t2.sin();
+        let t13 = k(0.1) * t12;
+        let t14 = t13.sin();
+        let t15 = outer_ring_e0 * outer_ring_e1;
+        let t16 = outer_ring_e2 * outer_ring_e3;
+        let t17 = t13.cos();
+        let t18 = t17 * (k(2.0) * (t16 - t15))
+            - t14 * (k(2.0) * (k(0.5) - (t11 + outer_ring_e3 * outer_ring_e3)));
+        let t19 = k(2.0) * (k(0.5) - (t11 + outer_ring_e1 * outer_ring_e1));
+        let t20 = t3 * t19;
+        let t21 = outer_ring_wx + t20;
+        let t22 = t14 * (k(2.0) * (t16 + t15))
+            - t17 * (k(2.0) * (k(0.5) - (t11 + outer_ring_e2 * outer_ring_e2)));
+        let t23 = (t21 * t21 + t10 * t10) / t22;
+        let t24 = k(15.791367041742975) * t12;
+        let t25 = outer_ring_wy * t9 - outer_ring_wz * t4 - t19 * t24
+            + (t23 * t18 + t10 * t5);
+        let t26 = inner_ring_e3 * rotor_e0 - inner_ring_e2 * rotor_e1
+            + inner_ring_e1 * rotor_e2 - inner_ring_e0 * rotor_e3;
+        let t27 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t28 = t27 * t26;
+        let t29 = inner_ring_e2 * rotor_e0 + inner_ring_e3 * rotor_e1
+            - inner_ring_e0 * rotor_e2 - inner_ring_e1 * rotor_e3;
+        let t30 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t31 = t30 * t29;
+        let t32 = t31 + t28;
+        let t33 = k(1e-5) * t32;
+        let t34 = k(2.0) * t32;
+        let t35 = t27 * t29;
+        let t36 = t30 * t26;
+        let t37 = t36 - t35;
+        let t38 = k(1e-5) * t37;
+        let t39 = k(2.0) * t37;
+        let t40 = t27 * t30;
+        let t41 = t29 * t26;
+        let t42 = t41 - t40;
+        let t43 = k(2.0) * t42;
+        let t44 = t27 * t27;
+        let t45 = k(0.5) - (t44 + t26 * t26);
+        let t46 = k(2.0) * t45;
+        let t47 = t46 * t38 - t43 * t33;
+        let t48 = k(1e-6)
+            + (k(1.25e-9) + (t46 * (k(1e-5) * t45) + t43 * (k(1e-5) * t42)));
+        let t49 = k(1.0) / t48;
+        let t50 = t49 * t47;
+        let t51 = t47 * t50 - (k(1e-6) + (t39 * t38 + t34 * t33));
+        let t52 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t53 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t54 = t53 * t52;
+        let t55 = outer_ring_e2 * inner_ring_e0 + outer_ring_e3 * inner_ring_e1
+            - outer_ring_e0 * inner_ring_e2 - outer_ring_e1 * inner_ring_e3;
+        let t56 = outer_ring_e1 * inner_ring_e0 - outer_ring_e0 * inner_ring_e1
+            - outer_ring_e3 * inner_ring_e2 + outer_ring_e2 * inner_ring_e3;
+        let t57 = t56 * t55;
+        let t58 = k(2.0) * (t57 - t54);
+        let t59 = k(0.5) - (t44 + t29 * t29);
+        let t60 = k(2.0) * t59;
+        let t61 = t41 + t40;
+        let t62 = k(2.0) * t61;
+        let t63 = k(1e-5) * t59;
+        let t64 = k(1e-5) * t61;
+        let t65 = t46 * t64 + t43 * t63;
+        let t66 = t65 * t50 - (t62 * t38 - t60 * t33);
+        let t67 = t53 * t53;
+        let t68 = k(2.0) * (k(0.5) - (t67 + t55 * t55));
+        let t69 = t68 * t66 - t58 * t51;
+        let t70 = t65 * (t49 * t65) - (k(2e-6) + (k(1.25e-9) + (t62 * t64 + t60 * t63)));
+        let t71 = t68 * t70 - t58 * t66;
+        let t72 = k(0.5) - (t44 + t30 * t30);
+        let t73 = inner_ring_wz * (k(2.0) * (t36 + t35))
+            + (inner_ring_wy * (k(2.0) * (t31 - t28)) - inner_ring_wx * (k(2.0) * t72));
+        let t74 = rotor_wx - t73;
+        let t75 = inner_ring_wz * t46 - (inner_ring_wy * t62 + inner_ring_wx * t39);
+        let t76 = rotor_wz + t75;
+        let t77 = inner_ring_wz * t43 - (inner_ring_wy * t60 - inner_ring_wx * t34);
+        let t78 = rotor_wy - t77;
+        let t79 = k(0.5) / t72 * (t78 * t78 + t76 * t76);
+        let t80 = rotor_wz * t73 + rotor_wx * t75 + (t39 * t79 - t76 * t74);
+        let t81 = k(5e-6) * (rotor_wx * rotor_wz - t80);
+        let t82 = rotor_wx * t77 - rotor_wy * t73 - (t34 * t79 - t78 * t74);
+        let t83 = k(5e-6) * (rotor_wx * rotor_wy + t82);
+        let t84 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
+        let t85 = inner_ring_e0 * inner_ring_e0;
+        let t86 = inner_ring_wx * inner_ring_wy;
+        let t87 = inner_ring_e0 * inner_ring_e3;
+        let t88 = inner_ring_e1 * inner_ring_e2;
+        let t89 = t88 - t87;
+        let t90 = k(2.0) * t89 * t86
+            + k(2.0) * (k(0.5) - (t85 + inner_ring_e1 * inner_ring_e1)) * t84;
+        let t91 = inner_ring_wx * inner_ring_wz;
+        let t92 = inner_ring_e0 * inner_ring_e2;
+        let t93 = inner_ring_e1 * inner_ring_e3;
+        let t94 = t93 + t92;
+        let t95 = k(2.0) * t94 * t91 + t90;
+        let t96 = k(1e-5) * t95;
+        let t97 = k(0.00025) * t89;
+        let t98 = k(0.5) - (t85 + inner_ring_e2 * inner_ring_e2);
+        let t99 = inner_ring_e0 * inner_ring_e1;
+        let t100 = inner_ring_e2 * inner_ring_e3;
+        let t101 = t100 - t99;
+        let t102 = k(2.0) * t101 * t91
+            - (k(2.0) * t98 * t86 + k(2.0) * (t88 + t87) * t84);
+        let t103 = k(0.8) + k(1e-5) * t102;
+        let t104 = k(0.00025) * t98;
+        let t105 = t100 + t99;
+        let t106 = k(0.5) - (t85 + inner_ring_e3 * inner_ring_e3);
+        let t107 = k(2.0) * t106 * t91
+            - (k(2.0) * t105 * t86 - k(2.0) * (t93 - t92) * t84);
+        let t108 = k(1e-5) * t107;
+        let t109 = k(0.00025) * t105;
+        let t110 = t109 * t108 + (t104 * t103 - t97 * t96) - (t46 * t83 + t43 * t81);
+        let t111 = k(1e-6) * t86 - t110;
+        let t112 = t49 * t111;
+        let t113 = t47 * t112
+            - (k(1e-6) * (inner_ring_wy * inner_ring_wz) + (t39 * t83 - t34 * t81));
+        let t114 = t53 * t55;
+        let t115 = t56 * t52;
+        let t116 = t53 * t56;
+        let t117 = t55 * t52;
+        let t118 = outer_ring_wy * (k(2.0) * (t117 + t116))
+            + outer_ring_wx * (k(2.0) * (t115 - t114));
+        let t119 = k(0.5) - (t67 + t52 * t52);
+        let t120 = outer_ring_wz * (k(2.0) * t119) - t118;
+        let t121 = inner_ring_wz + t120;
+        let t122 = k(2.0) * (t57 + t54);
+        let t123 = k(2.0) * (t117 - t116);
+        let t124 = outer_ring_wz * t123 - (outer_ring_wy * t68 - outer_ring_wx * t122);
+        let t125 = inner_ring_wy - t124;
+        let t126 = k(2.0) * (k(0.5) - (t67 + t56 * t56));
+        let t127 = k(2.0) * (t115 + t114);
+        let t128 = outer_ring_wz * t127 + (outer_ring_wy * t58 - outer_ring_wx * t126);
+        let t129 = inner_ring_wx - t128;
+        let t130 = k(0.5) / t119 * (t129 * t129 + t125 * t125);
+        let t131 = inner_ring_wy * t120 + inner_ring_wz * t124
+            - (t123 * t130 - t125 * t121);
+        let t132 = inner_ring_wz * t128 + inner_ring_wx * t120
+            - (t127 * t130 - t129 * t121);
+        let t133 = k(0.00025) * t94;
+        let t134 = k(0.00025) * t101;
+        let t135 = k(0.00025) * t106;
+        let t136 = t135 * t108 + (t134 * t103 + t133 * t96) + (t62 * t83 + t60 * t81);
+        let t137 = t68 * (t70 * t132 - t66 * t131 + (t65 * t112 - t136));
+        let t138 = k(1e-6) * (outer_ring_wx * outer_ring_wz)
+            - (t137 - t58 * (t66 * t132 - t51 * t131 + t113));
+        let t139 = t68 * (t122 * t70 - t126 * t66) - t58 * (t122 * t66 - t126 * t51);
+        let t140 = t17 * (k(2.0) * (t1 + t0)) + t14 * (k(2.0) * (t7 - t6));
+        let t141 = outer_ring_wx * t4 + outer_ring_wy * t20 + t8 * t24
+            - (t140 * t23 + t21 * t5);
+        let t142 = t141 * (t123 * t71 + t127 * t69) + t25 * t139 - t138;
+        let t143 = t142 / (k(1e-6) - (t68 * t71 - t58 * t69));
+        let t144 = t131 - (t141 * t127 - (t58 * t143 + t25 * t126));
+        let t145 = t132 + (t141 * t123 + (t68 * t143 + t25 * t122));
+        let t146 = t49 * (t111 + (t65 * t145 - t47 * t144));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -t38,
-            -t167,
-            -t165,
+            -t25,
+            t143,
+            -t141,
             k(0.0),
             k(0.0),
             k(0.0),
-            t168,
-            t169,
-            -t172,
-            k(0.000125) * t128 - (t130 * t172 + t157 * t169),
-            k(0.000125) * t131 + (t133 * t172 - t158 * t169),
-            -(k(0.000125) * t134 + (t136 * t172 - t159 * t169)),
+            t144,
+            -t145,
+            -t146,
+            k(0.000125) * t95 - (t97 * t146 - t133 * t145),
+            k(0.000125) * t102 + (t104 * t146 + t134 * t145),
+            -(k(0.000125) * t107 + (t109 * t146 + t135 * t145)),
             k(0.0),
-            t123 + (t72 * t172 + (t86 * t169 + t55 * t168)),
-            -(t125 + (t73 * t172 + (t87 * t169 + t62 * t168))),
+            -(t80 + (t43 * t146 - (t60 * t145 + t34 * t144))),
+            t46 * t146 - (t62 * t145 - t39 * t144) - t82,
         ];
     }
     /// Writes λ: 312 operations (116 ±, 193 ×, 3 ÷) and 3 functions.
@@ -2409,12 +2391,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenGyroscope<T> {
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for DrivenGyroscope<T> {
     type Joints = [T; 7];
     type Rates = [T; 3];
+    type Solution = [T; 33];
     fn joint_start(&self) -> Self::Joints {
         let k = T::constant;
         [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(100.0), k(0.0)]
     }
     fn rates(&self) -> Self::Rates {
         [T::constant(0.0); 3]
+    }
+    fn solution(&self) -> Self::Solution {
+        [T::constant(0.0); 33]
     }
     /// Writes u̇: 70 operations (21 ±, 48 ×, 1 ÷) and 8 functions.
     fn joint_accelerations(&self, t: T, x: &Self::Joints, out: &mut Self::Rates) {
@@ -2836,7 +2822,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for DrivenGyroscope<T> {
         x[5] = rotor_wx - inner_ring_wx;
         x[6] = y[39];
     }
-    /// Writes u̇ at a state that satisfies the constraints: 106 operations (34 ±, 71 ×, 1 ÷) and 5 functions.
+    /// Writes u̇ at a state that satisfies the constraints: 105 operations (34 ±, 70 ×, 1 ÷) and 5 functions.
     fn joint_accelerations_at(&self, t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2884,15 +2870,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for DrivenGyroscope<T> {
             - (t9 * (k(7.00125e-6) * t5) - t5 * (k(1e-6) * t9)) * t19;
         let t23 = (t22 + (k(1e-6) * (outer_ring_wx * outer_ring_wz) + t10))
             / (k(1e-6) + (t9 * (k(7.00125e-6) * t9) + t5 * (k(1e-6) * t5)));
-        let t24 = k(1e-5) * (inner_ring_wx * (k(0.000125) * inner_ring_wy))
+        let t24 = (t14 * outer_ring_e0 + t13 * outer_ring_e1) * t16;
+        let t25 = k(1e-5) * (inner_ring_wx * (k(0.000125) * inner_ring_wy))
             - k(5e-6) * (inner_ring_wy * t7 - inner_ring_wy * t6);
-        let t25 = (t14 * outer_ring_e0 + t13 * outer_ring_e1) * t16;
-        let t26 = k(1e-5) * (t9 * (k(10.0) * t20.cos()) + t5 * (t25 * t21));
-        let t27 = t26 + k(6.00125e-6) * (outer_ring_wx * outer_ring_wy - t18 * t25)
-            + (k(1e-6) * (inner_ring_wx * inner_ring_wy) + t24);
-        *out = [-t23, -(k(166631.95167673402) * t27), t1 - (t5 * t23 - t9 * t19)];
+        let t26 = k(1e-5) * (t9 * (k(10.0) * t20.cos()) + t5 * (t24 * t21));
+        let t27 = k(166631.95167673402)
+            * (t26 + (k(1e-6) * (inner_ring_wx * inner_ring_wy) + t25))
+            + (outer_ring_wx * outer_ring_wy - t18 * t24);
+        *out = [-t23, -t27, t1 - (t5 * t23 - t9 * t19)];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 204 operations (73 ±, 130 ×, 1 ÷) and 5 functions.
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 486 operations (192 ±, 289 ×, 5 ÷) and 4 functions.
     fn corrected_accelerations(
         &self,
         t: T,
@@ -2921,91 +2908,182 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for DrivenGyroscope<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = (k(12.566370614359172) * t).sin();
-        let t1 = k(0.05) * t0;
-        let t2 = t1.sin();
-        let t3 = t1.cos();
-        let t4 = t3 * outer_ring_e2 + t2 * outer_ring_e3;
-        let t5 = k(2.0) * t4;
-        let t6 = k(1.0) - t4 * t5;
-        let t7 = k(15.791367041742975) * t0;
-        let t8 = outer_ring_wy * outer_ring_wz + t7 * t6;
-        let t9 = outer_ring_wz - inner_ring_wz;
-        let t10 = inner_ring_wy * t9;
-        let t11 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
-            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
-        let t12 = k(2.0) * t11;
-        let t13 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
-            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
-        let t14 = t13 * t12;
-        let t15 = inner_ring_wx - rotor_wx;
-        let t16 = inner_ring_wx - t15;
-        let t17 = k(0.000125) * inner_ring_wz;
-        let t18 = inner_ring_wx * t17;
-        let t19 = inner_ring_wx * t9;
-        let t20 = k(7.00125e-6) * t19
-            - (k(1e-5) * t18 - k(5e-6) * (inner_ring_wz * t16 - inner_ring_wz * t15));
-        let t21 = k(1.0) - t11 * t12;
-        let t22 = k(1e-6) * (outer_ring_wx * outer_ring_wz)
-            + (t21 * t20 + t14 * (k(1e-6) * (inner_ring_wy * inner_ring_wz + t10)));
-        let t23 = k(0.1) * t0;
-        let t24 = k(10.0) * t23.sin();
-        let t25 = k(1e-5) * t21 * (t6 * t24)
-            - (t21 * (k(7.00125e-6) * t14) - t14 * (k(1e-6) * t21)) * t8;
-        let t26 = (t25 + t22)
-            / (k(1e-6) + (t21 * (k(7.00125e-6) * t21) + t14 * (k(1e-6) * t14)));
-        let t27 = (t3 * outer_ring_e0 + t2 * outer_ring_e1) * t5;
-        let t28 = outer_ring_wx * outer_ring_wy - t7 * t27;
-        let t29 = t19 - (t14 * t8 + t21 * t26);
-        let t30 = k(0.000125) * inner_ring_wy;
-        let t31 = inner_ring_wx * t30;
-        let t32 = k(1e-6) * (inner_ring_wx * inner_ring_wy)
-            + (k(1e-5) * t31 - k(5e-6) * (inner_ring_wy * t16 - inner_ring_wy * t15));
-        let t33 = k(1e-5) * (t21 * (k(10.0) * t23.cos()) + t14 * (t27 * t24));
-        let t34 = t28 - k(166631.95167673402) * (t33 + k(6.00125e-6) * t28 + t32);
-        let t35 = k(0.000125) * t34;
-        let t36 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
-            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
-        let t37 = k(2.0) * t36;
-        let t38 = k(1.0) - t36 * t37;
-        let t39 = k(0.000125) * t29;
-        let t40 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
-            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
-        let t41 = t40 * t37;
-        let t42 = t41 * t18 - t38 * t31 - (t41 * t39 + t38 * t35);
-        let t43 = rotor_e0 * rotor_e3;
-        let t44 = rotor_e1 * rotor_e2;
-        let t45 = inner_ring_wy * t30 + inner_ring_wz * t17;
-        let t46 = rotor_e0 * rotor_e0;
-        let t47 = k(2.0) * (k(0.5) - (t46 + rotor_e1 * rotor_e1)) * t45
-            - k(2.0) * (t44 - t43) * t42;
-        let t48 = t38 * t18 + t41 * t31 - (t38 * t39 - t41 * t35);
-        let t49 = rotor_e0 * rotor_e2;
-        let t50 = rotor_e1 * rotor_e3;
-        let t51 = k(2.0) * (t44 + t43) * t45
-            - k(2.0) * (k(0.5) - (t46 + rotor_e2 * rotor_e2)) * t42;
-        let t52 = rotor_e0 * rotor_e1;
-        let t53 = rotor_e2 * rotor_e3;
-        let t54 = k(2.0) * (t50 - t49) * t45 + k(2.0) * (t53 + t52) * t42;
+        let t0 = outer_ring_e0 * outer_ring_e3;
+        let t1 = outer_ring_e1 * outer_ring_e2;
+        let t2 = k(2.0) * (t1 - t0);
+        let t3 = k(12.566370614359172) * t;
+        let t4 = k(1.2566370614359172) * t3.cos();
+        let t5 = t4 * t2;
+        let t6 = outer_ring_wy - t5;
+        let t7 = outer_ring_e0 * outer_ring_e2;
+        let t8 = outer_ring_e1 * outer_ring_e3;
+        let t9 = k(2.0) * (t8 + t7);
+        let t10 = t4 * t9;
+        let t11 = outer_ring_wz - t10;
+        let t12 = outer_ring_e0 * outer_ring_e0;
+        let t13 = k(2.0) * (k(0.5) - (t12 + outer_ring_e3 * outer_ring_e3));
+        let t14 = t3.sin();
+        let t15 = k(0.1) * t14;
+        let t16 = t15.sin();
+        let t17 = outer_ring_e0 * outer_ring_e1;
+        let t18 = outer_ring_e2 * outer_ring_e3;
+        let t19 = k(2.0) * (t18 - t17);
+        let t20 = t15.cos();
+        let t21 = k(2.0) * (k(0.5) - (t12 + outer_ring_e1 * outer_ring_e1));
+        let t22 = t4 * t21;
+        let t23 = outer_ring_wx + t22;
+        let t24 = k(2.0) * (k(0.5) - (t12 + outer_ring_e2 * outer_ring_e2));
+        let t25 = k(2.0) * (t18 + t17);
+        let t26 = (t23 * t23 + t11 * t11) / (t16 * t25 - t20 * t24);
+        let t27 = k(15.791367041742975) * t14;
+        let t28 = outer_ring_wy * t10 - outer_ring_wz * t5 - t21 * t27
+            + (t26 * (t20 * t19 - t16 * t13) + t11 * t6);
+        let t29 = rotor_e0 * rotor_e3;
+        let t30 = rotor_e1 * rotor_e2;
+        let t31 = k(2.0) * (t30 - t29);
+        let t32 = inner_ring_e0 * inner_ring_e0;
+        let t33 = k(2.0) * (k(0.5) - (t32 + inner_ring_e1 * inner_ring_e1));
+        let t34 = rotor_e0 * rotor_e0;
+        let t35 = k(2.0) * (k(0.5) - (t34 + rotor_e2 * rotor_e2));
+        let t36 = inner_ring_e0 * inner_ring_e3;
+        let t37 = inner_ring_e1 * inner_ring_e2;
+        let t38 = k(2.0) * (t37 + t36);
+        let t39 = rotor_e0 * rotor_e1;
+        let t40 = rotor_e2 * rotor_e3;
+        let t41 = k(2.0) * (t40 + t39);
+        let t42 = inner_ring_e0 * inner_ring_e2;
+        let t43 = inner_ring_e1 * inner_ring_e3;
+        let t44 = k(2.0) * (t43 - t42);
+        let t45 = t44 * t41 - (t38 * t35 + t33 * t31);
+        let t46 = k(5e-6) * t45;
+        let t47 = rotor_e0 * rotor_e2;
+        let t48 = rotor_e1 * rotor_e3;
+        let t49 = k(2.0) * (t48 + t47);
+        let t50 = k(2.0) * (t40 - t39);
+        let t51 = k(2.0) * (k(0.5) - (t34 + rotor_e3 * rotor_e3));
+        let t52 = t44 * t51 - (t38 * t50 - t33 * t49);
+        let t53 = k(5e-6) * t52;
+        let t54 = inner_ring_e0 * inner_ring_e1;
+        let t55 = inner_ring_e2 * inner_ring_e3;
+        let t56 = t55 - t54;
+        let t57 = k(2.0) * t56;
+        let t58 = t43 + t42;
+        let t59 = k(2.0) * t58;
+        let t60 = k(0.5) - (t32 + inner_ring_e3 * inner_ring_e3);
+        let t61 = k(2.0) * t60;
+        let t62 = t61 * t41 - (t59 * t31 - t57 * t35);
+        let t63 = t59 * t49 + t57 * t50 + t61 * t51;
+        let t64 = t63 * t53 + t62 * t46;
+        let t65 = k(1e-6)
+            + (k(1.25e-9) + (t63 * (k(5e-6) * t63) + t62 * (k(5e-6) * t62)));
+        let t66 = k(1.0) / t65;
+        let t67 = t66 * t64;
+        let t68 = t64 * t67 - (k(1e-6) + (t52 * t53 + t45 * t46));
+        let t69 = t25 * t44 - (t24 * t38 + t2 * t33);
+        let t70 = k(0.5) - (t32 + inner_ring_e2 * inner_ring_e2);
+        let t71 = k(2.0) * t70;
+        let t72 = t37 - t36;
+        let t73 = k(2.0) * t72;
+        let t74 = t55 + t54;
+        let t75 = k(2.0) * t74;
+        let t76 = t75 * t41 + (t73 * t31 + t71 * t35);
+        let t77 = t75 * t51 - (t73 * t49 - t71 * t50);
+        let t78 = k(5e-6) * t76;
+        let t79 = k(5e-6) * t77;
+        let t80 = t63 * t79 + t62 * t78;
+        let t81 = t80 * t67 - (t77 * t53 + t76 * t46);
+        let t82 = t25 * t75 + (t2 * t73 + t24 * t71);
+        let t83 = t82 * t81 + t69 * t68;
+        let t84 = t80 * (t66 * t80) - (k(2e-6) + (k(1.25e-9) + (t77 * t79 + t76 * t78)));
+        let t85 = t82 * t84 + t69 * t81;
+        let t86 = k(2.0) * (k(0.5) - (t34 + rotor_e1 * rotor_e1));
+        let t87 = k(2.0) * (t30 + t29);
+        let t88 = k(2.0) * (t48 - t47);
+        let t89 = t44 * t88 + (t38 * t87 + t33 * t86);
+        let t90 = inner_ring_wy * (t75 * t88 - (t71 * t87 + t73 * t86))
+            + inner_ring_wx * t89;
+        let t91 = inner_ring_wz * (t61 * t88 - (t57 * t87 - t59 * t86)) - t90;
+        let t92 = rotor_wx + t91;
+        let t93 = inner_ring_wz * t63 - (inner_ring_wy * t77 + inner_ring_wx * t52);
+        let t94 = rotor_wz - t93;
+        let t95 = inner_ring_wz * t62 - (inner_ring_wy * t76 + inner_ring_wx * t45);
+        let t96 = rotor_wy + t95;
+        let t97 = (t96 * t96 + t94 * t94) / t89;
+        let t98 = rotor_wz * t91 + rotor_wx * t93 - (t52 * t97 - t94 * t92);
+        let t99 = k(5e-6) * (rotor_wx * rotor_wz + t98);
+        let t100 = rotor_wx * t95 - rotor_wy * t91 - (t45 * t97 + t96 * t92);
+        let t101 = k(5e-6) * (rotor_wx * rotor_wy - t100);
+        let t102 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
+        let t103 = inner_ring_wx * inner_ring_wy;
+        let t104 = inner_ring_wx * inner_ring_wz;
+        let t105 = t59 * t104 + (t73 * t103 + t33 * t102);
+        let t106 = k(1e-5) * t105;
+        let t107 = k(0.00025) * t72;
+        let t108 = t57 * t104 - (t71 * t103 + t38 * t102);
+        let t109 = k(0.8) + k(1e-5) * t108;
+        let t110 = k(0.00025) * t70;
+        let t111 = t61 * t104 - (t75 * t103 - t44 * t102);
+        let t112 = k(1e-5) * t111;
+        let t113 = k(0.00025) * t74;
+        let t114 = t113 * t112 + (t110 * t109 - t107 * t106) + (t63 * t101 + t62 * t99);
+        let t115 = k(1e-6) * t103 - t114;
+        let t116 = t66 * t115;
+        let t117 = t64 * t116
+            - (k(1e-6) * (inner_ring_wy * inner_ring_wz) - (t52 * t101 + t45 * t99));
+        let t118 = k(2.0) * (t1 + t0);
+        let t119 = k(2.0) * (t8 - t7);
+        let t120 = outer_ring_wy * (t25 * t61 - (t2 * t59 - t24 * t57))
+            + outer_ring_wx * (t119 * t61 - (t118 * t57 - t21 * t59));
+        let t121 = t9 * t59 + t19 * t57 + t13 * t61;
+        let t122 = outer_ring_wz * t121 - t120;
+        let t123 = inner_ring_wz - t122;
+        let t124 = t119 * t75 - (t118 * t71 + t21 * t73);
+        let t125 = t13 * t75 - (t9 * t73 - t19 * t71);
+        let t126 = outer_ring_wz * t125 - (outer_ring_wy * t82 + outer_ring_wx * t124);
+        let t127 = inner_ring_wy + t126;
+        let t128 = t119 * t44 + (t118 * t38 + t21 * t33);
+        let t129 = t13 * t44 - (t19 * t38 - t9 * t33);
+        let t130 = outer_ring_wz * t129 - (outer_ring_wy * t69 + outer_ring_wx * t128);
+        let t131 = inner_ring_wx + t130;
+        let t132 = (t131 * t131 + t127 * t127) / t121;
+        let t133 = inner_ring_wy * t122 + inner_ring_wz * t126
+            + (t125 * t132 - t127 * t123);
+        let t134 = inner_ring_wz * t130 + inner_ring_wx * t122
+            + (t129 * t132 - t131 * t123);
+        let t135 = k(0.00025) * t58;
+        let t136 = k(0.00025) * t56;
+        let t137 = k(0.00025) * t60;
+        let t138 = t137 * t112 + (t136 * t109 + t135 * t106) - (t77 * t101 + t76 * t99);
+        let t139 = t82 * (t84 * t134 - t81 * t133 - (t80 * t116 - t138));
+        let t140 = k(1e-6) * (outer_ring_wx * outer_ring_wz)
+            - (t139 + t69 * (t81 * t134 - t68 * t133 - t117));
+        let t141 = t82 * (t124 * t84 + t128 * t81) + t69 * (t124 * t81 + t128 * t68);
+        let t142 = outer_ring_wx * t5 + outer_ring_wy * t22 + t9 * t27
+            - ((t20 * t118 + t16 * t119) * t26 + t23 * t6);
+        let t143 = (t85 * t125 + t83 * t129) * t142 - t28 * t141 - t140;
+        let t144 = t143 / (k(1e-6) - (t82 * t85 + t69 * t83));
+        let t145 = t133 - (t129 * t142 + (t69 * t144 - t128 * t28));
+        let t146 = t134 + (t125 * t142 + (t82 * t144 - t124 * t28));
+        let t147 = t66 * (t115 - (t80 * t146 - t64 * t145));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -t8,
-            -t26,
-            t28,
+            -t28,
+            t144,
+            -t142,
             k(0.0),
             k(0.0),
             k(0.0),
-            t14 * t26 - t21 * t8 - t10,
-            t29,
-            t34,
-            k(2.0) * (t50 + t49) * t48 + t47,
-            k(2.0) * (t53 - t52) * t48 - t51,
-            -(k(2.0) * (k(0.5) - (t46 + rotor_e3 * rotor_e3)) * t48 + t54),
+            -t145,
+            t146,
+            -t147,
+            k(0.000125) * t105 - (t107 * t147 + t135 * t146),
+            t110 * t147 - t136 * t146 + k(0.000125) * t108,
+            -(t113 * t147 - t137 * t146 + k(0.000125) * t111),
             k(0.0),
-            -(rotor_wz * t15 + (t41 * t34 - t38 * t29)),
-            rotor_wy * t15 + (t38 * t34 + t41 * t29),
+            t98 + (t62 * t147 + (t76 * t146 - t45 * t145)),
+            t100 - (t63 * t147 + (t77 * t146 - t52 * t145)),
         ];
     }
     /// Writes λ: 142 operations (56 ±, 86 ×, 0 ÷) and 3 functions.
@@ -3123,6 +3201,266 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for DrivenGyroscope<T> {
             -t4,
             t35,
             -t21,
+        ];
+    }
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 586 operations (233 ±, 348 ×, 5 ÷) and 6 functions.
+    fn corrected_solution(&self, t: T, y: &Self::State, out: &mut Self::Solution) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        let t0 = outer_ring_e0 * outer_ring_e3;
+        let t1 = outer_ring_e1 * outer_ring_e2;
+        let t2 = k(2.0) * (t1 - t0);
+        let t3 = k(12.566370614359172) * t;
+        let t4 = k(1.2566370614359172) * t3.cos();
+        let t5 = t4 * t2;
+        let t6 = outer_ring_wy - t5;
+        let t7 = outer_ring_e0 * outer_ring_e2;
+        let t8 = outer_ring_e1 * outer_ring_e3;
+        let t9 = k(2.0) * (t8 + t7);
+        let t10 = t4 * t9;
+        let t11 = outer_ring_wz - t10;
+        let t12 = outer_ring_e0 * outer_ring_e0;
+        let t13 = k(2.0) * (k(0.5) - (t12 + outer_ring_e3 * outer_ring_e3));
+        let t14 = t3.sin();
+        let t15 = k(0.1) * t14;
+        let t16 = t15.sin();
+        let t17 = outer_ring_e0 * outer_ring_e1;
+        let t18 = outer_ring_e2 * outer_ring_e3;
+        let t19 = k(2.0) * (t18 - t17);
+        let t20 = t15.cos();
+        let t21 = k(2.0) * (k(0.5) - (t12 + outer_ring_e1 * outer_ring_e1));
+        let t22 = t4 * t21;
+        let t23 = outer_ring_wx + t22;
+        let t24 = k(2.0) * (k(0.5) - (t12 + outer_ring_e2 * outer_ring_e2));
+        let t25 = k(2.0) * (t18 + t17);
+        let t26 = (t23 * t23 + t11 * t11) / (t16 * t25 - t20 * t24);
+        let t27 = k(15.791367041742975) * t14;
+        let t28 = outer_ring_wy * t10 - outer_ring_wz * t5 - t21 * t27
+            + (t26 * (t20 * t19 - t16 * t13) + t11 * t6);
+        let t29 = rotor_e0 * rotor_e3;
+        let t30 = rotor_e1 * rotor_e2;
+        let t31 = k(2.0) * (t30 - t29);
+        let t32 = inner_ring_e0 * inner_ring_e0;
+        let t33 = k(2.0) * (k(0.5) - (t32 + inner_ring_e1 * inner_ring_e1));
+        let t34 = rotor_e0 * rotor_e0;
+        let t35 = k(2.0) * (k(0.5) - (t34 + rotor_e2 * rotor_e2));
+        let t36 = inner_ring_e0 * inner_ring_e3;
+        let t37 = inner_ring_e1 * inner_ring_e2;
+        let t38 = k(2.0) * (t37 + t36);
+        let t39 = rotor_e0 * rotor_e1;
+        let t40 = rotor_e2 * rotor_e3;
+        let t41 = k(2.0) * (t40 + t39);
+        let t42 = inner_ring_e0 * inner_ring_e2;
+        let t43 = inner_ring_e1 * inner_ring_e3;
+        let t44 = k(2.0) * (t43 - t42);
+        let t45 = t44 * t41 - (t38 * t35 + t33 * t31);
+        let t46 = k(5e-6) * t45;
+        let t47 = rotor_e0 * rotor_e2;
+        let t48 = rotor_e1 * rotor_e3;
+        let t49 = k(2.0) * (t48 + t47);
+        let t50 = k(2.0) * (t40 - t39);
+        let t51 = k(2.0) * (k(0.5) - (t34 + rotor_e3 * rotor_e3));
+        let t52 = t44 * t51 - (t38 * t50 - t33 * t49);
+        let t53 = k(5e-6) * t52;
+        let t54 = inner_ring_e0 * inner_ring_e1;
+        let t55 = inner_ring_e2 * inner_ring_e3;
+        let t56 = t55 - t54;
+        let t57 = k(2.0) * t56;
+        let t58 = t43 + t42;
+        let t59 = k(2.0) * t58;
+        let t60 = k(0.5) - (t32 + inner_ring_e3 * inner_ring_e3);
+        let t61 = k(2.0) * t60;
+        let t62 = t61 * t41 - (t59 * t31 - t57 * t35);
+        let t63 = t59 * t49 + t57 * t50 + t61 * t51;
+        let t64 = t63 * t53 + t62 * t46;
+        let t65 = k(1e-6)
+            + (k(1.25e-9) + (t63 * (k(5e-6) * t63) + t62 * (k(5e-6) * t62)));
+        let t66 = k(1.0) / t65;
+        let t67 = t66 * t64;
+        let t68 = t64 * t67 - (k(1e-6) + (t52 * t53 + t45 * t46));
+        let t69 = t25 * t44 - (t24 * t38 + t2 * t33);
+        let t70 = k(0.5) - (t32 + inner_ring_e2 * inner_ring_e2);
+        let t71 = k(2.0) * t70;
+        let t72 = t37 - t36;
+        let t73 = k(2.0) * t72;
+        let t74 = t55 + t54;
+        let t75 = k(2.0) * t74;
+        let t76 = t75 * t41 + (t73 * t31 + t71 * t35);
+        let t77 = t75 * t51 - (t73 * t49 - t71 * t50);
+        let t78 = k(5e-6) * t76;
+        let t79 = k(5e-6) * t77;
+        let t80 = t63 * t79 + t62 * t78;
+        let t81 = t80 * t67 - (t77 * t53 + t76 * t46);
+        let t82 = t25 * t75 + (t2 * t73 + t24 * t71);
+        let t83 = t82 * t81 + t69 * t68;
+        let t84 = t80 * (t66 * t80) - (k(2e-6) + (k(1.25e-9) + (t77 * t79 + t76 * t78)));
+        let t85 = t82 * t84 + t69 * t81;
+        let t86 = k(2.0) * (k(0.5) - (t34 + rotor_e1 * rotor_e1));
+        let t87 = k(2.0) * (t30 + t29);
+        let t88 = k(2.0) * (t48 - t47);
+        let t89 = t44 * t88 + (t38 * t87 + t33 * t86);
+        let t90 = inner_ring_wy * (t75 * t88 - (t71 * t87 + t73 * t86))
+            + inner_ring_wx * t89;
+        let t91 = inner_ring_wz * (t61 * t88 - (t57 * t87 - t59 * t86)) - t90;
+        let t92 = rotor_wx + t91;
+        let t93 = inner_ring_wz * t63 - (inner_ring_wy * t77 + inner_ring_wx * t52);
+        let t94 = rotor_wz - t93;
+        let t95 = inner_ring_wz * t62 - (inner_ring_wy * t76 + inner_ring_wx * t45);
+        let t96 = rotor_wy + t95;
+        let t97 = (t96 * t96 + t94 * t94) / t89;
+        let t98 = rotor_wz * t91 + rotor_wx * t93 - (t52 * t97 - t94 * t92);
+        let t99 = rotor_wx * rotor_wz;
+        let t100 = k(5e-6) * (t99 + t98);
+        let t101 = rotor_wx * t95 - rotor_wy * t91 - (t45 * t97 + t96 * t92);
+        let t102 = rotor_wx * rotor_wy;
+        let t103 = k(5e-6) * (t102 - t101);
+        let t104 = inner_ring_wy * inner_ring_wz;
+        let t105 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
+        let t106 = inner_ring_wx * inner_ring_wy;
+        let t107 = inner_ring_wx * inner_ring_wz;
+        let t108 = t59 * t107 + (t73 * t106 + t33 * t105);
+        let t109 = k(1e-5) * t108;
+        let t110 = k(0.00025) * t72;
+        let t111 = t57 * t107 - (t71 * t106 + t38 * t105);
+        let t112 = k(0.8) + k(1e-5) * t111;
+        let t113 = k(0.00025) * t70;
+        let t114 = t61 * t107 - (t75 * t106 - t44 * t105);
+        let t115 = k(1e-5) * t114;
+        let t116 = k(0.00025) * t74;
+        let t117 = t116 * t115 + (t113 * t112 - t110 * t109) + (t63 * t103 + t62 * t100);
+        let t118 = k(1e-6) * t106 - t117;
+        let t119 = t66 * t118;
+        let t120 = t64 * t119 - (k(1e-6) * t104 - (t52 * t103 + t45 * t100));
+        let t121 = k(2.0) * (t1 + t0);
+        let t122 = k(2.0) * (t8 - t7);
+        let t123 = outer_ring_wy * (t25 * t61 - (t2 * t59 - t24 * t57))
+            + outer_ring_wx * (t122 * t61 - (t121 * t57 - t21 * t59));
+        let t124 = t9 * t59 + t19 * t57 + t13 * t61;
+        let t125 = outer_ring_wz * t124 - t123;
+        let t126 = inner_ring_wz - t125;
+        let t127 = t122 * t75 - (t121 * t71 + t21 * t73);
+        let t128 = t13 * t75 - (t9 * t73 - t19 * t71);
+        let t129 = outer_ring_wz * t128 - (outer_ring_wy * t82 + outer_ring_wx * t127);
+        let t130 = inner_ring_wy + t129;
+        let t131 = t122 * t44 + (t121 * t38 + t21 * t33);
+        let t132 = t13 * t44 - (t19 * t38 - t9 * t33);
+        let t133 = outer_ring_wz * t132 - (outer_ring_wy * t69 + outer_ring_wx * t131);
+        let t134 = inner_ring_wx + t133;
+        let t135 = (t134 * t134 + t130 * t130) / t124;
+        let t136 = inner_ring_wy * t125 + inner_ring_wz * t129
+            + (t128 * t135 - t130 * t126);
+        let t137 = inner_ring_wz * t133 + inner_ring_wx * t125
+            + (t132 * t135 - t134 * t126);
+        let t138 = k(0.00025) * t58;
+        let t139 = k(0.00025) * t56;
+        let t140 = k(0.00025) * t60;
+        let t141 = t140 * t115 + (t139 * t112 + t138 * t109) - (t77 * t103 + t76 * t100);
+        let t142 = t82 * (t84 * t137 - t81 * t136 - (t80 * t119 - t141));
+        let t143 = k(1e-6) * (outer_ring_wx * outer_ring_wz)
+            - (t142 + t69 * (t81 * t137 - t68 * t136 - t120));
+        let t144 = t82 * (t127 * t84 + t131 * t81) + t69 * (t127 * t81 + t131 * t68);
+        let t145 = outer_ring_wx * t5 + outer_ring_wy * t22 + t9 * t27
+            - ((t20 * t121 + t16 * t122) * t26 + t23 * t6);
+        let t146 = (t85 * t128 + t83 * t132) * t145 - t28 * t144 - t143;
+        let t147 = t146 / (k(1e-6) - (t82 * t85 + t69 * t83));
+        let t148 = t136 - (t132 * t145 + (t69 * t147 - t131 * t28));
+        let t149 = t137 + (t128 * t145 + (t82 * t147 - t127 * t28));
+        let t150 = t66 * (t118 - (t80 * t149 - t64 * t148));
+        let t151 = t110 * t150 + t138 * t149 - k(0.000125) * t108;
+        let t152 = t113 * t150 - t139 * t149 + k(0.000125) * t111;
+        let t153 = t116 * t150 - t140 * t149 + k(0.000125) * t114;
+        let t154 = t98 + (t62 * t150 + (t76 * t149 - t45 * t148));
+        let t155 = t101 - (t63 * t150 + (t77 * t149 - t52 * t148));
+        let t156 = k(0.08) * t151;
+        let t157 = k(0.8) + k(0.08) * t152;
+        let t158 = k(0.1) + t157;
+        let t159 = k(0.08) * t153;
+        let t160 = k(5e-6) * (t102 - t155);
+        let t161 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t162 = k(2.0) * t161;
+        let t163 = k(1.0) - t161 * t162;
+        let t164 = k(5e-6) * (t99 + t154);
+        let t165 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t166 = t165 * t162;
+        let t167 = t166 * t164 + t163 * t160;
+        let t168 = t110 * t156 + t113 * t157 + t116 * t159 + t167
+            - k(1e-6) * (t106 - t150);
+        let t169 = t168 + k(1e-6) * (outer_ring_wx * outer_ring_wy + t145);
+        let t170 = k(0.05) * t14;
+        let t171 = t170.sin();
+        let t172 = t170.cos();
+        let t173 = t172 * outer_ring_e2 + t171 * outer_ring_e3;
+        let t174 = k(2.0) * t173;
+        let t175 = (t172 * outer_ring_e0 + t171 * outer_ring_e1) * t174;
+        let t176 = t163 * t164 - t166 * t160;
+        let t177 = t138 * t156 - t139 * t157 - t140 * t159 + t176 + k(2e-6) * t149;
+        let t178 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t179 = k(2.0) * t178;
+        let t180 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t181 = t180 * t179;
+        let t182 = k(1e-6) * (t104 + t148);
+        let t183 = k(1.0) - t178 * t179;
+        let t184 = t183 * t182 - t181 * t177;
+        let t185 = t184 + k(2e-6) * t28;
+        let t186 = k(1.0) - t173 * t174;
+        *out = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t28,
+            t147,
+            -t145,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t148,
+            t149,
+            -t150,
+            -t151,
+            t152,
+            -t153,
+            k(0.0),
+            t154,
+            t155,
+            t156,
+            -(k(0.1) + t158),
+            t159,
+            t186 * t185 + t175 * t169,
+            t175 * t185 - t186 * t169,
+            t156,
+            -t158,
+            t159,
+            -(t181 * t182 + t183 * t177),
+            -t184,
+            t156,
+            -t157,
+            t159,
+            t167,
+            t176,
         ];
     }
 }

@@ -19,7 +19,7 @@
 //! | gamma | γ | 101 | 163 | 0 | 264 | 0 of 17 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 83 | 107 | 0 | 190 | 0 of 17 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 538 | 730 | 9 | 1277 | 0 of 21 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 487 | 660 | 9 | 1156 | 0 of 21 |
 //! | multipliers | λ, the accelerations being known | 104 | 165 | 3 | 272 | 0 of 17 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
@@ -34,7 +34,7 @@
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints: their definitions
 //!
-//! All of it holds but with a probability below 1e-142.
+//! All of it holds but with a probability below 1e-143.
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
 
 /// The mechanism `four_bar`.
@@ -1435,7 +1435,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
             -(k(0.01076) * (rocker_wx * rocker_wy)),
         ];
     }
-    /// Solves eq. (17): 1277 operations (538 ±, 730 ×, 9 ÷).
+    /// Solves eq. (17): 1156 operations (487 ±, 660 ×, 9 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let crank_e0 = y[3];
@@ -1460,321 +1460,343 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
         let rocker_wy = y[37];
         let rocker_wz = y[38];
         let (
+            t7,
+            t12,
+            t14,
+            t15,
+            t16,
+            t17,
+            t18,
+            t19,
+            t20,
+            t21,
+            t23,
             t24,
-            t28,
-            t32,
-            t36,
-            t38,
+            t25,
+            t26,
+            t27,
+            t37,
             t42,
-            t45,
-            t50,
-            t52,
-            t53,
-            t57,
-            t58,
+            t44,
+            t51,
+            t54,
+            t56,
             t59,
             t60,
-            t61,
             t63,
+            t64,
             t65,
             t66,
+            t67,
             t69,
-            t70,
             t71,
-            t72,
             t74,
-            t79,
             t84,
             t85,
             t86,
             t88,
             t91,
-            t94,
-            t95,
-            t96,
+            t97,
             t98,
+            t99,
             t101,
-            t121,
-            t141,
-            t145,
-            t149,
-            t166,
-            t186,
+            t104,
+            t109,
+            t110,
+            t111,
+            t113,
+            t130,
+            t144,
+            t148,
+            t152,
+            t165,
             t187,
-            t189,
+            t188,
             t190,
-            t192,
+            t191,
             t193,
-            t195,
+            t194,
             t196,
             t197,
             t198,
             t199,
         ) = {
-            let t0 = crank_e0 * crank_e3;
-            let t1 = crank_e1 * crank_e2;
-            let t2 = k(2.0) * (t1 + t0);
-            let t3 = t1 - t0;
-            let t4 = k(2.0) * t3;
-            let t5 = crank_e0 * crank_e0;
-            let t6 = k(0.5) - (t5 + crank_e2 * crank_e2);
-            let t7 = k(2.0) * t6;
-            let t8 = k(2.0) * (k(0.5) - (t5 + crank_e1 * crank_e1));
-            let t9 = k(1.0) / (t8 * t7 - t4 * t2);
-            let t10 = crank_wx * crank_wz;
-            let t11 = crank_wy * crank_wz;
-            let t12 = crank_wy * crank_wy;
-            let t13 = t12 + crank_wx * crank_wx;
-            let t14 = crank_e0 * crank_e2;
-            let t15 = crank_e1 * crank_e3;
-            let t16 = t15 + t14;
-            let t17 = k(2.0) * t16;
-            let t18 = t17 * t13 - (t4 * t11 - t8 * t10);
-            let t19 = crank_e0 * crank_e1;
-            let t20 = crank_e2 * crank_e3;
+            let t0 = coupler_wz * coupler_wz;
+            let t1 = t0 + coupler_wy * coupler_wy;
+            let t2 = coupler_e0 * coupler_e0;
+            let t3 = k(2.0) * (k(0.5) - (t2 + coupler_e1 * coupler_e1));
+            let t4 = coupler_wx * coupler_wy;
+            let t5 = coupler_e0 * coupler_e3;
+            let t6 = coupler_e1 * coupler_e2;
+            let t7 = t6 - t5;
+            let t8 = k(2.0) * t7;
+            let t9 = coupler_wx * coupler_wz;
+            let t10 = coupler_e0 * coupler_e2;
+            let t11 = coupler_e1 * coupler_e3;
+            let t12 = t11 + t10;
+            let t13 = k(2.0) * t12;
+            let t14 = k(0.25) * (t13 * t9 + (t8 * t4 + t3 * t1));
+            let t15 = rocker_wy * rocker_wy;
+            let t16 = rocker_wz * rocker_wz + t15;
+            let t17 = rocker_e0 * rocker_e0;
+            let t18 = rocker_wx * rocker_wy;
+            let t19 = rocker_e0 * rocker_e3;
+            let t20 = rocker_e1 * rocker_e2;
             let t21 = t20 - t19;
-            let t22 = k(2.0) * t21;
-            let t23 = t22 * t13 + (t7 * t11 - t2 * t10);
-            let t24 = t23 * (t4 * t9) + t18 * (t7 * t9);
-            let t25 = k(0.2) * t16;
-            let t26 = coupler_e0 * coupler_e1;
-            let t27 = coupler_e2 * coupler_e3;
-            let t28 = t27 - t26;
-            let t29 = coupler_wx * coupler_wz;
-            let t30 = k(0.02095) * t29 + k(4.905) * t28;
-            let t31 = coupler_e0 * coupler_e0;
-            let t32 = k(0.5) - (t31 + coupler_e2 * coupler_e2);
-            let t33 = k(2.0) * t32;
-            let t34 = coupler_e0 * coupler_e3;
-            let t35 = coupler_e1 * coupler_e2;
-            let t36 = t35 - t34;
-            let t37 = k(2.0) * t36;
-            let t38 = t27 + t26;
-            let t39 = k(2.0) * t38;
-            let t40 = k(0.5) - (t5 + crank_e3 * crank_e3);
-            let t41 = k(2.0) * t40;
-            let t42 = t41 * t39 - (t17 * t37 - t22 * t33);
-            let t43 = coupler_wx * coupler_wy;
-            let t44 = k(0.02095) * t43 - k(4.905) * t32;
-            let t45 = k(0.5) - (t31 + coupler_e3 * coupler_e3);
-            let t46 = k(2.0) * t45;
-            let t47 = k(2.0) * t28;
-            let t48 = coupler_e0 * coupler_e2;
-            let t49 = coupler_e1 * coupler_e3;
-            let t50 = t49 + t48;
-            let t51 = k(2.0) * t50;
-            let t52 = t17 * t51 + t22 * t47 + t41 * t46;
-            let t53 = t52 * t44 + t42 * t30;
-            let t54 = k(2.0) * (k(0.5) - (t31 + coupler_e1 * coupler_e1));
-            let t55 = k(2.0) * (t35 + t34);
-            let t56 = k(2.0) * (t49 - t48);
-            let t57 = t41 * t56 - (t22 * t55 - t17 * t54);
-            let t58 = k(5e-5) * t57;
-            let t59 = k(0.0835) * t42;
-            let t60 = k(0.0835) * t52;
-            let t61 = k(1.0) / (t52 * t60 + (t42 * t59 + t57 * t58));
-            let t62 = t61 * t53;
-            let t63 = t30 - t59 * t62;
-            let t64 = t59 * t61;
-            let t65 = k(0.0835) - t59 * t64;
-            let t66 = k(1.0) / t65;
-            let t67 = t66 * t63;
-            let t68 = t58 * t61;
-            let t69 = t59 * t68;
-            let t70 = k(0.5) * t50;
-            let t71 = k(0.5) * t36;
-            let t72 = t71 * t52 + t70 * t42;
-            let t73 = t61 * t72;
-            let t74 = t70 - t59 * t73;
-            let t75 = t66 * t74;
-            let t76 = t69 * t75 - t58 * t73;
-            let t77 = coupler_wz * coupler_wz;
-            let t78 = t77 + coupler_wy * coupler_wy;
-            let t79 = k(0.25) * (t51 * t29 + (t37 * t43 + t54 * t78));
-            let t80 = crank_wz * crank_wz + t12;
-            let t81 = crank_wx * crank_wy;
-            let t82 = k(0.1) * (t17 * t10 + (t4 * t81 + t8 * t80));
-            let t83 = t82 + t79;
-            let t84 = k(0.5) * t28;
-            let t85 = k(0.5) * t32;
-            let t86 = t85 * t52 - t84 * t42;
-            let t87 = t61 * t86;
-            let t88 = t84 + t59 * t87;
-            let t89 = t66 * t88;
-            let t90 = t69 * t89 + t58 * t87;
-            let t91 = k(0.25) * (t47 * t29 - (t33 * t43 + t55 * t78));
-            let t92 = k(0.1) * (t22 * t10 - (t7 * t81 + t2 * t80));
-            let t93 = t92 + t91;
-            let t94 = k(0.5) * t45;
-            let t95 = k(0.5) * t38;
-            let t96 = t95 * t52 - t94 * t42;
-            let t97 = t61 * t96;
-            let t98 = t94 + t59 * t97;
-            let t99 = t66 * t98;
-            let t100 = t69 * t99 + t58 * t97;
-            let t101 = k(0.25) * (t46 * t29 - (t39 * t43 - t56 * t78));
-            let t102 = k(2.0) * (t15 - t14);
-            let t103 = t20 + t19;
-            let t104 = k(2.0) * t103;
-            let t105 = k(0.1) * (t41 * t10 - (t104 * t81 - t102 * t80));
-            let t106 = t105 + t101;
-            let t107 = k(1.0) / (t57 * t57 + t52 * t52);
-            let t108 = t102 * t39 - (t2 * t33 + t8 * t37);
-            let t109 = t104 * t39 + (t4 * t37 + t7 * t33);
-            let t110 = t102 * t56 + (t2 * t55 + t8 * t54);
-            let t111 = t102 * t46 - (t2 * t47 - t8 * t51);
-            let t112 = t104 * t56 - (t7 * t55 + t4 * t54);
-            let t113 = t104 * t46 - (t4 * t51 - t7 * t47);
-            let t114 = crank_wx * (coupler_wx * t113 + coupler_wz * t112)
-                - crank_wy * (coupler_wx * t111 + coupler_wz * t110);
-            let t115 = coupler_wy * coupler_wz * t52
-                + ((t77 + coupler_wx * coupler_wx) * t42 - t43 * t57);
-            let t116 = t115 + k(2.0) * t114 + (t13 * t42 + (t11 * t109 + t10 * t108));
-            let t117 = t116 * (t52 * t107);
-            let t118 = t66 * t69;
-            let t119 = t69 * t118 - (k(5e-5) - t58 * t68);
-            let t120 = t116 * (t57 * t107);
-            let t121 = t60 * t64;
-            let t122 = t121 * t118 + t60 * t68;
-            let t123 = t122 * t120 - t119 * t117
-                + (t106 * t100 + (t93 * t90 + t83 * t76));
-            let t124 = t74 - t65 * t75;
-            let t125 = t88 - t65 * t89;
-            let t126 = t98 - t65 * t99;
-            let t127 = t69 - t65 * t118;
-            let t128 = t127 * t117 - (t106 * t126 + (t93 * t125 + t83 * t124));
-            let t129 = t42 * (t128 - (t63 - t65 * t67))
-                - t57 * (t123 + (t69 * t67 - t58 * t62));
-            let t130 = t121 * t75 + (t71 - t60 * t73);
-            let t131 = t121 * t89 - (t85 - t60 * t87);
-            let t132 = t121 * t99 - (t95 - t60 * t97);
-            let t133 = t121 * (t66 * t121) - (k(0.0835) - t60 * (t60 * t61));
-            let t134 = t133 * t120 - t122 * t117
-                + (t106 * t132 + (t93 * t131 + t83 * t130));
-            let t135 = t52 * (t134 + (t121 * t67 + (t44 - t60 * t62))) - t129;
-            let t136 = t88 * t75 - t86 * t73;
-            let t137 = t88 * t89 + t86 * t87;
-            let t138 = t98 * t89 + t96 * t87;
-            let t139 = t131 * t120 - t90 * t117
-                - (t93 - (t106 * t138 + (t93 * t137 + t83 * t136)));
-            let t140 = t139 + (t88 * t67 - (k(9.81) + t86 * t62));
-            let t141 = k(0.2) * t6;
-            let t142 = t74 * t75 + t72 * t73;
-            let t143 = t98 * t75 - t96 * t73;
-            let t144 = t130 * t120 - t76 * t117
-                - (t83 - (t106 * t143 + (t93 * t136 + t83 * t142)));
-            let t145 = k(0.2) * t3;
-            let t146 = t145 * (t144 + (t74 * t67 + t72 * t62));
-            let t147 = t98 * t99 + t96 * t97;
-            let t148 = t132 * t120 - t100 * t117
-                - (t106 - (t106 * t147 + (t93 * t138 + t83 * t143)));
-            let t149 = k(0.2) * t103;
-            let t150 = t149 * (t148 + (t98 * t67 - t96 * t62));
-            let t151 = t141 * (k(3.924) - t140) + t146 - t150
-                - (k(0.00133) * t81 + (t150 - (t146 - t141 * t140) + t135));
-            let t152 = t149 * t143 + (t141 * t136 - t145 * t142);
-            let t153 = t52 * t130 + (t42 * t124 + t57 * t76);
-            let t154 = t145 + t152 + t153;
-            let t155 = t149 * t138 + (t141 * t137 - t145 * t136);
-            let t156 = t52 * t131 + (t42 * t125 + t57 * t90);
-            let t157 = t141 - t155 - t156;
-            let t158 = t92 * (t157 - (t155 - k(0.28) * t6))
-                - t82 * (t154 + (t152 + k(0.28) * t3));
-            let t159 = t149 * t147 + (t141 * t138 - t145 * t143);
-            let t160 = t52 * t132 + (t42 * t126 + t57 * t100);
-            let t161 = t149 - t159 - t160;
-            let t162 = t42 * (t110 * t127)
-                + t57 * (t111 * t122 + (t108 * t127 + t110 * t119));
-            let t163 = t141 * (t111 * t131 + (t108 * t125 + t110 * t90))
-                - t145 * (t111 * t130 + (t108 * t124 + t110 * t76));
-            let t164 = t149 * (t111 * t132 + (t108 * t126 + t110 * t100)) + t163;
-            let t165 = t164 + (t164 + (t52 * (t111 * t133 + t110 * t122) + t162));
-            let t166 = t23 * (t8 * t9) + t18 * (t2 * t9);
-            let t167 = t42 * (t112 * t127)
-                + t57 * (t113 * t122 + (t109 * t127 + t112 * t119));
-            let t168 = k(0.2) * t21;
-            let t169 = k(0.2) * t40;
-            let t170 = t113 * t130 + (t109 * t124 + t112 * t76);
-            let t171 = t113 * t131 + (t109 * t125 + t112 * t90);
-            let t172 = t113 * t132 + (t109 * t126 + t112 * t100);
-            let t173 = t149 * t172 + (t141 * t171 - t145 * t170)
-                - (t169 * t160 + (t168 * t156 + t25 * t153));
-            let t174 = t169 * t159 + (t168 * t155 + t25 * t152);
-            let t175 = t174 - t173 - (t52 * (t113 * t133 + t112 * t122) + t167);
-            let t176 = t25 - (t169 * t143 + (t168 * t136 + t25 * t142)) + t170;
-            let t177 = t168 - (t169 * t138 + (t168 * t137 + t25 * t136)) + t171;
-            let t178 = t169 - (t169 * t147 + (t168 * t138 + t25 * t143)) + t172;
-            let t179 = t149 * t178 + (t141 * t177 - t145 * t176)
-                + (t169 * t161 + (t168 * t157 - t25 * t154));
-            let t180 = t24 * (t179 - t174 - t175) - t166 * t165
-                + (t105 * (t161 - (t159 - k(0.28) * t103)) + t158);
-            let t181 = t42 * (t57 * t127)
-                + t57 * (t52 * t122 + (t42 * t127 + t57 * t119));
-            let t182 = t149 * t159 + (t141 * t155 - t145 * t152);
-            let t183 = t182 + k(2.0) * (t149 * t160 + (t141 * t156 - t145 * t153));
-            let t184 = t183 - (k(0.01) - (t52 * (t52 * t133 + t57 * t122) + t181));
-            let t185 = k(2.0) * (t149 * t161 + (t141 * t157 + t145 * t154)) - t182;
-            let t186 = k(1.0) / (t185 + (k(0.014) + (k(0.00135) - t184)));
-            let t187 = t186 * (t180 + t151);
-            let t188 = t145 * t187 + t25 * t24;
-            let t189 = t82 + t188;
-            let t190 = t83 + (t188 + t189);
-            let t191 = t141 * t187 - t168 * t24;
-            let t192 = t92 - t191;
-            let t193 = t93 - (t191 - t192);
-            let t194 = t149 * t187 - t169 * t24;
-            let t195 = t105 - t194;
-            let t196 = t106 - (t194 - t195);
-            let t197 = t117 + (t57 * t187 + (t112 * t24 - t110 * t166));
-            let t198 = t42 * t187 + (t109 * t24 - t108 * t166);
-            let t199 = t120 - (t52 * t187 + (t113 * t24 - t111 * t166));
+            let t22 = k(2.0) * t21 * t18
+                + k(2.0) * (k(0.5) - (t17 + rocker_e1 * rocker_e1)) * t16;
+            let t23 = rocker_wx * rocker_wz;
+            let t24 = rocker_e0 * rocker_e2;
+            let t25 = rocker_e1 * rocker_e3;
+            let t26 = t25 + t24;
+            let t27 = k(0.2) * (k(2.0) * t26 * t23 + t22);
+            let t28 = crank_e0 * crank_e0;
+            let t29 = k(0.5) - (t28 + crank_e3 * crank_e3);
+            let t30 = crank_wy * crank_wy;
+            let t31 = t30 + crank_wx * crank_wx;
+            let t32 = t31 * (k(0.5) / t29);
+            let t33 = crank_e0 * crank_e2;
+            let t34 = crank_e1 * crank_e3;
+            let t35 = k(2.0) * (t34 - t33);
+            let t36 = crank_wx * crank_wz;
+            let t37 = t36 - t35 * t32;
+            let t38 = t34 + t33;
+            let t39 = k(0.2) * t38;
+            let t40 = coupler_e0 * coupler_e1;
+            let t41 = coupler_e2 * coupler_e3;
+            let t42 = t41 - t40;
+            let t43 = k(0.02095) * t9 + k(4.905) * t42;
+            let t44 = k(0.5) - (t2 + coupler_e2 * coupler_e2);
+            let t45 = k(2.0) * t44;
+            let t46 = crank_e0 * crank_e1;
+            let t47 = crank_e2 * crank_e3;
+            let t48 = t47 - t46;
+            let t49 = k(2.0) * t48;
+            let t50 = k(2.0) * t38;
+            let t51 = t41 + t40;
+            let t52 = k(2.0) * t51;
+            let t53 = k(2.0) * t29;
+            let t54 = t53 * t52 - (t50 * t8 - t49 * t45);
+            let t55 = k(0.02095) * t4 - k(4.905) * t44;
+            let t56 = k(0.5) - (t2 + coupler_e3 * coupler_e3);
+            let t57 = k(2.0) * t56;
+            let t58 = k(2.0) * t42;
+            let t59 = t50 * t13 + t49 * t58 + t53 * t57;
+            let t60 = t59 * t55 + t54 * t43;
+            let t61 = k(2.0) * (t6 + t5);
+            let t62 = k(2.0) * (t11 - t10);
+            let t63 = t53 * t62 - (t49 * t61 - t50 * t3);
+            let t64 = k(5e-5) * t63;
+            let t65 = k(0.0835) * t54;
+            let t66 = k(0.0835) * t59;
+            let t67 = k(1.0) / (t59 * t66 + (t54 * t65 + t63 * t64));
+            let t68 = t67 * t60;
+            let t69 = t43 - t65 * t68;
+            let t70 = t65 * t67;
+            let t71 = k(1.0) / (k(0.0835) - t65 * t70);
+            let t72 = t71 * t69;
+            let t73 = t64 * t67;
+            let t74 = t65 * t73;
+            let t75 = crank_wz * crank_wz + t30;
+            let t76 = k(2.0) * (k(0.5) - (t28 + crank_e1 * crank_e1));
+            let t77 = crank_wx * crank_wy;
+            let t78 = crank_e0 * crank_e3;
+            let t79 = crank_e1 * crank_e2;
+            let t80 = t79 - t78;
+            let t81 = k(2.0) * t80;
+            let t82 = k(0.1) * (t50 * t36 + (t81 * t77 + t76 * t75));
+            let t83 = t82 + t14;
+            let t84 = k(0.5) * t12;
+            let t85 = k(0.5) * t7;
+            let t86 = t85 * t59 + t84 * t54;
+            let t87 = t67 * t86;
+            let t88 = t84 - t65 * t87;
+            let t89 = t71 * t88;
+            let t90 = t74 * t89 - t64 * t87;
+            let t91 = k(0.25) * (t58 * t9 - (t45 * t4 + t61 * t1));
+            let t92 = k(2.0) * (t79 + t78);
+            let t93 = k(0.5) - (t28 + crank_e2 * crank_e2);
+            let t94 = k(2.0) * t93;
+            let t95 = k(0.1) * (t49 * t36 - (t94 * t77 + t92 * t75));
+            let t96 = t95 + t91;
+            let t97 = k(0.5) * t42;
+            let t98 = k(0.5) * t44;
+            let t99 = t98 * t59 - t97 * t54;
+            let t100 = t67 * t99;
+            let t101 = t97 + t65 * t100;
+            let t102 = t71 * t101;
+            let t103 = t74 * t102 + t64 * t100;
+            let t104 = k(0.25) * (t57 * t9 - (t52 * t4 - t62 * t1));
+            let t105 = t47 + t46;
+            let t106 = k(2.0) * t105;
+            let t107 = k(0.1) * (t53 * t36 - (t106 * t77 - t35 * t75));
+            let t108 = t107 + t104;
+            let t109 = k(0.5) * t56;
+            let t110 = k(0.5) * t51;
+            let t111 = t110 * t59 - t109 * t54;
+            let t112 = t67 * t111;
+            let t113 = t109 + t65 * t112;
+            let t114 = t71 * t113;
+            let t115 = t74 * t114 + t64 * t112;
+            let t116 = k(1.0) / (t63 * t63 + t59 * t59);
+            let t117 = crank_wy * crank_wz;
+            let t118 = t117 * (t106 * t52 + (t81 * t8 + t94 * t45))
+                + t36 * (t35 * t52 - (t92 * t45 + t76 * t8));
+            let t119 = t35 * t62 + (t92 * t61 + t76 * t3);
+            let t120 = t35 * t57 - (t92 * t58 - t76 * t13);
+            let t121 = t106 * t62 - (t94 * t61 + t81 * t3);
+            let t122 = t106 * t57 - (t81 * t13 - t94 * t58);
+            let t123 = crank_wx * (coupler_wx * t122 + coupler_wz * t121)
+                - crank_wy * (coupler_wx * t120 + coupler_wz * t119);
+            let t124 = coupler_wy * coupler_wz * t59
+                + ((t0 + coupler_wx * coupler_wx) * t54 - t4 * t63);
+            let t125 = t124 + k(2.0) * t123 + (t31 * t54 + t118);
+            let t126 = t125 * (t59 * t116);
+            let t127 = t71 * t74;
+            let t128 = t74 * t127 - (k(5e-5) - t64 * t73);
+            let t129 = t63 * t116 * t125;
+            let t130 = t66 * t70;
+            let t131 = t130 * t127 + t66 * t73;
+            let t132 = t131 * t129 - t128 * t126
+                + (t115 * t108 + (t103 * t96 + t90 * t83));
+            let t133 = t130 * t89 + (t85 - t66 * t87);
+            let t134 = t130 * t102 - (t98 - t66 * t100);
+            let t135 = t130 * t114 - (t110 - t66 * t112);
+            let t136 = t130 * (t71 * t130) - (k(0.0835) - t66 * (t66 * t67));
+            let t137 = t136 * t129 - t131 * t126
+                + (t135 * t108 + (t134 * t96 + t133 * t83));
+            let t138 = t59 * (t137 + (t130 * t72 + (t55 - t66 * t68)))
+                + t63 * (t132 + (t74 * t72 - t64 * t68));
+            let t139 = t101 * t89 - t99 * t87;
+            let t140 = t101 * t102 + t99 * t100;
+            let t141 = t113 * t102 + t111 * t100;
+            let t142 = t134 * t129 - t103 * t126
+                - (t96 - (t141 * t108 + (t140 * t96 + t139 * t83)));
+            let t143 = t142 + (t101 * t72 - (k(9.81) + t99 * t68));
+            let t144 = k(0.2) * t93;
+            let t145 = t88 * t89 + t86 * t87;
+            let t146 = t113 * t89 - t111 * t87;
+            let t147 = t133 * t129 - t90 * t126
+                - (t83 - (t146 * t108 + (t139 * t96 + t145 * t83)));
+            let t148 = k(0.2) * t80;
+            let t149 = t148 * (t147 + (t88 * t72 + t86 * t68));
+            let t150 = t113 * t114 + t111 * t112;
+            let t151 = t135 * t129 - t115 * t126
+                - (t108 - (t150 * t108 + (t141 * t96 + t146 * t83)));
+            let t152 = k(0.2) * t105;
+            let t153 = t152 * (t151 + (t113 * t72 - t111 * t68));
+            let t154 = t144 * (k(3.924) - t143) + t149 - t153
+                - (k(0.00133) * t77 + (t153 - (t149 - t144 * t143) + t138));
+            let t155 = t152 * t146 + (t144 * t139 - t148 * t145);
+            let t156 = t59 * t133 + t63 * t90;
+            let t157 = t148 + t155 + t156;
+            let t158 = t152 * t141 + (t144 * t140 - t148 * t139);
+            let t159 = t59 * t134 + t63 * t103;
+            let t160 = t144 - t158 - t159;
+            let t161 = (t160 - (t158 - k(0.28) * t93)) * t95
+                - (t157 + (t155 + k(0.28) * t80)) * t82;
+            let t162 = t152 * t150 + (t144 * t141 - t148 * t146);
+            let t163 = t59 * t135 + t63 * t115;
+            let t164 = t152 - t162 - t163;
+            let t165 = t117 - t106 * t32;
+            let t166 = t59 * (t136 * t120 + t131 * t119)
+                + t63 * (t131 * t120 + t128 * t119);
+            let t167 = t144 * (t134 * t120 + t103 * t119)
+                - t148 * (t133 * t120 + t90 * t119);
+            let t168 = t152 * (t135 * t120 + t115 * t119) + t167;
+            let t169 = t59 * (t136 * t122 + t131 * t121)
+                + t63 * (t131 * t122 + t128 * t121);
+            let t170 = k(0.2) * t48;
+            let t171 = k(0.2) * t29;
+            let t172 = t133 * t122 + t90 * t121;
+            let t173 = t134 * t122 + t103 * t121;
+            let t174 = t135 * t122 + t115 * t121;
+            let t175 = t152 * t174 + (t144 * t173 - t148 * t172)
+                - (t171 * t163 + (t170 * t159 + t39 * t156));
+            let t176 = t171 * t162 + (t170 * t158 + t39 * t155);
+            let t177 = t39 - (t171 * t146 + (t170 * t139 + t39 * t145)) + t172;
+            let t178 = t170 - (t171 * t141 + (t170 * t140 + t39 * t139)) + t173;
+            let t179 = t171 - (t171 * t150 + (t170 * t141 + t39 * t146)) + t174;
+            let t180 = t152 * t179 + (t144 * t178 - t148 * t177)
+                + (t171 * t164 + (t170 * t160 - t39 * t157));
+            let t181 = (t180 - t176 - (t176 - t175 - t169)) * t37
+                - (t168 + (t168 + t166)) * t165;
+            let t182 = t181 + ((t164 - (t162 - k(0.28) * t105)) * t107 + t161) + t154;
+            let t183 = t59 * (t59 * t136 + t63 * t131) + t63 * (t59 * t131 + t63 * t128);
+            let t184 = t152 * t162 + (t144 * t158 - t148 * t155);
+            let t185 = t184 + k(2.0) * (t152 * t163 + (t144 * t159 - t148 * t156));
+            let t186 = k(2.0) * (t152 * t164 + (t144 * t160 + t148 * t157)) - t184;
+            let t187 = k(1.0)
+                / (t186 + (k(0.014) + (k(0.00135) - (t185 - (k(0.01) - t183)))));
+            let t188 = t187 * t182;
+            let t189 = t148 * t188 + t39 * t37;
+            let t190 = t82 + t189;
+            let t191 = t83 + (t189 + t190);
+            let t192 = t144 * t188 - t170 * t37;
+            let t193 = t95 - t192;
+            let t194 = t96 - (t192 - t193);
+            let t195 = t152 * t188 - t171 * t37;
+            let t196 = t107 - t195;
+            let t197 = t108 - (t195 - t196);
+            let t198 = t126 + (t63 * t188 + (t121 * t37 - t119 * t165));
+            let t199 = t129 - (t59 * t188 + (t122 * t37 - t120 * t165));
             (
+                t7,
+                t12,
+                t14,
+                t15,
+                t16,
+                t17,
+                t18,
+                t19,
+                t20,
+                t21,
+                t23,
                 t24,
-                t28,
-                t32,
-                t36,
-                t38,
+                t25,
+                t26,
+                t27,
+                t37,
                 t42,
-                t45,
-                t50,
-                t52,
-                t53,
-                t57,
-                t58,
+                t44,
+                t51,
+                t54,
+                t56,
                 t59,
                 t60,
-                t61,
                 t63,
+                t64,
                 t65,
                 t66,
+                t67,
                 t69,
-                t70,
                 t71,
-                t72,
                 t74,
-                t79,
                 t84,
                 t85,
                 t86,
                 t88,
                 t91,
-                t94,
-                t95,
-                t96,
+                t97,
                 t98,
+                t99,
                 t101,
-                t121,
-                t141,
-                t145,
-                t149,
-                t166,
-                t186,
+                t104,
+                t109,
+                t110,
+                t111,
+                t113,
+                t130,
+                t144,
+                t148,
+                t152,
+                t165,
                 t187,
-                t189,
+                t188,
                 t190,
-                t192,
+                t191,
                 t193,
-                t195,
+                t194,
                 t196,
                 t197,
                 t198,
@@ -1784,314 +1806,285 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
         let (
             t204,
             t205,
-            t210,
-            t216,
-            t217,
-            t226,
-            t231,
-            t232,
-            t242,
-            t255,
-            t256,
-            t258,
-            t260,
-            t269,
-            t270,
+            t209,
+            t211,
+            t219,
+            t222,
+            t234,
+            t235,
+            t237,
+            t239,
+            t247,
+            t248,
+            t251,
+            t272,
             t273,
-            t295,
+            t275,
+            t277,
+            t285,
+            t286,
+            t289,
+            t293,
             t296,
             t298,
-            t300,
-            t309,
-            t310,
-            t313,
+            t299,
+            t304,
+            t305,
+            t315,
+            t316,
             t317,
+            t318,
             t320,
             t322,
-            t323,
+            t327,
             t328,
             t329,
+            t331,
+            t332,
+            t333,
+            t335,
+            t336,
+            t337,
+            t338,
+            t339,
             t340,
             t341,
             t342,
-            t343,
-            t345,
-            t347,
-            t353,
-            t354,
-            t355,
-            t357,
-            t358,
-            t359,
-            t361,
-            t362,
-            t363,
-            t364,
-            t365,
-            t366,
-            t367,
-            t368,
         ) = {
-            let t200 = t121 * t199 + (t65 * t198 - t69 * t197)
-                + (t98 * t196 + (t88 * t193 + t74 * t190));
-            let t201 = t198 - t66 * (t63 + t200);
-            let t202 = t60 * t199 - (t59 * t201 + t58 * t197)
-                + (t96 * t196 + (t86 * t193 - t72 * t190));
-            let t203 = t61 * (t53 - t202);
-            let t204 = t201 - t42 * t203;
-            let t205 = t199 + t52 * t203;
-            let t206 = t71 * t205 - t70 * t204;
-            let t207 = t190 - t206;
-            let t208 = rocker_e0 * rocker_e3;
-            let t209 = rocker_e1 * rocker_e2;
-            let t210 = k(2.0) * (t209 + t208);
-            let t211 = t209 - t208;
-            let t212 = k(2.0) * t211;
-            let t213 = rocker_e0 * rocker_e0;
-            let t214 = k(0.5) - (t213 + rocker_e2 * rocker_e2);
-            let t215 = k(2.0) * t214;
-            let t216 = k(2.0) * (k(0.5) - (t213 + rocker_e1 * rocker_e1));
-            let t217 = k(1.0) / (t216 * t215 - t212 * t210);
-            let t218 = rocker_wx * rocker_wz;
-            let t219 = rocker_wy * rocker_wz;
-            let t220 = rocker_wy * rocker_wy;
-            let t221 = t220 + rocker_wx * rocker_wx;
-            let t222 = rocker_e0 * rocker_e2;
-            let t223 = rocker_e1 * rocker_e3;
-            let t224 = t223 + t222;
-            let t225 = k(2.0) * t224;
-            let t226 = t225 * t221 - (t212 * t219 - t216 * t218);
-            let t227 = rocker_e0 * rocker_e1;
-            let t228 = rocker_e2 * rocker_e3;
-            let t229 = t228 - t227;
-            let t230 = k(2.0) * t229;
-            let t231 = t230 * t221 + (t215 * t219 - t210 * t218);
-            let t232 = t231 * (t212 * t217) + t226 * (t215 * t217);
-            let t233 = rocker_wx * rocker_wy;
-            let t234 = rocker_wz * rocker_wz + t220;
-            let t235 = k(0.2) * (t225 * t218 + (t212 * t233 + t216 * t234));
-            let t236 = k(0.2) * (t230 * t218 - (t215 * t233 + t210 * t234));
-            let t237 = t228 + t227;
-            let t238 = k(0.5) - (t213 + rocker_e3 * rocker_e3);
-            let t239 = k(2.0) * t238 * t218
-                - (k(2.0) * t237 * t233 - k(2.0) * (t223 - t222) * t234);
-            let t240 = k(0.2) * t239;
-            let t241 = t240 * (k(0.32) * t237)
-                + (t236 * (k(0.32) * t214) - t235 * (k(0.32) * t211));
-            let t242 = k(23.364485981308412)
-                * (t241 - (k(0.01076) * t233 - k(3.1392) * t214));
-            let t243 = k(0.4) * t211;
-            let t244 = t243 * t242 + k(0.4) * t224 * t232;
-            let t245 = t235 + t244;
-            let t246 = t235 - t79 + (t244 + t245 + (t206 - t207));
-            let t247 = t36 * t52 + t50 * t42;
-            let t248 = t247 * t61;
-            let t249 = t50 - t59 * t248;
-            let t250 = t249 * t66;
-            let t251 = t42 * (t249 - t65 * t250) + t57 * (t250 * t69 - t58 * t248);
-            let t252 = t141 * (t250 * t88 - t248 * t86)
-                - t145 * (t250 * t74 - (k(1.0) - t248 * t72));
-            let t253 = t149 * (t250 * t98 - t248 * t96) + t252;
-            let t254 = t253 + (t52 * (t250 * t121 + (t36 - t60 * t248)) + t251);
-            let t255 = (t253 + t254) * t186;
-            let t256 = t145 * t255;
-            let t257 = k(2.0) * t256;
-            let t258 = t141 * t255;
-            let t259 = k(2.0) * t258;
-            let t260 = t149 * t255;
-            let t261 = k(2.0) * t260;
-            let t262 = t57 * t255;
-            let t263 = t42 * t255;
-            let t264 = t52 * t255;
-            let t265 = t121 * t264 - (t65 * t263 - t69 * t262)
-                + (t98 * t261 + (t88 * t259 - t74 * t257));
-            let t266 = t263 + t66 * (t249 + t265);
-            let t267 = t60 * t264 + (t59 * t266 + t58 * t262)
-                + (t96 * t261 + (t86 * t259 + t72 * t257));
-            let t268 = t61 * (t247 - t267);
-            let t269 = t266 + t42 * t268;
-            let t270 = t264 + t52 * t268;
-            let t271 = t71 * t270 + t70 * t269;
-            let t272 = t257 + t271;
-            let t273 = k(18.69158878504673) * t211;
-            let t274 = t243 * t273;
-            let t275 = k(1.0) / (k(2.0) * t274 + (t271 + t272));
-            let t276 = t85 * t205 + t84 * t204;
-            let t277 = t193 + t276;
-            let t278 = k(0.4) * t214;
-            let t279 = t278 * t242 - k(0.4) * t229 * t232;
-            let t280 = t236 - t279;
-            let t281 = t85 * t270 - t84 * t269;
-            let t282 = t259 + t281;
-            let t283 = t278 * t273;
-            let t284 = k(2.0) * t283 + (t281 + t282);
-            let t285 = t275 * t284;
-            let t286 = t285 * t246 + (t236 - t91 - (t279 - t280 + (t276 + t277)));
-            let t287 = t32 * t52 - t28 * t42;
-            let t288 = t61 * t287;
-            let t289 = t28 + t59 * t288;
-            let t290 = t66 * t289;
-            let t291 = t42 * (t289 - t65 * t290) + t57 * (t69 * t290 + t58 * t288);
-            let t292 = t141 * (t88 * t290 - (k(1.0) - t86 * t288))
-                - t145 * (t74 * t290 - t72 * t288);
-            let t293 = t149 * (t98 * t290 + t96 * t288) + t292;
-            let t294 = t293 + (t52 * (t121 * t290 - (t32 - t60 * t288)) + t291);
-            let t295 = t186 * (t293 + t294);
-            let t296 = t145 * t295;
-            let t297 = k(2.0) * t296;
-            let t298 = t141 * t295;
-            let t299 = k(2.0) * t298;
-            let t300 = t149 * t295;
-            let t301 = k(2.0) * t300;
-            let t302 = t57 * t295;
-            let t303 = t42 * t295;
-            let t304 = t52 * t295;
-            let t305 = t121 * t304 - (t65 * t303 - t69 * t302)
-                + (t98 * t301 + (t88 * t299 - t74 * t297));
-            let t306 = t303 + t66 * (t289 + t305);
-            let t307 = t60 * t304 + (t59 * t306 + t58 * t302)
-                + (t96 * t301 + (t86 * t299 + t72 * t297));
-            let t308 = t61 * (t287 + t307);
-            let t309 = t306 - t42 * t308;
-            let t310 = t304 - t52 * t308;
-            let t311 = t85 * t310 - t84 * t309;
-            let t312 = t299 + t311;
-            let t313 = k(18.69158878504673) * t214;
-            let t314 = t278 * t313;
-            let t315 = k(1.0) / (t284 * t285 - (k(2.0) * t314 - (t311 + t312)));
-            let t316 = t95 * t205 + t94 * t204;
-            let t317 = t196 + t316;
-            let t318 = k(0.4) * t237;
-            let t319 = t318 * t242 - k(0.4) * t238 * t232;
-            let t320 = t240 - t319;
-            let t321 = t95 * t270 - t94 * t269;
-            let t322 = t261 + t321;
-            let t323 = t318 * t273;
-            let t324 = k(2.0) * t323 + (t321 + t322);
-            let t325 = t275 * t324;
-            let t326 = t325 * t246 + (t240 - t101 - (t319 - t320 + (t316 + t317)));
-            let t327 = t95 * t310 - t94 * t309;
-            let t328 = t301 + t327;
-            let t329 = t318 * t313;
-            let t330 = t284 * t325 - (k(2.0) * t329 - (t327 + t328));
-            let t331 = t315 * t330;
-            let t332 = t38 * t52 - t45 * t42;
-            let t333 = t61 * t332;
-            let t334 = t45 + t59 * t333;
-            let t335 = t66 * t334;
-            let t336 = t42 * (t334 - t65 * t335) + t57 * (t69 * t335 + t58 * t333);
-            let t337 = t141 * (t88 * t335 + t86 * t333)
-                - t145 * (t74 * t335 - t72 * t333);
-            let t338 = t149 * (t98 * t335 - (k(1.0) - t96 * t333)) + t337;
-            let t339 = t338 + (t52 * (t121 * t335 - (t38 - t60 * t333)) + t336);
-            let t340 = t186 * (t338 + t339);
-            let t341 = t145 * t340;
-            let t342 = k(2.0) * t341;
-            let t343 = t141 * t340;
-            let t344 = k(2.0) * t343;
-            let t345 = t149 * t340;
-            let t346 = k(2.0) * t345;
-            let t347 = t57 * t340;
-            let t348 = t42 * t340;
-            let t349 = t52 * t340;
-            let t350 = t121 * t349 - (t65 * t348 - t69 * t347)
-                + (t98 * t346 + (t88 * t344 - t74 * t342));
-            let t351 = t348 + t66 * (t334 + t350);
-            let t352 = t60 * t349 + (t59 * t351 + t58 * t347)
-                + (t96 * t346 + (t86 * t344 + t72 * t342));
-            let t353 = t61 * (t332 + t352);
-            let t354 = t351 - t42 * t353;
-            let t355 = t349 - t52 * t353;
-            let t356 = t95 * t355 - t94 * t354;
-            let t357 = t346 + t356;
-            let t358 = k(18.69158878504673) * t237;
-            let t359 = t318 * t358;
-            let t360 = t330 * t331 - (t324 * t325 - (k(2.0) * t359 - (t356 + t357)));
-            let t361 = (t331 * t286 - t326) / t360;
-            let t362 = t331 * t361 - t315 * t286;
-            let t363 = t325 * t361 - (t285 * t362 + t275 * t246);
-            let t364 = t362 * (t297 + (t71 * t310 + t70 * t309)) + (t207 - t272 * t363);
-            let t365 = t361 * (t344 + (t85 * t355 - t84 * t354))
-                - (t312 * t362 - (t277 + t282 * t363));
-            let t366 = t362 * (t302 - t57 * t308)
-                - (t363 * (t262 + t57 * t268) - (t197 - t57 * t203));
-            let t367 = t361 * (t243 * t358)
-                - (t362 * (t243 * t313) + (t245 + t274 * t363));
-            let t368 = t361 * (t278 * t358) - (t314 * t362 - (t280 - t283 * t363));
+            let t200 = t130 * t199 - t74 * t198
+                + (t113 * t197 + (t101 * t194 + t88 * t191));
+            let t201 = t71 * (t69 + t200);
+            let t202 = t66 * t199 + (t65 * t201 - t64 * t198)
+                + (t111 * t197 + (t99 * t194 - t86 * t191));
+            let t203 = t67 * (t60 - t202);
+            let t204 = t201 + t54 * t203;
+            let t205 = t199 + t59 * t203;
+            let t206 = t85 * t205 + t84 * t204;
+            let t207 = t191 - t206;
+            let t208 = k(0.5) - (t17 + rocker_e3 * rocker_e3);
+            let t209 = (t15 + rocker_wx * rocker_wx) * (k(0.5) / t208);
+            let t210 = k(2.0) * (t25 - t24);
+            let t211 = t23 - t210 * t209;
+            let t212 = k(0.5) - (t17 + rocker_e2 * rocker_e2);
+            let t213 = rocker_e0 * rocker_e1;
+            let t214 = rocker_e2 * rocker_e3;
+            let t215 = t214 - t213;
+            let t216 = k(2.0) * t215 * t23
+                - (k(2.0) * t212 * t18 + k(2.0) * (t20 + t19) * t16);
+            let t217 = k(0.2) * t216;
+            let t218 = t214 + t213;
+            let t219 = k(2.0) * t218;
+            let t220 = k(0.2) * (k(2.0) * t208 * t23 - (t219 * t18 - t210 * t16));
+            let t221 = k(0.32) * t218 * t220
+                + (k(0.32) * t212 * t217 - k(0.32) * t21 * t27);
+            let t222 = k(23.364485981308412)
+                * (t221 - (k(0.01076) * t18 - k(3.1392) * t212));
+            let t223 = k(0.4) * t21;
+            let t224 = t223 * t222 + k(0.4) * t26 * t211;
+            let t225 = t27 + t224;
+            let t226 = t224 + t225 + (t206 - t207) + (t27 - t14);
+            let t227 = t7 * t59 + t12 * t54;
+            let t228 = t227 * t67;
+            let t229 = t12 - t65 * t228;
+            let t230 = t229 * t71;
+            let t231 = t59 * (t230 * t130 + (t7 - t66 * t228))
+                + t63 * (t230 * t74 - t64 * t228);
+            let t232 = t144 * (t230 * t101 - t228 * t99)
+                - t148 * (t230 * t88 - (k(1.0) - t228 * t86));
+            let t233 = t152 * (t230 * t113 - t228 * t111) + t232;
+            let t234 = (t233 + (t233 + t231)) * t187;
+            let t235 = t148 * t234;
+            let t236 = k(2.0) * t235;
+            let t237 = t144 * t234;
+            let t238 = k(2.0) * t237;
+            let t239 = t152 * t234;
+            let t240 = k(2.0) * t239;
+            let t241 = t63 * t234;
+            let t242 = t59 * t234;
+            let t243 = t130 * t242 + t74 * t241
+                + (t113 * t240 + (t101 * t238 - t88 * t236));
+            let t244 = t71 * (t229 + t243);
+            let t245 = t66 * t242 + (t65 * t244 + t64 * t241)
+                + (t111 * t240 + (t99 * t238 + t86 * t236));
+            let t246 = t67 * (t227 - t245);
+            let t247 = t244 + t54 * t246;
+            let t248 = t242 + t59 * t246;
+            let t249 = t85 * t248 + t84 * t247;
+            let t250 = t236 + t249;
+            let t251 = k(18.69158878504673) * t21;
+            let t252 = t223 * t251;
+            let t253 = k(1.0) / (k(2.0) * t252 + (t249 + t250));
+            let t254 = t98 * t205 - t97 * t204;
+            let t255 = t194 + t254;
+            let t256 = k(0.4) * t212;
+            let t257 = t256 * t222 - k(0.4) * t215 * t211;
+            let t258 = t217 - t257;
+            let t259 = t98 * t248 - t97 * t247;
+            let t260 = t238 + t259;
+            let t261 = t256 * t251;
+            let t262 = k(2.0) * t261 + (t259 + t260);
+            let t263 = t253 * t262;
+            let t264 = t263 * t226 - (t257 - t258 + (t254 + t255) - (t217 - t91));
+            let t265 = t44 * t59 - t42 * t54;
+            let t266 = t67 * t265;
+            let t267 = t42 + t65 * t266;
+            let t268 = t71 * t267;
+            let t269 = t59 * (t130 * t268 - (t44 - t66 * t266))
+                + t63 * (t74 * t268 + t64 * t266);
+            let t270 = t144 * (t101 * t268 - (k(1.0) - t99 * t266))
+                - t148 * (t88 * t268 - t86 * t266);
+            let t271 = t152 * (t113 * t268 + t111 * t266) + t270;
+            let t272 = t187 * (t271 + (t271 + t269));
+            let t273 = t148 * t272;
+            let t274 = k(2.0) * t273;
+            let t275 = t144 * t272;
+            let t276 = k(2.0) * t275;
+            let t277 = t152 * t272;
+            let t278 = k(2.0) * t277;
+            let t279 = t63 * t272;
+            let t280 = t59 * t272;
+            let t281 = t130 * t280 + t74 * t279
+                + (t113 * t278 + (t101 * t276 - t88 * t274));
+            let t282 = t71 * (t267 + t281);
+            let t283 = t66 * t280 + (t65 * t282 + t64 * t279)
+                + (t111 * t278 + (t99 * t276 + t86 * t274));
+            let t284 = t67 * (t265 + t283);
+            let t285 = t282 - t54 * t284;
+            let t286 = t280 - t59 * t284;
+            let t287 = t98 * t286 - t97 * t285;
+            let t288 = t276 + t287;
+            let t289 = k(18.69158878504673) * t212;
+            let t290 = t256 * t289;
+            let t291 = k(1.0) / (t262 * t263 - (k(2.0) * t290 - (t287 + t288)));
+            let t292 = t110 * t205 - t109 * t204;
+            let t293 = t197 + t292;
+            let t294 = k(0.4) * t218;
+            let t295 = t294 * t222 - k(0.4) * t208 * t211;
+            let t296 = t220 - t295;
+            let t297 = t110 * t248 - t109 * t247;
+            let t298 = t240 + t297;
+            let t299 = t294 * t251;
+            let t300 = k(2.0) * t299 + (t297 + t298);
+            let t301 = t253 * t300;
+            let t302 = t301 * t226 - (t295 - t296 + (t292 + t293) - (t220 - t104));
+            let t303 = t110 * t286 - t109 * t285;
+            let t304 = t278 + t303;
+            let t305 = t294 * t289;
+            let t306 = t262 * t301 - (k(2.0) * t305 - (t303 + t304));
+            let t307 = t291 * t306;
+            let t308 = t51 * t59 - t56 * t54;
+            let t309 = t67 * t308;
+            let t310 = t56 + t65 * t309;
+            let t311 = t71 * t310;
+            let t312 = t59 * (t130 * t311 - (t51 - t66 * t309))
+                + t63 * (t74 * t311 + t64 * t309);
+            let t313 = t144 * (t101 * t311 + t99 * t309)
+                - t148 * (t88 * t311 - t86 * t309);
+            let t314 = t152 * (t113 * t311 - (k(1.0) - t111 * t309)) + t313;
+            let t315 = t187 * (t314 + (t314 + t312));
+            let t316 = t148 * t315;
+            let t317 = k(2.0) * t316;
+            let t318 = t144 * t315;
+            let t319 = k(2.0) * t318;
+            let t320 = t152 * t315;
+            let t321 = k(2.0) * t320;
+            let t322 = t63 * t315;
+            let t323 = t59 * t315;
+            let t324 = t130 * t323 + t74 * t322
+                + (t113 * t321 + (t101 * t319 - t88 * t317));
+            let t325 = t71 * (t310 + t324);
+            let t326 = t66 * t323 + (t65 * t325 + t64 * t322)
+                + (t111 * t321 + (t99 * t319 + t86 * t317));
+            let t327 = t67 * (t308 + t326);
+            let t328 = t325 - t54 * t327;
+            let t329 = t323 - t59 * t327;
+            let t330 = t110 * t329 - t109 * t328;
+            let t331 = t321 + t330;
+            let t332 = k(18.69158878504673) * t218;
+            let t333 = t294 * t332;
+            let t334 = t306 * t307 - (t300 * t301 - (k(2.0) * t333 - (t330 + t331)));
+            let t335 = (t307 * t264 - t302) / t334;
+            let t336 = t307 * t335 - t291 * t264;
+            let t337 = t301 * t335 - (t263 * t336 + t253 * t226);
+            let t338 = t336 * (t274 + (t85 * t286 + t84 * t285)) + (t207 - t250 * t337);
+            let t339 = t335 * (t319 + (t98 * t329 - t97 * t328))
+                - (t288 * t336 - (t255 + t260 * t337));
+            let t340 = t336 * (t279 - t63 * t284)
+                - (t337 * (t241 + t63 * t246) - (t198 - t63 * t203));
+            let t341 = t335 * (t223 * t332)
+                - (t336 * (t223 * t289) + (t225 + t252 * t337));
+            let t342 = t335 * (t256 * t332) - (t290 * t336 - (t258 - t261 * t337));
             (
                 t204,
                 t205,
-                t210,
-                t216,
-                t217,
-                t226,
-                t231,
-                t232,
-                t242,
-                t255,
-                t256,
-                t258,
-                t260,
-                t269,
-                t270,
+                t209,
+                t211,
+                t219,
+                t222,
+                t234,
+                t235,
+                t237,
+                t239,
+                t247,
+                t248,
+                t251,
+                t272,
                 t273,
-                t295,
+                t275,
+                t277,
+                t285,
+                t286,
+                t289,
+                t293,
                 t296,
                 t298,
-                t300,
-                t309,
-                t310,
-                t313,
+                t299,
+                t304,
+                t305,
+                t315,
+                t316,
                 t317,
+                t318,
                 t320,
                 t322,
-                t323,
+                t327,
                 t328,
                 t329,
+                t331,
+                t332,
+                t333,
+                t335,
+                t336,
+                t337,
+                t338,
+                t339,
                 t340,
                 t341,
                 t342,
-                t343,
-                t345,
-                t347,
-                t353,
-                t354,
-                t355,
-                t357,
-                t358,
-                t359,
-                t361,
-                t362,
-                t363,
-                t364,
-                t365,
-                t366,
-                t367,
-                t368,
             )
         };
         *out = [
-            t296 * t362 + (t189 - t256 * t363) - t341 * t361,
-            t343 * t361 - (t298 * t362 - (t192 + t258 * t363)),
-            t300 * t362 - (t195 + t260 * t363) - t345 * t361,
-            t166,
-            -t24,
-            t295 * t362 + (t187 - t255 * t363) - t340 * t361,
-            t364 - t361 * (t342 + (t71 * t355 + t70 * t354)),
-            t365,
-            t328 * t362 - (t317 + t322 * t363) - t357 * t361,
-            t361 * (t347 - t57 * t353) - t366,
-            t354 * t361 - (t309 * t362 + (t204 - t269 * t363)),
-            t310 * t362 - (t205 + t270 * t363) - t355 * t361,
-            -t367,
-            t368,
-            t329 * t362 - (t320 - t323 * t363) - t359 * t361,
-            t231 * (t216 * t217) + t226 * (t210 * t217),
-            -t232,
-            t313 * t362 + (t242 + t273 * t363) - t358 * t361,
-            -t363,
-            t362,
-            t361,
+            t273 * t336 + (t190 - t235 * t337) - t316 * t335,
+            t318 * t335 - (t275 * t336 - (t193 + t237 * t337)),
+            t277 * t336 - (t196 + t239 * t337) - t320 * t335,
+            t165,
+            -t37,
+            t272 * t336 + (t188 - t234 * t337) - t315 * t335,
+            t338 - t335 * (t317 + (t85 * t329 + t84 * t328)),
+            t339,
+            t304 * t336 - (t293 + t298 * t337) - t331 * t335,
+            t335 * (t322 - t63 * t327) - t340,
+            t328 * t335 - (t285 * t336 - (t204 + t247 * t337)),
+            t286 * t336 - (t205 + t248 * t337) - t329 * t335,
+            -t341,
+            t342,
+            t305 * t336 - (t296 - t299 * t337) - t333 * t335,
+            rocker_wy * rocker_wz - t219 * t209,
+            -t211,
+            t289 * t336 + (t222 + t251 * t337) - t332 * t335,
+            -t337,
+            t336,
+            t335,
         ];
     }
     /// Writes λ: 272 operations (104 ±, 165 ×, 3 ÷).
@@ -2147,69 +2140,69 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
         let t3 = k(3.924) + k(0.4) * crank_dsy + t2;
         let t4 = coupler_dsz - closing2;
         let t5 = k(0.4) * crank_dsz + t4;
-        let t6 = coupler_e0 * coupler_e0;
-        let t7 = k(2.0) * (k(0.5) - (t6 + coupler_e1 * coupler_e1));
-        let t8 = crank_e0 * crank_e0;
-        let t9 = k(2.0) * (k(0.5) - (t8 + crank_e1 * crank_e1));
-        let t10 = coupler_e0 * coupler_e3;
-        let t11 = coupler_e1 * coupler_e2;
-        let t12 = k(2.0) * (t11 + t10);
-        let t13 = crank_e0 * crank_e3;
-        let t14 = crank_e1 * crank_e2;
-        let t15 = k(2.0) * (t14 + t13);
-        let t16 = coupler_e0 * coupler_e2;
-        let t17 = coupler_e1 * coupler_e3;
-        let t18 = k(2.0) * (t17 - t16);
-        let t19 = crank_e0 * crank_e2;
-        let t20 = crank_e1 * crank_e3;
+        let t6 = crank_e0 * crank_e3;
+        let t7 = crank_e1 * crank_e2;
+        let t8 = k(2.0) * (t7 + t6);
+        let t9 = k(2.0) * (t7 - t6);
+        let t10 = crank_e0 * crank_e0;
+        let t11 = k(2.0) * (k(0.5) - (t10 + crank_e2 * crank_e2));
+        let t12 = k(2.0) * (k(0.5) - (t10 + crank_e1 * crank_e1));
+        let t13 = k(1.0) / (t12 * t11 - t9 * t8);
+        let t14 = coupler_e0 * coupler_e0;
+        let t15 = k(2.0) * (k(0.5) - (t14 + coupler_e1 * coupler_e1));
+        let t16 = coupler_e0 * coupler_e3;
+        let t17 = coupler_e1 * coupler_e2;
+        let t18 = k(2.0) * (t17 + t16);
+        let t19 = coupler_e0 * coupler_e2;
+        let t20 = coupler_e1 * coupler_e3;
         let t21 = k(2.0) * (t20 - t19);
-        let t22 = k(5e-5) * coupler_dwx;
-        let t23 = t17 + t16;
-        let t24 = k(0.5) * t23;
-        let t25 = coupler_e0 * coupler_e1;
-        let t26 = coupler_e2 * coupler_e3;
-        let t27 = t26 - t25;
-        let t28 = k(0.5) * t27;
-        let t29 = closing1 * t28
-            - (k(0.02095) * (coupler_wx * coupler_wz) - k(0.021) * coupler_dwy
-                - closing0 * t24);
-        let t30 = k(0.5) - (t6 + coupler_e3 * coupler_e3);
+        let t22 = crank_e0 * crank_e2;
+        let t23 = crank_e1 * crank_e3;
+        let t24 = k(2.0) * (t23 - t22);
+        let t25 = k(5e-5) * coupler_dwx;
+        let t26 = t20 + t19;
+        let t27 = k(0.5) * t26;
+        let t28 = coupler_e0 * coupler_e1;
+        let t29 = coupler_e2 * coupler_e3;
+        let t30 = t29 - t28;
         let t31 = k(0.5) * t30;
-        let t32 = t4 * t31 - (t2 * t28 + t0 * t24) - (closing2 * t31 - t29);
-        let t33 = t11 - t10;
-        let t34 = k(2.0) * t33;
-        let t35 = k(0.5) - (t6 + coupler_e2 * coupler_e2);
-        let t36 = k(2.0) * t35;
-        let t37 = t26 + t25;
-        let t38 = k(2.0) * t37;
-        let t39 = (t21 * t38 - (t15 * t36 + t9 * t34)) * t32
-            + t22 * (t21 * t18 + (t15 * t12 + t9 * t7));
-        let t40 = k(0.5) * t33;
-        let t41 = k(0.5) * t35;
-        let t42 = closing1 * t41
+        let t32 = closing1 * t31
+            - (k(0.02095) * (coupler_wx * coupler_wz) - k(0.021) * coupler_dwy
+                - closing0 * t27);
+        let t33 = k(0.5) - (t14 + coupler_e3 * coupler_e3);
+        let t34 = k(0.5) * t33;
+        let t35 = t4 * t34 - (t2 * t31 + t0 * t27) - (closing2 * t34 - t32);
+        let t36 = t17 - t16;
+        let t37 = k(2.0) * t36;
+        let t38 = k(0.5) - (t14 + coupler_e2 * coupler_e2);
+        let t39 = k(2.0) * t38;
+        let t40 = t29 + t28;
+        let t41 = k(2.0) * t40;
+        let t42 = (t24 * t41 - (t8 * t39 + t12 * t37)) * t35
+            + t25 * (t24 * t21 + (t8 * t18 + t12 * t15));
+        let t43 = k(0.5) * t36;
+        let t44 = k(0.5) * t38;
+        let t45 = closing1 * t44
             + (k(0.02095) * (coupler_wx * coupler_wy) + k(0.021) * coupler_dwz
-                - closing0 * t40);
-        let t43 = k(0.5) * t37;
-        let t44 = t4 * t43 - (t2 * t41 - t0 * t40) - (closing2 * t43 - t42);
-        let t45 = k(2.0) * t23;
-        let t46 = k(2.0) * t27;
-        let t47 = k(2.0) * t30;
-        let t48 = (t21 * t47 - (t15 * t46 - t9 * t45)) * t44 - t39;
-        let t49 = k(2e-5) * crank_dwx - t48;
-        let t50 = k(2.0) * (t14 - t13);
-        let t51 = k(2.0) * (k(0.5) - (t8 + crank_e2 * crank_e2));
-        let t52 = k(1.0) / (t9 * t51 - t50 * t15);
+                - closing0 * t43);
+        let t46 = k(0.5) * t40;
+        let t47 = t4 * t46 - (t2 * t44 - t0 * t43) - (closing2 * t46 - t45);
+        let t48 = k(2.0) * t26;
+        let t49 = k(2.0) * t30;
+        let t50 = k(2.0) * t33;
+        let t51 = (t24 * t50 - (t8 * t49 - t12 * t48)) * t47 - t42;
+        let t52 = k(2e-5) * crank_dwx - t51;
         let t53 = crank_e0 * crank_e1;
         let t54 = crank_e2 * crank_e3;
         let t55 = k(2.0) * (t54 + t53);
-        let t56 = (t55 * t38 + (t50 * t34 + t51 * t36)) * t32
-            + t22 * (t55 * t18 - (t51 * t12 + t50 * t7));
-        let t57 = (t55 * t47 - (t50 * t45 - t51 * t46)) * t44 - t56;
-        let t58 = t20 + t19;
+        let t56 = (t55 * t41 + (t9 * t37 + t11 * t39)) * t35
+            + t25 * (t55 * t21 - (t11 * t18 + t9 * t15));
+        let t57 = (t55 * t50 - (t9 * t48 - t11 * t49)) * t47 - t56;
+        let t58 = t23 + t22;
         let t59 = k(0.2) * t58;
         let t60 = t54 - t53;
         let t61 = k(0.2) * t60;
-        let t62 = k(0.5) - (t8 + crank_e3 * crank_e3);
+        let t62 = k(0.5) - (t10 + crank_e3 * crank_e3);
         let t63 = k(0.2) * t62;
         let t64 = k(0.00133) * (crank_wx * crank_wz) - k(0.00135) * crank_dwy
             - (t4 * t63 - (t2 * t61 + t0 * t59) - t57);
@@ -2236,24 +2229,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
         let t83 = k(2.0) * t62;
         let t84 = k(2.0) * t60;
         let t85 = k(2.0) * t58;
-        let t86 = t85 * t45 + t84 * t46 + t83 * t47;
-        let t87 = t83 * t18 - (t84 * t12 - t85 * t7);
+        let t86 = t85 * t48 + t84 * t49 + t83 * t50;
+        let t87 = t83 * t21 - (t84 * t18 - t85 * t15);
         let t88 = k(1.0) / (t87 * t87 + t86 * t86);
         *lambda = [
             -t1,
             -t3,
             -t5,
-            t51 * t52 * t65 - t15 * t52 * t49,
-            t50 * t52 * t65 - t9 * t52 * t49,
+            t65 * (t11 * t13) - t52 * (t8 * t13),
+            t65 * (t9 * t13) - t52 * (t12 * t13),
             -t66,
             -t67,
             -t68,
-            t74 * t76 * t82 - t77 * (t71 * t76),
-            t72 * t76 * t82 - t77 * (t75 * t76),
+            t82 * (t74 * t76) - t77 * (t71 * t76),
+            t82 * (t72 * t76) - t77 * (t75 * t76),
             -t0,
             -t2,
             -t4,
-            -(t87 * t88 * t44 + t22 * (t86 * t88)),
+            -(t87 * t88 * t47 + t25 * (t86 * t88)),
             closing0,
             closing1,
             closing2,

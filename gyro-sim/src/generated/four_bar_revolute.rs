@@ -22,7 +22,7 @@
 //! | gamma | γ | 109 | 174 | 0 | 283 | 0 of 17 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 89 | 120 | 0 | 209 | 0 of 17 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 338 | 483 | 6 | 827 | 0 of 20 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 293 | 441 | 6 | 740 | 0 of 20 |
 //! | multipliers | λ, the accelerations being known | 96 | 157 | 3 | 256 | 0 of 17 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
@@ -37,7 +37,7 @@
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints: their definitions
 //!
-//! All of it holds but with a probability below 1e-145.
+//! All of it holds but with a probability below 1e-146.
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
 
 /// The mechanism `four_bar_revolute`.
@@ -1389,7 +1389,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
             -(k(0.01076) * (rocker_wx * rocker_wy)),
         ];
     }
-    /// Solves eq. (17): 827 operations (338 ±, 483 ×, 6 ÷).
+    /// Solves eq. (17): 740 operations (293 ±, 441 ×, 6 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let crank_e0 = y[3];
@@ -1414,320 +1414,374 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
         let rocker_wy = y[37];
         let rocker_wz = y[38];
         let (
+            t3,
+            t7,
+            t11,
+            t13,
+            t15,
+            t18,
+            t20,
+            t21,
+            t23,
             t25,
-            t28,
-            t31,
-            t39,
-            t48,
+            t29,
+            t33,
+            t35,
+            t37,
+            t44,
+            t45,
+            t46,
+            t47,
             t49,
-            t51,
+            t50,
             t53,
-            t64,
-            t65,
-            t66,
-            t76,
-            t79,
-            t82,
-            t83,
-            t86,
-            t89,
-            t95,
-            t100,
-            t104,
-            t105,
+            t55,
+            t56,
+            t57,
+            t58,
+            t59,
+            t63,
+            t97,
+            t103,
             t109,
+            t111,
             t113,
-            t146,
+            t115,
+            t116,
+            t126,
+            t136,
+            t139,
+            t140,
+            t141,
+            t142,
+            t144,
             t147,
             t148,
-            t150,
-            t153,
             t154,
-            t156,
+            t155,
             t157,
-            t160,
-            t161,
+            t159,
             t162,
+            t163,
+            t164,
             t165,
             t166,
-            t169,
-            t171,
+            t167,
+            t170,
             t172,
+            t175,
+            t176,
+            t177,
+            t178,
+            t179,
+            t180,
             t181,
+            t182,
             t184,
+            t185,
             t186,
             t187,
+            t188,
+            t189,
             t190,
             t191,
             t192,
             t193,
+            t194,
             t195,
             t197,
             t198,
             t199,
         ) = {
-            let t0 = crank_e0 * crank_e3;
-            let t1 = crank_e1 * crank_e2;
-            let t2 = k(2.0) * (t1 + t0);
-            let t3 = t1 - t0;
-            let t4 = k(2.0) * t3;
-            let t5 = crank_e0 * crank_e0;
-            let t6 = k(0.5) - (t5 + crank_e2 * crank_e2);
-            let t7 = k(2.0) * t6;
-            let t8 = k(2.0) * (k(0.5) - (t5 + crank_e1 * crank_e1));
-            let t9 = k(1.0) / (t8 * t7 - t4 * t2);
-            let t10 = crank_wx * crank_wz;
-            let t11 = crank_wy * crank_wz;
-            let t12 = crank_wx * crank_wx;
-            let t13 = crank_wy * crank_wy;
-            let t14 = t13 + t12;
-            let t15 = crank_e0 * crank_e2;
-            let t16 = crank_e1 * crank_e3;
-            let t17 = t16 + t15;
-            let t18 = k(2.0) * t17;
-            let t19 = t18 * t14 - (t4 * t11 - t8 * t10);
-            let t20 = crank_e0 * crank_e1;
-            let t21 = crank_e2 * crank_e3;
-            let t22 = t21 - t20;
+            let t0 = crank_wy * crank_wy;
+            let t1 = crank_wz * crank_wz + t0;
+            let t2 = crank_e0 * crank_e0;
+            let t3 = k(2.0) * (k(0.5) - (t2 + crank_e1 * crank_e1));
+            let t4 = crank_wx * crank_wy;
+            let t5 = crank_e0 * crank_e3;
+            let t6 = crank_e1 * crank_e2;
+            let t7 = k(2.0) * (t6 - t5);
+            let t8 = crank_wx * crank_wz;
+            let t9 = crank_e0 * crank_e2;
+            let t10 = crank_e1 * crank_e3;
+            let t11 = k(2.0) * (t10 + t9);
+            let t12 = k(0.1) * (t11 * t8 + (t7 * t4 + t3 * t1));
+            let t13 = k(2.0) * (t6 + t5);
+            let t14 = k(0.5) - (t2 + crank_e2 * crank_e2);
+            let t15 = k(2.0) * t14;
+            let t16 = crank_e0 * crank_e1;
+            let t17 = crank_e2 * crank_e3;
+            let t18 = k(2.0) * (t17 - t16);
+            let t19 = k(0.1) * (t18 * t8 - (t15 * t4 + t13 * t1));
+            let t20 = k(2.0) * (t10 - t9);
+            let t21 = k(2.0) * (t17 + t16);
+            let t22 = k(0.5) - (t2 + crank_e3 * crank_e3);
             let t23 = k(2.0) * t22;
-            let t24 = t23 * t14 + (t7 * t11 - t2 * t10);
-            let t25 = t24 * (t8 * t9) + t19 * (t2 * t9);
-            let t26 = coupler_e0 * coupler_e3;
-            let t27 = coupler_e1 * coupler_e2;
-            let t28 = t27 - t26;
+            let t24 = k(0.1) * (t23 * t8 - (t21 * t4 - t20 * t1));
+            let t25 = t20 * t24 - (t13 * t19 - t3 * t12);
+            let t26 = coupler_e0 * coupler_e2;
+            let t27 = coupler_e1 * coupler_e3;
+            let t28 = t27 + t26;
             let t29 = k(2.0) * t28;
-            let t30 = coupler_e0 * coupler_e0;
-            let t31 = k(0.5) - (t30 + coupler_e2 * coupler_e2);
-            let t32 = k(2.0) * t31;
-            let t33 = coupler_e0 * coupler_e1;
-            let t34 = coupler_e2 * coupler_e3;
-            let t35 = t34 + t33;
-            let t36 = k(2.0) * t35;
-            let t37 = k(2.0) * (t16 - t15);
-            let t38 = t37 * t36 - (t2 * t32 + t8 * t29);
-            let t39 = t24 * (t4 * t9) + t19 * (t7 * t9);
-            let t40 = t21 + t20;
-            let t41 = k(2.0) * t40;
-            let t42 = t41 * t36 + (t4 * t29 + t7 * t32);
-            let t43 = k(2.0) * (k(0.5) - (t30 + coupler_e1 * coupler_e1));
-            let t44 = k(2.0) * (t27 + t26);
-            let t45 = coupler_e0 * coupler_e2;
-            let t46 = coupler_e1 * coupler_e3;
-            let t47 = k(2.0) * (t46 - t45);
-            let t48 = t41 * t47 - (t7 * t44 + t4 * t43);
-            let t49 = t37 * t47 + (t2 * t44 + t8 * t43);
-            let t50 = k(1.0) / (t49 * t42 - t38 * t48);
-            let t51 = t46 + t45;
-            let t52 = k(2.0) * t51;
-            let t53 = t34 - t33;
-            let t54 = k(2.0) * t53;
-            let t55 = k(0.5) - (t30 + coupler_e3 * coupler_e3);
-            let t56 = k(2.0) * t55;
-            let t57 = t37 * t56 - (t2 * t54 - t8 * t52);
-            let t58 = crank_wz * crank_wz;
-            let t59 = t58 + t13;
-            let t60 = t41 * t56 - (t4 * t52 - t7 * t54);
-            let t61 = crank_wx * crank_wy;
-            let t62 = k(0.5) - (t5 + crank_e3 * crank_e3);
-            let t63 = k(2.0) * t62;
-            let t64 = t18 * t52 + t23 * t54 + t63 * t56;
-            let t65 = t63 * t47 - (t23 * t44 - t18 * t43);
-            let t66 = t63 * t36 - (t18 * t29 - t23 * t32);
-            let t67 = coupler_wx * t66 - coupler_wy * t65;
-            let t68 = k(2.0)
-                * (crank_wy * t67 + crank_wz * (coupler_wx * t42 - coupler_wy * t48));
-            let t69 = coupler_wx * coupler_wz;
-            let t70 = coupler_wy * coupler_wz;
-            let t71 = coupler_wy * coupler_wy;
-            let t72 = t71 + coupler_wx * coupler_wx;
-            let t73 = t72 * t57 + (t70 * t38 + t69 * t49) - t68
-                + (t10 * t64 - (t61 * t60 - t59 * t57));
-            let t74 = k(2.0)
-                * (crank_wx * t67 + crank_wz * (coupler_wx * t38 - coupler_wy * t49));
-            let t75 = t72 * t60 + (t70 * t42 + t69 * t48) + t74
-                + (t11 * t64 + ((t58 + t12) * t60 - t61 * t57));
-            let t76 = t75 * (t49 * t50) - t73 * (t48 * t50);
-            let t77 = coupler_wz * coupler_wz + t71;
-            let t78 = coupler_wx * coupler_wy;
-            let t79 = k(0.25) * (t52 * t69 + (t29 * t78 + t43 * t77));
-            let t80 = k(0.1) * (t18 * t10 + (t4 * t61 + t8 * t59));
-            let t81 = t80 + t79;
-            let t82 = k(0.5) * t51;
-            let t83 = k(0.25) * (t54 * t69 - (t32 * t78 + t44 * t77));
-            let t84 = k(0.1) * (t23 * t10 - (t7 * t61 + t2 * t59));
-            let t85 = t84 + t83;
-            let t86 = k(0.5) * t53;
-            let t87 = k(0.1) * (t63 * t10 - (t41 * t61 - t37 * t59));
-            let t88 = t87 + k(0.25) * (t56 * t69 - (t36 * t78 - t47 * t77));
-            let t89 = k(0.5) * t55;
-            let t90 = t75 * (t38 * t50) - t73 * (t42 * t50);
-            let t91 = k(0.0835) * t90 - (t89 * t88 + (t86 * t85 + t82 * t81));
-            let t92 = t66 * (t91 - (k(0.02095) * t69 + k(4.905) * t53))
-                + t65 * (k(5e-5) * t76);
-            let t93 = k(0.02095) * t78 - k(4.905) * t31;
-            let t94 = k(11.976047904191617) * t93;
-            let t95 = k(0.5) * t31;
-            let t96 = k(5.9880239520958085) * t28;
-            let t97 = t95 * t96;
-            let t98 = k(5.9880239520958085) * t31;
-            let t99 = t95 * t98;
-            let t100 = k(0.5) * t35;
-            let t101 = t100 * t98;
-            let t102 = t86 * t90 - (t85 - (t88 * t101 + (t85 * t99 - t81 * t97)));
-            let t103 = t102 - (k(9.81) + t95 * t94);
-            let t104 = k(0.2) * t6;
-            let t105 = k(0.5) * t28;
-            let t106 = t105 * t96;
-            let t107 = t100 * t96;
-            let t108 = t82 * t90 - (t81 + (t88 * t107 + (t85 * t97 - t81 * t106)));
-            let t109 = k(0.2) * t3;
-            let t110 = t109 * (t108 + t105 * t94);
-            let t111 = t100 * (k(5.9880239520958085) * t35);
-            let t112 = t89 * t90 - (t88 - (t88 * t111 + (t85 * t101 - t81 * t107)));
-            let t113 = k(0.2) * t40;
-            let t114 = t113 * (t112 - t100 * t94);
-            let t115 = t104 * (k(3.924) - t103) + t110 - t114
-                - (k(0.00133) * t61 + (t114 - (t110 - t104 * t103) - t92));
-            let t116 = t113 * t107 + (t104 * t97 + t109 * t106);
-            let t117 = t82 * t66;
-            let t118 = t109 - t116 + t117;
-            let t119 = t113 * t101 + (t104 * t99 + t109 * t97);
-            let t120 = t86 * t66;
-            let t121 = t104 - t119 - t120;
-            let t122 = t84 * (t121 - (t119 - k(0.28) * t6))
-                - t80 * (t118 - (t116 - k(0.28) * t3));
-            let t123 = t113 * t111 + (t104 * t101 + t109 * t107);
-            let t124 = t89 * t66;
-            let t125 = t113 - t123 - t124;
-            let t126 = t113 * (t89 * t38) + (t104 * (t86 * t38) - t109 * (t82 * t38));
-            let t127 = t126 + (t126 - (t66 * (k(0.0835) * t38) + t65 * (k(5e-5) * t49)));
-            let t128 = k(0.2) * t17;
-            let t129 = k(0.2) * t22;
-            let t130 = k(0.2) * t62;
-            let t131 = t82 * t42;
-            let t132 = t86 * t42;
-            let t133 = t89 * t42;
-            let t134 = t113 * t133 + (t104 * t132 - t109 * t131)
-                - (t130 * t124 + (t129 * t120 + t128 * t117));
-            let t135 = t130 * t123 + (t129 * t119 - t128 * t116);
-            let t136 = t135 - t134 + (t66 * (k(0.0835) * t42) + t65 * (k(5e-5) * t48));
-            let t137 = t128 + (t130 * t107 + (t129 * t97 - t128 * t106)) + t131;
-            let t138 = t129 - (t130 * t101 + (t129 * t99 - t128 * t97)) + t132;
-            let t139 = t130 - (t130 * t111 + (t129 * t101 - t128 * t107)) + t133;
-            let t140 = t113 * t139 + (t104 * t138 - t109 * t137)
-                + (t130 * t125 + (t129 * t121 - t128 * t118));
-            let t141 = t39 * (t140 - t135 - t136) - t25 * t127
-                + (t87 * (t125 - (t123 - k(0.28) * t40)) + t122);
-            let t142 = t113 * t123 + (t104 * t119 + t109 * t116);
-            let t143 = t142 + k(2.0) * (t113 * t124 + (t104 * t120 - t109 * t117));
-            let t144 = t143
-                - (k(0.01) + (t66 * (k(0.0835) * t66) + t65 * (k(5e-5) * t65)));
-            let t145 = k(2.0) * (t113 * t125 + (t104 * t121 + t109 * t118)) - t142;
-            let t146 = k(1.0) / (t145 + (k(0.014) + (k(0.00135) - t144)));
-            let t147 = t146 * (t141 + t115);
-            let t148 = t90 - (t66 * t147 + (t42 * t39 - t38 * t25));
-            let t149 = t109 * t147 + t128 * t39;
-            let t150 = t80 + t149;
-            let t151 = t81 + (t149 + t150);
-            let t152 = t104 * t147 - t129 * t39;
-            let t153 = t84 - t152;
-            let t154 = t85 - (t152 - t153);
-            let t155 = t113 * t147 - t130 * t39;
-            let t156 = t87 - t155;
-            let t157 = t88 - (t155 - t156);
-            let t158 = t64 * t147 + (t60 * t39 - t57 * t25);
-            let t159 = k(0.0835) * t158 - (t100 * t157 + (t95 * t154 - t105 * t151));
-            let t160 = t158 - k(11.976047904191617) * (t93 + t159);
-            let t161 = t105 * t160 - t82 * t148;
-            let t162 = t151 + t161;
-            let t163 = rocker_e0 * rocker_e3;
-            let t164 = rocker_e1 * rocker_e2;
-            let t165 = k(2.0) * (t164 + t163);
-            let t166 = t164 - t163;
-            let t167 = k(2.0) * t166;
-            let t168 = rocker_e0 * rocker_e0;
-            let t169 = k(0.5) - (t168 + rocker_e2 * rocker_e2);
-            let t170 = k(2.0) * t169;
-            let t171 = k(2.0) * (k(0.5) - (t168 + rocker_e1 * rocker_e1));
-            let t172 = k(1.0) / (t171 * t170 - t167 * t165);
-            let t173 = rocker_wx * rocker_wz;
-            let t174 = rocker_wy * rocker_wz;
-            let t175 = rocker_wy * rocker_wy;
-            let t176 = t175 + rocker_wx * rocker_wx;
-            let t177 = rocker_e0 * rocker_e2;
-            let t178 = rocker_e1 * rocker_e3;
-            let t179 = t178 + t177;
-            let t180 = k(2.0) * t179;
-            let t181 = t180 * t176 - (t167 * t174 - t171 * t173);
-            let t182 = rocker_e0 * rocker_e1;
-            let t183 = rocker_e2 * rocker_e3;
-            let t184 = t183 - t182;
-            let t185 = k(2.0) * t184;
-            let t186 = t185 * t176 + (t170 * t174 - t165 * t173);
-            let t187 = t186 * (t167 * t172) + t181 * (t170 * t172);
-            let t188 = rocker_wx * rocker_wy;
-            let t189 = rocker_wz * rocker_wz + t175;
-            let t190 = k(0.2) * (t180 * t173 + (t167 * t188 + t171 * t189));
-            let t191 = k(0.2) * (t185 * t173 - (t170 * t188 + t165 * t189));
-            let t192 = t183 + t182;
-            let t193 = k(0.5) - (t168 + rocker_e3 * rocker_e3);
-            let t194 = k(2.0) * t193 * t173
-                - (k(2.0) * t192 * t188 - k(2.0) * (t178 - t177) * t189);
-            let t195 = k(0.2) * t194;
-            let t196 = t195 * (k(0.32) * t192)
-                + (t191 * (k(0.32) * t169) - t190 * (k(0.32) * t166));
-            let t197 = k(23.364485981308412)
-                * (t196 - (k(0.01076) * t188 - k(3.1392) * t169));
-            let t198 = k(0.4) * t166;
-            let t199 = t198 * t197 + k(0.4) * t179 * t187;
+            let t30 = coupler_e0 * coupler_e1;
+            let t31 = coupler_e2 * coupler_e3;
+            let t32 = t31 - t30;
+            let t33 = k(2.0) * t32;
+            let t34 = coupler_e0 * coupler_e0;
+            let t35 = k(2.0) * (k(0.5) - (t34 + coupler_e3 * coupler_e3));
+            let t36 = t20 * t35 - (t13 * t33 - t3 * t29);
+            let t37 = t21 * t35 - (t7 * t29 - t15 * t33);
+            let t38 = t11 * t29 + t18 * t33 + t23 * t35;
+            let t39 = crank_wz * t38 - (crank_wy * t37 + crank_wx * t36);
+            let t40 = coupler_wz - t39;
+            let t41 = coupler_e0 * coupler_e3;
+            let t42 = coupler_e1 * coupler_e2;
+            let t43 = t42 - t41;
+            let t44 = k(2.0) * t43;
+            let t45 = k(0.5) - (t34 + coupler_e2 * coupler_e2);
+            let t46 = k(2.0) * t45;
+            let t47 = k(2.0) * (t31 + t30);
+            let t48 = t20 * t47 - (t13 * t46 + t3 * t44);
+            let t49 = t21 * t47 + (t7 * t44 + t15 * t46);
+            let t50 = t23 * t47 - (t11 * t44 - t18 * t46);
+            let t51 = crank_wz * t50 - (crank_wy * t49 + crank_wx * t48);
+            let t52 = coupler_wy + t51;
+            let t53 = k(2.0) * (k(0.5) - (t34 + coupler_e1 * coupler_e1));
+            let t54 = t42 + t41;
+            let t55 = k(2.0) * t54;
+            let t56 = k(2.0) * (t27 - t26);
+            let t57 = t20 * t56 + (t13 * t55 + t3 * t53);
+            let t58 = t21 * t56 - (t15 * t55 + t7 * t53);
+            let t59 = t23 * t56 - (t18 * t55 - t11 * t53);
+            let t60 = crank_wz * t59 - (crank_wy * t58 + crank_wx * t57);
+            let t61 = coupler_wx + t60;
+            let t62 = (t61 * t61 + t52 * t52) / t38;
+            let t63 = coupler_wy * t39 + coupler_wz * t51 + (t50 * t62 - t52 * t40);
+            let t64 = coupler_wx * coupler_wz;
+            let t65 = coupler_wz * t60 + coupler_wx * t39 + (t59 * t62 - t61 * t40);
+            let t66 = k(0.1) * crank_wz;
+            let t67 = k(0.1) * crank_wy;
+            let t68 = crank_wy * t67 + crank_wz * t66;
+            let t69 = crank_wx * t67;
+            let t70 = crank_wx * t66;
+            let t71 = k(0.25) * coupler_wz;
+            let t72 = coupler_wx * t71 + (t70 * t38 - (t69 * t37 - t68 * t36));
+            let t73 = k(0.25) * t72 - k(0.0835) * t65
+                + (k(0.02095) * t64 + k(4.905) * t32);
+            let t74 = k(0.25) * coupler_wy;
+            let t75 = coupler_wy * t74 + coupler_wz * t71
+                + (t70 * t59 - (t69 * t58 - t68 * t57));
+            let t76 = coupler_wx * coupler_wy;
+            let t77 = k(0.02095) * t76 - k(4.905) * t45;
+            let t78 = coupler_wx * t74 - (t70 * t50 - (t69 * t49 - t68 * t48));
+            let t79 = t49
+                * (k(0.25149700598802394) * t78
+                    - (k(2.9940119760479043) * t77 + k(19.62) * t45))
+                + t58 * (k(19.62) * t54 - t75);
+            let t80 = t37 * (k(0.25) * t65 - t72 - k(19.62) * t32) + t79;
+            let t81 = k(0.00133) * t4
+                + (k(0.1) * t80 + (t50 * t73 + t59 * (k(5e-5) * t63)));
+            let t82 = k(0.1) * (t49 * (k(0.7485029940119761) * t48));
+            let t83 = t21 * t24 + (t15 * t19 - t7 * t12);
+            let t84 = k(0.7485029940119761) * t49;
+            let t85 = t49 * t84;
+            let t86 = k(0.1) * t85;
+            let t87 = k(0.25) * t37;
+            let t88 = t50 * t87;
+            let t89 = k(0.1) - t86 - t88;
+            let t90 = (t89 + (k(0.14) - t86)) * t83
+                - (t82 + (t82 + t50 * (k(0.25) * t36))) * t25;
+            let t91 = t50 * (k(0.25) * t38);
+            let t92 = t50 * t84;
+            let t93 = k(0.1) * t92;
+            let t94 = t93 + t91;
+            let t95 = t23 * t24 + (t18 * t19 + t11 * t12);
+            let t96 = (t0 + crank_wx * crank_wx) * (k(0.5) / t22);
+            let t97 = crank_wy * crank_wz - t21 * t96;
+            let t98 = k(0.1) * (t48 * t87);
+            let t99 = t98 + (t98 - (t50 * (k(0.0835) * t48) + t59 * (k(5e-5) * t57)));
+            let t100 = t49 * t87;
+            let t101 = k(0.01) * t92;
+            let t102 = t101 + k(0.1) * (t91 - t100)
+                + (t50 * (k(0.0835) * t49) + t59 * (k(5e-5) * t58));
+            let t103 = t8 - t20 * t96;
+            let t104 = t103 * (k(0.1) * (t94 + (t93 - t100)) + t101 + t102) + t99 * t97;
+            let t105 = t104 + (t95 * (t93 + t94) - t90)
+                + (k(0.1) * (t80 - k(7.848) * t14) + t81);
+            let t106 = k(0.01) * t85;
+            let t107 = t106 + k(0.2) * t88
+                - (k(0.01) + (t50 * (k(0.0835) * t50) + t59 * (k(5e-5) * t59)));
+            let t108 = k(1.0) / (k(0.2) * t89 - t106 + (k(0.014) + (k(0.00135) - t107)));
+            let t109 = t108 * t105;
+            let t110 = k(0.1) * t109;
+            let t111 = t83 + t110;
+            let t112 = k(0.1) * t103;
+            let t113 = t112 + t95;
+            let t114 = k(0.1)
+                * (t29 * t37 + (t49 * (k(0.9940119760479041) * t43) + t53 * t58));
+            let t115 = (t114 + (t114 - t28 * t50)) * t108;
+            let t116 = k(0.1) * t115;
+            let t117 = coupler_wz * coupler_wz + coupler_wy * coupler_wy;
+            let t118 = rocker_wy * rocker_wy;
+            let t119 = rocker_wz * rocker_wz + t118;
+            let t120 = rocker_e0 * rocker_e0;
+            let t121 = k(2.0) * (k(0.5) - (t120 + rocker_e1 * rocker_e1));
+            let t122 = rocker_wx * rocker_wy;
+            let t123 = rocker_e0 * rocker_e3;
+            let t124 = rocker_e1 * rocker_e2;
+            let t125 = t124 - t123;
+            let t126 = k(2.0) * t125;
+            let t127 = rocker_wx * rocker_wz;
+            let t128 = rocker_e0 * rocker_e2;
+            let t129 = rocker_e1 * rocker_e3;
+            let t130 = t129 + t128;
+            let t131 = k(2.0) * t130;
+            let t132 = k(0.2) * (t131 * t127 + (t126 * t122 + t121 * t119));
+            let t133 = t132 - k(0.25) * (t29 * t64 + (t44 * t76 + t53 * t117));
+            let t134 = t110 + t111;
+            let t135 = t112 + t113;
+            let t136 = t75 + (t59 * t135 + (t58 * t134 + t57 * t25));
+            let t137 = t78 - (t50 * t135 + (t49 * t134 + t48 * t25));
+            let t138 = t77 + k(0.25) * t137;
+            let t139 = t137 - k(2.9940119760479043) * t138;
+            let t140 = t65 + (t50 * t109 - (t49 * t103 - t48 * t97));
+            let t141 = k(0.25) * t140 - (t72 + (t38 * t135 + (t37 * t134 + t36 * t25)));
+            let t142 = t29 * t141 - (t44 * t139 + t53 * t136);
+            let t143 = k(0.5) * t28;
+            let t144 = k(11.976047904191617) * t138;
+            let t145 = k(0.5) * t43;
+            let t146 = k(2.0) * (t124 + t123);
+            let t147 = k(0.5) - (t120 + rocker_e2 * rocker_e2);
+            let t148 = k(2.0) * t147;
+            let t149 = rocker_e0 * rocker_e1;
+            let t150 = rocker_e2 * rocker_e3;
+            let t151 = t150 - t149;
+            let t152 = k(2.0) * t151;
+            let t153 = k(0.2) * (t152 * t127 - (t148 * t122 + t146 * t119));
+            let t154 = k(2.0) * (t129 - t128);
+            let t155 = k(2.0) * (t150 + t149);
+            let t156 = k(0.5) - (t120 + rocker_e3 * rocker_e3);
+            let t157 = k(2.0) * t156;
+            let t158 = k(0.2) * (t157 * t127 - (t155 * t122 - t154 * t119));
+            let t159 = t154 * t158 - (t146 * t153 - t121 * t132);
+            let t160 = t155 * t158 + (t148 * t153 - t126 * t132);
+            let t161 = k(0.16) * t160 - (k(0.01076) * t122 - k(3.1392) * t147);
+            let t162 = t160 - k(4.672897196261682) * t161;
+            let t163 = (t118 + rocker_wx * rocker_wx) * (k(0.5) / t156);
+            let t164 = t127 - t154 * t163;
+            let t165 = k(0.2) * t164 + (t157 * t158 + (t152 * t153 + t131 * t132));
+            let t166 = t131 * t165 - (t126 * t162 - t121 * t159);
+            let t167 = k(23.364485981308412) * t161;
+            let t168 = k(0.4) * t125;
+            let t169 = t168 * t167 + k(0.4) * t130 * t164 + t166
+                + (t145 * t144 + t143 * t140 + t142);
+            let t170 = t169 + t133;
+            let t171 = k(0.2) * t115;
+            let t172 = t58 * t171;
+            let t173 = t49 * t171;
+            let t174 = t43 + k(0.25) * t173;
+            let t175 = t173 - k(2.9940119760479043) * t174;
+            let t176 = t50 * t115;
+            let t177 = k(0.25) * t176 - t37 * t171;
+            let t178 = t29 * t177 + (t44 * t175 - t53 * t172);
+            let t179 = k(11.976047904191617) * t174;
+            let t180 = k(18.69158878504673) * t125;
+            let t181 = k(3.7383177570093458) * t125;
+            let t182 = t126 * t181;
+            let t183 = t182 + t168 * t180 + (t145 * t179 - t143 * t176 - t178);
+            let t184 = k(1.0) / t183;
+            let t185 = t153 - k(0.25) * (t33 * t64 - (t46 * t76 + t55 * t117));
+            let t186 = t33 * t141 + (t46 * t139 + t55 * t136);
+            let t187 = k(0.5) * t32;
+            let t188 = k(0.5) * t45;
+            let t189 = t152 * t165 + (t148 * t162 - t146 * t159);
+            let t190 = k(0.4) * t147;
+            let t191 = t190 * t167 - k(0.4) * t151 * t164 - t189
+                + (t188 * t144 - t187 * t140 - t186);
+            let t192 = t33 * t177 - (t46 * t175 - t55 * t172);
+            let t193 = t148 * t181;
+            let t194 = t193 + t190 * t180 + (t188 * t179 + t187 * t176 + t192);
+            let t195 = t184 * t194;
+            let t196 = k(0.1)
+                * (t33 * t37 - (t49 * (k(0.9940119760479041) * t45) + t55 * t58));
+            let t197 = t108 * (t196 + (t196 - t32 * t50));
+            let t198 = k(0.2) * t197;
+            let t199 = t58 * t198;
             (
+                t3,
+                t7,
+                t11,
+                t13,
+                t15,
+                t18,
+                t20,
+                t21,
+                t23,
                 t25,
-                t28,
-                t31,
-                t39,
-                t48,
+                t29,
+                t33,
+                t35,
+                t37,
+                t44,
+                t45,
+                t46,
+                t47,
                 t49,
-                t51,
+                t50,
                 t53,
-                t64,
-                t65,
-                t66,
-                t76,
-                t79,
-                t82,
-                t83,
-                t86,
-                t89,
-                t95,
-                t100,
-                t104,
-                t105,
+                t55,
+                t56,
+                t57,
+                t58,
+                t59,
+                t63,
+                t97,
+                t103,
                 t109,
+                t111,
                 t113,
-                t146,
+                t115,
+                t116,
+                t126,
+                t136,
+                t139,
+                t140,
+                t141,
+                t142,
+                t144,
                 t147,
                 t148,
-                t150,
-                t153,
                 t154,
-                t156,
+                t155,
                 t157,
-                t160,
-                t161,
+                t159,
                 t162,
+                t163,
+                t164,
                 t165,
                 t166,
-                t169,
-                t171,
+                t167,
+                t170,
                 t172,
+                t175,
+                t176,
+                t177,
+                t178,
+                t179,
+                t180,
                 t181,
+                t182,
                 t184,
+                t185,
                 t186,
                 t187,
+                t188,
+                t189,
                 t190,
                 t191,
                 t192,
                 t193,
+                t194,
                 t195,
                 t197,
                 t198,
@@ -1735,151 +1789,89 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
             )
         };
         let (
-            t200,
-            t204,
+            t203,
             t205,
             t206,
+            t207,
             t208,
-            t210,
+            t209,
+            t211,
+            t212,
+            t213,
             t214,
+            t215,
+            t216,
             t217,
-            t218,
+            t219,
+            t220,
             t221,
-            t224,
-            t226,
-            t227,
-            t233,
-            t234,
-            t235,
-            t237,
-            t239,
-            t240,
-            t243,
-            t245,
-            t246,
-            t247,
-            t248,
-            t249,
-            t250,
-            t251,
-            t252,
-            t253,
-            t254,
         ) = {
-            let t200 = t190 + t199;
-            let t201 = t190 - t79 + (t199 + t200 - (t161 + t162));
-            let t202 = k(11.976047904191617) * t28;
-            let t203 = t113 * (t100 * t202)
-                + (t104 * (t95 * t202) - t109 * (k(1.0) - t105 * t202));
-            let t204 = (t203 + (t203 - t51 * t66)) * t146;
-            let t205 = t66 * t204;
-            let t206 = t109 * t204;
-            let t207 = k(2.0) * t206;
-            let t208 = t104 * t204;
-            let t209 = k(2.0) * t208;
-            let t210 = t113 * t204;
-            let t211 = k(2.0) * t210;
-            let t212 = t64 * t204;
-            let t213 = k(0.0835) * t212 + (t100 * t211 + (t95 * t209 + t105 * t207));
-            let t214 = t212 - k(11.976047904191617) * (t28 + t213);
-            let t215 = t105 * t214 + t82 * t205;
-            let t216 = t207 + t215;
-            let t217 = k(18.69158878504673) * t166;
-            let t218 = t198 * t217;
-            let t219 = k(1.0) / (k(2.0) * t218 - (t215 + t216));
-            let t220 = t95 * t160 + t86 * t148;
-            let t221 = t154 - t220;
-            let t222 = k(0.4) * t169;
-            let t223 = t222 * t197 - k(0.4) * t184 * t187;
-            let t224 = t191 - t223;
-            let t225 = t95 * t214 - t86 * t205;
-            let t226 = t209 + t225;
-            let t227 = t222 * t217;
-            let t228 = k(2.0) * t227 - (t225 + t226);
-            let t229 = t219 * t228;
-            let t230 = t229 * t201 + (t191 - t83 - (t223 - t224 - (t220 - t221)));
-            let t231 = k(11.976047904191617) * t31;
-            let t232 = t113 * (t100 * t231)
-                - (t104 * (k(1.0) - t95 * t231) - t109 * (t105 * t231));
-            let t233 = t146 * (t232 + (t232 + t53 * t66));
-            let t234 = t66 * t233;
-            let t235 = t109 * t233;
-            let t236 = k(2.0) * t235;
-            let t237 = t104 * t233;
-            let t238 = k(2.0) * t237;
-            let t239 = t113 * t233;
-            let t240 = k(2.0) * t239;
-            let t241 = t64 * t233;
-            let t242 = k(0.0835) * t241 + (t100 * t240 + (t95 * t238 + t105 * t236));
-            let t243 = t241 - k(11.976047904191617) * (t31 + t242);
-            let t244 = t95 * t243 - t86 * t234;
-            let t245 = t238 + t244;
-            let t246 = k(18.69158878504673) * t169;
-            let t247 = t222 * t246;
-            let t248 = t230 / (t228 * t229 - (k(2.0) * t247 - (t244 + t245)));
-            let t249 = t229 * t248 - t219 * t201;
-            let t250 = t248 * (t236 + (t105 * t243 + t82 * t234)) - (t162 + t216 * t249);
-            let t251 = t249 * (t211 + (t100 * t214 - t89 * t205))
-                - (t157 - (t100 * t160 + t89 * t148));
-            let t252 = t249 * (t65 * t204)
-                - (t76 - (t65 * t147 + (t48 * t39 - t49 * t25)));
-            let t253 = k(0.4) * t192;
-            let t254 = t249 * (t253 * t217)
-                - (t195 - (t253 * t197 - k(0.4) * t193 * t187));
+            let t200 = t49 * t198;
+            let t201 = t45 - k(0.25) * t200;
+            let t202 = t200 + k(2.9940119760479043) * t201;
+            let t203 = t50 * t197;
+            let t204 = k(0.25) * t203 - t37 * t198;
+            let t205 = t33 * t204 - (t46 * t202 - t55 * t199);
+            let t206 = k(11.976047904191617) * t201;
+            let t207 = k(18.69158878504673) * t147;
+            let t208 = k(3.7383177570093458) * t147;
+            let t209 = t148 * t208;
+            let t210 = t209 + t190 * t207 + (t188 * t206 - t187 * t203 - t205);
+            let t211 = (t195 * t170 - (t191 - t185)) / (t194 * t195 - t210);
+            let t212 = t195 * t211 - t184 * t170;
+            let t213 = t212 * (t7 * t116) + (t11 * t113 - (t7 * t111 - t3 * t25));
+            let t214 = k(0.1) * t197;
+            let t215 = t212 * (t15 * t116) - (t18 * t113 + (t15 * t111 - t13 * t25));
+            let t216 = t212 * (t21 * t116) - (t23 * t113 + (t21 * t111 + t20 * t25));
+            let t217 = t211 * (t29 * t204 + (t44 * t202 - t53 * t199))
+                - (t142 - t178 * t212);
+            let t218 = t212 * (t35 * t177 - (t47 * t175 + t56 * t172))
+                - (t35 * t141 + (t47 * t139 - t56 * t136));
+            let t219 = t211 * (t35 * t204 - (t47 * t202 + t56 * t199)) + t218;
+            let t220 = t212 * (t59 * t115)
+                + (t63 - (t59 * t109 - (t58 * t103 - t57 * t97)));
+            let t221 = t212 * (t155 * t181)
+                - (t157 * t165 + (t155 * t162 + t154 * t159));
             (
-                t200,
-                t204,
+                t203,
                 t205,
                 t206,
+                t207,
                 t208,
-                t210,
+                t209,
+                t211,
+                t212,
+                t213,
                 t214,
+                t215,
+                t216,
                 t217,
-                t218,
+                t219,
+                t220,
                 t221,
-                t224,
-                t226,
-                t227,
-                t233,
-                t234,
-                t235,
-                t237,
-                t239,
-                t240,
-                t243,
-                t245,
-                t246,
-                t247,
-                t248,
-                t249,
-                t250,
-                t251,
-                t252,
-                t253,
-                t254,
             )
         };
         *out = [
-            t150 + t206 * t249 - t235 * t248,
-            t237 * t248 + (t153 - t208 * t249),
-            -(t239 * t248 + (t156 - t210 * t249)),
-            t25,
-            -t39,
-            t147 + t204 * t249 - t233 * t248,
-            -t250,
-            t245 * t248 + (t221 - t226 * t249),
-            t251 - t248 * (t240 + (t100 * t243 - t89 * t234)),
-            t248 * (t65 * t233) - t252,
-            t234 * t248 + (t148 - t205 * t249),
-            t160 + t214 * t249 - t243 * t248,
-            t200 + t218 * t249 - t248 * (t198 * t246),
-            t247 * t248 + (t224 - t227 * t249),
-            t254 - t248 * (t253 * t246),
-            t186 * (t171 * t172) + t181 * (t165 * t172),
-            -t187,
-            t197 + t217 * t249 - t246 * t248,
-            -t249,
-            -t248,
+            t211 * (t7 * t214) + t213,
+            -(t211 * (t15 * t214) + t215),
+            t211 * (t21 * t214) + t216,
+            t97,
+            -t103,
+            t197 * t211 - (t109 - t115 * t212),
+            t217,
+            t205 * t211 - (t186 - t192 * t212),
+            -t219,
+            -(t211 * (t59 * t197) + t220),
+            t140 - t176 * t212 - t203 * t211,
+            t206 * t211 - (t144 + t179 * t212),
+            t166 + t182 * t212 - t211 * (t126 * t208),
+            t209 * t211 + (t189 - t193 * t212),
+            t221 - t211 * (t155 * t208),
+            rocker_wy * rocker_wz - t155 * t163,
+            -t164,
+            t167 + t180 * t212 - t207 * t211,
+            -t212,
+            -t211,
         ];
     }
     /// Writes λ: 256 operations (96 ±, 157 ×, 3 ÷).
@@ -1933,65 +1925,65 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
         let t2 = k(9.81) + coupler_dsy - closing1;
         let t3 = k(3.924) + k(0.4) * crank_dsy + t2;
         let t4 = k(0.4) * crank_dsz + coupler_dsz;
-        let t5 = coupler_e0 * coupler_e0;
-        let t6 = k(2.0) * (k(0.5) - (t5 + coupler_e1 * coupler_e1));
-        let t7 = crank_e0 * crank_e0;
-        let t8 = k(2.0) * (k(0.5) - (t7 + crank_e1 * crank_e1));
-        let t9 = coupler_e0 * coupler_e3;
-        let t10 = coupler_e1 * coupler_e2;
-        let t11 = k(2.0) * (t10 + t9);
-        let t12 = crank_e0 * crank_e3;
-        let t13 = crank_e1 * crank_e2;
-        let t14 = k(2.0) * (t13 + t12);
-        let t15 = coupler_e0 * coupler_e2;
-        let t16 = coupler_e1 * coupler_e3;
-        let t17 = k(2.0) * (t16 - t15);
-        let t18 = crank_e0 * crank_e2;
-        let t19 = crank_e1 * crank_e3;
+        let t5 = crank_e0 * crank_e3;
+        let t6 = crank_e1 * crank_e2;
+        let t7 = k(2.0) * (t6 + t5);
+        let t8 = k(2.0) * (t6 - t5);
+        let t9 = crank_e0 * crank_e0;
+        let t10 = k(2.0) * (k(0.5) - (t9 + crank_e2 * crank_e2));
+        let t11 = k(2.0) * (k(0.5) - (t9 + crank_e1 * crank_e1));
+        let t12 = k(1.0) / (t11 * t10 - t8 * t7);
+        let t13 = coupler_e0 * coupler_e0;
+        let t14 = k(2.0) * (k(0.5) - (t13 + coupler_e1 * coupler_e1));
+        let t15 = coupler_e0 * coupler_e3;
+        let t16 = coupler_e1 * coupler_e2;
+        let t17 = k(2.0) * (t16 + t15);
+        let t18 = coupler_e0 * coupler_e2;
+        let t19 = coupler_e1 * coupler_e3;
         let t20 = k(2.0) * (t19 - t18);
-        let t21 = t20 * t17 + (t14 * t11 + t8 * t6);
-        let t22 = k(5e-5) * coupler_dwx;
-        let t23 = t16 + t15;
-        let t24 = k(0.5) * t23;
-        let t25 = coupler_e0 * coupler_e1;
-        let t26 = coupler_e2 * coupler_e3;
-        let t27 = t26 - t25;
-        let t28 = k(0.5) * t27;
-        let t29 = closing1 * t28
+        let t21 = crank_e0 * crank_e2;
+        let t22 = crank_e1 * crank_e3;
+        let t23 = k(2.0) * (t22 - t21);
+        let t24 = t23 * t20 + (t7 * t17 + t11 * t14);
+        let t25 = k(5e-5) * coupler_dwx;
+        let t26 = t19 + t18;
+        let t27 = k(0.5) * t26;
+        let t28 = coupler_e0 * coupler_e1;
+        let t29 = coupler_e2 * coupler_e3;
+        let t30 = t29 - t28;
+        let t31 = k(0.5) * t30;
+        let t32 = closing1 * t31
             - (k(0.02095) * (coupler_wx * coupler_wz) - k(0.021) * coupler_dwy
-                - closing0 * t24);
-        let t30 = k(0.5) - (t5 + coupler_e3 * coupler_e3);
-        let t31 = coupler_dsz * (k(0.5) * t30) - (t2 * t28 + t0 * t24) + t29;
-        let t32 = t10 - t9;
-        let t33 = k(2.0) * t32;
-        let t34 = k(0.5) - (t5 + coupler_e2 * coupler_e2);
-        let t35 = k(2.0) * t34;
-        let t36 = t26 + t25;
-        let t37 = k(2.0) * t36;
-        let t38 = t20 * t37 - (t14 * t35 + t8 * t33);
-        let t39 = k(0.5) * t32;
-        let t40 = k(0.5) * t34;
-        let t41 = closing1 * t40
+                - closing0 * t27);
+        let t33 = k(0.5) - (t13 + coupler_e3 * coupler_e3);
+        let t34 = coupler_dsz * (k(0.5) * t33) - (t2 * t31 + t0 * t27) + t32;
+        let t35 = t16 - t15;
+        let t36 = k(2.0) * t35;
+        let t37 = k(0.5) - (t13 + coupler_e2 * coupler_e2);
+        let t38 = k(2.0) * t37;
+        let t39 = t29 + t28;
+        let t40 = k(2.0) * t39;
+        let t41 = t23 * t40 - (t7 * t38 + t11 * t36);
+        let t42 = k(0.5) * t35;
+        let t43 = k(0.5) * t37;
+        let t44 = closing1 * t43
             + (k(0.02095) * (coupler_wx * coupler_wy) + k(0.021) * coupler_dwz
-                - closing0 * t39);
-        let t42 = coupler_dsz * (k(0.5) * t36) - (t2 * t40 - t0 * t39) + t41;
-        let t43 = k(2.0) * t23;
-        let t44 = k(2.0) * t27;
-        let t45 = k(2.0) * t30;
-        let t46 = (t20 * t45 - (t14 * t44 - t8 * t43)) * t42 - (t38 * t31 + t22 * t21);
-        let t47 = k(2e-5) * crank_dwx - t46;
-        let t48 = k(2.0) * (t13 - t12);
-        let t49 = k(2.0) * (k(0.5) - (t7 + crank_e2 * crank_e2));
-        let t50 = k(1.0) / (t8 * t49 - t48 * t14);
+                - closing0 * t42);
+        let t45 = coupler_dsz * (k(0.5) * t39) - (t2 * t43 - t0 * t42) + t44;
+        let t46 = k(2.0) * t26;
+        let t47 = k(2.0) * t30;
+        let t48 = k(2.0) * t33;
+        let t49 = (t23 * t48 - (t7 * t47 - t11 * t46)) * t45 - (t41 * t34 + t25 * t24);
+        let t50 = k(2e-5) * crank_dwx - t49;
         let t51 = crank_e0 * crank_e1;
         let t52 = crank_e2 * crank_e3;
         let t53 = k(2.0) * (t52 + t51);
-        let t54 = t53 * t17 - (t49 * t11 + t48 * t6);
-        let t55 = t53 * t37 + (t48 * t33 + t49 * t35);
-        let t56 = (t53 * t45 - (t48 * t43 - t49 * t44)) * t42 - (t55 * t31 + t22 * t54);
-        let t57 = k(0.2) * (t19 + t18);
+        let t54 = t53 * t20 - (t10 * t17 + t8 * t14);
+        let t55 = t53 * t40 + (t8 * t36 + t10 * t38);
+        let t56 = (t53 * t48 - (t8 * t46 - t10 * t47)) * t45 - (t55 * t34 + t25 * t54);
+        let t57 = k(0.2) * (t22 + t21);
         let t58 = k(0.2) * (t52 - t51);
-        let t59 = k(0.2) * (k(0.5) - (t7 + crank_e3 * crank_e3));
+        let t59 = k(0.2) * (k(0.5) - (t9 + crank_e3 * crank_e3));
         let t60 = k(0.00133) * (crank_wx * crank_wz) - k(0.00135) * crank_dwy
             - (coupler_dsz * t59 - (t2 * t58 + t0 * t57) - t56);
         let t61 = t4 * t59 - (t3 * t58 + t1 * t57) - t60;
@@ -2015,23 +2007,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
         let t77 = t64 * (k(0.4) * (k(0.5) - (t69 + rocker_e3 * rocker_e3)))
             - (t63 * t75 + t62 * t74);
         let t78 = t77 - t76;
-        let t79 = k(1.0) / (t21 * t55 - t38 * t54);
+        let t79 = k(1.0) / (t24 * t55 - t41 * t54);
         *lambda = [
             -t1,
             -t3,
             -t4,
-            t49 * t50 * t61 - t14 * t50 * t47,
-            t48 * t50 * t61 - t8 * t50 * t47,
+            t61 * (t10 * t12) - t50 * (t7 * t12),
+            t61 * (t8 * t12) - t50 * (t11 * t12),
             -t62,
             -t63,
             -t64,
-            t70 * t72 * t78 - t73 * (t67 * t72),
-            t68 * t72 * t78 - t73 * (t71 * t72),
+            t78 * (t70 * t72) - t73 * (t67 * t72),
+            t78 * (t68 * t72) - t73 * (t71 * t72),
             -t0,
             -t2,
             -coupler_dsz,
-            -(t55 * t79 * t31 + t22 * (t54 * t79)),
-            t38 * t79 * t31 + t22 * (t21 * t79),
+            -(t34 * (t55 * t79) + t25 * (t54 * t79)),
+            t34 * (t41 * t79) + t25 * (t24 * t79),
             closing0,
             closing1,
         ];

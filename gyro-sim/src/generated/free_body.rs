@@ -27,6 +27,7 @@
 //! | to_joints | (x, u) of a maximal state | 0 | 0 | 0 | 0 | 0 of 13 |
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 0 | 4 | 0 | 4 | 4 of 6 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 0 | 4 | 0 | 4 | 4 of 6 |
+//! | corrected_solution | both | 0 | 4 | 0 | 4 | 4 of 6 |
 //!
 //! # Proof
 //!
@@ -43,7 +44,7 @@
 //! * joint_derivative: eqs. (14) and (16) on the constraints
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
-//! * corrected_multipliers: eq. (17) on the constraints
+//! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //!
 //! All of it holds but with a probability below 1e-151.
 //! Not proved: the size of rounding errors.
@@ -408,6 +409,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FreeBody<T> {
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for FreeBody<T> {
     type Joints = [T; 13];
     type Rates = [T; 6];
+    type Solution = [T; 6];
     fn joint_start(&self) -> Self::Joints {
         let k = T::constant;
         [
@@ -427,6 +429,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for FreeBody<T> {
         ]
     }
     fn rates(&self) -> Self::Rates {
+        [T::constant(0.0); 6]
+    }
+    fn solution(&self) -> Self::Solution {
         [T::constant(0.0); 6]
     }
     /// Writes u̇: 4 operations (0 ±, 4 ×, 0 ÷).
@@ -565,6 +570,21 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for FreeBody<T> {
         lambda: &mut Self::Rows,
     ) {
         *lambda = [];
+    }
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 4 operations (0 ±, 4 ×, 0 ÷).
+    fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
+        let k = T::constant;
+        let body_wx = y[10];
+        let body_wy = y[11];
+        let body_wz = y[12];
+        *out = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -(k(0.3333333333333333) * (body_wy * body_wz)),
+            k(0.3333333333333333) * (body_wx * body_wz),
+            k(0.0),
+        ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Ports for FreeBody<T> {

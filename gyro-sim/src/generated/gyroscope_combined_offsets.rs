@@ -19,7 +19,7 @@
 //! | gamma | γ | 169 | 255 | 0 | 424 | 6 of 15 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 120 | 173 | 0 | 293 | 0 of 15 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 423 | 613 | 5 | 1041 | 6 of 18 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 324 | 456 | 5 | 785 | 6 of 18 |
 //! | multipliers | λ, the accelerations being known | 144 | 229 | 3 | 376 | 0 of 15 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
@@ -34,6 +34,7 @@
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 73 | 101 | 2 | 176 | 0 of 3 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 132 | 187 | 2 | 321 | 6 of 18 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 100 | 133 | 0 | 233 | 0 of 15 |
+//! | corrected_solution | both | 198 | 280 | 2 | 480 | 6 of 33 |
 //!
 //! # Proof
 //!
@@ -50,7 +51,7 @@
 //! * joint_derivative: eqs. (14) and (16) on the constraints
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
-//! * corrected_multipliers: eq. (17) on the constraints
+//! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //!
 //! All of it holds but with a probability below 1e-143.
 //! Not proved: the size of rounding errors.
@@ -1936,7 +1937,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 1041 operations (423 ±, 613 ×, 5 ÷).
+    /// Solves eq. (17): 785 operations (324 ±, 456 ×, 5 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1960,524 +1961,266 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let (
-            t0,
-            t3,
-            t4,
-            t5,
-            t6,
-            t7,
-            t9,
-            t11,
-            t12,
-            t13,
-            t14,
-            t15,
-            t16,
-            t17,
-            t19,
-            t20,
-            t27,
-            t34,
-            t42,
-            t43,
-            t52,
-            t55,
-            t56,
-            t58,
-            t61,
-            t62,
-            t63,
-            t64,
-            t69,
-            t70,
-            t71,
-            t72,
-            t75,
-            t77,
-            t78,
-            t80,
-            t83,
-            t84,
-            t85,
-            t86,
-            t89,
-            t90,
-            t91,
-            t92,
-            t95,
-            t96,
-            t97,
-            t98,
-            t101,
-            t102,
-            t103,
-            t104,
-            t105,
-            t106,
-            t107,
-            t108,
-            t116,
-            t119,
-            t120,
-            t122,
-            t124,
-            t125,
-            t126,
-            t127,
-            t128,
-            t129,
-            t130,
-            t131,
-            t132,
-            t144,
-            t145,
-            t146,
-            t147,
-            t148,
-            t149,
-            t152,
-            t153,
-            t154,
-            t155,
-            t156,
-            t160,
-            t161,
-            t164,
-            t166,
-            t170,
-            t172,
-            t179,
-            t185,
-            t191,
-            t192,
-            t193,
-            t194,
-            t197,
-            t198,
-            t199,
-        ) = {
-            let t0 = outer_ring_wx * outer_ring_wy;
-            let t1 = outer_ring_e0 * outer_ring_e2;
-            let t2 = outer_ring_e1 * outer_ring_e3;
-            let t3 = k(2.0) * (t2 - t1);
-            let t4 = outer_ring_wz * outer_ring_wz;
-            let t5 = t4 + outer_ring_wx * outer_ring_wx;
-            let t6 = outer_ring_e0 * outer_ring_e1;
-            let t7 = outer_ring_e2 * outer_ring_e3;
-            let t8 = k(2.0) * (t7 + t6);
-            let t9 = outer_ring_wy * outer_ring_wz;
-            let t10 = outer_ring_e0 * outer_ring_e0;
-            let t11 = k(2.0) * (k(0.5) - (t10 + outer_ring_e3 * outer_ring_e3));
-            let t12 = t11 * t9 + (t8 * t5 - t3 * t0);
-            let t13 = k(2.0) * (k(0.5) - (t10 + outer_ring_e1 * outer_ring_e1));
-            let t14 = k(2.0) * (t2 + t1);
-            let t15 = k(1.0) / (t14 * t3 - t13 * t11);
-            let t16 = outer_ring_e0 * outer_ring_e3;
-            let t17 = outer_ring_e1 * outer_ring_e2;
-            let t18 = k(2.0) * (t17 - t16);
-            let t19 = t14 * t9 - (t18 * t5 + t13 * t0);
-            let t20 = t3 * t15 * t19 - t13 * t15 * t12;
-            let t21 = rotor_e0 * rotor_e3;
-            let t22 = rotor_e1 * rotor_e2;
-            let t23 = t22 - t21;
-            let t24 = k(2.0) * t23;
-            let t25 = inner_ring_e0 * inner_ring_e0;
-            let t26 = k(0.5) - (t25 + inner_ring_e1 * inner_ring_e1);
-            let t27 = k(2.0) * t26;
-            let t28 = rotor_e0 * rotor_e0;
-            let t29 = k(0.5) - (t28 + rotor_e2 * rotor_e2);
-            let t30 = k(2.0) * t29;
-            let t31 = inner_ring_e0 * inner_ring_e3;
-            let t32 = inner_ring_e1 * inner_ring_e2;
-            let t33 = t32 + t31;
-            let t34 = k(2.0) * t33;
-            let t35 = rotor_e0 * rotor_e1;
-            let t36 = rotor_e2 * rotor_e3;
-            let t37 = t36 + t35;
-            let t38 = k(2.0) * t37;
-            let t39 = inner_ring_e0 * inner_ring_e2;
-            let t40 = inner_ring_e1 * inner_ring_e3;
-            let t41 = t40 - t39;
-            let t42 = k(2.0) * t41;
-            let t43 = t42 * t38 - (t34 * t30 + t27 * t24);
-            let t44 = rotor_e0 * rotor_e2;
-            let t45 = rotor_e1 * rotor_e3;
-            let t46 = t45 + t44;
-            let t47 = k(2.0) * t46;
-            let t48 = t36 - t35;
-            let t49 = k(2.0) * t48;
-            let t50 = k(0.5) - (t28 + rotor_e3 * rotor_e3);
-            let t51 = k(2.0) * t50;
-            let t52 = t42 * t51 - (t34 * t49 - t27 * t47);
-            let t53 = k(2.400191904047976e-9) * t52 - k(5.002599744127936e-6) * t43;
-            let t54 = k(5.003999856071964e-6) * t52 - k(2.400191904047976e-9) * t43;
-            let t55 = k(0.0004) * t46 + k(0.0003) * t23;
-            let t56 = k(0.08) * t55;
-            let t57 = k(7996.001999000499) * t55;
-            let t58 = t57 * t56;
-            let t59 = t32 - t31;
-            let t60 = t40 + t39;
-            let t61 = k(0.0001) * t60 + k(6e-5) * t59;
-            let t62 = k(0.0004) * t48 - k(0.0003) * t29;
-            let t63 = k(0.08) * t62;
-            let t64 = t57 * t63;
-            let t65 = k(0.5) - (t25 + inner_ring_e2 * inner_ring_e2);
-            let t66 = inner_ring_e0 * inner_ring_e1;
-            let t67 = inner_ring_e2 * inner_ring_e3;
-            let t68 = t67 - t66;
-            let t69 = k(0.0001) * t68 - k(6e-5) * t65;
-            let t70 = k(0.0004) * t50 - k(0.0003) * t37;
-            let t71 = k(0.08) * t70;
-            let t72 = t71 * t57;
-            let t73 = t67 + t66;
-            let t74 = k(0.5) - (t25 + inner_ring_e3 * inner_ring_e3);
-            let t75 = k(0.0001) * t74 - k(6e-5) * t73;
-            let t76 = k(7996.001999000499) * t62;
-            let t77 = t76 * t63;
-            let t78 = t71 * t76;
-            let t79 = t69 * (t75 * t78 + (t69 * t77 + t61 * t64))
-                + t61 * (t75 * t72 + (t69 * t64 + t61 * t58));
-            let t80 = k(7996.001999000499) * t70 * t71;
-            let t81 = t75 * (t75 * t80 + (t69 * t78 + t61 * t72)) + t79;
-            let t82 = k(0.5) - (t28 + rotor_e1 * rotor_e1);
-            let t83 = k(0.0002) * t46 - k(0.0003) * t82;
-            let t84 = k(1.2793603198400799e-5) * t55 - k(0.08) * t83;
-            let t85 = k(0.0002) * t23 + k(0.0004) * t82;
-            let t86 = k(9.595202398800599e-6) * t55 - k(0.08) * t85;
-            let t87 = t52 * t86 + t43 * t84;
-            let t88 = t22 + t21;
-            let t89 = k(0.0002) * t48 + k(0.0003) * t88;
-            let t90 = k(1.2793603198400799e-5) * t62 - k(0.08) * t89;
-            let t91 = k(0.0002) * t29 + k(0.0004) * t88;
-            let t92 = k(9.595202398800599e-6) * t62 + k(0.08) * t91;
-            let t93 = t52 * t92 + t43 * t90;
-            let t94 = t45 - t44;
-            let t95 = k(0.0002) * t50 - k(0.0003) * t94;
-            let t96 = k(1.2793603198400799e-5) * t70 - k(0.08) * t95;
-            let t97 = k(0.0002) * t37 - k(0.0004) * t94;
-            let t98 = k(9.595202398800599e-6) * t70 + k(0.08) * t97;
-            let t99 = t52 * t98 + t43 * t96;
-            let t100 = k(2.0) * (t75 * t99 + (t69 * t93 + t61 * t87)) + t81;
-            let t101 = k(2.0) * t68;
-            let t102 = k(2.0) * t60;
-            let t103 = k(2.0) * t74;
-            let t104 = t103 * t38 - (t102 * t24 - t101 * t30);
-            let t105 = t102 * t47 + t101 * t49 + t103 * t51;
-            let t106 = k(0.00025) * t59 + k(0.0001) * t26;
-            let t107 = k(0.00025) * t65 + k(0.0001) * t33;
-            let t108 = k(0.00025) * t73 - k(0.0001) * t41;
-            let t109 = t108 * t72 + (t107 * t64 - t106 * t58);
-            let t110 = t108 * t78 + (t107 * t77 - t106 * t64);
-            let t111 = t108 * t80 + (t107 * t78 - t106 * t72);
-            let t112 = t105 * t86 + t104 * t84;
-            let t113 = t105 * t92 + t104 * t90;
-            let t114 = t105 * t98 + t104 * t96;
-            let t115 = t108 * t99 + (t107 * t93 - t106 * t87)
-                + (t75 * t114 + (t69 * t113 + t61 * t112));
-            let t116 = t115 + (t75 * t111 + (t69 * t110 + t61 * t109))
-                + (k(3e-10) - (t105 * t54 - t104 * t53));
-            let t117 = t105
-                * (k(5.003999856071964e-6) * t105 - k(2.400191904047976e-9) * t104)
-                - t104
-                    * (k(2.400191904047976e-9) * t105 - k(5.002599744127936e-6) * t104);
-            let t118 = k(2.0) * (t108 * t114 + (t107 * t113 - t106 * t112))
-                + (t108 * t111 + (t107 * t110 - t106 * t109));
-            let t119 = k(1e-6) - (t118 - (k(1.45e-9) + t117));
-            let t120 = k(1.0) / t119;
-            let t121 = t120 * t116;
-            let t122 = t116 * t121
-                - (k(1e-6) - (t100 - (k(2.72e-10) + (t52 * t54 - t43 * t53))));
-            let t123 = k(2.0) * (k(0.5) - (t10 + outer_ring_e2 * outer_ring_e2));
-            let t124 = t8 * t42 - (t123 * t34 + t18 * t27);
-            let t125 = k(2.0) * t65;
-            let t126 = k(2.0) * t59;
-            let t127 = k(2.0) * t73;
-            let t128 = t127 * t38 + (t126 * t24 + t125 * t30);
-            let t129 = t127 * t51 - (t126 * t47 - t125 * t49);
-            let t130 = k(0.00025) * t60 - k(6e-5) * t26;
-            let t131 = k(0.00025) * t68 + k(6e-5) * t33;
-            let t132 = k(0.00025) * t74 - k(6e-5) * t41;
-            let t133 = t132 * t72 + (t131 * t64 + t130 * t58);
-            let t134 = t132 * t78 + (t131 * t77 + t130 * t64);
-            let t135 = t132 * t80 + (t131 * t78 + t130 * t72);
-            let t136 = t129 * t86 + t128 * t84;
-            let t137 = t129 * t92 + t128 * t90;
-            let t138 = t129 * t98 + t128 * t96;
-            let t139 = t132 * t99 + (t131 * t93 + t130 * t87)
-                - (t75 * t138 + (t69 * t137 + t61 * t136));
-            let t140 = t139 + (t75 * t135 + (t69 * t134 + t61 * t133))
-                - (k(5e-10) - (t129 * t54 - t128 * t53));
-            let t141 = k(2.400191904047976e-9) * t129 - k(5.002599744127936e-6) * t128;
-            let t142 = k(5.003999856071964e-6) * t129 - k(2.400191904047976e-9) * t128;
-            let t143 = t108 * t138 + (t107 * t137 - t106 * t136)
-                - (t132 * t114 + (t131 * t113 + t130 * t112));
-            let t144 = t143 - (t132 * t111 + (t131 * t110 + t130 * t109))
-                + (k(1.2e-10) - (t105 * t142 - t104 * t141));
-            let t145 = t144 * t121 - t140;
-            let t146 = t8 * t127 + (t18 * t126 + t123 * t125);
-            let t147 = t116 - t119 * t121;
-            let t148 = t8 * t103 - (t18 * t102 - t123 * t101);
-            let t149 = t148 * t147 + (t146 * t145 + t124 * t122);
-            let t150 = k(2.0) * (t132 * t138 + (t131 * t137 + t130 * t136))
-                - (t132 * t135 + (t131 * t134 + t130 * t133));
-            let t151 = t120 * t144;
-            let t152 = t144 * t151
-                - (k(2e-6) + (t150 + (k(1.322e-9) + (t129 * t142 - t128 * t141))));
-            let t153 = t144 - t119 * t151;
-            let t154 = t148 * t153 + (t146 * t152 + t124 * t145);
-            let t155 = t146 * t153 + t124 * t147;
-            let t156 = rotor_wx * rotor_wz;
-            let t157 = inner_ring_wy * inner_ring_wy;
-            let t158 = inner_ring_wz * inner_ring_wz;
-            let t159 = t158 + t157;
-            let t160 = inner_ring_wx * inner_ring_wy;
-            let t161 = inner_ring_wx * inner_ring_wz;
-            let t162 = inner_ring_wx * inner_ring_wx;
-            let t163 = t158 + t162;
-            let t164 = inner_ring_wy * inner_ring_wz;
-            let t165 = k(5e-5) * (t102 * t164 - (t126 * t163 + t27 * t160))
-                + k(0.000125) * (t102 * t161 + (t126 * t160 + t27 * t159));
-            let t166 = t157 + t162;
-            let t167 = k(3e-5) * (t102 * t166 - (t126 * t164 - t27 * t161)) + t165;
-            let t168 = rotor_wy * rotor_wy;
-            let t169 = rotor_wz * rotor_wz;
-            let t170 = t169 + t168;
-            let t171 = k(2.0) * t82;
-            let t172 = rotor_wx * rotor_wy;
-            let t173 = rotor_wx * rotor_wx;
-            let t174 = t169 + t173;
-            let t175 = rotor_wy * rotor_wz;
-            let t176 = k(0.0002) * (t47 * t175 - (t24 * t174 + t171 * t172))
-                + k(0.0001) * (t47 * t156 + (t24 * t172 + t171 * t170));
-            let t177 = t168 + t173;
-            let t178 = k(0.00015) * (t47 * t177 - (t24 * t175 - t171 * t156)) + t176;
-            let t179 = t178 - t167;
-            let t180 = k(5e-5) * (t101 * t164 + (t125 * t163 + t34 * t160))
-                + k(0.000125) * (t101 * t161 - (t125 * t160 + t34 * t159));
-            let t181 = k(3e-5) * (t101 * t166 + (t125 * t164 - t34 * t161)) + t180;
-            let t182 = k(2.0) * t88;
-            let t183 = k(0.0002) * (t49 * t175 + (t30 * t174 + t182 * t172))
-                + k(0.0001) * (t49 * t156 - (t30 * t172 + t182 * t170));
-            let t184 = k(0.00015) * (t49 * t177 + (t30 * t175 - t182 * t156)) + t183;
-            let t185 = t184 - t181;
-            let t186 = k(5e-5) * (t103 * t164 + (t127 * t163 - t42 * t160))
-                + k(0.000125) * (t103 * t161 - (t127 * t160 - t42 * t159));
-            let t187 = k(3e-5) * (t103 * t166 + (t127 * t164 + t42 * t161)) + t186;
-            let t188 = k(2.0) * t94;
-            let t189 = k(0.0002) * (t51 * t175 + (t38 * t174 - t188 * t172))
-                + k(0.0001) * (t51 * t156 - (t38 * t172 - t188 * t170));
-            let t190 = k(0.00015) * (t51 * t177 + (t38 * t175 + t188 * t156)) + t189;
-            let t191 = t190 - t187;
-            let t192 = t42 * t188 + (t34 * t182 + t27 * t171);
-            let t193 = t127 * t188 - (t125 * t182 + t126 * t171);
-            let t194 = t103 * t188 - (t101 * t182 - t102 * t171);
-            let t195 = rotor_wy * t52 + rotor_wz * t43;
-            let t196 = k(2.0)
-                * (inner_ring_wx * (rotor_wy * t105 + rotor_wz * t104)
-                    + inner_ring_wz * t195);
-            let t197 = t156 * t129 - (t172 * t128 - t170 * t193) + t196
-                + (t164 * t194 + (t163 * t193 - t160 * t192));
-            let t198 = k(1.0) / (t128 * t105 - t129 * t104);
-            let t199 = k(2.0)
-                * (inner_ring_wx * (rotor_wy * t129 + rotor_wz * t128)
-                    - inner_ring_wy * t195);
-            (
-                t0,
-                t3,
-                t4,
-                t5,
-                t6,
-                t7,
-                t9,
-                t11,
-                t12,
-                t13,
-                t14,
-                t15,
-                t16,
-                t17,
-                t19,
-                t20,
-                t27,
-                t34,
-                t42,
-                t43,
-                t52,
-                t55,
-                t56,
-                t58,
-                t61,
-                t62,
-                t63,
-                t64,
-                t69,
-                t70,
-                t71,
-                t72,
-                t75,
-                t77,
-                t78,
-                t80,
-                t83,
-                t84,
-                t85,
-                t86,
-                t89,
-                t90,
-                t91,
-                t92,
-                t95,
-                t96,
-                t97,
-                t98,
-                t101,
-                t102,
-                t103,
-                t104,
-                t105,
-                t106,
-                t107,
-                t108,
-                t116,
-                t119,
-                t120,
-                t122,
-                t124,
-                t125,
-                t126,
-                t127,
-                t128,
-                t129,
-                t130,
-                t131,
-                t132,
-                t144,
-                t145,
-                t146,
-                t147,
-                t148,
-                t149,
-                t152,
-                t153,
-                t154,
-                t155,
-                t156,
-                t160,
-                t161,
-                t164,
-                t166,
-                t170,
-                t172,
-                t179,
-                t185,
-                t191,
-                t192,
-                t193,
-                t194,
-                t197,
-                t198,
-                t199,
-            )
-        };
-        let (t241, t243, t244, t245, t248, t249, t250, t251, t253, t254, t256) = {
-            let t200 = t156 * t105 - (t172 * t104 - t170 * t194) - t199
-                + (t166 * t194 + (t164 * t193 + t161 * t192));
-            let t201 = t128 * t198 * t200 - t104 * t198 * t197;
-            let t202 = t129 * t198 * t200 - t105 * t198 * t197;
-            let t203 = k(2.400191904047976e-9) * t202 - k(5.002599744127936e-6) * t201
-                - (t191 * t96 + (t185 * t90 + t179 * t84));
-            let t204 = t203
-                + (k(0.000127936031984008) * t62 - (k(5e-6) * t156 + k(0.8) * t89));
-            let t205 = k(5.003999856071964e-6) * t202 - k(2.400191904047976e-9) * t201
-                + (t191 * t98 + (t185 * t92 + t179 * t86));
-            let t206 = t205
-                - (k(9.595202398800599e-5) * t62 - (k(5e-6) * t172 - k(0.8) * t91));
-            let t207 = k(79960.01999000499) * t62;
-            let t208 = t191 * t72 + (t185 * t64 + t179 * t58) - k(0.08) * t179;
-            let t209 = t86 * t202 + t84 * t201 - t208 + t56 * t207;
-            let t210 = t191 * t78 + (t185 * t77 + t179 * t64) - k(0.08) * t185;
-            let t211 = t92 * t202 + t90 * t201 - t210 - (k(0.8) - t63 * t207);
-            let t212 = t191 * t80 + (t185 * t78 + t179 * t72) - k(0.08) * t191;
-            let t213 = t98 * t202 + t96 * t201 - t212 + t71 * t207;
-            let t214 = t75 * t213 + (t69 * t211 + t61 * t209)
-                - (t52 * t206 - t43 * t204);
-            let t215 = t108 * t213 + (t107 * t211 - t106 * t209)
-                - (t105 * t206 - t104 * t204);
-            let t216 = k(1e-6) * t160 + t215;
-            let t217 = t120 * t216;
-            let t218 = k(2.0) * (t17 + t16);
-            let t219 = t3 * t103 - (t218 * t101 - t13 * t102);
-            let t220 = k(2.0) * (t7 - t6);
-            let t221 = t14 * t102 + t220 * t101 + t11 * t103;
-            let t222 = outer_ring_wx * outer_ring_wz;
-            let t223 = t222 * t221
-                - (t0 * t148 - (t4 + outer_ring_wy * outer_ring_wy) * t219);
-            let t224 = t11 * t42 - (t220 * t34 - t14 * t27);
-            let t225 = t11 * t127 - (t14 * t126 - t220 * t125);
-            let t226 = inner_ring_wx * t225 - inner_ring_wy * t224;
-            let t227 = k(2.0)
-                * (outer_ring_wy * t226
-                    + outer_ring_wz * (inner_ring_wx * t146 - inner_ring_wy * t124));
-            let t228 = t3 * t42 + (t218 * t34 + t13 * t27);
-            let t229 = t3 * t127 - (t218 * t125 + t13 * t126);
-            let t230 = t166 * t219 + (t164 * t229 + t161 * t228) - t227 + t223;
-            let t231 = k(1.0) / (t228 * t146 - t229 * t124);
-            let t232 = k(2.0)
-                * (outer_ring_wx * t226
-                    + outer_ring_wz * (inner_ring_wx * t229 - inner_ring_wy * t228));
-            let t233 = t166 * t148 + (t164 * t146 + t161 * t124) + t232
-                + (t9 * t221 + (t5 * t148 - t0 * t219));
-            let t234 = t228 * t231 * t233 - t124 * t231 * t230;
-            let t235 = t229 * t231 * t233 - t146 * t231 * t230;
-            let t236 = t145 * t235 + t122 * t234
-                + (t116 * t217 + (k(1e-6) * t164 + t214));
-            let t237 = t132 * t213 + (t131 * t211 + t130 * t209)
-                + (t129 * t206 - t128 * t204);
-            let t238 = t146 * (t152 * t235 + t145 * t234 + (t144 * t217 - t237));
-            let t239 = t148 * (t153 * t235 + t147 * t234 + (t216 - t119 * t217));
-            let t240 = t146 * (t219 * t153 + (t229 * t152 + t228 * t145))
-                + t124 * (t219 * t147 + (t229 * t145 + t228 * t122));
-            let t241 = t11 * t15 * t19 - t14 * t15 * t12;
-            let t242 = t241 * (t221 * t155 + (t225 * t154 + t224 * t149))
-                + t20 * (t148 * (t229 * t153 + t228 * t147) + t240);
-            let t243 = (t242 + (k(1e-6) * t222 - (t239 + (t238 + t124 * t236))))
-                / (k(1e-6) - (t148 * t155 + (t146 * t154 + t124 * t149)));
-            let t244 = t234 - (t224 * t241 + (t124 * t243 + t228 * t20));
-            let t245 = t235 - (t225 * t241 + (t146 * t243 + t229 * t20));
-            let t246 = t221 * t241 + (t148 * t243 + t219 * t20);
-            let t247 = t120 * (t216 + (t119 * t246 + (t144 * t245 + t116 * t244)));
-            let t248 = t246 - t247;
-            let t249 = t179 - (t106 * t248 - (t130 * t245 - t61 * t244));
-            let t250 = t185 + (t107 * t248 + (t131 * t245 - t69 * t244));
-            let t251 = t191 + (t108 * t248 + (t132 * t245 - t75 * t244));
-            let t252 = t194 * t248 - (t193 * t245 + t192 * t244);
-            let t253 = t201 - (t104 * t248 - (t128 * t245 + t43 * t244));
-            let t254 = t202 - (t105 * t248 - (t129 * t245 + t52 * t244));
-            let t255 = k(1.2e-9) * t254 + (k(1.6e-9) * t253 + k(1.0005e-5) * t252)
-                - (t71 * t251 + (t63 * t250 + t56 * t249));
-            let t256 = t252 - k(99950.02498750624) * (t255 + k(0.8) * t62);
-            (t241, t243, t244, t245, t248, t249, t250, t251, t253, t254, t256)
-        };
+        let t0 = (outer_ring_wz * outer_ring_wz + outer_ring_wx * outer_ring_wx)
+            * (k(0.5)
+                / (k(0.5)
+                    - (outer_ring_e0 * outer_ring_e0 + outer_ring_e2 * outer_ring_e2)));
+        let t1 = outer_ring_wy * outer_ring_wz
+            - k(2.0) * (outer_ring_e2 * outer_ring_e3 - outer_ring_e0 * outer_ring_e1)
+                * t0;
+        let t2 = inner_ring_e3 * rotor_e0 - inner_ring_e2 * rotor_e1
+            + inner_ring_e1 * rotor_e2 - inner_ring_e0 * rotor_e3;
+        let t3 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t4 = t3 * t2;
+        let t5 = inner_ring_e2 * rotor_e0 + inner_ring_e3 * rotor_e1
+            - inner_ring_e0 * rotor_e2 - inner_ring_e1 * rotor_e3;
+        let t6 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t7 = t6 * t5;
+        let t8 = t7 + t4;
+        let t9 = t3 * t5;
+        let t10 = t6 * t2;
+        let t11 = t10 - t9;
+        let t12 = k(4.800383808095952e-9) * t11 + k(1.0005199488255872e-5) * t8;
+        let t13 = k(2.0) * t8;
+        let t14 = k(1.0007999712143928e-5) * t11 + k(4.800383808095952e-9) * t8;
+        let t15 = k(2.0) * t11;
+        let t16 = t3 * t3;
+        let t17 = k(0.5) - (t16 + t5 * t5);
+        let t18 = t3 * t6;
+        let t19 = t5 * t2;
+        let t20 = t19 + t18;
+        let t21 = k(3.8380809595202396e-5) * t20 - k(2.87856071964018e-5) * t17;
+        let t22 = k(2.0) * t17;
+        let t23 = k(5.1174412793603195e-5) * t20 - k(3.8380809595202396e-5) * t17;
+        let t24 = k(2.0) * t20;
+        let t25 = t24 * t23 - t22 * t21;
+        let t26 = t19 - t18;
+        let t27 = k(2.0) * t26;
+        let t28 = k(0.5) - (t16 + t2 * t2);
+        let t29 = k(2.0) * t28;
+        let t30 = t29 * t23 - t27 * t21;
+        let t31 = t29 * (k(5.1174412793603195e-5) * t28 - k(3.8380809595202396e-5) * t26)
+            - t27 * (k(3.8380809595202396e-5) * t28 - k(2.87856071964018e-5) * t26);
+        let t32 = k(5e-5) * (k(5e-5) * t31 - k(3e-5) * t30)
+            - k(3e-5) * (k(5e-5) * t30 - k(3e-5) * t25);
+        let t33 = t7 - t4;
+        let t34 = k(1.599488255872064e-5) * t20
+            + (k(3.8380809595202396e-9) * t17 + k(2.4e-5) * t33);
+        let t35 = k(3.8380809595202396e-9) * t20
+            + (k(1.599712143928036e-5) * t17 + k(3.2e-5) * t33);
+        let t36 = t15 * t35 + t13 * t34;
+        let t37 = t10 + t9;
+        let t38 = k(1.599488255872064e-5) * t28
+            + (k(3.8380809595202396e-9) * t26 - k(2.4e-5) * t37);
+        let t39 = k(3.8380809595202396e-9) * t28
+            + (k(1.599712143928036e-5) * t26 - k(3.2e-5) * t37);
+        let t40 = t15 * t39 + t13 * t38;
+        let t41 = k(2.0) * (k(5e-5) * t40 - k(3e-5) * t36) + t32
+            - (k(2.72e-10) + (t15 * t14 + t13 * t12));
+        let t42 = k(3.8380809595202396e-5) * t11 + k(2.87856071964018e-5) * t8;
+        let t43 = k(5.1174412793603195e-5) * t11 + k(3.8380809595202396e-5) * t8;
+        let t44 = t24 * t43 - t22 * t42;
+        let t45 = k(0.000125) * t25 - k(5e-5) * t44;
+        let t46 = t29 * t43 - t27 * t42;
+        let t47 = k(0.000125) * t30;
+        let t48 = t47 - k(5e-5) * t46;
+        let t49 = t29 * t35 - t27 * t34;
+        let t50 = t29 * t39 - t27 * t38;
+        let t51 = k(0.5) - (t16 + t6 * t6);
+        let t52 = k(1.599488255872064e-5) * t11
+            - (k(3.8380809595202396e-9) * t8 + k(2.4e-5) * t51);
+        let t53 = k(3.8380809595202396e-9) * t11
+            - (k(1.599712143928036e-5) * t8 + k(3.2e-5) * t51);
+        let t54 = t15 * t53 + t13 * t52;
+        let t55 = k(0.000125) * t36 - k(5e-5) * t54 + (k(5e-5) * t50 - k(3e-5) * t49);
+        let t56 = t55 + (k(5e-5) * t48 - k(3e-5) * t45)
+            + (k(3e-10) - (t29 * t14 - t27 * t12));
+        let t57 = t29 * (k(1.0007999712143928e-5) * t28 - k(4.800383808095952e-9) * t26)
+            - t27 * (k(4.800383808095952e-9) * t28 - k(1.0005199488255872e-5) * t26);
+        let t58 = t15 * t43 + t13 * t42;
+        let t59 = k(0.000125) * t44 - k(5e-5) * t58;
+        let t60 = t29 * t53 - t27 * t52;
+        let t61 = k(2.0) * (k(0.000125) * t49 - k(5e-5) * t60)
+            + (k(0.000125) * t45 - k(5e-5) * t59);
+        let t62 = k(1.0) / (k(1e-6) - (t61 - (k(1.45e-9) + t57)));
+        let t63 = t62 * t56;
+        let t64 = t56 * t63 - (k(1e-6) - t41);
+        let t65 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t66 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t67 = t66 * t65;
+        let t68 = outer_ring_e2 * inner_ring_e0 + outer_ring_e3 * inner_ring_e1
+            - outer_ring_e0 * inner_ring_e2 - outer_ring_e1 * inner_ring_e3;
+        let t69 = outer_ring_e1 * inner_ring_e0 - outer_ring_e0 * inner_ring_e1
+            - outer_ring_e3 * inner_ring_e2 + outer_ring_e2 * inner_ring_e3;
+        let t70 = t69 * t68;
+        let t71 = k(2.0) * (t70 - t67);
+        let t72 = k(0.000125) * t31 - k(3e-5) * t46;
+        let t73 = t24 * t35 - t22 * t34;
+        let t74 = t24 * t39 - t22 * t38;
+        let t75 = k(0.000125) * t40 - k(3e-5) * t54 - (k(5e-5) * t74 - k(3e-5) * t73);
+        let t76 = t75 + (k(5e-5) * t72 - k(3e-5) * (t47 - k(3e-5) * t44))
+            - (k(5e-10) - (t24 * t14 - t22 * t12));
+        let t77 = k(4.800383808095952e-9) * t20 - k(1.0005199488255872e-5) * t17;
+        let t78 = k(1.0007999712143928e-5) * t20 - k(4.800383808095952e-9) * t17;
+        let t79 = t24 * t53 - t22 * t52;
+        let t80 = k(0.000125) * t73 - k(5e-5) * t79
+            - (k(0.000125) * t50 - k(3e-5) * t60);
+        let t81 = t80 - (k(0.000125) * t48 - k(3e-5) * t59)
+            + (k(1.2e-10) - (t29 * t78 - t27 * t77));
+        let t82 = t81 * t63 - t76;
+        let t83 = t66 * t66;
+        let t84 = k(2.0) * (k(0.5) - (t83 + t68 * t68));
+        let t85 = t84 * t82 - t71 * t64;
+        let t86 = k(2.0) * (k(0.000125) * t74 - k(3e-5) * t79)
+            - (k(0.000125) * t72 - k(3e-5) * (k(0.000125) * t46 - k(3e-5) * t58));
+        let t87 = t81 * (t62 * t81)
+            - (k(2e-6) + (t86 + (k(1.322e-9) + (t24 * t78 - t22 * t77))));
+        let t88 = t84 * t87 - t71 * t82;
+        let t89 = k(2.0) * t51;
+        let t90 = k(2.0) * t33;
+        let t91 = k(2.0) * t37;
+        let t92 = inner_ring_wz * t91 + (inner_ring_wy * t90 - inner_ring_wx * t89);
+        let t93 = rotor_wx - t92;
+        let t94 = inner_ring_wz * t29 - (inner_ring_wy * t24 + inner_ring_wx * t15);
+        let t95 = rotor_wz + t94;
+        let t96 = inner_ring_wz * t27 - (inner_ring_wy * t22 - inner_ring_wx * t13);
+        let t97 = rotor_wy - t96;
+        let t98 = k(0.5) / t51 * (t97 * t97 + t95 * t95);
+        let t99 = rotor_wz * t92 + rotor_wx * t94 + (t15 * t98 - t95 * t93);
+        let t100 = rotor_wx * t96 - rotor_wy * t92 - (t13 * t98 - t97 * t93);
+        let t101 = k(0.000125) * inner_ring_wz + k(3e-5) * inner_ring_wx;
+        let t102 = k(5e-5) * inner_ring_wx - k(0.000125) * inner_ring_wy;
+        let t103 = inner_ring_wy * t102 - inner_ring_wz * t101;
+        let t104 = k(3e-5) * inner_ring_wy + k(5e-5) * inner_ring_wz;
+        let t105 = inner_ring_wz * t104 + inner_ring_wx * t102;
+        let t106 = inner_ring_wx * t101 + inner_ring_wy * t104;
+        let t107 = k(0.0001) * rotor_wz + k(0.00015) * rotor_wx;
+        let t108 = k(0.0002) * rotor_wx - k(0.0001) * rotor_wy;
+        let t109 = rotor_wy * t108 - rotor_wz * t107
+            - (t106 * t91 - (t105 * t90 + t103 * t89));
+        let t110 = k(0.00015) * rotor_wy + k(0.0002) * rotor_wz;
+        let t111 = rotor_wz * t110 + rotor_wx * t108
+            + (t106 * t27 + (t105 * t22 + t103 * t13));
+        let t112 = rotor_wx * t107 + rotor_wy * t110
+            + (t106 * t29 + (t105 * t24 - t103 * t15));
+        let t113 = k(7.99744127936032e-6) * t112
+            + (k(1.9190404797601198e-9) * t111 + k(1.2e-5) * t109)
+            + (k(2.400191904047976e-9) * t100 + k(5.002599744127936e-6) * t99);
+        let t114 = rotor_e0 * rotor_e3;
+        let t115 = rotor_e1 * rotor_e2;
+        let t116 = t115 + t114;
+        let t117 = rotor_e0 * rotor_e1;
+        let t118 = rotor_e2 * rotor_e3;
+        let t119 = t118 - t117;
+        let t120 = rotor_e0 * rotor_e0;
+        let t121 = k(0.5) - (t120 + rotor_e2 * rotor_e2);
+        let t122 = k(0.00032) * t119 - k(0.00024) * t121;
+        let t123 = k(0.00015992003998001) * t122
+            - (k(5e-6) * (rotor_wx * rotor_wz)
+                + (k(0.00016) * t119 + k(0.00024) * t116));
+        let t124 = t123 + t113;
+        let t125 = k(1.9190404797601198e-9) * t112
+            + (k(7.99856071964018e-6) * t111 + k(1.6e-5) * t109)
+            + (k(5.003999856071964e-6) * t100 + k(2.400191904047976e-9) * t99);
+        let t126 = k(0.0001199400299850075) * t122
+            - (k(5e-6) * (rotor_wx * rotor_wy)
+                - (k(0.00016) * t121 + k(0.00032) * t116));
+        let t127 = t126 - t125;
+        let t128 = k(1.6) * t116 - (k(1.6e-5) * t100 + k(1.2e-5) * t99 + k(0.08) * t109);
+        let t129 = k(7.99856071964018e-6) * t100 + k(1.9190404797601198e-9) * t99
+            + (k(1.9190404797601198e-5) * t112 - k(1.43928035982009e-5) * t111
+                + k(0.08) * t111);
+        let t130 = k(1.199400299850075) * t122 + k(1.6) * t121 - t129;
+        let t131 = k(1.9190404797601198e-9) * t100 + k(7.99744127936032e-6) * t99
+            - (k(2.5587206396801598e-5) * t112 - k(1.9190404797601198e-5) * t111
+                - k(0.08) * t112);
+        let t132 = k(1.5992003998000999) * t122 - k(1.6) * t119 + t131;
+        let t133 = t24 * t132 - (t22 * t130 + t90 * t128);
+        let t134 = t29 * t132 - (t27 * t130 - t91 * t128);
+        let t135 = k(5e-5) * t134 - k(3e-5) * t133 + (t15 * t127 - t13 * t124);
+        let t136 = t15 * t132 + (t13 * t130 + t89 * t128);
+        let t137 = k(0.000125) * t133 - k(5e-5) * t136 + (t29 * t127 + t27 * t124);
+        let t138 = k(1e-6) * (inner_ring_wx * inner_ring_wy) - t137;
+        let t139 = t62 * t138;
+        let t140 = t66 * t68;
+        let t141 = t69 * t65;
+        let t142 = t66 * t69;
+        let t143 = t68 * t65;
+        let t144 = outer_ring_wy * (k(2.0) * (t143 + t142))
+            + outer_ring_wx * (k(2.0) * (t141 - t140));
+        let t145 = k(0.5) - (t83 + t65 * t65);
+        let t146 = outer_ring_wz * (k(2.0) * t145) - t144;
+        let t147 = inner_ring_wz + t146;
+        let t148 = k(2.0) * (t70 + t67);
+        let t149 = k(2.0) * (t143 - t142);
+        let t150 = outer_ring_wz * t149 - (outer_ring_wy * t84 - outer_ring_wx * t148);
+        let t151 = inner_ring_wy - t150;
+        let t152 = k(2.0) * (k(0.5) - (t83 + t69 * t69));
+        let t153 = k(2.0) * (t141 + t140);
+        let t154 = outer_ring_wz * t153 + (outer_ring_wy * t71 - outer_ring_wx * t152);
+        let t155 = inner_ring_wx - t154;
+        let t156 = k(0.5) / t145 * (t155 * t155 + t151 * t151);
+        let t157 = inner_ring_wy * t146 + inner_ring_wz * t150
+            - (t149 * t156 - t151 * t147);
+        let t158 = inner_ring_wz * t154 + inner_ring_wx * t146
+            - (t153 * t156 - t155 * t147);
+        let t159 = t82 * t158 - t64 * t157
+            - (t56 * t139 + (k(1e-6) * (inner_ring_wy * inner_ring_wz) - t135));
+        let t160 = k(0.000125) * t134 - k(3e-5) * t136 - (t24 * t127 + t22 * t124);
+        let t161 = t84 * (t87 * t158 - t82 * t157 - (t81 * t139 + t160));
+        let t162 = t84 * (t148 * t87 - t152 * t82) - t71 * (t148 * t82 - t152 * t64);
+        let t163 = outer_ring_wx * outer_ring_wy
+            - k(2.0) * (outer_ring_e1 * outer_ring_e2 + outer_ring_e0 * outer_ring_e3)
+                * t0;
+        let t164 = t163 * (t149 * t88 + t153 * t85) - t1 * t162
+            + (k(1e-6) * (outer_ring_wx * outer_ring_wz) - (t161 - t71 * t159));
+        let t165 = t164 / (k(1e-6) - (t84 * t88 - t71 * t85));
+        let t166 = t157 - (t71 * t165 - t1 * t152 - t163 * t153);
+        let t167 = t158 - (t84 * t165 - t1 * t148 + t163 * t149);
+        let t168 = t62 * (t138 - (t81 * t167 - t56 * t166));
+        let t169 = k(5e-5) * t168 + k(3e-5) * t167;
+        let t170 = k(0.000125) * t168 - k(3e-5) * t166;
+        let t171 = k(0.000125) * t167 + k(5e-5) * t166;
+        let t172 = t99 + (t27 * t168 - (t22 * t167 + t13 * t166));
+        let t173 = t100 - (t29 * t168 - (t24 * t167 - t15 * t166));
+        let t174 = k(0.0002) * t173 + k(0.00015) * t172
+            + (t109 - (t91 * t171 - (t90 * t170 + t89 * t169)));
+        let t175 = t111 + (t27 * t171 + (t22 * t170 + t13 * t169));
+        let t176 = t112 + (t29 * t171 + (t24 * t170 - t15 * t169));
+        let t177 = k(1.2e-9) * t173 - k(1.6e-9) * t172
+            - (k(1.6e-5) * t176 - k(1.2e-5) * t175);
+        let t178 = t122 + t177;
+        let t179 = t175 + (k(0.0001) * t173 - k(14.992503748125937) * t178);
+        let t180 = k(2.0) * (t115 - t114) * t179
+            + k(2.0) * (k(0.5) - (t120 + rotor_e1 * rotor_e1)) * t174;
+        let t181 = t176 + (k(0.0001) * t172 + k(19.99000499750125) * t178);
+        let t182 = rotor_e0 * rotor_e2;
+        let t183 = rotor_e1 * rotor_e3;
+        let t184 = k(2.0) * t119 * t181 + (k(2.0) * t121 * t179 + k(2.0) * t116 * t174);
+        let t185 = k(2.0) * (t118 + t117) * t179 - k(2.0) * (t183 - t182) * t174;
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -t20,
-            -t243,
-            t241,
+            -t1,
+            -t165,
+            t163,
             k(0.0),
             k(0.0),
             k(0.0),
-            t244,
-            t245,
-            t248,
-            t85 * t254 + (t83 * t253 + t55 * t256) - t249,
-            -(t250 + (t91 * t254 - (t89 * t253 + t62 * t256))),
-            t251 + (t97 * t254 - (t95 * t253 + t70 * t256)),
-            -t256,
-            t253,
-            -t254,
+            t166,
+            -t167,
+            -t168,
+            t180 - k(2.0) * (t183 + t182) * t181,
+            -t184,
+            k(2.0) * (k(0.5) - (t120 + rotor_e3 * rotor_e3)) * t181 + t185,
+            k(99950.02498750624) * t178,
+            -t172,
+            -t173,
         ];
     }
     /// Writes λ: 376 operations (144 ±, 229 ×, 3 ÷).
@@ -2565,23 +2308,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
         let t35 = inner_ring_e1 * inner_ring_e3;
         let t36 = t35 - t34;
         let t37 = k(2.0) * t36;
-        let t38 = k(2.0) * t8;
-        let t39 = k(2.0) * t13;
-        let t40 = k(2.0) * t18;
-        let t41 = t2 * (k(0.0002) * t16 + k(0.0003) * t26)
+        let t38 = t2 * (k(0.0002) * t16 + k(0.0003) * t26)
             + t0 * (k(0.0002) * t11 - k(0.0003) * t21);
-        let t42 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy)
-            - (t4 * (k(0.0002) * t19 - k(0.0003) * t32) - t41);
-        let t43 = t42 * (t37 * t40 - (t31 * t39 + t25 * t38))
+        let t39 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy)
+            - (t4 * (k(0.0002) * t19 - k(0.0003) * t32) - t38);
+        let t40 = k(2.0) * t8;
+        let t41 = k(2.0) * t13;
+        let t42 = k(2.0) * t18;
+        let t43 = (t37 * t42 - (t31 * t41 + t25 * t40)) * t39
             + (t37 * t33 + (t31 * t27 + t25 * t22)) * t20;
-        let t44 = k(2.0) * t11;
-        let t45 = k(2.0) * t16;
-        let t46 = k(2.0) * t19;
-        let t47 = t2 * (k(0.0002) * t13 + k(0.0004) * t26)
+        let t44 = t2 * (k(0.0002) * t13 + k(0.0004) * t26)
             - t0 * (k(0.0002) * t8 + k(0.0004) * t21);
-        let t48 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz)
-            + (t4 * (k(0.0002) * t18 - k(0.0004) * t32) - t47);
-        let t49 = t48 * (t37 * t46 - (t31 * t45 - t25 * t44)) + t43;
+        let t45 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz)
+            + (t4 * (k(0.0002) * t18 - k(0.0004) * t32) - t44);
+        let t46 = k(2.0) * t11;
+        let t47 = k(2.0) * t16;
+        let t48 = k(2.0) * t19;
+        let t49 = (t37 * t48 - (t31 * t47 - t25 * t46)) * t45 + t43;
         let t50 = t29 - t28;
         let t51 = t35 + t34;
         let t52 = k(0.5) - (t23 + inner_ring_e2 * inner_ring_e2);
@@ -2606,23 +2349,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
         let t69 = k(2.0) * t50;
         let t70 = k(2.0) * t52;
         let t71 = k(2.0) * t57;
-        let t72 = t71 * t40 + (t69 * t38 + t70 * t39);
-        let t73 = t72 * t42 + (t71 * t33 - (t70 * t27 + t69 * t22)) * t20;
-        let t74 = t71 * t46 - (t69 * t44 - t70 * t45);
+        let t72 = t71 * t42 + (t69 * t40 + t70 * t41);
+        let t73 = t72 * t39 + (t71 * t33 - (t70 * t27 + t69 * t22)) * t20;
+        let t74 = t71 * t48 - (t69 * t46 - t70 * t47);
         let t75 = t2 * (k(0.00025) * t55 + k(6e-5) * t30)
             + t0 * (k(0.00025) * t51 - k(6e-5) * t24);
-        let t76 = t4 * (k(0.00025) * t58 - k(6e-5) * t36) - t75 + (t74 * t48 + t73);
+        let t76 = t4 * (k(0.00025) * t58 - k(6e-5) * t36) - t75 + (t74 * t45 + t73);
         let t77 = k(2e-6) * inner_ring_dwy + t76;
         let t78 = t67 * t71 - (t64 * t70 + t61 * t69);
         let t79 = k(2.0) * t51;
         let t80 = k(2.0) * t55;
         let t81 = k(2.0) * t58;
-        let t82 = t81 * t40 - (t79 * t38 - t80 * t39);
-        let t83 = t82 * t42 + (t81 * t33 - (t80 * t27 - t79 * t22)) * t20;
-        let t84 = t79 * t44 + t80 * t45 + t81 * t46;
+        let t82 = t81 * t42 - (t79 * t40 - t80 * t41);
+        let t83 = t82 * t39 + (t81 * t33 - (t80 * t27 - t79 * t22)) * t20;
+        let t84 = t79 * t46 + t80 * t47 + t81 * t48;
         let t85 = t2 * (k(0.00025) * t52 + k(0.0001) * t30)
             - t0 * (k(0.00025) * t50 + k(0.0001) * t24);
-        let t86 = t4 * (k(0.00025) * t57 - k(0.0001) * t36) - t85 - (t84 * t48 + t83);
+        let t86 = t4 * (k(0.00025) * t57 - k(0.0001) * t36) - t85 - (t84 * t45 + t83);
         let t87 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz) + t86;
         let t88 = (t67 * t81 - (t64 * t80 - t61 * t79)) * t87 - (t78 * t77 - t68 * t59);
         let t89 = k(2e-6) * outer_ring_dwx - t88;
@@ -2657,20 +2400,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
             -t0,
             -t2,
             -t4,
-            t84 * t105 * t48 + t82 * t105 * t42,
-            t74 * t105 * t48 + t72 * t105 * t42,
+            t84 * t105 * t45 + t82 * t105 * t39,
+            t74 * t105 * t45 + t72 * t105 * t39,
         ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
     type Joints = [T; 6];
     type Rates = [T; 3];
+    type Solution = [T; 33];
     fn joint_start(&self) -> Self::Joints {
         let k = T::constant;
         [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(100.0)]
     }
     fn rates(&self) -> Self::Rates {
         [T::constant(0.0); 3]
+    }
+    fn solution(&self) -> Self::Solution {
+        [T::constant(0.0); 33]
     }
     /// Writes u̇: 138 operations (57 ±, 79 ×, 2 ÷) and 4 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
@@ -3125,14 +2872,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
         let t63 = inner_ring_wz * t62 + inner_ring_wx * t54;
         let t64 = inner_ring_wx * t53 + inner_ring_wy * t62;
         let t65 = k(0.00015) * rotor_wy + k(0.0002) * rotor_wz;
-        let t66 = rotor_wz * t65 + rotor_wx * t52 - (t5 * t64 + t3 * t63);
+        let t66 = rotor_wz * t65 + rotor_wx * t52 - (t64 * t5 + t63 * t3);
         let t67 = t39 * t49 - (t37 * t45 - k(99950.02498750624) * t35) - t47;
         let t68 = k(0.0001) * t57 + k(0.00015) * t67 - (t66 + (t5 * t61 + t3 * t60));
         let t69 = rotor_e0 * rotor_e3;
         let t70 = rotor_e1 * rotor_e2;
         let t71 = k(2.0) * (t70 - t69) * t68
             + k(2.0) * (k(0.5) - (t59 + rotor_e1 * rotor_e1)) * t58;
-        let t72 = rotor_wx * t51 + rotor_wy * t65 - (t3 * t64 - t5 * t63);
+        let t72 = rotor_wx * t51 + rotor_wy * t65 - (t64 * t3 - t63 * t5);
         let t73 = k(0.0001) * t56 + k(0.0002) * t67 + (t72 + (t3 * t61 - t5 * t60));
         let t74 = rotor_e0 * rotor_e2;
         let t75 = rotor_e1 * rotor_e3;
@@ -3307,6 +3054,216 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
             -t4,
             t64,
             -t55,
+        ];
+    }
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 480 operations (198 ±, 280 ×, 2 ÷).
+    fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        let t0 = outer_ring_wy * outer_ring_wz;
+        let t1 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t2 = k(2.0) * t1;
+        let t3 = k(1.0) - t1 * t2;
+        let t4 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t5 = t4 * t2;
+        let t6 = t5 * (k(1.4e-9) * t3 - k(4.8e-9) * t5);
+        let t7 = k(2.52e-9) - (k(4.4e-10) * t5 - (t6 - k(1.08e-9) * t3));
+        let t8 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t9 = k(2.0) * t8;
+        let t10 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t11 = t10 * t9;
+        let t12 = k(3e-10) * t3 + k(4e-10) * t5;
+        let t13 = k(6e-11) - t12;
+        let t14 = k(1.0) - t8 * t9;
+        let t15 = outer_ring_wz - inner_ring_wz;
+        let t16 = k(1.2e-9) * t5 - k(1.6e-9) * t3;
+        let t17 = t5 * (k(4.8e-9) * t3 + k(1.4e-9) * t5);
+        let t18 = t17 - t16;
+        let t19 = k(4.00335e-6) - t18;
+        let t20 = k(0.5) * t16;
+        let t21 = k(2e-10) + t20;
+        let t22 = t11 * t21;
+        let t23 = outer_ring_wy * (t21 - k(2.0) * (t11 * (t22 - t14 * t19)));
+        let t24 = t14 * t12;
+        let t25 = inner_ring_wx - rotor_wx;
+        let t26 = k(2.4e-9) + t6;
+        let t27 = k(2.0) * t12 - t26;
+        let t28 = outer_ring_wy * (t26 + (t11 * (t24 + t11 * t27) + k(0.3) * t16));
+        let t29 = k(2.0)
+            * (t28 + (t17 + k(1.2) * (k(4.168166666666667e-6) - t12)) * (t15 * t14));
+        let t30 = t29
+            + t25 * (t24 + k(1.16e-9) * (t11 * (t5 + k(0.10344827586206896) * t3)));
+        let t31 = t25 * t30 + t15 * (t23 + t15 * (t14 * t13 + t11 * t7));
+        let t32 = t15 * t27;
+        let t33 = t14 * t16;
+        let t34 = outer_ring_wy
+            * (t33 - (t11 * t20 - t14 * (k(1.00064e-5) - k(2.0) * t17)));
+        let t35 = k(400000.0) * t24 + t15 * (t34 - t32) - outer_ring_wy * t28;
+        let t36 = k(0.25) * t33
+            - k(1.2e-10) * (t11 * (k(9.666666666666666) * t3 - (t5 + k(83375.0))));
+        let t37 = k(99950.02498750624) * t36;
+        let t38 = t25 * (t34 - k(2.0) * t32 - k(0.25) * (t25 * t16)) + k(2e-5) * t14;
+        let t39 = k(99950.02498750624) * t12;
+        let t40 = t39 * t35 - (t38 + k(0.5) * (outer_ring_wy * t23) + k(200000.0) * t22);
+        let t41 = t39 * t36 - (t14 * t7 - t11 * t13);
+        let t42 = k(1.0) / (t12 * t39 - (k(6.00345e-6) - t18));
+        let t43 = t42 * t41;
+        let t44 = k(8.001922e-6) - k(2.4) * t12 + t11 * (t14 * t21 + t11 * t19);
+        let t45 = (t43 * t40 - (t37 * t35 - t31))
+            / (t41 * t43 - (t36 * t37 - (t17 + t44)));
+        let t46 = outer_ring_wx * outer_ring_wy;
+        let t47 = inner_ring_wy * t15 + (t0 * t14 - t11 * t45);
+        let t48 = inner_ring_wx * t15 - (t0 * t11 + t14 * t45);
+        let t49 = t43 * t45 - t42 * t40;
+        let t50 = t46 + t49;
+        let t51 = k(0.0001) * rotor_wz + k(0.00015) * rotor_wx;
+        let t52 = k(0.0002) * rotor_wx - k(0.0001) * rotor_wy;
+        let t53 = k(0.000125) * inner_ring_wz + k(3e-5) * inner_ring_wx;
+        let t54 = k(5e-5) * inner_ring_wx - k(0.000125) * inner_ring_wy;
+        let t55 = inner_ring_wy * t54 - inner_ring_wz * t53
+            - (rotor_wy * t52 - rotor_wz * t51);
+        let t56 = rotor_wz * t25 + (t5 * t50 - t3 * t48);
+        let t57 = rotor_wy * t25 + (t3 * t50 + t5 * t48);
+        let t58 = k(0.0002) * t57 - k(0.00015) * t56
+            + (t55 - (k(5e-5) * t50 + k(3e-5) * t48));
+        let t59 = rotor_e0 * rotor_e0;
+        let t60 = k(0.5) - (t59 + rotor_e1 * rotor_e1);
+        let t61 = k(0.000125) * t50 - k(3e-5) * t47;
+        let t62 = k(0.000125) * t48 + k(5e-5) * t47;
+        let t63 = k(3e-5) * inner_ring_wy + k(5e-5) * inner_ring_wz;
+        let t64 = inner_ring_wz * t63 + inner_ring_wx * t54;
+        let t65 = inner_ring_wx * t53 + inner_ring_wy * t63;
+        let t66 = k(0.00015) * rotor_wy + k(0.0002) * rotor_wz;
+        let t67 = rotor_wz * t66 + rotor_wx * t52 - (t65 * t5 + t64 * t3);
+        let t68 = t39 * t49 - (t37 * t45 - k(99950.02498750624) * t35) - t47;
+        let t69 = k(0.0001) * t57 + k(0.00015) * t68 - (t67 + (t5 * t62 + t3 * t61));
+        let t70 = rotor_e0 * rotor_e3;
+        let t71 = rotor_e1 * rotor_e2;
+        let t72 = t71 - t70;
+        let t73 = rotor_wx * t51 + rotor_wy * t66 - (t65 * t3 - t64 * t5);
+        let t74 = k(0.0001) * t56 + k(0.0002) * t68 + (t73 + (t3 * t62 - t5 * t61));
+        let t75 = rotor_e0 * rotor_e2;
+        let t76 = rotor_e1 * rotor_e3;
+        let t77 = t76 + t75;
+        let t78 = k(2.0) * t77 * t74 + (k(2.0) * t72 * t69 + k(2.0) * t60 * t58);
+        let t79 = t71 + t70;
+        let t80 = k(0.5) - (t59 + rotor_e2 * rotor_e2);
+        let t81 = rotor_e0 * rotor_e1;
+        let t82 = rotor_e2 * rotor_e3;
+        let t83 = t82 - t81;
+        let t84 = k(2.0) * t83 * t74 - (k(2.0) * t80 * t69 + k(2.0) * t79 * t58);
+        let t85 = t76 - t75;
+        let t86 = t82 + t81;
+        let t87 = k(0.5) - (t59 + rotor_e3 * rotor_e3);
+        let t88 = k(2.0) * t87 * t74 - (k(2.0) * t86 * t69 - k(2.0) * t85 * t58);
+        let t89 = k(0.08) * t78;
+        let t90 = k(0.8) - k(0.08) * t84;
+        let t91 = k(0.1) + t90;
+        let t92 = k(0.08) * t88;
+        let t93 = (k(0.0002) * t72 + k(0.0004) * t60) * t89
+            + (k(0.0002) * t80 + k(0.0004) * t79) * t90;
+        let t94 = t93 - (k(0.0002) * t86 - k(0.0004) * t85) * t92
+            - k(5e-6) * (rotor_wx * rotor_wy - t57);
+        let t95 = (k(0.0002) * t77 - k(0.0003) * t60) * t89
+            - (k(0.0002) * t83 + k(0.0003) * t79) * t90;
+        let t96 = t95 + (k(0.0002) * t87 - k(0.0003) * t85) * t92
+            - k(5e-6) * (rotor_wx * rotor_wz - t56);
+        let t97 = t5 * t96 + t3 * t94;
+        let t98 = inner_ring_e0 * inner_ring_e2;
+        let t99 = inner_ring_e1 * inner_ring_e3;
+        let t100 = t99 - t98;
+        let t101 = inner_ring_e0 * inner_ring_e1;
+        let t102 = inner_ring_e2 * inner_ring_e3;
+        let t103 = t102 + t101;
+        let t104 = inner_ring_e0 * inner_ring_e3;
+        let t105 = inner_ring_e1 * inner_ring_e2;
+        let t106 = t105 + t104;
+        let t107 = inner_ring_e0 * inner_ring_e0;
+        let t108 = k(0.5) - (t107 + inner_ring_e2 * inner_ring_e2);
+        let t109 = k(0.5) - (t107 + inner_ring_e1 * inner_ring_e1);
+        let t110 = t105 - t104;
+        let t111 = (k(0.00025) * t110 + k(0.0001) * t109) * t89
+            + (k(0.00025) * t108 + k(0.0001) * t106) * t90;
+        let t112 = t111 - (k(0.00025) * t103 - k(0.0001) * t100) * t92 - t97
+            - k(1e-6) * (inner_ring_wx * inner_ring_wy + t50);
+        let t113 = k(2.0) * outer_ring_e2;
+        let t114 = outer_ring_e0 * t113;
+        let t115 = t3 * t96 - t5 * t94;
+        let t116 = k(0.5) - (t107 + inner_ring_e3 * inner_ring_e3);
+        let t117 = t102 - t101;
+        let t118 = t99 + t98;
+        let t119 = (k(0.00025) * t118 - k(6e-5) * t109) * t89
+            - (k(0.00025) * t117 + k(6e-5) * t106) * t90;
+        let t120 = t119 + (k(0.00025) * t116 - k(6e-5) * t100) * t92 - t115
+            + k(2e-6) * t48;
+        let t121 = (k(0.0001) * t118 + k(6e-5) * t110) * t89
+            - (k(0.0001) * t117 - k(6e-5) * t108) * t90;
+        let t122 = (k(0.0004) * t77 + k(0.0003) * t72) * t89
+            - (k(0.0004) * t83 - k(0.0003) * t80) * t90;
+        let t123 = t122 + (k(0.0004) * t87 - k(0.0003) * t86) * t92 + k(1e-5) * t68;
+        let t124 = t123 - (t121 + (k(0.0001) * t116 - k(6e-5) * t103) * t92)
+            - k(1e-6) * (inner_ring_wy * inner_ring_wz + t47);
+        let t125 = t14 * t124 + t11 * t120;
+        let t126 = t125 - k(2e-6) * t0;
+        let t127 = k(1.0) - outer_ring_e2 * t113;
+        *out = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t0,
+            -t45,
+            t46,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t47,
+            t48,
+            t50,
+            -t78,
+            -t84,
+            t88,
+            t68,
+            -t56,
+            t57,
+            t89,
+            -(k(0.1) + t91),
+            -t92,
+            t114 * t112 - t127 * t126,
+            -(t114 * t126 + t127 * t112),
+            t89,
+            -t91,
+            -t92,
+            t11 * t124 - t14 * t120,
+            t125,
+            t89,
+            -t90,
+            -t92,
+            -t97,
+            -t115,
         ];
     }
 }

@@ -20,7 +20,7 @@
 //! | gamma | γ | 115 | 181 | 0 | 296 | 9 of 15 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 84 | 119 | 0 | 203 | 0 of 15 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 12 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 194 | 306 | 5 | 505 | 10 of 18 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 138 | 204 | 5 | 347 | 10 of 18 |
 //! | multipliers | λ, the accelerations being known | 105 | 175 | 3 | 283 | 0 of 15 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | energy | T and V | 17 | 31 | 0 | 48 | 1 of 2 |
@@ -35,6 +35,7 @@
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 13 | 23 | 1 | 37 | 0 of 3 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 30 | 48 | 1 | 79 | 9 of 18 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 37 | 59 | 0 | 96 | 0 of 15 |
+//! | corrected_solution | both | 45 | 74 | 1 | 120 | 18 of 33 |
 //!
 //! # Proof
 //!
@@ -51,7 +52,7 @@
 //! * joint_derivative: eqs. (14) and (16) on the constraints
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
-//! * corrected_multipliers: eq. (17) on the constraints
+//! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //!
 //! All of it holds but with a probability below 1e-144.
 //! Not proved: the size of rounding errors.
@@ -1679,7 +1680,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 505 operations (194 ±, 306 ×, 5 ÷).
+    /// Solves eq. (17): 347 operations (138 ±, 204 ×, 5 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1703,173 +1704,134 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = outer_ring_wx * outer_ring_wy;
-        let t1 = outer_ring_e0 * outer_ring_e2;
-        let t2 = outer_ring_e1 * outer_ring_e3;
-        let t3 = k(2.0) * (t2 - t1);
-        let t4 = outer_ring_wz * outer_ring_wz;
-        let t5 = t4 + outer_ring_wx * outer_ring_wx;
-        let t6 = outer_ring_e0 * outer_ring_e1;
-        let t7 = outer_ring_e2 * outer_ring_e3;
-        let t8 = k(2.0) * (t7 + t6);
-        let t9 = outer_ring_wy * outer_ring_wz;
-        let t10 = outer_ring_e0 * outer_ring_e0;
-        let t11 = k(2.0) * (k(0.5) - (t10 + outer_ring_e3 * outer_ring_e3));
-        let t12 = t11 * t9 + (t8 * t5 - t3 * t0);
-        let t13 = k(2.0) * (k(0.5) - (t10 + outer_ring_e1 * outer_ring_e1));
-        let t14 = k(2.0) * (t2 + t1);
-        let t15 = k(1.0) / (t14 * t3 - t13 * t11);
-        let t16 = outer_ring_e0 * outer_ring_e3;
-        let t17 = outer_ring_e1 * outer_ring_e2;
-        let t18 = k(2.0) * (t17 - t16);
-        let t19 = t14 * t9 - (t18 * t5 + t13 * t0);
-        let t20 = t3 * t15 * t19 - t13 * t15 * t12;
-        let t21 = rotor_e0 * rotor_e3;
-        let t22 = rotor_e1 * rotor_e2;
-        let t23 = k(2.0) * (t22 - t21);
-        let t24 = inner_ring_e0 * inner_ring_e0;
-        let t25 = k(2.0) * (k(0.5) - (t24 + inner_ring_e1 * inner_ring_e1));
-        let t26 = rotor_e0 * rotor_e0;
-        let t27 = k(2.0) * (k(0.5) - (t26 + rotor_e2 * rotor_e2));
-        let t28 = inner_ring_e0 * inner_ring_e3;
-        let t29 = inner_ring_e1 * inner_ring_e2;
-        let t30 = k(2.0) * (t29 + t28);
-        let t31 = rotor_e0 * rotor_e1;
-        let t32 = rotor_e2 * rotor_e3;
-        let t33 = k(2.0) * (t32 + t31);
-        let t34 = inner_ring_e0 * inner_ring_e2;
-        let t35 = inner_ring_e1 * inner_ring_e3;
-        let t36 = k(2.0) * (t35 - t34);
-        let t37 = t36 * t33 - (t30 * t27 + t25 * t23);
-        let t38 = k(5e-6) * t37;
-        let t39 = rotor_e0 * rotor_e2;
-        let t40 = rotor_e1 * rotor_e3;
-        let t41 = k(2.0) * (t40 + t39);
-        let t42 = k(2.0) * (t32 - t31);
-        let t43 = k(2.0) * (k(0.5) - (t26 + rotor_e3 * rotor_e3));
-        let t44 = t36 * t43 - (t30 * t42 - t25 * t41);
-        let t45 = k(5e-6) * t44;
-        let t46 = inner_ring_e0 * inner_ring_e1;
-        let t47 = inner_ring_e2 * inner_ring_e3;
-        let t48 = k(2.0) * (t47 - t46);
-        let t49 = k(2.0) * (t35 + t34);
-        let t50 = k(2.0) * (k(0.5) - (t24 + inner_ring_e3 * inner_ring_e3));
-        let t51 = t50 * t33 - (t49 * t23 - t48 * t27);
-        let t52 = t49 * t41 + t48 * t42 + t50 * t43;
-        let t53 = t52 * t45 + t51 * t38;
-        let t54 = k(1e-6) + (t52 * (k(5e-6) * t52) + t51 * (k(5e-6) * t51));
-        let t55 = k(1.0) / t54;
-        let t56 = t55 * t53;
-        let t57 = t53 * t56 - (k(1e-6) + (t44 * t45 + t37 * t38));
-        let t58 = k(2.0) * (k(0.5) - (t10 + outer_ring_e2 * outer_ring_e2));
-        let t59 = t8 * t36 - (t58 * t30 + t18 * t25);
-        let t60 = k(2.0) * (k(0.5) - (t24 + inner_ring_e2 * inner_ring_e2));
-        let t61 = k(2.0) * (t29 - t28);
-        let t62 = k(2.0) * (t47 + t46);
-        let t63 = t62 * t33 + (t61 * t23 + t60 * t27);
-        let t64 = t62 * t43 - (t61 * t41 - t60 * t42);
-        let t65 = k(5e-6) * t63;
-        let t66 = k(5e-6) * t64;
-        let t67 = t52 * t66 + t51 * t65;
-        let t68 = t67 * t56 - (t64 * t45 + t63 * t38);
-        let t69 = t8 * t62 + (t18 * t61 + t58 * t60);
-        let t70 = t53 - t54 * t56;
-        let t71 = t8 * t50 - (t18 * t49 - t58 * t48);
-        let t72 = t71 * t70 - (t69 * t68 + t59 * t57);
-        let t73 = t55 * t67;
-        let t74 = t67 * t73 - (k(2e-6) + (t64 * t66 + t63 * t65));
-        let t75 = t67 - t54 * t73;
-        let t76 = t71 * t75 - (t69 * t74 + t59 * t68);
-        let t77 = t69 * t75 + t59 * t70;
-        let t78 = k(2.0) * (k(0.5) - (t26 + rotor_e1 * rotor_e1));
-        let t79 = k(2.0) * (t22 + t21);
-        let t80 = k(2.0) * (t40 - t39);
-        let t81 = t36 * t80 + (t30 * t79 + t25 * t78);
-        let t82 = inner_ring_wx * inner_ring_wy;
-        let t83 = t62 * t80 - (t60 * t79 + t61 * t78);
-        let t84 = inner_ring_wx * inner_ring_wx;
-        let t85 = t50 * t80 - (t48 * t79 - t49 * t78);
-        let t86 = inner_ring_wy * inner_ring_wz;
-        let t87 = t86 * t85 + ((inner_ring_wz * inner_ring_wz + t84) * t83 - t82 * t81);
-        let t88 = rotor_wy * t44 + rotor_wz * t37;
-        let t89 = k(2.0)
-            * (inner_ring_wx * (rotor_wy * t52 + rotor_wz * t51) + inner_ring_wz * t88);
-        let t90 = rotor_wz * rotor_wz + rotor_wy * rotor_wy;
-        let t91 = rotor_wx * rotor_wy;
-        let t92 = rotor_wx * rotor_wz;
-        let t93 = t92 * t64 - (t91 * t63 - t90 * t83) + t89 + t87;
-        let t94 = k(1.0) / (t63 * t52 - t64 * t51);
-        let t95 = inner_ring_wx * inner_ring_wz;
-        let t96 = inner_ring_wy * inner_ring_wy + t84;
-        let t97 = k(2.0)
-            * (inner_ring_wx * (rotor_wy * t64 + rotor_wz * t63) - inner_ring_wy * t88);
-        let t98 = t92 * t52 - (t91 * t51 - t90 * t85) - t97
-            + (t96 * t85 + (t86 * t83 + t95 * t81));
-        let t99 = t63 * t94 * t98 - t51 * t94 * t93;
-        let t100 = k(5e-6) * (t92 + t99);
-        let t101 = t64 * t94 * t98 - t52 * t94 * t93;
-        let t102 = k(5e-6) * (t91 + t101);
-        let t103 = k(1e-6) * t82 - (t52 * t102 + t51 * t100);
-        let t104 = t55 * t103;
-        let t105 = t53 * t104 - (k(1e-6) * t86 - (t44 * t102 + t37 * t100));
-        let t106 = k(2.0) * (t17 + t16);
-        let t107 = t3 * t50 - (t106 * t48 - t13 * t49);
-        let t108 = k(2.0) * (t7 - t6);
-        let t109 = t14 * t49 + t108 * t48 + t11 * t50;
-        let t110 = outer_ring_wx * outer_ring_wz;
-        let t111 = t110 * t109
-            - (t0 * t71 - (t4 + outer_ring_wy * outer_ring_wy) * t107);
-        let t112 = t11 * t36 - (t108 * t30 - t14 * t25);
-        let t113 = t11 * t62 - (t14 * t61 - t108 * t60);
-        let t114 = inner_ring_wx * t113 - inner_ring_wy * t112;
-        let t115 = k(2.0)
-            * (outer_ring_wy * t114
-                + outer_ring_wz * (inner_ring_wx * t69 - inner_ring_wy * t59));
-        let t116 = t3 * t36 + (t106 * t30 + t13 * t25);
-        let t117 = t3 * t62 - (t106 * t60 + t13 * t61);
-        let t118 = t96 * t107 + (t86 * t117 + t95 * t116) - t115 + t111;
-        let t119 = k(1.0) / (t116 * t69 - t117 * t59);
-        let t120 = k(2.0)
-            * (outer_ring_wx * t114
-                + outer_ring_wz * (inner_ring_wx * t117 - inner_ring_wy * t116));
-        let t121 = t96 * t71 + (t86 * t69 + t95 * t59) + t120
-            + (t9 * t109 + (t5 * t71 - t0 * t107));
-        let t122 = t116 * t119 * t121 - t59 * t119 * t118;
-        let t123 = t117 * t119 * t121 - t69 * t119 * t118;
-        let t124 = t74 * t123 + t68 * t122 - (t67 * t104 + (t64 * t102 + t63 * t100));
-        let t125 = t69 * t124 + t59 * (t68 * t123 + t57 * t122 - t105);
-        let t126 = t71 * (t75 * t123 + t70 * t122 - (t103 - t54 * t104));
-        let t127 = t69 * (t107 * t75 - (t117 * t74 + t116 * t68))
-            + t59 * (t107 * t70 - (t117 * t68 + t116 * t57));
-        let t128 = t11 * t15 * t19 - t14 * t15 * t12;
-        let t129 = t128 * (t109 * t77 + (t113 * t76 + t112 * t72))
-            + t20 * (t71 * (t117 * t75 + t116 * t70) + t127);
-        let t130 = (t129 - (k(1e-6) * t110 + (t126 - t125)))
-            / (k(1e-6) + (t71 * t77 + (t69 * t76 + t59 * t72)));
-        let t131 = t122 - (t112 * t128 - (t59 * t130 - t116 * t20));
-        let t132 = t123 - (t113 * t128 - (t69 * t130 - t117 * t20));
-        let t133 = t109 * t128 - (t71 * t130 - t107 * t20);
-        let t134 = t55 * (t103 + (t54 * t133 - (t67 * t132 + t53 * t131)));
-        let t135 = t133 - t134;
+        let t0 = (outer_ring_wz * outer_ring_wz + outer_ring_wx * outer_ring_wx)
+            * (k(0.5)
+                / (k(0.5)
+                    - (outer_ring_e0 * outer_ring_e0 + outer_ring_e2 * outer_ring_e2)));
+        let t1 = outer_ring_wy * outer_ring_wz
+            - k(2.0) * (outer_ring_e2 * outer_ring_e3 - outer_ring_e0 * outer_ring_e1)
+                * t0;
+        let t2 = inner_ring_e3 * rotor_e0 - inner_ring_e2 * rotor_e1
+            + inner_ring_e1 * rotor_e2 - inner_ring_e0 * rotor_e3;
+        let t3 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t4 = t3 * t2;
+        let t5 = inner_ring_e2 * rotor_e0 + inner_ring_e3 * rotor_e1
+            - inner_ring_e0 * rotor_e2 - inner_ring_e1 * rotor_e3;
+        let t6 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t7 = t6 * t5;
+        let t8 = t7 + t4;
+        let t9 = k(1e-5) * t8;
+        let t10 = k(2.0) * t8;
+        let t11 = t3 * t5;
+        let t12 = t6 * t2;
+        let t13 = t12 - t11;
+        let t14 = k(1e-5) * t13;
+        let t15 = k(2.0) * t13;
+        let t16 = t3 * t6;
+        let t17 = t5 * t2;
+        let t18 = t17 - t16;
+        let t19 = k(2.0) * t18;
+        let t20 = t3 * t3;
+        let t21 = k(0.5) - (t20 + t2 * t2);
+        let t22 = k(2.0) * t21;
+        let t23 = t22 * t14 - t19 * t9;
+        let t24 = k(1.0) / (k(1e-6) + (t22 * (k(1e-5) * t21) + t19 * (k(1e-5) * t18)));
+        let t25 = t24 * t23;
+        let t26 = t23 * t25 - (k(1e-6) + (t15 * t14 + t10 * t9));
+        let t27 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t28 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t29 = t28 * t27;
+        let t30 = outer_ring_e2 * inner_ring_e0 + outer_ring_e3 * inner_ring_e1
+            - outer_ring_e0 * inner_ring_e2 - outer_ring_e1 * inner_ring_e3;
+        let t31 = outer_ring_e1 * inner_ring_e0 - outer_ring_e0 * inner_ring_e1
+            - outer_ring_e3 * inner_ring_e2 + outer_ring_e2 * inner_ring_e3;
+        let t32 = t31 * t30;
+        let t33 = k(2.0) * (t32 - t29);
+        let t34 = k(0.5) - (t20 + t5 * t5);
+        let t35 = k(2.0) * t34;
+        let t36 = t17 + t16;
+        let t37 = k(2.0) * t36;
+        let t38 = k(1e-5) * t34;
+        let t39 = k(1e-5) * t36;
+        let t40 = t22 * t39 + t19 * t38;
+        let t41 = t40 * t25 - (t37 * t14 - t35 * t9);
+        let t42 = t28 * t28;
+        let t43 = k(2.0) * (k(0.5) - (t42 + t30 * t30));
+        let t44 = t43 * t41 - t33 * t26;
+        let t45 = t40 * (t24 * t40) - (k(2e-6) + (t37 * t39 + t35 * t38));
+        let t46 = t43 * t45 - t33 * t41;
+        let t47 = k(0.5) - (t20 + t6 * t6);
+        let t48 = inner_ring_wz * (k(2.0) * (t12 + t11))
+            + (inner_ring_wy * (k(2.0) * (t7 - t4)) - inner_ring_wx * (k(2.0) * t47));
+        let t49 = rotor_wx - t48;
+        let t50 = inner_ring_wz * t22 - (inner_ring_wy * t37 + inner_ring_wx * t15);
+        let t51 = rotor_wz + t50;
+        let t52 = inner_ring_wz * t19 - (inner_ring_wy * t35 - inner_ring_wx * t10);
+        let t53 = rotor_wy - t52;
+        let t54 = k(0.5) / t47 * (t53 * t53 + t51 * t51);
+        let t55 = rotor_wz * t48 + rotor_wx * t50 + (t15 * t54 - t51 * t49);
+        let t56 = k(5e-6) * (rotor_wx * rotor_wz - t55);
+        let t57 = rotor_wx * t52 - rotor_wy * t48 - (t10 * t54 - t53 * t49);
+        let t58 = k(5e-6) * (rotor_wx * rotor_wy + t57);
+        let t59 = k(1e-6) * (inner_ring_wx * inner_ring_wy) + (t22 * t58 + t19 * t56);
+        let t60 = t24 * t59;
+        let t61 = t23 * t60
+            - (k(1e-6) * (inner_ring_wy * inner_ring_wz) + (t15 * t58 - t10 * t56));
+        let t62 = t28 * t30;
+        let t63 = t31 * t27;
+        let t64 = t28 * t31;
+        let t65 = t30 * t27;
+        let t66 = outer_ring_wy * (k(2.0) * (t65 + t64))
+            + outer_ring_wx * (k(2.0) * (t63 - t62));
+        let t67 = k(0.5) - (t42 + t27 * t27);
+        let t68 = outer_ring_wz * (k(2.0) * t67) - t66;
+        let t69 = inner_ring_wz + t68;
+        let t70 = k(2.0) * (t32 + t29);
+        let t71 = k(2.0) * (t65 - t64);
+        let t72 = outer_ring_wz * t71 - (outer_ring_wy * t43 - outer_ring_wx * t70);
+        let t73 = inner_ring_wy - t72;
+        let t74 = k(2.0) * (k(0.5) - (t42 + t31 * t31));
+        let t75 = k(2.0) * (t63 + t62);
+        let t76 = outer_ring_wz * t75 + (outer_ring_wy * t33 - outer_ring_wx * t74);
+        let t77 = inner_ring_wx - t76;
+        let t78 = k(0.5) / t67 * (t77 * t77 + t73 * t73);
+        let t79 = inner_ring_wy * t68 + inner_ring_wz * t72 - (t71 * t78 - t73 * t69);
+        let t80 = inner_ring_wz * t76 + inner_ring_wx * t68 - (t75 * t78 - t77 * t69);
+        let t81 = t45 * t80 - t41 * t79 + (t40 * t60 - (t37 * t58 + t35 * t56));
+        let t82 = t43 * t81 - t33 * (t41 * t80 - t26 * t79 + t61);
+        let t83 = t43 * (t70 * t45 - t74 * t41) - t33 * (t70 * t41 - t74 * t26);
+        let t84 = outer_ring_wx * outer_ring_wy
+            - k(2.0) * (outer_ring_e1 * outer_ring_e2 + outer_ring_e0 * outer_ring_e3)
+                * t0;
+        let t85 = t84 * (t71 * t46 + t75 * t44) - t1 * t83
+            + (k(1e-6) * (outer_ring_wx * outer_ring_wz) - t82);
+        let t86 = t85 / (k(1e-6) - (t43 * t46 - t33 * t44));
+        let t87 = t79 + (t84 * t75 - (t33 * t86 - t1 * t74));
+        let t88 = t80 - (t84 * t71 + (t43 * t86 - t1 * t70));
+        let t89 = t24 * (t59 + (t40 * t88 - t23 * t87));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -t20,
-            t130,
-            t128,
+            -t1,
+            -t86,
+            t84,
             k(0.0),
             k(0.0),
             k(0.0),
-            t131,
-            t132,
-            t135,
+            t87,
+            -t88,
+            -t89,
             k(0.0),
             k(0.0),
             k(0.0),
             k(0.0),
-            t99 - (t51 * t135 - (t63 * t132 + t37 * t131)),
-            t52 * t135 - (t64 * t132 + t44 * t131) - t101,
+            -(t55 + (t19 * t89 - (t35 * t88 + t10 * t87))),
+            t22 * t89 - (t37 * t88 - t15 * t87) - t57,
         ];
     }
     /// Writes λ: 283 operations (105 ±, 175 ×, 3 ÷).
@@ -2023,12 +1985,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
     type Joints = [T; 6];
     type Rates = [T; 3];
+    type Solution = [T; 33];
     fn joint_start(&self) -> Self::Joints {
         let k = T::constant;
         [k(0.0), k(0.0), k(0.0), k(1.0), k(0.5), k(100.0)]
     }
     fn rates(&self) -> Self::Rates {
         [T::constant(0.0); 3]
+    }
+    fn solution(&self) -> Self::Solution {
+        [T::constant(0.0); 33]
     }
     /// Writes u̇: 17 operations (4 ±, 12 ×, 1 ÷) and 2 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
@@ -2417,6 +2383,108 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
             -t4,
             t25,
             -t17,
+        ];
+    }
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 120 operations (45 ±, 74 ×, 1 ÷).
+    fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        let t0 = outer_ring_wy * outer_ring_wz;
+        let t1 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t2 = k(2.0) * t1;
+        let t3 = k(1.0) - t1 * t2;
+        let t4 = outer_ring_wz - inner_ring_wz;
+        let t5 = t4 * t3;
+        let t6 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t7 = t6 * t2;
+        let t8 = outer_ring_wy * t7;
+        let t9 = inner_ring_wx - rotor_wx;
+        let t10 = k(1.6666666666666667)
+            * ((t9 - k(0.2) * t8) / (k(1.3333333333333333) - t7 * t7));
+        let t11 = t10 * t5;
+        let t12 = outer_ring_wx * outer_ring_wy;
+        let t13 = inner_ring_wy * t4 + (t0 * t3 - t7 * t11);
+        let t14 = inner_ring_wx * t4 - (t0 * t7 + t3 * t11);
+        let t15 = t12
+            - k(1.6666666666666667) * (outer_ring_wy * t3 * (t9 + k(0.4) * t8));
+        let t16 = t5 * (outer_ring_wy - t7 * t10) - t13;
+        let t17 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t18 = k(2.0) * t17;
+        let t19 = k(1.0) - t17 * t18;
+        let t20 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t21 = t20 * t18;
+        let t22 = rotor_wz * t9 + (t21 * t15 - t19 * t14);
+        let t23 = rotor_wy * t9 + (t19 * t15 + t21 * t14);
+        let t24 = k(5e-6) * (rotor_wx * rotor_wy - t23);
+        let t25 = k(5e-6) * (rotor_wx * rotor_wz - t22);
+        let t26 = t21 * t25 + t19 * t24;
+        let t27 = t26 - k(1e-6) * (inner_ring_wx * inner_ring_wy + t15);
+        let t28 = k(2.0) * outer_ring_e2;
+        let t29 = outer_ring_e0 * t28;
+        let t30 = t19 * t25 - t21 * t24;
+        let t31 = t30 + k(2e-6) * t14;
+        let t32 = k(1e-5) * t16 - k(1e-6) * (inner_ring_wy * inner_ring_wz + t13);
+        let t33 = t3 * t32 + t7 * t31;
+        let t34 = t33 - k(2e-6) * t0;
+        let t35 = k(1.0) - outer_ring_e2 * t28;
+        *out = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t0,
+            -t11,
+            t12,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t13,
+            t14,
+            t15,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t16,
+            -t22,
+            t23,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t29 * t27 - t35 * t34,
+            -(t29 * t34 + t35 * t27),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t7 * t32 - t3 * t31,
+            t33,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t26,
+            t30,
         ];
     }
 }

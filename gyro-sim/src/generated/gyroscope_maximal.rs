@@ -18,7 +18,7 @@
 //! | gamma | γ | 181 | 291 | 0 | 472 | 9 of 21 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 129 | 184 | 0 | 313 | 0 of 21 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 14 of 24 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 302 | 482 | 6 | 790 | 10 of 24 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 242 | 368 | 6 | 616 | 10 of 24 |
 //! | multipliers | λ, the accelerations being known | 180 | 291 | 4 | 475 | 0 of 21 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 32 | 64 | 0 | 96 | 0 of 28 |
 //! | energy | T and V | 26 | 45 | 0 | 71 | 0 of 2 |
@@ -33,6 +33,7 @@
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 15 | 23 | 1 | 39 | 0 of 3 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 57 | 92 | 1 | 150 | 12 of 24 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 86 | 125 | 1 | 212 | 0 of 21 |
+//! | corrected_solution | both | 117 | 183 | 2 | 302 | 12 of 45 |
 //!
 //! # Proof
 //!
@@ -49,7 +50,7 @@
 //! * joint_derivative: eqs. (14) and (16) on the constraints
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
-//! * corrected_multipliers: eq. (17) on the constraints
+//! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //!
 //! All of it holds but with a probability below 1e-144.
 //! Not proved: the size of rounding errors.
@@ -2140,7 +2141,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 790 operations (302 ±, 482 ×, 6 ÷).
+    /// Solves eq. (17): 616 operations (242 ±, 368 ×, 6 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let base_e0 = y[3];
@@ -2171,404 +2172,205 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
         let rotor_wx = y[49];
         let rotor_wy = y[50];
         let rotor_wz = y[51];
-        let (
-            t23,
-            t25,
-            t27,
-            t44,
-            t51,
-            t55,
-            t67,
-            t69,
-            t73,
-            t75,
-            t76,
-            t77,
-            t78,
-            t79,
-            t82,
-            t83,
-            t100,
-            t107,
-            t111,
-            t113,
-            t115,
-            t117,
-            t118,
-            t119,
-            t120,
-            t121,
-            t123,
-            t124,
-            t131,
-            t132,
-            t135,
-            t136,
-            t137,
-            t138,
-            t139,
-            t140,
-            t142,
-            t143,
-            t144,
-            t145,
-            t146,
-            t156,
-            t164,
-            t166,
-            t169,
-            t170,
-            t171,
-            t172,
-            t174,
-            t175,
-            t176,
-            t177,
-            t178,
-            t179,
-            t180,
-            t181,
-            t182,
-            t184,
-            t185,
-            t186,
-            t187,
-            t188,
-            t189,
-            t191,
-            t192,
-            t195,
-            t196,
-            t197,
-            t198,
-            t199,
-        ) = {
-            let t0 = k(0.5) * base_e3;
-            let t1 = k(0.5) * base_e0;
-            let t2 = t1 * t1;
-            let t3 = t2 + t0 * t0;
-            let t4 = k(0.5) * base_e1;
-            let t5 = t4 * t1;
-            let t6 = k(0.5) * base_e2;
-            let t7 = t0 * t6;
-            let t8 = t7 + t5;
-            let t9 = t1 * t6;
-            let t10 = t4 * t0;
-            let t11 = t10 - t9;
-            let t12 = k(1.0) / (t6 * t11 - t4 * t8 - t1 * t3);
-            let t13 = t1 * t0;
-            let t14 = t4 * t6;
-            let t15 = k(0.5)
-                * (base_e2 * base_wx - base_e1 * base_wy - base_e0 * base_wz);
-            let t16 = k(0.5)
-                * (base_e1 * base_wx + base_e2 * base_wy + base_e3 * base_wz);
-            let t17 = k(0.5)
-                * (base_e0 * base_wx - base_e3 * base_wy + base_e2 * base_wz);
-            let t18 = k(0.5) * (base_wz * t17 + (base_wy * t16 + base_wx * t15));
-            let t19 = k(0.5)
-                * (base_e3 * base_wx + base_e0 * base_wy - base_e1 * base_wz);
-            let t20 = k(0.5) * (base_wz * t19 + (base_wy * t15 - base_wx * t16));
-            let t21 = t20 * ((t2 + t4 * t4) * t12) - t18 * ((t14 + t13) * t12);
-            let t22 = k(0.5) * (base_wz * t16 - (base_wy * t17 - base_wx * t19));
-            let t23 = t22 * (t11 * t12) - t21;
-            let t24 = t20 * ((t14 - t13) * t12) - t18 * ((t2 + t6 * t6) * t12);
-            let t25 = t22 * (t8 * t12) - t24;
-            let t26 = t20 * ((t10 + t9) * t12) - t18 * ((t7 - t5) * t12);
-            let t27 = t22 * (t3 * t12) - t26;
-            let t28 = outer_ring_e0 * outer_ring_e3;
-            let t29 = outer_ring_e1 * outer_ring_e2;
-            let t30 = k(2.0) * (t29 - t28);
-            let t31 = base_e0 * base_e0;
-            let t32 = k(2.0) * (k(0.5) - (t31 + base_e1 * base_e1));
-            let t33 = outer_ring_e0 * outer_ring_e0;
-            let t34 = k(2.0) * (k(0.5) - (t33 + outer_ring_e2 * outer_ring_e2));
-            let t35 = base_e0 * base_e3;
-            let t36 = base_e1 * base_e2;
-            let t37 = k(2.0) * (t36 + t35);
-            let t38 = outer_ring_e0 * outer_ring_e1;
-            let t39 = outer_ring_e2 * outer_ring_e3;
-            let t40 = k(2.0) * (t39 + t38);
-            let t41 = base_e0 * base_e2;
-            let t42 = base_e1 * base_e3;
-            let t43 = k(2.0) * (t42 - t41);
-            let t44 = t43 * t40 - (t37 * t34 + t32 * t30);
-            let t45 = base_wx * base_wz;
-            let t46 = k(2.0) * (k(0.5) - (t31 + base_e2 * base_e2));
-            let t47 = k(2.0) * (t36 - t35);
-            let t48 = base_e0 * base_e1;
-            let t49 = base_e2 * base_e3;
-            let t50 = k(2.0) * (t49 + t48);
-            let t51 = t50 * t40 + (t47 * t30 + t46 * t34);
-            let t52 = k(2.0) * (t49 - t48);
-            let t53 = k(2.0) * (t42 + t41);
-            let t54 = k(2.0) * (k(0.5) - (t31 + base_e3 * base_e3));
-            let t55 = t54 * t40 - (t53 * t30 - t52 * t34);
-            let t56 = base_wy * base_wy;
-            let t57 = (t56 + base_wx * base_wx) * t55
-                + (base_wy * base_wz * t51 + t45 * t44);
-            let t58 = k(2.0) * (k(0.5) - (t33 + outer_ring_e1 * outer_ring_e1));
-            let t59 = k(2.0) * (t29 + t28);
-            let t60 = outer_ring_e0 * outer_ring_e2;
-            let t61 = outer_ring_e1 * outer_ring_e3;
-            let t62 = k(2.0) * (t61 - t60);
-            let t63 = t43 * t62 + (t37 * t59 + t32 * t58);
-            let t64 = k(2.0) * (t61 + t60);
-            let t65 = k(2.0) * (t39 - t38);
-            let t66 = k(2.0) * (k(0.5) - (t33 + outer_ring_e3 * outer_ring_e3));
-            let t67 = t43 * t66 - (t37 * t65 - t32 * t64);
-            let t68 = t50 * t62 - (t46 * t59 + t47 * t58);
-            let t69 = t50 * t66 - (t47 * t64 - t46 * t65);
-            let t70 = outer_ring_wx * t69 + outer_ring_wz * t68;
-            let t71 = k(2.0)
-                * (base_wx * t70
-                    - base_wy * (outer_ring_wx * t67 + outer_ring_wz * t63));
-            let t72 = t54 * t62 - (t52 * t59 - t53 * t58);
-            let t73 = outer_ring_wx * outer_ring_wy;
-            let t74 = outer_ring_wz * outer_ring_wz;
-            let t75 = t74 + outer_ring_wx * outer_ring_wx;
-            let t76 = t53 * t64 + t52 * t65 + t54 * t66;
-            let t77 = outer_ring_wy * outer_ring_wz;
-            let t78 = t77 * t76 + (t75 * t55 - t73 * t72) + t71 + t57;
-            let t79 = k(1.0) / (t72 * t67 - t76 * t63);
-            let t80 = t45 * t55
-                - (base_wx * base_wy * t51 - (base_wz * base_wz + t56) * t44);
-            let t81 = k(2.0)
-                * (base_wy * (outer_ring_wx * t76 + outer_ring_wz * t72)
-                    + base_wz * t70);
-            let t82 = t77 * t67 + (t75 * t44 - t73 * t63) + t81 + t80;
-            let t83 = t27 * t72 - (t25 * t68 + t23 * t63)
-                - (t72 * t79 * t82 - t63 * t79 * t78);
-            let t84 = rotor_e0 * rotor_e3;
-            let t85 = rotor_e1 * rotor_e2;
-            let t86 = k(2.0) * (t85 - t84);
-            let t87 = inner_ring_e0 * inner_ring_e0;
-            let t88 = k(2.0) * (k(0.5) - (t87 + inner_ring_e1 * inner_ring_e1));
-            let t89 = rotor_e0 * rotor_e0;
-            let t90 = k(2.0) * (k(0.5) - (t89 + rotor_e2 * rotor_e2));
-            let t91 = inner_ring_e0 * inner_ring_e3;
-            let t92 = inner_ring_e1 * inner_ring_e2;
-            let t93 = k(2.0) * (t92 + t91);
-            let t94 = rotor_e0 * rotor_e1;
-            let t95 = rotor_e2 * rotor_e3;
-            let t96 = k(2.0) * (t95 + t94);
-            let t97 = inner_ring_e0 * inner_ring_e2;
-            let t98 = inner_ring_e1 * inner_ring_e3;
-            let t99 = k(2.0) * (t98 - t97);
-            let t100 = t99 * t96 - (t93 * t90 + t88 * t86);
-            let t101 = k(5e-6) * t100;
-            let t102 = rotor_e0 * rotor_e2;
-            let t103 = rotor_e1 * rotor_e3;
-            let t104 = k(2.0) * (t103 + t102);
-            let t105 = k(2.0) * (t95 - t94);
-            let t106 = k(2.0) * (k(0.5) - (t89 + rotor_e3 * rotor_e3));
-            let t107 = t99 * t106 - (t93 * t105 - t88 * t104);
-            let t108 = k(5e-6) * t107;
-            let t109 = inner_ring_e0 * inner_ring_e1;
-            let t110 = inner_ring_e2 * inner_ring_e3;
-            let t111 = t110 - t109;
-            let t112 = k(2.0) * t111;
-            let t113 = t98 + t97;
-            let t114 = k(2.0) * t113;
-            let t115 = k(0.5) - (t87 + inner_ring_e3 * inner_ring_e3);
-            let t116 = k(2.0) * t115;
-            let t117 = t116 * t96 - (t114 * t86 - t112 * t90);
-            let t118 = t114 * t104 + t112 * t105 + t116 * t106;
-            let t119 = t118 * t108 + t117 * t101;
-            let t120 = k(1e-6)
-                + (k(1.25e-9) + (t118 * (k(5e-6) * t118) + t117 * (k(5e-6) * t117)));
-            let t121 = k(1.0) / t120;
-            let t122 = t121 * t119;
-            let t123 = t119 * t122 - (k(1e-6) + (t107 * t108 + t100 * t101));
-            let t124 = t40 * t99 - (t34 * t93 + t30 * t88);
-            let t125 = k(0.5) - (t87 + inner_ring_e2 * inner_ring_e2);
-            let t126 = k(2.0) * t125;
-            let t127 = t92 - t91;
-            let t128 = k(2.0) * t127;
-            let t129 = t110 + t109;
-            let t130 = k(2.0) * t129;
-            let t131 = t130 * t96 + (t128 * t86 + t126 * t90);
-            let t132 = t130 * t106 - (t128 * t104 - t126 * t105);
-            let t133 = k(5e-6) * t131;
-            let t134 = k(5e-6) * t132;
-            let t135 = t118 * t134 + t117 * t133;
-            let t136 = t135 * t122 - (t132 * t108 + t131 * t101);
-            let t137 = t40 * t130 + (t30 * t128 + t34 * t126);
-            let t138 = t119 - t120 * t122;
-            let t139 = t40 * t116 - (t30 * t114 - t34 * t112);
-            let t140 = t139 * t138 - (t137 * t136 + t124 * t123);
-            let t141 = t121 * t135;
-            let t142 = t135 * t141
-                - (k(2e-6) + (k(1.25e-9) + (t132 * t134 + t131 * t133)));
-            let t143 = t135 - t120 * t141;
-            let t144 = t139 * t143 - (t137 * t142 + t124 * t136);
-            let t145 = t137 * t143 + t124 * t138;
-            let t146 = k(1e-6) + (t139 * t145 + (t137 * t144 + t124 * t140));
-            let t147 = k(2.0) * (k(0.5) - (t89 + rotor_e1 * rotor_e1));
-            let t148 = k(2.0) * (t85 + t84);
-            let t149 = k(2.0) * (t103 - t102);
-            let t150 = t99 * t149 + (t93 * t148 + t88 * t147);
-            let t151 = inner_ring_wx * inner_ring_wy;
-            let t152 = t130 * t149 - (t126 * t148 + t128 * t147);
-            let t153 = inner_ring_wx * inner_ring_wx;
-            let t154 = inner_ring_wz * inner_ring_wz;
-            let t155 = t116 * t149 - (t112 * t148 - t114 * t147);
-            let t156 = inner_ring_wy * inner_ring_wz;
-            let t157 = rotor_wy * t107 + rotor_wz * t100;
-            let t158 = k(2.0)
-                * (inner_ring_wx * (rotor_wy * t118 + rotor_wz * t117)
-                    + inner_ring_wz * t157);
-            let t159 = rotor_wz * rotor_wz + rotor_wy * rotor_wy;
-            let t160 = rotor_wx * rotor_wy;
-            let t161 = rotor_wx * rotor_wz;
-            let t162 = t161 * t132 - (t160 * t131 - t159 * t152) + t158
-                + (t156 * t155 + ((t154 + t153) * t152 - t151 * t150));
-            let t163 = k(1.0) / (t131 * t118 - t132 * t117);
-            let t164 = inner_ring_wx * inner_ring_wz;
-            let t165 = inner_ring_wy * inner_ring_wy;
-            let t166 = t165 + t153;
-            let t167 = k(2.0)
-                * (inner_ring_wx * (rotor_wy * t132 + rotor_wz * t131)
-                    - inner_ring_wy * t157);
-            let t168 = t161 * t118 - (t160 * t117 - t159 * t155) - t167
-                + (t166 * t155 + (t156 * t152 + t164 * t150));
-            let t169 = t131 * t163 * t168 - t117 * t163 * t162;
-            let t170 = k(5e-6) * (t161 + t169);
-            let t171 = t132 * t163 * t168 - t118 * t163 * t162;
-            let t172 = k(5e-6) * (t160 + t171);
-            let t173 = t154 + t165;
-            let t174 = t114 * t164 + (t128 * t151 + t88 * t173);
-            let t175 = k(1e-5) * t174;
-            let t176 = k(0.00025) * t127;
-            let t177 = t112 * t164 - (t126 * t151 + t93 * t173);
-            let t178 = k(0.8) + k(1e-5) * t177;
-            let t179 = k(0.00025) * t125;
-            let t180 = t116 * t164 - (t130 * t151 - t99 * t173);
-            let t181 = k(1e-5) * t180;
-            let t182 = k(0.00025) * t129;
-            let t183 = t182 * t181 + (t179 * t178 - t176 * t175)
-                + (t118 * t172 + t117 * t170);
-            let t184 = k(1e-6) * t151 - t183;
-            let t185 = t121 * t184;
-            let t186 = t119 * t185 - (k(1e-6) * t156 - (t107 * t172 + t100 * t170));
-            let t187 = t62 * t116 - (t59 * t112 - t58 * t114);
-            let t188 = t64 * t114 + t65 * t112 + t66 * t116;
-            let t189 = outer_ring_wx * outer_ring_wz;
-            let t190 = t189 * t188
-                - (t73 * t139 - (t74 + outer_ring_wy * outer_ring_wy) * t187);
-            let t191 = t66 * t99 - (t65 * t93 - t64 * t88);
-            let t192 = t66 * t130 - (t64 * t128 - t65 * t126);
-            let t193 = inner_ring_wx * t192 - inner_ring_wy * t191;
-            let t194 = k(2.0)
-                * (outer_ring_wy * t193
-                    + outer_ring_wz * (inner_ring_wx * t137 - inner_ring_wy * t124));
-            let t195 = t62 * t99 + (t59 * t93 + t58 * t88);
-            let t196 = t62 * t130 - (t59 * t126 + t58 * t128);
-            let t197 = t166 * t187 + (t156 * t196 + t164 * t195) - t194 + t190;
-            let t198 = k(1.0) / (t195 * t137 - t196 * t124);
-            let t199 = k(2.0)
-                * (outer_ring_wx * t193
-                    + outer_ring_wz * (inner_ring_wx * t196 - inner_ring_wy * t195));
-            (
-                t23,
-                t25,
-                t27,
-                t44,
-                t51,
-                t55,
-                t67,
-                t69,
-                t73,
-                t75,
-                t76,
-                t77,
-                t78,
-                t79,
-                t82,
-                t83,
-                t100,
-                t107,
-                t111,
-                t113,
-                t115,
-                t117,
-                t118,
-                t119,
-                t120,
-                t121,
-                t123,
-                t124,
-                t131,
-                t132,
-                t135,
-                t136,
-                t137,
-                t138,
-                t139,
-                t140,
-                t142,
-                t143,
-                t144,
-                t145,
-                t146,
-                t156,
-                t164,
-                t166,
-                t169,
-                t170,
-                t171,
-                t172,
-                t174,
-                t175,
-                t176,
-                t177,
-                t178,
-                t179,
-                t180,
-                t181,
-                t182,
-                t184,
-                t185,
-                t186,
-                t187,
-                t188,
-                t189,
-                t191,
-                t192,
-                t195,
-                t196,
-                t197,
-                t198,
-                t199,
-            )
-        };
-        let (t203, t204, t205, t213, t215, t216, t217, t220) = {
-            let t200 = t166 * t139 + (t156 * t137 + t164 * t124) + t199
-                + (t77 * t188 + (t75 * t139 - t73 * t187));
-            let t201 = t195 * t198 * t200 - t124 * t198 * t197;
-            let t202 = t196 * t198 * t200 - t137 * t198 * t197;
-            let t203 = k(0.00025) * t113;
-            let t204 = k(0.00025) * t111;
-            let t205 = k(0.00025) * t115;
-            let t206 = t205 * t181 + (t204 * t178 + t203 * t175)
-                - (t132 * t172 + t131 * t170);
-            let t207 = t137 * (t142 * t202 + t136 * t201 - (t135 * t185 - t206));
-            let t208 = t139 * (t143 * t202 + t138 * t201 - (t184 - t120 * t185));
-            let t209 = t208 - (t207 + t124 * (t136 * t202 + t123 * t201 - t186));
-            let t210 = t137 * (t187 * t143 - (t196 * t142 + t195 * t136))
-                + t124 * (t187 * t138 - (t196 * t136 + t195 * t123));
-            let t211 = t27 * t55 - (t25 * t51 + t23 * t44);
-            let t212 = t211 * t146 + t83 * (t139 * (t196 * t143 + t195 * t138) + t210);
-            let t213 = t27 * t76 - (t25 * t69 + t23 * t67)
-                - (t76 * t79 * t82 - t67 * t79 * t78);
-            let t214 = t213 * (t188 * t145 + (t192 * t144 + t191 * t140)) + t212;
-            let t215 = t211 - (t214 + (k(1e-6) * t189 + t209)) / t146;
-            let t216 = t201 + (t191 * t213 + (t124 * t215 + t195 * t83));
-            let t217 = t202 + (t192 * t213 + (t137 * t215 + t196 * t83));
-            let t218 = t188 * t213 + (t139 * t215 + t187 * t83);
-            let t219 = t121 * (t184 - (t120 * t218 + (t135 * t217 + t119 * t216)));
-            let t220 = t218 + t219;
-            (t203, t204, t205, t213, t215, t216, t217, t220)
-        };
+        let t0 = k(0.5) * base_e3;
+        let t1 = k(0.5) * base_e0;
+        let t2 = t1 * t1;
+        let t3 = t2 + t0 * t0;
+        let t4 = k(0.5) * base_e1;
+        let t5 = t4 * t1;
+        let t6 = k(0.5) * base_e2;
+        let t7 = t0 * t6;
+        let t8 = t7 + t5;
+        let t9 = t1 * t6;
+        let t10 = t4 * t0;
+        let t11 = t10 - t9;
+        let t12 = k(1.0) / (t6 * t11 - t4 * t8 - t1 * t3);
+        let t13 = t1 * t0;
+        let t14 = t4 * t6;
+        let t15 = k(0.5) * (base_e2 * base_wx - base_e1 * base_wy - base_e0 * base_wz);
+        let t16 = k(0.5) * (base_e1 * base_wx + base_e2 * base_wy + base_e3 * base_wz);
+        let t17 = k(0.5) * (base_e0 * base_wx - base_e3 * base_wy + base_e2 * base_wz);
+        let t18 = k(0.5) * (base_wz * t17 + (base_wy * t16 + base_wx * t15));
+        let t19 = k(0.5) * (base_e3 * base_wx + base_e0 * base_wy - base_e1 * base_wz);
+        let t20 = k(0.5) * (base_wz * t19 + (base_wy * t15 - base_wx * t16));
+        let t21 = t20 * ((t2 + t4 * t4) * t12) - t18 * ((t14 + t13) * t12);
+        let t22 = k(0.5) * (base_wz * t16 - (base_wy * t17 - base_wx * t19));
+        let t23 = t22 * (t11 * t12) - t21;
+        let t24 = t20 * ((t14 - t13) * t12) - t18 * ((t2 + t6 * t6) * t12);
+        let t25 = t22 * (t8 * t12) - t24;
+        let t26 = t20 * ((t10 + t9) * t12) - t18 * ((t7 - t5) * t12);
+        let t27 = t22 * (t3 * t12) - t26;
+        let t28 = base_e3 * outer_ring_e0 - base_e2 * outer_ring_e1
+            + base_e1 * outer_ring_e2 - base_e0 * outer_ring_e3;
+        let t29 = base_e0 * outer_ring_e0 + base_e1 * outer_ring_e1
+            + base_e2 * outer_ring_e2 + base_e3 * outer_ring_e3;
+        let t30 = t29 * t28;
+        let t31 = base_e2 * outer_ring_e0 + base_e3 * outer_ring_e1
+            - base_e0 * outer_ring_e2 - base_e1 * outer_ring_e3;
+        let t32 = base_e1 * outer_ring_e0 - base_e0 * outer_ring_e1
+            - base_e3 * outer_ring_e2 + base_e2 * outer_ring_e3;
+        let t33 = t32 * t31;
+        let t34 = t29 * t29;
+        let t35 = k(0.5) - (t34 + t31 * t31);
+        let t36 = t29 * t32;
+        let t37 = t31 * t28;
+        let t38 = base_wz * (k(2.0) * (t37 - t36))
+            - (base_wy * (k(2.0) * t35) - base_wx * (k(2.0) * (t33 + t30)));
+        let t39 = outer_ring_wy - t38;
+        let t40 = t29 * t31;
+        let t41 = t32 * t28;
+        let t42 = k(2.0) * (t41 - t40);
+        let t43 = k(2.0) * (t37 + t36);
+        let t44 = k(2.0) * (k(0.5) - (t34 + t28 * t28));
+        let t45 = base_wz * t44 - (base_wy * t43 + base_wx * t42);
+        let t46 = outer_ring_wz + t45;
+        let t47 = k(2.0) * (k(0.5) - (t34 + t32 * t32));
+        let t48 = k(2.0) * (t33 - t30);
+        let t49 = k(2.0) * (t41 + t40);
+        let t50 = base_wz * t49 + (base_wy * t48 - base_wx * t47);
+        let t51 = outer_ring_wx - t50;
+        let t52 = k(0.5) / t35 * (t51 * t51 + t46 * t46);
+        let t53 = outer_ring_wy * t45 + outer_ring_wz * t38 + (t43 * t52 - t46 * t39);
+        let t54 = t27 * t49 + (t25 * t48 - t23 * t47) - t53;
+        let t55 = inner_ring_e3 * rotor_e0 - inner_ring_e2 * rotor_e1
+            + inner_ring_e1 * rotor_e2 - inner_ring_e0 * rotor_e3;
+        let t56 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t57 = t56 * t55;
+        let t58 = inner_ring_e2 * rotor_e0 + inner_ring_e3 * rotor_e1
+            - inner_ring_e0 * rotor_e2 - inner_ring_e1 * rotor_e3;
+        let t59 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t60 = t59 * t58;
+        let t61 = t60 + t57;
+        let t62 = k(1e-5) * t61;
+        let t63 = k(2.0) * t61;
+        let t64 = t56 * t58;
+        let t65 = t59 * t55;
+        let t66 = t65 - t64;
+        let t67 = k(1e-5) * t66;
+        let t68 = k(2.0) * t66;
+        let t69 = t56 * t59;
+        let t70 = t58 * t55;
+        let t71 = t70 - t69;
+        let t72 = k(2.0) * t71;
+        let t73 = t56 * t56;
+        let t74 = k(0.5) - (t73 + t55 * t55);
+        let t75 = k(2.0) * t74;
+        let t76 = t75 * t67 - t72 * t62;
+        let t77 = k(1e-6)
+            + (k(1.25e-9) + (t75 * (k(1e-5) * t74) + t72 * (k(1e-5) * t71)));
+        let t78 = k(1.0) / t77;
+        let t79 = t78 * t76;
+        let t80 = t76 * t79 - (k(1e-6) + (t68 * t67 + t63 * t62));
+        let t81 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t82 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t83 = t82 * t81;
+        let t84 = outer_ring_e2 * inner_ring_e0 + outer_ring_e3 * inner_ring_e1
+            - outer_ring_e0 * inner_ring_e2 - outer_ring_e1 * inner_ring_e3;
+        let t85 = outer_ring_e1 * inner_ring_e0 - outer_ring_e0 * inner_ring_e1
+            - outer_ring_e3 * inner_ring_e2 + outer_ring_e2 * inner_ring_e3;
+        let t86 = t85 * t84;
+        let t87 = k(2.0) * (t86 - t83);
+        let t88 = k(0.5) - (t73 + t58 * t58);
+        let t89 = k(2.0) * t88;
+        let t90 = t70 + t69;
+        let t91 = k(2.0) * t90;
+        let t92 = k(1e-5) * t88;
+        let t93 = k(1e-5) * t90;
+        let t94 = t75 * t93 + t72 * t92;
+        let t95 = t94 * t79 - (t91 * t67 - t89 * t62);
+        let t96 = t82 * t82;
+        let t97 = k(2.0) * (k(0.5) - (t96 + t84 * t84));
+        let t98 = t97 * t95 - t87 * t80;
+        let t99 = t94 * (t78 * t94) - (k(2e-6) + (k(1.25e-9) + (t91 * t93 + t89 * t92)));
+        let t100 = t97 * t99 - t87 * t95;
+        let t101 = k(0.5) - (t73 + t59 * t59);
+        let t102 = inner_ring_wz * (k(2.0) * (t65 + t64))
+            + (inner_ring_wy * (k(2.0) * (t60 - t57)) - inner_ring_wx * (k(2.0) * t101));
+        let t103 = rotor_wx - t102;
+        let t104 = inner_ring_wz * t75 - (inner_ring_wy * t91 + inner_ring_wx * t68);
+        let t105 = rotor_wz + t104;
+        let t106 = inner_ring_wz * t72 - (inner_ring_wy * t89 - inner_ring_wx * t63);
+        let t107 = rotor_wy - t106;
+        let t108 = k(0.5) / t101 * (t107 * t107 + t105 * t105);
+        let t109 = rotor_wz * t102 + rotor_wx * t104 + (t68 * t108 - t105 * t103);
+        let t110 = k(5e-6) * (rotor_wx * rotor_wz - t109);
+        let t111 = rotor_wx * t106 - rotor_wy * t102 - (t63 * t108 - t107 * t103);
+        let t112 = k(5e-6) * (rotor_wx * rotor_wy + t111);
+        let t113 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
+        let t114 = inner_ring_e0 * inner_ring_e0;
+        let t115 = inner_ring_wx * inner_ring_wy;
+        let t116 = inner_ring_e0 * inner_ring_e3;
+        let t117 = inner_ring_e1 * inner_ring_e2;
+        let t118 = t117 - t116;
+        let t119 = k(2.0) * t118 * t115
+            + k(2.0) * (k(0.5) - (t114 + inner_ring_e1 * inner_ring_e1)) * t113;
+        let t120 = inner_ring_wx * inner_ring_wz;
+        let t121 = inner_ring_e0 * inner_ring_e2;
+        let t122 = inner_ring_e1 * inner_ring_e3;
+        let t123 = t122 + t121;
+        let t124 = k(2.0) * t123 * t120 + t119;
+        let t125 = k(1e-5) * t124;
+        let t126 = k(0.00025) * t118;
+        let t127 = k(0.5) - (t114 + inner_ring_e2 * inner_ring_e2);
+        let t128 = inner_ring_e0 * inner_ring_e1;
+        let t129 = inner_ring_e2 * inner_ring_e3;
+        let t130 = t129 - t128;
+        let t131 = k(2.0) * t130 * t120
+            - (k(2.0) * t127 * t115 + k(2.0) * (t117 + t116) * t113);
+        let t132 = k(0.8) + k(1e-5) * t131;
+        let t133 = k(0.00025) * t127;
+        let t134 = t129 + t128;
+        let t135 = k(0.5) - (t114 + inner_ring_e3 * inner_ring_e3);
+        let t136 = k(2.0) * t135 * t120
+            - (k(2.0) * t134 * t115 - k(2.0) * (t122 - t121) * t113);
+        let t137 = k(1e-5) * t136;
+        let t138 = k(0.00025) * t134;
+        let t139 = t138 * t137 + (t133 * t132 - t126 * t125) - (t75 * t112 + t72 * t110);
+        let t140 = k(1e-6) * t115 - t139;
+        let t141 = t78 * t140;
+        let t142 = t76 * t141
+            - (k(1e-6) * (inner_ring_wy * inner_ring_wz) + (t68 * t112 - t63 * t110));
+        let t143 = t82 * t84;
+        let t144 = t85 * t81;
+        let t145 = t82 * t85;
+        let t146 = t84 * t81;
+        let t147 = outer_ring_wy * (k(2.0) * (t146 + t145))
+            + outer_ring_wx * (k(2.0) * (t144 - t143));
+        let t148 = k(0.5) - (t96 + t81 * t81);
+        let t149 = outer_ring_wz * (k(2.0) * t148) - t147;
+        let t150 = inner_ring_wz + t149;
+        let t151 = k(2.0) * (t86 + t83);
+        let t152 = k(2.0) * (t146 - t145);
+        let t153 = outer_ring_wz * t152 - (outer_ring_wy * t97 - outer_ring_wx * t151);
+        let t154 = inner_ring_wy - t153;
+        let t155 = k(2.0) * (k(0.5) - (t96 + t85 * t85));
+        let t156 = k(2.0) * (t144 + t143);
+        let t157 = outer_ring_wz * t156 + (outer_ring_wy * t87 - outer_ring_wx * t155);
+        let t158 = inner_ring_wx - t157;
+        let t159 = k(0.5) / t148 * (t158 * t158 + t154 * t154);
+        let t160 = inner_ring_wy * t149 + inner_ring_wz * t153
+            - (t152 * t159 - t154 * t150);
+        let t161 = inner_ring_wz * t157 + inner_ring_wx * t149
+            - (t156 * t159 - t158 * t150);
+        let t162 = k(0.00025) * t123;
+        let t163 = k(0.00025) * t130;
+        let t164 = k(0.00025) * t135;
+        let t165 = t164 * t137 + (t163 * t132 + t162 * t125) + (t91 * t112 + t89 * t110);
+        let t166 = t97 * (t99 * t161 - t95 * t160 + (t94 * t141 - t165));
+        let t167 = k(1e-6) * (outer_ring_wx * outer_ring_wz)
+            - (t166 - t87 * (t95 * t161 - t80 * t160 + t142));
+        let t168 = t97 * (t151 * t99 - t155 * t95) - t87 * (t151 * t95 - t155 * t80);
+        let t169 = outer_ring_wx * t38 - outer_ring_wy * t50 + (t48 * t52 - t51 * t39);
+        let t170 = t27 * t44 - (t25 * t43 + t23 * t42) - t169;
+        let t171 = t170 * (t152 * t100 + t156 * t98) - t54 * t168 + t167;
+        let t172 = t171 / (k(1e-6) - (t97 * t100 - t87 * t98));
+        let t173 = t160 + (t156 * t170 - (t87 * t172 - t155 * t54));
+        let t174 = t161 - (t152 * t170 + (t97 * t172 - t151 * t54));
+        let t175 = t78 * (t140 + (t94 * t174 - t76 * t173));
         *out = [
             k(0.0),
             k(0.0),
@@ -2579,21 +2381,21 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
             k(0.0),
             k(0.0),
             k(0.0),
-            t83,
-            t215,
-            -t213,
+            -t54,
+            -t172,
+            t170,
             k(0.0),
             k(0.0),
             k(0.0),
-            t216,
-            t217,
-            -t220,
-            k(0.000125) * t174 - (t176 * t220 + t203 * t217),
-            k(0.000125) * t177 + (t179 * t220 - t204 * t217),
-            -(k(0.000125) * t180 + (t182 * t220 - t205 * t217)),
+            t173,
+            -t174,
+            -t175,
+            k(0.000125) * t124 - (t126 * t175 - t162 * t174),
+            k(0.000125) * t131 + (t133 * t175 + t163 * t174),
+            -(k(0.000125) * t136 + (t138 * t175 + t164 * t174)),
             k(0.0),
-            t169 + (t117 * t220 + (t131 * t217 + t100 * t216)),
-            -(t171 + (t118 * t220 + (t132 * t217 + t107 * t216))),
+            -(t109 + (t72 * t175 - (t89 * t174 + t63 * t173))),
+            t75 * t175 - (t91 * t174 - t68 * t173) - t111,
         ];
     }
     /// Writes λ: 475 operations (180 ±, 291 ×, 4 ÷).
@@ -2826,12 +2628,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
     type Joints = [T; 6];
     type Rates = [T; 3];
+    type Solution = [T; 45];
     fn joint_start(&self) -> Self::Joints {
         let k = T::constant;
         [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(100.0)]
     }
     fn rates(&self) -> Self::Rates {
         [T::constant(0.0); 3]
+    }
+    fn solution(&self) -> Self::Solution {
+        [T::constant(0.0); 45]
     }
     /// Writes u̇: 18 operations (5 ±, 12 ×, 1 ÷) and 2 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
@@ -3156,14 +2962,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
         let t25 = inner_ring_wx * t24;
         let t26 = k(0.000125) * inner_ring_wz;
         let t27 = inner_ring_wx * t26;
-        let t28 = t23 * t27 - t20 * t25 - (t23 * t21 - t20 * t17);
+        let t28 = t27 * t23 - t25 * t20 - (t23 * t21 - t20 * t17);
         let t29 = rotor_e0 * rotor_e3;
         let t30 = rotor_e1 * rotor_e2;
         let t31 = inner_ring_wy * t24 + inner_ring_wz * t26;
         let t32 = rotor_e0 * rotor_e0;
         let t33 = k(2.0) * (k(0.5) - (t32 + rotor_e1 * rotor_e1)) * t31
             - k(2.0) * (t30 - t29) * t28;
-        let t34 = t20 * t27 + t23 * t25 - (t20 * t21 + t23 * t17);
+        let t34 = t27 * t20 + t25 * t23 - (t20 * t21 + t23 * t17);
         let t35 = rotor_e0 * rotor_e2;
         let t36 = rotor_e1 * rotor_e3;
         let t37 = k(2.0) * (t30 + t29) * t31
@@ -3355,6 +3161,190 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
             -t6,
             t35,
             -t24,
+        ];
+    }
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 302 operations (117 ±, 183 ×, 2 ÷).
+    fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
+        let k = T::constant;
+        let base_e0 = y[3];
+        let base_e1 = y[4];
+        let base_e2 = y[5];
+        let base_e3 = y[6];
+        let outer_ring_e0 = y[10];
+        let outer_ring_e1 = y[11];
+        let outer_ring_e2 = y[12];
+        let outer_ring_e3 = y[13];
+        let inner_ring_e0 = y[17];
+        let inner_ring_e1 = y[18];
+        let inner_ring_e2 = y[19];
+        let inner_ring_e3 = y[20];
+        let rotor_e0 = y[24];
+        let rotor_e1 = y[25];
+        let rotor_e2 = y[26];
+        let rotor_e3 = y[27];
+        let base_wy = y[32];
+        let outer_ring_wx = y[37];
+        let outer_ring_wy = y[38];
+        let outer_ring_wz = y[39];
+        let inner_ring_wx = y[43];
+        let inner_ring_wy = y[44];
+        let inner_ring_wz = y[45];
+        let rotor_wx = y[49];
+        let rotor_wy = y[50];
+        let rotor_wz = y[51];
+        let t0 = base_wy - outer_ring_wy;
+        let t1 = outer_ring_wz * t0;
+        let t2 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t3 = k(2.0) * t2;
+        let t4 = k(1.0) - t2 * t3;
+        let t5 = outer_ring_wz - inner_ring_wz;
+        let t6 = t5 * t4;
+        let t7 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t8 = t7 * t3;
+        let t9 = t0 * t8;
+        let t10 = inner_ring_wx - rotor_wx;
+        let t11 = k(1.6663195167673401)
+            * ((t10 + k(0.20025) * t9) / (k(1.3332639033534681) - t8 * t8));
+        let t12 = t11 * t6;
+        let t13 = outer_ring_wx * t0;
+        let t14 = inner_ring_wy * t5 - (t4 * t1 + t8 * t12);
+        let t15 = inner_ring_wx * t5 + (t8 * t1 - t4 * t12);
+        let t16 = k(1.6663195167673401)
+            * (t4 * (k(10.0) - t0 * (t10 - k(0.399875) * t9))) + t13;
+        let t17 = k(0.000125) * t16;
+        let t18 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t19 = k(2.0) * t18;
+        let t20 = k(1.0) - t18 * t19;
+        let t21 = k(0.000125) * t15;
+        let t22 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t23 = t22 * t19;
+        let t24 = k(0.000125) * inner_ring_wy;
+        let t25 = inner_ring_wx * t24;
+        let t26 = k(0.000125) * inner_ring_wz;
+        let t27 = inner_ring_wx * t26;
+        let t28 = t27 * t23 - t25 * t20 - (t23 * t21 - t20 * t17);
+        let t29 = rotor_e0 * rotor_e3;
+        let t30 = rotor_e1 * rotor_e2;
+        let t31 = inner_ring_wy * t24 + inner_ring_wz * t26;
+        let t32 = rotor_e0 * rotor_e0;
+        let t33 = k(2.0) * (k(0.5) - (t32 + rotor_e1 * rotor_e1)) * t31
+            - k(2.0) * (t30 - t29) * t28;
+        let t34 = t27 * t20 + t25 * t23 - (t20 * t21 + t23 * t17);
+        let t35 = rotor_e0 * rotor_e2;
+        let t36 = rotor_e1 * rotor_e3;
+        let t37 = k(2.0) * (t36 + t35) * t34 + t33;
+        let t38 = k(2.0) * (t30 + t29) * t31
+            - k(2.0) * (k(0.5) - (t32 + rotor_e2 * rotor_e2)) * t28;
+        let t39 = rotor_e0 * rotor_e1;
+        let t40 = rotor_e2 * rotor_e3;
+        let t41 = k(2.0) * (t40 - t39) * t34 - t38;
+        let t42 = k(2.0) * (t36 - t35) * t31 + k(2.0) * (t40 + t39) * t28;
+        let t43 = k(2.0) * (k(0.5) - (t32 + rotor_e3 * rotor_e3)) * t34 + t42;
+        let t44 = t6 * (t0 + t8 * t11) + t14;
+        let t45 = rotor_wz * t10 - (t23 * t16 + t20 * t15);
+        let t46 = rotor_wy * t10 - (t20 * t16 - t23 * t15);
+        let t47 = k(0.08) * t37;
+        let t48 = k(0.8) + k(0.08) * t41;
+        let t49 = k(0.1) + t48;
+        let t50 = k(0.1) + t49;
+        let t51 = k(0.08) * t43;
+        let t52 = k(5e-6) * (rotor_wx * rotor_wy - t46);
+        let t53 = k(5e-6) * (rotor_wx * rotor_wz - t45);
+        let t54 = t23 * t53 + t20 * t52;
+        let t55 = inner_ring_e0 * inner_ring_e1;
+        let t56 = inner_ring_e2 * inner_ring_e3;
+        let t57 = inner_ring_e0 * inner_ring_e0;
+        let t58 = k(0.00025)
+            * (inner_ring_e1 * inner_ring_e2 - inner_ring_e0 * inner_ring_e3) * t47
+            - k(0.00025) * (k(0.5) - (t57 + inner_ring_e2 * inner_ring_e2)) * t48;
+        let t59 = t58 - k(0.00025) * (t56 + t55) * t51 - t54
+            + k(1e-6) * (inner_ring_wx * inner_ring_wy - t16);
+        let t60 = t59 - k(1e-6) * (outer_ring_wx * outer_ring_wy + t13);
+        let t61 = base_e2 * outer_ring_e0 + base_e3 * outer_ring_e1
+            - base_e0 * outer_ring_e2 - base_e1 * outer_ring_e3;
+        let t62 = k(2.0) * t61;
+        let t63 = k(1.0) - t61 * t62;
+        let t64 = t20 * t53 - t23 * t52;
+        let t65 = k(0.00025)
+            * (inner_ring_e1 * inner_ring_e3 + inner_ring_e0 * inner_ring_e2) * t47
+            + k(0.00025) * (t56 - t55) * t48;
+        let t66 = t65
+            + k(0.00025) * (k(0.5) - (t57 + inner_ring_e3 * inner_ring_e3)) * t51 - t64;
+        let t67 = t66 - k(2e-6) * t15;
+        let t68 = k(1e-5) * t44 + k(1e-6) * (inner_ring_wy * inner_ring_wz + t14);
+        let t69 = t4 * t68 + t8 * t67;
+        let t70 = t69 - k(2e-6) * t1;
+        let t71 = base_e0 * outer_ring_e0 + base_e1 * outer_ring_e1
+            + base_e2 * outer_ring_e2 + base_e3 * outer_ring_e3;
+        let t72 = t71 * t62;
+        let t73 = t72 * t70 - t63 * t60;
+        let t74 = base_e3 * base_e3;
+        let t75 = base_e2 * base_e2;
+        let t76 = base_e0 * base_e0;
+        let t77 = t76 + base_e1 * base_e1;
+        let t78 = k(2.0) / (base_e0 * (t77 + (t75 + t74)));
+        let t79 = base_e0 * base_e2;
+        let t80 = base_e1 * base_e3;
+        let t81 = t8 * t68 - t4 * t67;
+        let t82 = t81 + k(1e-6) * (outer_ring_wx * outer_ring_wz - t12);
+        let t83 = base_e0 * base_e3;
+        let t84 = base_e1 * base_e2;
+        let t85 = t63 * t70 + t72 * t60;
+        let t86 = t77 * t78 * t85 - (t84 - t83) * t78 * t82 + (t80 + t79) * t78 * t73;
+        let t87 = base_e0 * base_e1;
+        let t88 = base_e2 * base_e3;
+        let t89 = (t84 + t83) * t78 * t85 - (t76 + t75) * t78 * t82;
+        let t90 = (t80 - t79) * t78 * t85 - (t88 + t87) * t78 * t82;
+        *out = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t1,
+            -t12,
+            -t13,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t14,
+            t15,
+            -t16,
+            t37,
+            t41,
+            -t43,
+            -t44,
+            -t45,
+            t46,
+            -t47,
+            -(k(0.01) + t50),
+            t51,
+            t86,
+            t89 + (t88 - t87) * t78 * t73,
+            t90 + (t76 + t74) * t78 * t73,
+            -t47,
+            -t50,
+            t51,
+            t85,
+            -t73,
+            -t47,
+            -t49,
+            t51,
+            -t81,
+            -t69,
+            -t47,
+            -t48,
+            t51,
+            t54,
+            t64,
         ];
     }
 }

@@ -19,7 +19,7 @@
 //! | gamma | γ | 122 | 193 | 0 | 315 | 6 of 15 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 90 | 128 | 0 | 218 | 0 of 15 |
 //! | applied_force | (f, n' − w̃'J'w') | 1 | 14 | 0 | 15 | 9 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 217 | 342 | 5 | 564 | 7 of 18 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 173 | 262 | 5 | 440 | 7 of 18 |
 //! | multipliers | λ, the accelerations being known | 115 | 191 | 3 | 309 | 0 of 15 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | energy | T and V | 19 | 36 | 0 | 55 | 0 of 2 |
@@ -34,6 +34,7 @@
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 21 | 29 | 2 | 52 | 0 of 3 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 63 | 97 | 2 | 162 | 6 of 18 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 55 | 90 | 0 | 145 | 0 of 15 |
+//! | corrected_solution | both | 98 | 159 | 2 | 259 | 6 of 33 |
 //!
 //! # Proof
 //!
@@ -50,7 +51,7 @@
 //! * joint_derivative: eqs. (14) and (16) on the constraints
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
-//! * corrected_multipliers: eq. (17) on the constraints
+//! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //!
 //! All of it holds but with a probability below 1e-144.
 //! Not proved: the size of rounding errors.
@@ -1761,7 +1762,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeParameters<T> {
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 564 operations (217 ±, 342 ×, 5 ÷).
+    /// Solves eq. (17): 440 operations (173 ±, 262 ×, 5 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1785,194 +1786,175 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeParameters<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = outer_ring_wx * outer_ring_wy;
-        let t1 = outer_ring_e0 * outer_ring_e2;
-        let t2 = outer_ring_e1 * outer_ring_e3;
-        let t3 = k(2.0) * (t2 - t1);
-        let t4 = outer_ring_wz * outer_ring_wz;
-        let t5 = t4 + outer_ring_wx * outer_ring_wx;
-        let t6 = outer_ring_e0 * outer_ring_e1;
-        let t7 = outer_ring_e2 * outer_ring_e3;
-        let t8 = k(2.0) * (t7 + t6);
-        let t9 = outer_ring_wy * outer_ring_wz;
-        let t10 = outer_ring_e0 * outer_ring_e0;
-        let t11 = k(2.0) * (k(0.5) - (t10 + outer_ring_e3 * outer_ring_e3));
-        let t12 = t11 * t9 + (t8 * t5 - t3 * t0);
-        let t13 = k(2.0) * (k(0.5) - (t10 + outer_ring_e1 * outer_ring_e1));
-        let t14 = k(2.0) * (t2 + t1);
-        let t15 = k(1.0) / (t14 * t3 - t13 * t11);
-        let t16 = outer_ring_e0 * outer_ring_e3;
-        let t17 = outer_ring_e1 * outer_ring_e2;
-        let t18 = k(2.0) * (t17 - t16);
-        let t19 = t14 * t9 - (t18 * t5 + t13 * t0);
-        let t20 = t3 * t15 * t19 - t13 * t15 * t12;
-        let t21 = rotor_e0 * rotor_e3;
-        let t22 = rotor_e1 * rotor_e2;
-        let t23 = k(2.0) * (t22 - t21);
-        let t24 = inner_ring_e0 * inner_ring_e0;
-        let t25 = k(2.0) * (k(0.5) - (t24 + inner_ring_e1 * inner_ring_e1));
-        let t26 = rotor_e0 * rotor_e0;
-        let t27 = k(2.0) * (k(0.5) - (t26 + rotor_e2 * rotor_e2));
-        let t28 = inner_ring_e0 * inner_ring_e3;
-        let t29 = inner_ring_e1 * inner_ring_e2;
-        let t30 = k(2.0) * (t29 + t28);
-        let t31 = rotor_e0 * rotor_e1;
-        let t32 = rotor_e2 * rotor_e3;
-        let t33 = k(2.0) * (t32 + t31);
-        let t34 = inner_ring_e0 * inner_ring_e2;
-        let t35 = inner_ring_e1 * inner_ring_e3;
-        let t36 = k(2.0) * (t35 - t34);
-        let t37 = t36 * t33 - (t30 * t27 + t25 * t23);
-        let t38 = k(5e-6) * t37;
-        let t39 = rotor_e0 * rotor_e2;
-        let t40 = rotor_e1 * rotor_e3;
-        let t41 = k(2.0) * (t40 + t39);
-        let t42 = k(2.0) * (t32 - t31);
-        let t43 = k(2.0) * (k(0.5) - (t26 + rotor_e3 * rotor_e3));
-        let t44 = t36 * t43 - (t30 * t42 - t25 * t41);
-        let t45 = k(5e-6) * t44;
-        let t46 = inner_ring_e0 * inner_ring_e1;
-        let t47 = inner_ring_e2 * inner_ring_e3;
-        let t48 = k(2.0) * (t47 - t46);
-        let t49 = k(2.0) * (t35 + t34);
-        let t50 = k(2.0) * (k(0.5) - (t24 + inner_ring_e3 * inner_ring_e3));
-        let t51 = t50 * t33 - (t49 * t23 - t48 * t27);
-        let t52 = t49 * t41 + t48 * t42 + t50 * t43;
-        let t53 = t52 * t45 + t51 * t38;
-        let t54 = self.rotor_mass * (self.rotor_offset * self.rotor_offset);
-        let t55 = self.ring_diametral_inertia
-            + (t54 + (t52 * (k(5e-6) * t52) + t51 * (k(5e-6) * t51)));
-        let t56 = k(1.0) / t55;
-        let t57 = t56 * t53;
-        let t58 = t53 * t57 - (self.ring_diametral_inertia + (t44 * t45 + t37 * t38));
-        let t59 = k(2.0) * (k(0.5) - (t10 + outer_ring_e2 * outer_ring_e2));
-        let t60 = t8 * t36 - (t59 * t30 + t18 * t25);
-        let t61 = k(2.0) * (k(0.5) - (t24 + inner_ring_e2 * inner_ring_e2));
-        let t62 = k(2.0) * (t29 - t28);
-        let t63 = k(2.0) * (t47 + t46);
-        let t64 = t63 * t33 + (t62 * t23 + t61 * t27);
-        let t65 = t63 * t43 - (t62 * t41 - t61 * t42);
-        let t66 = k(5e-6) * t64;
-        let t67 = k(5e-6) * t65;
-        let t68 = t52 * t67 + t51 * t66;
-        let t69 = t68 * t57 - (t65 * t45 + t64 * t38);
-        let t70 = t8 * t63 + (t18 * t62 + t59 * t61);
-        let t71 = t53 - t55 * t57;
-        let t72 = t8 * t50 - (t18 * t49 - t59 * t48);
-        let t73 = t72 * t71 - (t70 * t69 + t60 * t58);
-        let t74 = t56 * t68;
-        let t75 = t68 * t74
-            - (self.ring_axial_inertia + (t54 + (t65 * t67 + t64 * t66)));
-        let t76 = t68 - t55 * t74;
-        let t77 = t72 * t76 - (t70 * t75 + t60 * t69);
-        let t78 = t70 * t76 + t60 * t71;
-        let t79 = k(2.0) * (k(0.5) - (t26 + rotor_e1 * rotor_e1));
-        let t80 = k(2.0) * (t22 + t21);
-        let t81 = k(2.0) * (t40 - t39);
-        let t82 = t36 * t81 + (t30 * t80 + t25 * t79);
-        let t83 = inner_ring_wx * inner_ring_wy;
-        let t84 = t63 * t81 - (t61 * t80 + t62 * t79);
-        let t85 = inner_ring_wx * inner_ring_wx;
-        let t86 = inner_ring_wz * inner_ring_wz;
-        let t87 = t50 * t81 - (t48 * t80 - t49 * t79);
-        let t88 = inner_ring_wy * inner_ring_wz;
-        let t89 = rotor_wy * t44 + rotor_wz * t37;
-        let t90 = k(2.0)
-            * (inner_ring_wx * (rotor_wy * t52 + rotor_wz * t51) + inner_ring_wz * t89);
-        let t91 = rotor_wz * rotor_wz + rotor_wy * rotor_wy;
-        let t92 = rotor_wx * rotor_wy;
-        let t93 = rotor_wx * rotor_wz;
-        let t94 = t93 * t65 - (t92 * t64 - t91 * t84) + t90
-            + (t88 * t87 + ((t86 + t85) * t84 - t83 * t82));
-        let t95 = k(1.0) / (t64 * t52 - t65 * t51);
-        let t96 = inner_ring_wx * inner_ring_wz;
-        let t97 = inner_ring_wy * inner_ring_wy;
-        let t98 = t97 + t85;
-        let t99 = k(2.0)
-            * (inner_ring_wx * (rotor_wy * t65 + rotor_wz * t64) - inner_ring_wy * t89);
-        let t100 = t93 * t52 - (t92 * t51 - t91 * t87) - t99
-            + (t98 * t87 + (t88 * t84 + t96 * t82));
-        let t101 = t64 * t95 * t100 - t51 * t95 * t94;
-        let t102 = k(5e-6) * (t93 + t101);
-        let t103 = t65 * t95 * t100 - t52 * t95 * t94;
-        let t104 = k(5e-6) * (t92 + t103);
-        let t105 = self.ring_axial_inertia - self.ring_diametral_inertia;
-        let t106 = t86 + t97;
-        let t107 = self.rotor_offset * (t49 * t96 + (t62 * t83 + t25 * t106));
-        let t108 = self.rotor_mass * t107;
-        let t109 = t62 * self.rotor_offset;
-        let t110 = self.rotor_offset * (t48 * t96 - (t61 * t83 + t30 * t106));
-        let t111 = self.gravity * self.rotor_mass + self.rotor_mass * t110;
-        let t112 = t61 * self.rotor_offset;
-        let t113 = self.rotor_offset * (t50 * t96 - (t63 * t83 - t36 * t106));
-        let t114 = self.rotor_mass * t113;
-        let t115 = t63 * self.rotor_offset;
-        let t116 = t115 * t114 + (t112 * t111 - t109 * t108) + (t52 * t104 + t51 * t102);
-        let t117 = t83 * t105 - t116;
-        let t118 = t56 * t117;
-        let t119 = t53 * t118 - (t88 * t105 - (t44 * t104 + t37 * t102));
-        let t120 = k(2.0) * (t17 + t16);
-        let t121 = t3 * t50 - (t120 * t48 - t13 * t49);
-        let t122 = k(2.0) * (t7 - t6);
-        let t123 = t14 * t49 + t122 * t48 + t11 * t50;
-        let t124 = outer_ring_wx * outer_ring_wz;
-        let t125 = t124 * t123
-            - (t0 * t72 - (t4 + outer_ring_wy * outer_ring_wy) * t121);
-        let t126 = t11 * t36 - (t122 * t30 - t14 * t25);
-        let t127 = t11 * t63 - (t14 * t62 - t122 * t61);
-        let t128 = inner_ring_wx * t127 - inner_ring_wy * t126;
-        let t129 = k(2.0)
-            * (outer_ring_wy * t128
-                + outer_ring_wz * (inner_ring_wx * t70 - inner_ring_wy * t60));
-        let t130 = t3 * t36 + (t120 * t30 + t13 * t25);
-        let t131 = t3 * t63 - (t120 * t61 + t13 * t62);
-        let t132 = t98 * t121 + (t88 * t131 + t96 * t130) - t129 + t125;
-        let t133 = k(1.0) / (t130 * t70 - t131 * t60);
-        let t134 = k(2.0)
-            * (outer_ring_wx * t128
-                + outer_ring_wz * (inner_ring_wx * t131 - inner_ring_wy * t130));
-        let t135 = t98 * t72 + (t88 * t70 + t96 * t60) + t134
-            + (t9 * t123 + (t5 * t72 - t0 * t121));
-        let t136 = t130 * t133 * t135 - t60 * t133 * t132;
-        let t137 = t131 * t133 * t135 - t70 * t133 * t132;
-        let t138 = t49 * self.rotor_offset;
-        let t139 = t48 * self.rotor_offset;
-        let t140 = t50 * self.rotor_offset;
-        let t141 = t140 * t114 + (t139 * t111 + t138 * t108) - (t65 * t104 + t64 * t102);
-        let t142 = t70 * (t75 * t137 + t69 * t136 - (t68 * t118 - t141));
-        let t143 = t72 * (t76 * t137 + t71 * t136 - (t117 - t55 * t118));
-        let t144 = t143 - (t142 + t60 * (t69 * t137 + t58 * t136 - t119));
-        let t145 = t70 * (t121 * t76 - (t131 * t75 + t130 * t69))
-            + t60 * (t121 * t71 - (t131 * t69 + t130 * t58));
-        let t146 = t11 * t15 * t19 - t14 * t15 * t12;
-        let t147 = t146 * (t123 * t78 + (t127 * t77 + t126 * t73))
-            + t20 * (t72 * (t131 * t76 + t130 * t71) + t145);
-        let t148 = (t147 - (t124 * t105 + t144))
-            / (self.ring_diametral_inertia + (t72 * t78 + (t70 * t77 + t60 * t73)));
-        let t149 = t136 - (t126 * t146 - (t60 * t148 - t130 * t20));
-        let t150 = t137 - (t127 * t146 - (t70 * t148 - t131 * t20));
-        let t151 = t123 * t146 - (t72 * t148 - t121 * t20);
-        let t152 = t56 * (t117 + (t55 * t151 - (t68 * t150 + t53 * t149)));
-        let t153 = t151 - t152;
+        let t0 = (outer_ring_wz * outer_ring_wz + outer_ring_wx * outer_ring_wx)
+            * (k(0.5)
+                / (k(0.5)
+                    - (outer_ring_e0 * outer_ring_e0 + outer_ring_e2 * outer_ring_e2)));
+        let t1 = outer_ring_wy * outer_ring_wz
+            - k(2.0) * (outer_ring_e2 * outer_ring_e3 - outer_ring_e0 * outer_ring_e1)
+                * t0;
+        let t2 = inner_ring_e3 * rotor_e0 - inner_ring_e2 * rotor_e1
+            + inner_ring_e1 * rotor_e2 - inner_ring_e0 * rotor_e3;
+        let t3 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t4 = t3 * t2;
+        let t5 = inner_ring_e2 * rotor_e0 + inner_ring_e3 * rotor_e1
+            - inner_ring_e0 * rotor_e2 - inner_ring_e1 * rotor_e3;
+        let t6 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t7 = t6 * t5;
+        let t8 = t7 + t4;
+        let t9 = k(1e-5) * t8;
+        let t10 = k(2.0) * t8;
+        let t11 = t3 * t5;
+        let t12 = t6 * t2;
+        let t13 = t12 - t11;
+        let t14 = k(1e-5) * t13;
+        let t15 = k(2.0) * t13;
+        let t16 = t3 * t6;
+        let t17 = t5 * t2;
+        let t18 = t17 - t16;
+        let t19 = k(2.0) * t18;
+        let t20 = t3 * t3;
+        let t21 = k(0.5) - (t20 + t2 * t2);
+        let t22 = k(2.0) * t21;
+        let t23 = t22 * t14 - t19 * t9;
+        let t24 = self.rotor_mass * (self.rotor_offset * self.rotor_offset);
+        let t25 = self.ring_diametral_inertia
+            + (t24 + (t22 * (k(1e-5) * t21) + t19 * (k(1e-5) * t18)));
+        let t26 = k(1.0) / t25;
+        let t27 = t26 * t23;
+        let t28 = t23 * t27 - (self.ring_diametral_inertia + (t15 * t14 + t10 * t9));
+        let t29 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t30 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t31 = t30 * t29;
+        let t32 = outer_ring_e2 * inner_ring_e0 + outer_ring_e3 * inner_ring_e1
+            - outer_ring_e0 * inner_ring_e2 - outer_ring_e1 * inner_ring_e3;
+        let t33 = outer_ring_e1 * inner_ring_e0 - outer_ring_e0 * inner_ring_e1
+            - outer_ring_e3 * inner_ring_e2 + outer_ring_e2 * inner_ring_e3;
+        let t34 = t33 * t32;
+        let t35 = k(2.0) * (t34 - t31);
+        let t36 = k(0.5) - (t20 + t5 * t5);
+        let t37 = k(2.0) * t36;
+        let t38 = t17 + t16;
+        let t39 = k(2.0) * t38;
+        let t40 = k(1e-5) * t36;
+        let t41 = k(1e-5) * t38;
+        let t42 = t22 * t41 + t19 * t40;
+        let t43 = t42 * t27 - (t39 * t14 - t37 * t9);
+        let t44 = t30 * t30;
+        let t45 = k(2.0) * (k(0.5) - (t44 + t32 * t32));
+        let t46 = t45 * t43 - t35 * t28;
+        let t47 = t42 * (t26 * t42)
+            - (self.ring_axial_inertia + (t24 + (t39 * t41 + t37 * t40)));
+        let t48 = t45 * t47 - t35 * t43;
+        let t49 = k(0.5) - (t20 + t6 * t6);
+        let t50 = inner_ring_wz * (k(2.0) * (t12 + t11))
+            + (inner_ring_wy * (k(2.0) * (t7 - t4)) - inner_ring_wx * (k(2.0) * t49));
+        let t51 = rotor_wx - t50;
+        let t52 = inner_ring_wz * t22 - (inner_ring_wy * t39 + inner_ring_wx * t15);
+        let t53 = rotor_wz + t52;
+        let t54 = inner_ring_wz * t19 - (inner_ring_wy * t37 - inner_ring_wx * t10);
+        let t55 = rotor_wy - t54;
+        let t56 = k(0.5) / t49 * (t55 * t55 + t53 * t53);
+        let t57 = rotor_wz * t50 + rotor_wx * t52 + (t15 * t56 - t53 * t51);
+        let t58 = k(5e-6) * (rotor_wx * rotor_wz - t57);
+        let t59 = rotor_wx * t54 - rotor_wy * t50 - (t10 * t56 - t55 * t51);
+        let t60 = k(5e-6) * (rotor_wx * rotor_wy + t59);
+        let t61 = self.ring_axial_inertia - self.ring_diametral_inertia;
+        let t62 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
+        let t63 = inner_ring_e0 * inner_ring_e0;
+        let t64 = inner_ring_wx * inner_ring_wy;
+        let t65 = inner_ring_e0 * inner_ring_e3;
+        let t66 = inner_ring_e1 * inner_ring_e2;
+        let t67 = k(2.0) * (t66 - t65);
+        let t68 = t67 * t64
+            + k(2.0) * (k(0.5) - (t63 + inner_ring_e1 * inner_ring_e1)) * t62;
+        let t69 = inner_ring_wx * inner_ring_wz;
+        let t70 = inner_ring_e0 * inner_ring_e2;
+        let t71 = inner_ring_e1 * inner_ring_e3;
+        let t72 = k(2.0) * (t71 + t70);
+        let t73 = self.rotor_offset * (t72 * t69 + t68);
+        let t74 = self.rotor_mass * t73;
+        let t75 = t67 * self.rotor_offset;
+        let t76 = k(2.0) * (k(0.5) - (t63 + inner_ring_e2 * inner_ring_e2));
+        let t77 = inner_ring_e0 * inner_ring_e1;
+        let t78 = inner_ring_e2 * inner_ring_e3;
+        let t79 = k(2.0) * (t78 - t77);
+        let t80 = t79 * t69 - (t76 * t64 + k(2.0) * (t66 + t65) * t62);
+        let t81 = self.rotor_offset * t80;
+        let t82 = self.gravity * self.rotor_mass + self.rotor_mass * t81;
+        let t83 = t76 * self.rotor_offset;
+        let t84 = k(2.0) * (t78 + t77);
+        let t85 = k(2.0) * (k(0.5) - (t63 + inner_ring_e3 * inner_ring_e3));
+        let t86 = t85 * t69 - (t84 * t64 - k(2.0) * (t71 - t70) * t62);
+        let t87 = self.rotor_offset * t86;
+        let t88 = self.rotor_mass * t87;
+        let t89 = t84 * self.rotor_offset;
+        let t90 = t89 * t88 + (t83 * t82 - t75 * t74) - (t22 * t60 + t19 * t58);
+        let t91 = t64 * t61 - t90;
+        let t92 = t26 * t91;
+        let t93 = t23 * t92
+            - (inner_ring_wy * inner_ring_wz * t61 + (t15 * t60 - t10 * t58));
+        let t94 = t30 * t32;
+        let t95 = t33 * t29;
+        let t96 = t30 * t33;
+        let t97 = t32 * t29;
+        let t98 = outer_ring_wy * (k(2.0) * (t97 + t96))
+            + outer_ring_wx * (k(2.0) * (t95 - t94));
+        let t99 = k(0.5) - (t44 + t29 * t29);
+        let t100 = outer_ring_wz * (k(2.0) * t99) - t98;
+        let t101 = inner_ring_wz + t100;
+        let t102 = k(2.0) * (t34 + t31);
+        let t103 = k(2.0) * (t97 - t96);
+        let t104 = outer_ring_wz * t103 - (outer_ring_wy * t45 - outer_ring_wx * t102);
+        let t105 = inner_ring_wy - t104;
+        let t106 = k(2.0) * (k(0.5) - (t44 + t33 * t33));
+        let t107 = k(2.0) * (t95 + t94);
+        let t108 = outer_ring_wz * t107 + (outer_ring_wy * t35 - outer_ring_wx * t106);
+        let t109 = inner_ring_wx - t108;
+        let t110 = k(0.5) / t99 * (t109 * t109 + t105 * t105);
+        let t111 = inner_ring_wy * t100 + inner_ring_wz * t104
+            - (t103 * t110 - t105 * t101);
+        let t112 = inner_ring_wz * t108 + inner_ring_wx * t100
+            - (t107 * t110 - t109 * t101);
+        let t113 = t72 * self.rotor_offset;
+        let t114 = t79 * self.rotor_offset;
+        let t115 = t85 * self.rotor_offset;
+        let t116 = t115 * t88 + (t114 * t82 + t113 * t74) + (t39 * t60 + t37 * t58);
+        let t117 = t45 * (t47 * t112 - t43 * t111 + (t42 * t92 - t116));
+        let t118 = outer_ring_wx * outer_ring_wz * t61
+            - (t117 - t35 * (t43 * t112 - t28 * t111 + t93));
+        let t119 = t45 * (t102 * t47 - t106 * t43) - t35 * (t102 * t43 - t106 * t28);
+        let t120 = outer_ring_wx * outer_ring_wy
+            - k(2.0) * (outer_ring_e1 * outer_ring_e2 + outer_ring_e0 * outer_ring_e3)
+                * t0;
+        let t121 = t120 * (t103 * t48 + t107 * t46) - t1 * t119 + t118;
+        let t122 = t121 / (self.ring_diametral_inertia - (t45 * t48 - t35 * t46));
+        let t123 = t111 + (t120 * t107 - (t35 * t122 - t1 * t106));
+        let t124 = t112 - (t120 * t103 + (t45 * t122 - t1 * t102));
+        let t125 = t26 * (t91 + (t42 * t124 - t23 * t123));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -t20,
-            t148,
-            t146,
+            -t1,
+            -t122,
+            t120,
             k(0.0),
             k(0.0),
             k(0.0),
-            t149,
-            t150,
-            t153,
-            t107 + (t109 * t153 - t138 * t150),
-            t110 - (t112 * t153 + t139 * t150),
-            t115 * t153 + t140 * t150 - t113,
+            t123,
+            -t124,
+            -t125,
+            t73 - (t75 * t125 - t113 * t124),
+            t81 + (t83 * t125 + t114 * t124),
+            -(t87 + (t89 * t125 + t115 * t124)),
             k(0.0),
-            t101 - (t51 * t153 - (t64 * t150 + t37 * t149)),
-            t52 * t153 - (t65 * t150 + t44 * t149) - t103,
+            -(t57 + (t19 * t125 - (t37 * t124 + t10 * t123))),
+            t22 * t125 - (t39 * t124 - t15 * t123) - t59,
         ];
     }
     /// Writes λ: 309 operations (115 ±, 191 ×, 3 ÷).
@@ -2133,12 +2115,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeParameters<T> {
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
     type Joints = [T; 6];
     type Rates = [T; 3];
+    type Solution = [T; 33];
     fn joint_start(&self) -> Self::Joints {
         let k = T::constant;
         [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(100.0)]
     }
     fn rates(&self) -> Self::Rates {
         [T::constant(0.0); 3]
+    }
+    fn solution(&self) -> Self::Solution {
+        [T::constant(0.0); 33]
     }
     /// Writes u̇: 32 operations (12 ±, 18 ×, 2 ÷) and 2 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
@@ -2443,14 +2429,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
         let t30 = inner_ring_wx * t29;
         let t31 = inner_ring_wz * self.rotor_offset;
         let t32 = inner_ring_wx * t31;
-        let t33 = t28 * t32 - t25 * t30 - (t28 * t26 + t25 * t22);
+        let t33 = t32 * t28 - t30 * t25 - (t28 * t26 + t25 * t22);
         let t34 = rotor_e0 * rotor_e3;
         let t35 = rotor_e1 * rotor_e2;
         let t36 = inner_ring_wy * t29 + inner_ring_wz * t31;
         let t37 = rotor_e0 * rotor_e0;
         let t38 = k(2.0) * (k(0.5) - (t37 + rotor_e1 * rotor_e1)) * t36
             - k(2.0) * (t35 - t34) * t33;
-        let t39 = t25 * t32 + t28 * t30 - (t25 * t26 - t28 * t22);
+        let t39 = t32 * t25 + t30 * t28 - (t25 * t26 - t28 * t22);
         let t40 = rotor_e0 * rotor_e2;
         let t41 = rotor_e1 * rotor_e3;
         let t42 = k(2.0) * (t35 + t34) * t36
@@ -2597,6 +2583,161 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
             -t4,
             t32,
             -t23,
+        ];
+    }
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 259 operations (98 ±, 159 ×, 2 ÷).
+    fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        let t0 = outer_ring_wy * outer_ring_wz;
+        let t1 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t2 = k(2.0) * t1;
+        let t3 = k(1.0) - t1 * t2;
+        let t4 = outer_ring_wz - inner_ring_wz;
+        let t5 = k(1e-5) * (t4 * t3);
+        let t6 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t7 = t6 * t2;
+        let t8 = outer_ring_wy * t7;
+        let t9 = self.rotor_offset * self.rotor_mass;
+        let t10 = self.rotor_offset * t9;
+        let t11 = self.ring_axial_inertia + t10;
+        let t12 = self.ring_diametral_inertia - t11;
+        let t13 = inner_ring_wx - rotor_wx;
+        let t14 = self.ring_diametral_inertia + k(5e-6);
+        let t15 = (t13 + k(200000.0) * (t12 * t8)) * t5
+            / (t14 + (t11 - (k(5e-6) - t12) * (t7 * t7)));
+        let t16 = outer_ring_wx * outer_ring_wy;
+        let t17 = t7 * t15;
+        let t18 = inner_ring_wy * t4 - (t17 - t0 * t3);
+        let t19 = inner_ring_wx * t4 - (t0 * t7 + t3 * t15);
+        let t20 = self.gravity * t9
+            + outer_ring_wy * ((k(5e-6) + t12) * t8 + k(1e-5) * t13);
+        let t21 = t16 - t3 * t20 / (t10 + t14);
+        let t22 = self.rotor_offset * t21;
+        let t23 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t24 = k(2.0) * t23;
+        let t25 = k(1.0) - t23 * t24;
+        let t26 = self.rotor_offset * t19;
+        let t27 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t28 = t27 * t24;
+        let t29 = inner_ring_wy * self.rotor_offset;
+        let t30 = inner_ring_wx * t29;
+        let t31 = inner_ring_wz * self.rotor_offset;
+        let t32 = inner_ring_wx * t31;
+        let t33 = t32 * t28 - t30 * t25 - (t28 * t26 + t25 * t22);
+        let t34 = rotor_e0 * rotor_e3;
+        let t35 = rotor_e1 * rotor_e2;
+        let t36 = inner_ring_wy * t29 + inner_ring_wz * t31;
+        let t37 = rotor_e0 * rotor_e0;
+        let t38 = k(2.0) * (k(0.5) - (t37 + rotor_e1 * rotor_e1)) * t36
+            - k(2.0) * (t35 - t34) * t33;
+        let t39 = t32 * t25 + t30 * t28 - (t25 * t26 - t28 * t22);
+        let t40 = rotor_e0 * rotor_e2;
+        let t41 = rotor_e1 * rotor_e3;
+        let t42 = k(2.0) * (t41 + t40) * t39 + t38;
+        let t43 = k(2.0) * (t35 + t34) * t36
+            - k(2.0) * (k(0.5) - (t37 + rotor_e2 * rotor_e2)) * t33;
+        let t44 = rotor_e0 * rotor_e1;
+        let t45 = rotor_e2 * rotor_e3;
+        let t46 = k(2.0) * (t45 - t44) * t39 - t43;
+        let t47 = k(2.0) * (t41 - t40) * t36 + k(2.0) * (t45 + t44) * t33;
+        let t48 = k(2.0) * (k(0.5) - (t37 + rotor_e3 * rotor_e3)) * t39 + t47;
+        let t49 = t17 - k(100000.0) * (outer_ring_wy * t5) + t18;
+        let t50 = rotor_wz * t13 + (t28 * t21 - t25 * t19);
+        let t51 = rotor_wy * t13 + (t25 * t21 + t28 * t19);
+        let t52 = self.rotor_mass * t42;
+        let t53 = self.gravity * self.rotor_mass + self.rotor_mass * t46;
+        let t54 = k(0.01) * self.gravity;
+        let t55 = t54 + t53;
+        let t56 = self.rotor_mass * t48;
+        let t57 = self.ring_axial_inertia - self.ring_diametral_inertia;
+        let t58 = k(5e-6) * (rotor_wx * rotor_wy - t51);
+        let t59 = k(5e-6) * (rotor_wx * rotor_wz - t50);
+        let t60 = t28 * t59 + t25 * t58;
+        let t61 = inner_ring_e0 * inner_ring_e1;
+        let t62 = inner_ring_e2 * inner_ring_e3;
+        let t63 = inner_ring_e0 * inner_ring_e0;
+        let t64 = k(2.0)
+            * (inner_ring_e1 * inner_ring_e2 - inner_ring_e0 * inner_ring_e3)
+            * self.rotor_offset * t52
+            - k(2.0) * (k(0.5) - (t63 + inner_ring_e2 * inner_ring_e2))
+                * self.rotor_offset * t53;
+        let t65 = t64 - k(2.0) * (t62 + t61) * self.rotor_offset * t56 - t60
+            + (inner_ring_wx * inner_ring_wy * t57 + self.ring_diametral_inertia * t21);
+        let t66 = t65 - (t16 * t57 - t16 * self.ring_diametral_inertia);
+        let t67 = k(2.0) * outer_ring_e2;
+        let t68 = outer_ring_e0 * t67;
+        let t69 = t25 * t59 - t28 * t58;
+        let t70 = k(2.0)
+            * (inner_ring_e1 * inner_ring_e3 + inner_ring_e0 * inner_ring_e2)
+            * self.rotor_offset * t52 + k(2.0) * (t62 - t61) * self.rotor_offset * t53;
+        let t71 = t70
+            + k(2.0) * (k(0.5) - (t63 + inner_ring_e3 * inner_ring_e3))
+                * self.rotor_offset * t56;
+        let t72 = t71 - t69 - self.ring_axial_inertia * t19;
+        let t73 = k(1e-5) * t49
+            + (inner_ring_wy * inner_ring_wz * t57 + self.ring_diametral_inertia * t18);
+        let t74 = t3 * t73 + t7 * t72;
+        let t75 = t74 + t0 * self.ring_axial_inertia;
+        let t76 = k(1.0) - outer_ring_e2 * t67;
+        *out = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t0,
+            -t15,
+            t16,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t18,
+            t19,
+            t21,
+            t42,
+            t46,
+            -t48,
+            -t49,
+            -t50,
+            t51,
+            -t52,
+            -(t54 + t55),
+            t56,
+            t76 * t75 - t68 * t66,
+            t68 * t75 + t76 * t66,
+            -t52,
+            -t55,
+            t56,
+            t3 * t72 - t7 * t73,
+            -t74,
+            -t52,
+            -t53,
+            t56,
+            t60,
+            t69,
         ];
     }
 }

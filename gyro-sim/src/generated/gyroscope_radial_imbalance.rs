@@ -19,7 +19,7 @@
 //! | gamma | γ | 122 | 195 | 0 | 317 | 6 of 15 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 90 | 128 | 0 | 218 | 0 of 15 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 218 | 352 | 5 | 575 | 6 of 18 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 162 | 246 | 5 | 413 | 6 of 18 |
 //! | multipliers | λ, the accelerations being known | 114 | 187 | 3 | 304 | 0 of 15 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
@@ -34,6 +34,7 @@
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 35 | 64 | 2 | 101 | 0 of 3 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 66 | 113 | 2 | 181 | 6 of 18 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 54 | 80 | 0 | 134 | 0 of 15 |
+//! | corrected_solution | both | 90 | 154 | 2 | 246 | 6 of 33 |
 //!
 //! # Proof
 //!
@@ -50,7 +51,7 @@
 //! * joint_derivative: eqs. (14) and (16) on the constraints
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
-//! * corrected_multipliers: eq. (17) on the constraints
+//! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //!
 //! All of it holds but with a probability below 1e-144.
 //! Not proved: the size of rounding errors.
@@ -1734,7 +1735,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 575 operations (218 ±, 352 ×, 5 ÷).
+    /// Solves eq. (17): 413 operations (162 ±, 246 ×, 5 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1758,193 +1759,159 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = outer_ring_wx * outer_ring_wy;
-        let t1 = outer_ring_e0 * outer_ring_e2;
-        let t2 = outer_ring_e1 * outer_ring_e3;
-        let t3 = k(2.0) * (t2 - t1);
-        let t4 = outer_ring_wz * outer_ring_wz;
-        let t5 = t4 + outer_ring_wx * outer_ring_wx;
-        let t6 = outer_ring_e0 * outer_ring_e1;
-        let t7 = outer_ring_e2 * outer_ring_e3;
-        let t8 = k(2.0) * (t7 + t6);
-        let t9 = outer_ring_wy * outer_ring_wz;
-        let t10 = outer_ring_e0 * outer_ring_e0;
-        let t11 = k(2.0) * (k(0.5) - (t10 + outer_ring_e3 * outer_ring_e3));
-        let t12 = t11 * t9 + (t8 * t5 - t3 * t0);
-        let t13 = k(2.0) * (k(0.5) - (t10 + outer_ring_e1 * outer_ring_e1));
-        let t14 = k(2.0) * (t2 + t1);
-        let t15 = k(1.0) / (t14 * t3 - t13 * t11);
-        let t16 = outer_ring_e0 * outer_ring_e3;
-        let t17 = outer_ring_e1 * outer_ring_e2;
-        let t18 = k(2.0) * (t17 - t16);
-        let t19 = t14 * t9 - (t18 * t5 + t13 * t0);
-        let t20 = t3 * t15 * t19 - t13 * t15 * t12;
-        let t21 = rotor_e0 * rotor_e3;
-        let t22 = rotor_e1 * rotor_e2;
-        let t23 = k(2.0) * (t22 - t21);
-        let t24 = inner_ring_e0 * inner_ring_e0;
-        let t25 = k(2.0) * (k(0.5) - (t24 + inner_ring_e1 * inner_ring_e1));
-        let t26 = rotor_e0 * rotor_e0;
-        let t27 = k(2.0) * (k(0.5) - (t26 + rotor_e2 * rotor_e2));
-        let t28 = inner_ring_e0 * inner_ring_e3;
-        let t29 = inner_ring_e1 * inner_ring_e2;
-        let t30 = k(2.0) * (t29 + t28);
-        let t31 = rotor_e0 * rotor_e1;
-        let t32 = rotor_e2 * rotor_e3;
-        let t33 = k(2.0) * (t32 + t31);
-        let t34 = inner_ring_e0 * inner_ring_e2;
-        let t35 = inner_ring_e1 * inner_ring_e3;
-        let t36 = k(2.0) * (t35 - t34);
-        let t37 = t36 * t33 - (t30 * t27 + t25 * t23);
-        let t38 = k(5e-6) * t37;
-        let t39 = rotor_e0 * rotor_e2;
-        let t40 = rotor_e1 * rotor_e3;
-        let t41 = t40 + t39;
-        let t42 = k(2.0) * t41;
-        let t43 = t32 - t31;
-        let t44 = k(2.0) * t43;
-        let t45 = k(0.5) - (t26 + rotor_e3 * rotor_e3);
-        let t46 = k(2.0) * t45;
-        let t47 = t36 * t46 - (t30 * t44 - t25 * t42);
-        let t48 = k(5.0032e-6) * t47;
-        let t49 = inner_ring_e0 * inner_ring_e1;
-        let t50 = inner_ring_e2 * inner_ring_e3;
-        let t51 = k(2.0) * (t50 - t49);
-        let t52 = k(2.0) * (t35 + t34);
-        let t53 = k(2.0) * (k(0.5) - (t24 + inner_ring_e3 * inner_ring_e3));
-        let t54 = t53 * t33 - (t52 * t23 - t51 * t27);
-        let t55 = t52 * t42 + t51 * t44 + t53 * t46;
-        let t56 = t55 * t48 + t54 * t38;
-        let t57 = k(1e-6) + (t55 * (k(5.0032e-6) * t55) + t54 * (k(5e-6) * t54));
-        let t58 = k(1.0) / t57;
-        let t59 = t58 * t56;
-        let t60 = t56 * t59 - (k(1e-6) + (t47 * t48 + t37 * t38));
-        let t61 = k(2.0) * (k(0.5) - (t10 + outer_ring_e2 * outer_ring_e2));
-        let t62 = t8 * t36 - (t61 * t30 + t18 * t25);
-        let t63 = k(2.0) * (k(0.5) - (t24 + inner_ring_e2 * inner_ring_e2));
-        let t64 = k(2.0) * (t29 - t28);
-        let t65 = k(2.0) * (t50 + t49);
-        let t66 = t65 * t33 + (t64 * t23 + t63 * t27);
-        let t67 = t65 * t46 - (t64 * t42 - t63 * t44);
-        let t68 = k(5e-6) * t66;
-        let t69 = k(5.0032e-6) * t67;
-        let t70 = t55 * t69 + t54 * t68;
-        let t71 = t70 * t59 - (t67 * t48 + t66 * t38);
-        let t72 = t8 * t65 + (t18 * t64 + t61 * t63);
-        let t73 = t56 - t57 * t59;
-        let t74 = t8 * t53 - (t18 * t52 - t61 * t51);
-        let t75 = t74 * t73 - (t72 * t71 + t62 * t60);
-        let t76 = t58 * t70;
-        let t77 = t70 * t76 - (k(2e-6) + (t67 * t69 + t66 * t68));
-        let t78 = t70 - t57 * t76;
-        let t79 = t74 * t78 - (t72 * t77 + t62 * t71);
-        let t80 = t72 * t78 + t62 * t73;
-        let t81 = k(0.5) - (t26 + rotor_e1 * rotor_e1);
-        let t82 = k(2.0) * t81;
-        let t83 = t22 + t21;
-        let t84 = k(2.0) * t83;
-        let t85 = t40 - t39;
-        let t86 = k(2.0) * t85;
-        let t87 = t36 * t86 + (t30 * t84 + t25 * t82);
-        let t88 = inner_ring_wx * inner_ring_wy;
-        let t89 = t65 * t86 - (t63 * t84 + t64 * t82);
-        let t90 = inner_ring_wx * inner_ring_wx;
-        let t91 = t53 * t86 - (t51 * t84 - t52 * t82);
-        let t92 = inner_ring_wy * inner_ring_wz;
-        let t93 = t92 * t91 + ((inner_ring_wz * inner_ring_wz + t90) * t89 - t88 * t87);
-        let t94 = rotor_wy * t47 + rotor_wz * t37;
-        let t95 = k(2.0)
-            * (inner_ring_wx * (rotor_wy * t55 + rotor_wz * t54) + inner_ring_wz * t94);
-        let t96 = rotor_wz * rotor_wz;
-        let t97 = t96 + rotor_wy * rotor_wy;
-        let t98 = rotor_wx * rotor_wy;
-        let t99 = rotor_wx * rotor_wz;
-        let t100 = t99 * t67 - (t98 * t66 - t97 * t89) + t95 + t93;
-        let t101 = k(1.0) / (t66 * t55 - t67 * t54);
-        let t102 = inner_ring_wx * inner_ring_wz;
-        let t103 = inner_ring_wy * inner_ring_wy + t90;
-        let t104 = k(2.0)
-            * (inner_ring_wx * (rotor_wy * t67 + rotor_wz * t66) - inner_ring_wy * t94);
-        let t105 = t99 * t55 - (t98 * t54 - t97 * t91) - t104
-            + (t103 * t91 + (t92 * t89 + t102 * t87));
-        let t106 = t66 * t101 * t105 - t54 * t101 * t100;
-        let t107 = k(5e-6) * (t99 + t106);
-        let t108 = t96 + rotor_wx * rotor_wx;
-        let t109 = rotor_wy * rotor_wz;
-        let t110 = k(0.0002) * (t42 * t109 - (t23 * t108 + t82 * t98));
-        let t111 = k(0.0002) * (t44 * t109 + (t27 * t108 + t84 * t98));
-        let t112 = k(0.0002) * (t46 * t109 + (t33 * t108 - t86 * t98));
-        let t113 = t112 * (k(3.2e-5) * t85)
-            - (t111 * (k(3.2e-5) * t83) - t110 * (k(3.2e-5) * t81));
-        let t114 = t67 * t101 * t105 - t55 * t101 * t100;
-        let t115 = k(5.0032e-6) * t114 - t113 + (k(5e-6) * t98 - k(0.00032) * t83);
-        let t116 = k(1e-6) * t88 - (t55 * t115 + t54 * t107);
-        let t117 = t58 * t116;
-        let t118 = t56 * t117 - (k(1e-6) * t92 - (t47 * t115 + t37 * t107));
-        let t119 = k(2.0) * (t17 + t16);
-        let t120 = t3 * t53 - (t119 * t51 - t13 * t52);
-        let t121 = k(2.0) * (t7 - t6);
-        let t122 = t14 * t52 + t121 * t51 + t11 * t53;
-        let t123 = outer_ring_wx * outer_ring_wz;
-        let t124 = t123 * t122
-            - (t0 * t74 - (t4 + outer_ring_wy * outer_ring_wy) * t120);
-        let t125 = t11 * t36 - (t121 * t30 - t14 * t25);
-        let t126 = t11 * t65 - (t14 * t64 - t121 * t63);
-        let t127 = inner_ring_wx * t126 - inner_ring_wy * t125;
-        let t128 = k(2.0)
-            * (outer_ring_wy * t127
-                + outer_ring_wz * (inner_ring_wx * t72 - inner_ring_wy * t62));
-        let t129 = t3 * t36 + (t119 * t30 + t13 * t25);
-        let t130 = t3 * t65 - (t119 * t63 + t13 * t64);
-        let t131 = t103 * t120 + (t92 * t130 + t102 * t129) - t128 + t124;
-        let t132 = k(1.0) / (t129 * t72 - t130 * t62);
-        let t133 = k(2.0)
-            * (outer_ring_wx * t127
-                + outer_ring_wz * (inner_ring_wx * t130 - inner_ring_wy * t129));
-        let t134 = t103 * t74 + (t92 * t72 + t102 * t62) + t133
-            + (t9 * t122 + (t5 * t74 - t0 * t120));
-        let t135 = t129 * t132 * t134 - t62 * t132 * t131;
-        let t136 = t130 * t132 * t134 - t72 * t132 * t131;
-        let t137 = t77 * t136 + t71 * t135 - (t70 * t117 + (t67 * t115 + t66 * t107));
-        let t138 = t72 * t137 + t62 * (t71 * t136 + t60 * t135 - t118);
-        let t139 = t74 * (t78 * t136 + t73 * t135 - (t116 - t57 * t117));
-        let t140 = t72 * (t120 * t78 - (t130 * t77 + t129 * t71))
-            + t62 * (t120 * t73 - (t130 * t71 + t129 * t60));
-        let t141 = t11 * t15 * t19 - t14 * t15 * t12;
-        let t142 = t141 * (t122 * t80 + (t126 * t79 + t125 * t75))
-            + t20 * (t74 * (t130 * t78 + t129 * t73) + t140);
-        let t143 = (t142 - (k(1e-6) * t123 + (t139 - t138)))
-            / (k(1e-6) + (t74 * t80 + (t72 * t79 + t62 * t75)));
-        let t144 = t135 - (t125 * t141 - (t62 * t143 - t129 * t20));
-        let t145 = t136 - (t126 * t141 - (t72 * t143 - t130 * t20));
-        let t146 = t122 * t141 - (t74 * t143 - t120 * t20);
-        let t147 = t58 * (t116 + (t57 * t146 - (t70 * t145 + t56 * t144)));
-        let t148 = t146 - t147;
-        let t149 = t112 * (k(3.2e-5) * t45)
-            + (t111 * (k(3.2e-5) * t43) + t110 * (k(3.2e-5) * t41));
-        let t150 = t91 * t148 - (t89 * t145 + t87 * t144);
-        let t151 = t150
-            - k(99968.01023672425) * (k(1.00032e-5) * t150 - t149 + k(0.00032) * t43);
-        let t152 = t114 - (t55 * t148 - (t67 * t145 + t47 * t144));
+        let t0 = (outer_ring_wz * outer_ring_wz + outer_ring_wx * outer_ring_wx)
+            * (k(0.5)
+                / (k(0.5)
+                    - (outer_ring_e0 * outer_ring_e0 + outer_ring_e2 * outer_ring_e2)));
+        let t1 = outer_ring_wy * outer_ring_wz
+            - k(2.0) * (outer_ring_e2 * outer_ring_e3 - outer_ring_e0 * outer_ring_e1)
+                * t0;
+        let t2 = inner_ring_e3 * rotor_e0 - inner_ring_e2 * rotor_e1
+            + inner_ring_e1 * rotor_e2 - inner_ring_e0 * rotor_e3;
+        let t3 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t4 = t3 * t2;
+        let t5 = inner_ring_e2 * rotor_e0 + inner_ring_e3 * rotor_e1
+            - inner_ring_e0 * rotor_e2 - inner_ring_e1 * rotor_e3;
+        let t6 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t7 = t6 * t5;
+        let t8 = t7 + t4;
+        let t9 = k(1e-5) * t8;
+        let t10 = k(2.0) * t8;
+        let t11 = t3 * t5;
+        let t12 = t6 * t2;
+        let t13 = t12 - t11;
+        let t14 = k(1.00064e-5) * t13;
+        let t15 = k(2.0) * t13;
+        let t16 = t3 * t6;
+        let t17 = t5 * t2;
+        let t18 = t17 - t16;
+        let t19 = k(2.0) * t18;
+        let t20 = t3 * t3;
+        let t21 = k(0.5) - (t20 + t2 * t2);
+        let t22 = k(2.0) * t21;
+        let t23 = t22 * t14 - t19 * t9;
+        let t24 = k(1.0)
+            / (k(1e-6) + (t22 * (k(1.00064e-5) * t21) + t19 * (k(1e-5) * t18)));
+        let t25 = t24 * t23;
+        let t26 = t23 * t25 - (k(1e-6) + (t15 * t14 + t10 * t9));
+        let t27 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t28 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t29 = t28 * t27;
+        let t30 = outer_ring_e2 * inner_ring_e0 + outer_ring_e3 * inner_ring_e1
+            - outer_ring_e0 * inner_ring_e2 - outer_ring_e1 * inner_ring_e3;
+        let t31 = outer_ring_e1 * inner_ring_e0 - outer_ring_e0 * inner_ring_e1
+            - outer_ring_e3 * inner_ring_e2 + outer_ring_e2 * inner_ring_e3;
+        let t32 = t31 * t30;
+        let t33 = k(2.0) * (t32 - t29);
+        let t34 = k(0.5) - (t20 + t5 * t5);
+        let t35 = k(2.0) * t34;
+        let t36 = t17 + t16;
+        let t37 = k(2.0) * t36;
+        let t38 = k(1e-5) * t34;
+        let t39 = k(1.00064e-5) * t36;
+        let t40 = t22 * t39 + t19 * t38;
+        let t41 = t40 * t25 - (t37 * t14 - t35 * t9);
+        let t42 = t28 * t28;
+        let t43 = k(2.0) * (k(0.5) - (t42 + t30 * t30));
+        let t44 = t43 * t41 - t33 * t26;
+        let t45 = t40 * (t24 * t40) - (k(2e-6) + (t37 * t39 + t35 * t38));
+        let t46 = t43 * t45 - t33 * t41;
+        let t47 = k(2.0) * (k(0.5) - (t42 + t31 * t31));
+        let t48 = k(2.0) * (t32 + t29);
+        let t49 = t43 * (t48 * t45 - t47 * t41) - t33 * (t48 * t41 - t47 * t26);
+        let t50 = t28 * t30;
+        let t51 = t31 * t27;
+        let t52 = k(2.0) * (t51 + t50);
+        let t53 = t28 * t31;
+        let t54 = t30 * t27;
+        let t55 = k(2.0) * (t54 - t53);
+        let t56 = outer_ring_wx * outer_ring_wy
+            - k(2.0) * (outer_ring_e1 * outer_ring_e2 + outer_ring_e0 * outer_ring_e3)
+                * t0;
+        let t57 = outer_ring_wy * (k(2.0) * (t54 + t53))
+            + outer_ring_wx * (k(2.0) * (t51 - t50));
+        let t58 = k(0.5) - (t42 + t27 * t27);
+        let t59 = outer_ring_wz * (k(2.0) * t58) - t57;
+        let t60 = inner_ring_wz + t59;
+        let t61 = outer_ring_wz * t55 - (outer_ring_wy * t43 - outer_ring_wx * t48);
+        let t62 = inner_ring_wy - t61;
+        let t63 = outer_ring_wz * t52 + (outer_ring_wy * t33 - outer_ring_wx * t47);
+        let t64 = inner_ring_wx - t63;
+        let t65 = k(0.5) / t58 * (t64 * t64 + t62 * t62);
+        let t66 = inner_ring_wy * t59 + inner_ring_wz * t61 - (t55 * t65 - t62 * t60);
+        let t67 = inner_ring_wz * t63 + inner_ring_wx * t59 - (t52 * t65 - t64 * t60);
+        let t68 = k(0.5) - (t20 + t6 * t6);
+        let t69 = inner_ring_wz * (k(2.0) * (t12 + t11))
+            + (inner_ring_wy * (k(2.0) * (t7 - t4)) - inner_ring_wx * (k(2.0) * t68));
+        let t70 = rotor_wx - t69;
+        let t71 = inner_ring_wz * t22 - (inner_ring_wy * t37 + inner_ring_wx * t15);
+        let t72 = rotor_wz + t71;
+        let t73 = inner_ring_wz * t19 - (inner_ring_wy * t35 - inner_ring_wx * t10);
+        let t74 = rotor_wy - t73;
+        let t75 = k(0.5) / t68 * (t74 * t74 + t72 * t72);
+        let t76 = rotor_wz * t69 + rotor_wx * t71 + (t15 * t75 - t72 * t70);
+        let t77 = k(5e-6) * (rotor_wx * rotor_wz - t76);
+        let t78 = rotor_wx * t73 - rotor_wy * t69 - (t10 * t75 - t74 * t70);
+        let t79 = k(0.0002) * rotor_wx;
+        let t80 = rotor_wy * t79;
+        let t81 = rotor_e0 * rotor_e3;
+        let t82 = rotor_e1 * rotor_e2;
+        let t83 = t82 + t81;
+        let t84 = k(5e-6) * (rotor_wx * rotor_wy) - k(0.00032) * t83
+            + (k(1.6e-5) * t80 + k(5.0032e-6) * t78);
+        let t85 = k(1e-6) * (inner_ring_wx * inner_ring_wy) + (t22 * t84 + t19 * t77);
+        let t86 = t85 * t24;
+        let t87 = t86 * t23
+            - (k(1e-6) * (inner_ring_wy * inner_ring_wz) + (t15 * t84 - t10 * t77));
+        let t88 = t86 * t40 - (t37 * t84 + t35 * t77) + (t45 * t67 - t41 * t66);
+        let t89 = t43 * t88 - t33 * (t87 + (t67 * t41 - t66 * t26));
+        let t90 = k(1e-6) * (outer_ring_wx * outer_ring_wz) - t89
+            + (t56 * (t55 * t46 + t52 * t44) - t1 * t49);
+        let t91 = t90 / (k(1e-6) - (t43 * t46 - t33 * t44));
+        let t92 = t66 - (t33 * t91 - t1 * t47 - t56 * t52);
+        let t93 = t67 - (t43 * t91 - t1 * t48 + t56 * t55);
+        let t94 = t24 * (t85 + (t40 * t93 - t23 * t92));
+        let t95 = t78 - (t22 * t94 - (t37 * t93 - t15 * t92));
+        let t96 = t80 + k(0.0002) * t95;
+        let t97 = rotor_e0 * rotor_e0;
+        let t98 = k(0.0002) * rotor_wz;
+        let t99 = rotor_wz * t98 + rotor_wx * t79;
+        let t100 = k(2.0) * (t82 - t81) * t99
+            + k(2.0) * (k(0.5) - (t97 + rotor_e1 * rotor_e1)) * t96;
+        let t101 = rotor_e0 * rotor_e1;
+        let t102 = rotor_e2 * rotor_e3;
+        let t103 = t102 - t101;
+        let t104 = rotor_wy * t98;
+        let t105 = k(1.6e-5) * t104 - k(0.00032) * t103;
+        let t106 = t104 - k(19.99360204734485) * t105;
+        let t107 = rotor_e0 * rotor_e2;
+        let t108 = rotor_e1 * rotor_e3;
+        let t109 = k(2.0) * (k(0.5) - (t97 + rotor_e2 * rotor_e2)) * t99
+            + k(2.0) * t83 * t96;
+        let t110 = k(2.0) * (t102 + t101) * t99 - k(2.0) * (t108 - t107) * t96;
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -t20,
-            t143,
-            t141,
+            -t1,
+            -t91,
+            t56,
             k(0.0),
             k(0.0),
             k(0.0),
-            t144,
-            t145,
-            t148,
-            k(0.0004) * t81 * t152 + k(0.0004) * t41 * t151 - t110,
-            -(t111 + (k(0.0004) * t83 * t152 - k(0.0004) * t43 * t151)),
-            t112 - (k(0.0004) * t85 * t152 + k(0.0004) * t45 * t151),
-            -t151,
-            t106 - (t54 * t148 - (t66 * t145 + t37 * t144)),
-            -t152,
+            t92,
+            -t93,
+            -t94,
+            t100 - k(2.0) * (t108 + t107) * t106,
+            -(k(2.0) * t103 * t106 + t109),
+            k(2.0) * (k(0.5) - (t97 + rotor_e3 * rotor_e3)) * t106 + t110,
+            -(k(99968.01023672425) * t105),
+            -(t76 + (t19 * t94 - (t35 * t93 + t10 * t92))),
+            -t95,
         ];
     }
     /// Writes λ: 304 operations (114 ±, 187 ×, 3 ÷).
@@ -2032,13 +1999,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
         let t35 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
         let t36 = t35 * (t31 * t34 - (t26 * t33 + t19 * t32))
             + (t31 * t28 + (t26 * t23 + t19 * t17)) * t15;
-        let t37 = k(2.0) * t8;
-        let t38 = k(2.0) * t11;
-        let t39 = k(2.0) * t13;
-        let t40 = t4 * (k(0.0004) * t27)
+        let t37 = t4 * (k(0.0004) * t27)
             + (t2 * (k(0.0004) * t22) - t0 * (k(0.0004) * t16));
-        let t41 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz) - t40;
-        let t42 = t41 * (t31 * t39 - (t26 * t38 - t19 * t37)) + t36;
+        let t38 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz) - t37;
+        let t39 = k(2.0) * t8;
+        let t40 = k(2.0) * t11;
+        let t41 = k(2.0) * t13;
+        let t42 = (t31 * t41 - (t26 * t40 - t19 * t39)) * t38 + t36;
         let t43 = k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx) - t42;
         let t44 = outer_ring_e0 * outer_ring_e0;
         let t45 = k(2.0) * (k(0.5) - (t44 + outer_ring_e1 * outer_ring_e1));
@@ -2056,17 +2023,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
         let t57 = k(2.0) * (t56 + t55);
         let t58 = t57 * t34 + (t53 * t32 + t54 * t33);
         let t59 = t35 * t58 + (t57 * t28 - (t54 * t23 + t53 * t17)) * t15;
-        let t60 = t57 * t39 - (t53 * t37 - t54 * t38);
-        let t61 = k(2e-6) * inner_ring_dwy + (t60 * t41 + t59);
+        let t60 = t57 * t41 - (t53 * t39 - t54 * t40);
+        let t61 = k(2e-6) * inner_ring_dwy + (t60 * t38 + t59);
         let t62 = t51 * t57 - (t48 * t54 + t45 * t53);
         let t63 = k(2.0) * (t30 + t29);
         let t64 = k(2.0) * (t56 - t55);
         let t65 = k(2.0) * (k(0.5) - (t18 + inner_ring_e3 * inner_ring_e3));
         let t66 = t65 * t34 - (t63 * t32 - t64 * t33);
         let t67 = t35 * t66 + (t65 * t28 - (t64 * t23 - t63 * t17)) * t15;
-        let t68 = t63 * t37 + t64 * t38 + t65 * t39;
+        let t68 = t63 * t39 + t64 * t40 + t65 * t41;
         let t69 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz)
-            - (t68 * t41 + t67);
+            - (t68 * t38 + t67);
         let t70 = (t51 * t65 - (t48 * t64 - t45 * t63)) * t69 - (t62 * t61 - t52 * t43);
         let t71 = k(2e-6) * outer_ring_dwx - t70;
         let t72 = k(2.0) * (k(0.5) - (t44 + outer_ring_e3 * outer_ring_e3));
@@ -2100,20 +2067,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
             -t0,
             -t2,
             -t4,
-            t68 * t87 * t41 + t35 * (t66 * t87),
-            t60 * t87 * t41 + t35 * (t58 * t87),
+            t68 * t87 * t38 + t35 * (t66 * t87),
+            t60 * t87 * t38 + t35 * (t58 * t87),
         ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
     type Joints = [T; 6];
     type Rates = [T; 3];
+    type Solution = [T; 33];
     fn joint_start(&self) -> Self::Joints {
         let k = T::constant;
         [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(100.0)]
     }
     fn rates(&self) -> Self::Rates {
         [T::constant(0.0); 3]
+    }
+    fn solution(&self) -> Self::Solution {
+        [T::constant(0.0); 33]
     }
     /// Writes u̇: 63 operations (19 ±, 42 ×, 2 ÷) and 4 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
@@ -2602,6 +2573,152 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
             -t4,
             t31,
             -t23,
+        ];
+    }
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 246 operations (90 ±, 154 ×, 2 ÷).
+    fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        let t0 = outer_ring_wy * outer_ring_wz;
+        let t1 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t2 = k(2.0) * t1;
+        let t3 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t4 = t3 * t2;
+        let t5 = outer_ring_wy * t4;
+        let t6 = inner_ring_wx - rotor_wx;
+        let t7 = outer_ring_wz - inner_ring_wz;
+        let t8 = k(6.4e-9) * t6;
+        let t9 = k(3.2e-9) * t5 + t8;
+        let t10 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t11 = k(2.0) * t10;
+        let t12 = k(1.0) - t10 * t11;
+        let t13 = k(1.0) - t1 * t2;
+        let t14 = outer_ring_wy * t13;
+        let t15 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t16 = t15 * t11;
+        let t17 = t7 * t16 * t8 - k(0.00016) * t4;
+        let t18 = t16 * (t17 + t14 * (t12 * t9)) + k(1e-5) * (t7 * (t6 - k(0.2) * t5));
+        let t19 = t16 * t16;
+        let t20 = t14 * (t19 * t9 - k(1.00064e-5) * (t6 + k(0.4000639590661976) * t5))
+            - t12 * t17;
+        let t21 = k(3.2e-9) * t13;
+        let t22 = t16 * t12;
+        let t23 = t22 * t21;
+        let t24 = k(1.0) / (k(6.0032e-6) - k(3.2e-9) * t19);
+        let t25 = t24 * t23;
+        let t26 = (t25 * t20 + t13 * t18)
+            / (t23 * t25 - (k(2e-6) + t21 * (t13 * (k(1875.0) + t19))));
+        let t27 = outer_ring_wx * outer_ring_wy;
+        let t28 = t4 * t26;
+        let t29 = inner_ring_wy * t7 + (t28 + t0 * t13);
+        let t30 = inner_ring_wx * t7 - (t0 * t4 - t13 * t26);
+        let t31 = t27 - (t25 * t26 - t24 * t20);
+        let t32 = rotor_wy * t6 + (t12 * t31 + t16 * t30);
+        let t33 = k(0.0002) * rotor_wx;
+        let t34 = rotor_wy * t33 - k(0.0002) * t32;
+        let t35 = rotor_e0 * rotor_e0;
+        let t36 = k(0.5) - (t35 + rotor_e1 * rotor_e1);
+        let t37 = k(0.0002) * rotor_wz;
+        let t38 = rotor_wz * t37 + rotor_wx * t33;
+        let t39 = rotor_e0 * rotor_e3;
+        let t40 = rotor_e1 * rotor_e2;
+        let t41 = k(0.00016)
+            * (t13 * (t16 + k(4e-5) * ((k(1563.5) - t19) * (outer_ring_wy * t7))));
+        let t42 = k(99968.01023672425)
+            * (k(3.2e-9) * (t22 * (t7 * t7 - t14 * t14)) + t41);
+        let t43 = t28 + t42 - t29;
+        let t44 = rotor_wy * t37 + k(0.0002) * t43;
+        let t45 = rotor_e0 * rotor_e2;
+        let t46 = rotor_e1 * rotor_e3;
+        let t47 = t46 + t45;
+        let t48 = k(2.0) * t47 * t44 - (k(2.0) * (t40 - t39) * t38 + k(2.0) * t36 * t34);
+        let t49 = t40 + t39;
+        let t50 = k(2.0) * (k(0.5) - (t35 + rotor_e2 * rotor_e2)) * t38
+            + k(2.0) * t49 * t34;
+        let t51 = rotor_e0 * rotor_e1;
+        let t52 = rotor_e2 * rotor_e3;
+        let t53 = t52 - t51;
+        let t54 = k(2.0) * t53 * t44 + t50;
+        let t55 = t46 - t45;
+        let t56 = k(0.5) - (t35 + rotor_e3 * rotor_e3);
+        let t57 = k(2.0) * t56 * t44 + (k(2.0) * (t52 + t51) * t38 - k(2.0) * t55 * t34);
+        let t58 = rotor_wz * t6 + (t16 * t31 - t12 * t30);
+        let t59 = k(0.08) * t48;
+        let t60 = k(0.8) - k(0.08) * t54;
+        let t61 = k(0.1) + t60;
+        let t62 = k(0.08) * t57;
+        let t63 = k(0.0004) * t36 * t59 + k(0.0004) * t49 * t60 + k(0.0004) * t55 * t62;
+        let t64 = t63 - k(5e-6) * (rotor_wx * rotor_wy - t32);
+        let t65 = k(5e-6) * (rotor_wx * rotor_wz - t58);
+        let t66 = t16 * t65 - t12 * t64;
+        let t67 = t66 - k(1e-6) * (inner_ring_wx * inner_ring_wy + t31);
+        let t68 = k(2.0) * outer_ring_e2;
+        let t69 = outer_ring_e0 * t68;
+        let t70 = t12 * t65 + t16 * t64;
+        let t71 = t70 + k(2e-6) * t30;
+        let t72 = k(0.0004) * t47 * t59 - k(0.0004) * t53 * t60 + k(0.0004) * t56 * t62;
+        let t73 = t72 + k(1e-5) * t43 - k(1e-6) * (inner_ring_wy * inner_ring_wz + t29);
+        let t74 = t13 * t73 + t4 * t71;
+        let t75 = t74 - k(2e-6) * t0;
+        let t76 = k(1.0) - outer_ring_e2 * t68;
+        *out = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t0,
+            t26,
+            t27,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t29,
+            t30,
+            t31,
+            -t48,
+            -t54,
+            t57,
+            t43,
+            -t58,
+            t32,
+            t59,
+            -(k(0.1) + t61),
+            -t62,
+            t69 * t67 - t76 * t75,
+            -(t69 * t75 + t76 * t67),
+            t59,
+            -t61,
+            -t62,
+            t4 * t73 - t13 * t71,
+            t74,
+            t59,
+            -t60,
+            -t62,
+            t66,
+            t70,
         ];
     }
 }

@@ -18,7 +18,7 @@
 //! | gamma | γ | 122 | 193 | 0 | 315 | 6 of 15 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 90 | 128 | 0 | 218 | 0 of 15 |
 //! | applied_force | (f, n' − w̃'J'w') | 6 | 13 | 0 | 19 | 8 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 225 | 345 | 5 | 575 | 6 of 18 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 177 | 260 | 5 | 442 | 6 of 18 |
 //! | multipliers | λ, the accelerations being known | 120 | 188 | 3 | 311 | 0 of 15 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 28 | 54 | 0 | 82 | 0 of 22 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
@@ -33,6 +33,7 @@
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 18 | 29 | 1 | 48 | 0 of 3 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 60 | 97 | 1 | 158 | 6 of 18 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 60 | 81 | 0 | 141 | 0 of 15 |
+//! | corrected_solution | both | 98 | 148 | 1 | 247 | 6 of 33 |
 //!
 //! # Proof
 //!
@@ -49,7 +50,7 @@
 //! * joint_derivative: eqs. (14) and (16) on the constraints
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
-//! * corrected_multipliers: eq. (17) on the constraints
+//! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //!
 //! All of it holds but with a probability below 1e-144.
 //! Not proved: the size of rounding errors.
@@ -1749,7 +1750,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeViscous<T> {
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 575 operations (225 ±, 345 ×, 5 ÷).
+    /// Solves eq. (17): 442 operations (177 ±, 260 ×, 5 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1773,199 +1774,172 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeViscous<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = outer_ring_wx * outer_ring_wy;
-        let t1 = outer_ring_e0 * outer_ring_e2;
-        let t2 = outer_ring_e1 * outer_ring_e3;
-        let t3 = k(2.0) * (t2 - t1);
-        let t4 = outer_ring_wz * outer_ring_wz;
-        let t5 = t4 + outer_ring_wx * outer_ring_wx;
-        let t6 = outer_ring_e0 * outer_ring_e1;
-        let t7 = outer_ring_e2 * outer_ring_e3;
-        let t8 = k(2.0) * (t7 + t6);
-        let t9 = outer_ring_wy * outer_ring_wz;
-        let t10 = outer_ring_e0 * outer_ring_e0;
-        let t11 = k(2.0) * (k(0.5) - (t10 + outer_ring_e3 * outer_ring_e3));
-        let t12 = t11 * t9 + (t8 * t5 - t3 * t0);
-        let t13 = k(2.0) * (k(0.5) - (t10 + outer_ring_e1 * outer_ring_e1));
-        let t14 = k(2.0) * (t2 + t1);
-        let t15 = k(1.0) / (t14 * t3 - t13 * t11);
-        let t16 = outer_ring_e0 * outer_ring_e3;
-        let t17 = outer_ring_e1 * outer_ring_e2;
-        let t18 = k(2.0) * (t17 - t16);
-        let t19 = t14 * t9 - (t18 * t5 + t13 * t0);
-        let t20 = t3 * t15 * t19 - t13 * t15 * t12;
-        let t21 = rotor_e0 * rotor_e3;
-        let t22 = rotor_e1 * rotor_e2;
-        let t23 = k(2.0) * (t22 - t21);
-        let t24 = inner_ring_e0 * inner_ring_e0;
-        let t25 = k(2.0) * (k(0.5) - (t24 + inner_ring_e1 * inner_ring_e1));
-        let t26 = rotor_e0 * rotor_e0;
-        let t27 = k(2.0) * (k(0.5) - (t26 + rotor_e2 * rotor_e2));
-        let t28 = inner_ring_e0 * inner_ring_e3;
-        let t29 = inner_ring_e1 * inner_ring_e2;
-        let t30 = k(2.0) * (t29 + t28);
-        let t31 = rotor_e0 * rotor_e1;
-        let t32 = rotor_e2 * rotor_e3;
-        let t33 = k(2.0) * (t32 + t31);
-        let t34 = inner_ring_e0 * inner_ring_e2;
-        let t35 = inner_ring_e1 * inner_ring_e3;
-        let t36 = k(2.0) * (t35 - t34);
-        let t37 = t36 * t33 - (t30 * t27 + t25 * t23);
-        let t38 = k(5e-6) * t37;
-        let t39 = rotor_e0 * rotor_e2;
-        let t40 = rotor_e1 * rotor_e3;
-        let t41 = k(2.0) * (t40 + t39);
-        let t42 = k(2.0) * (t32 - t31);
-        let t43 = k(2.0) * (k(0.5) - (t26 + rotor_e3 * rotor_e3));
-        let t44 = t36 * t43 - (t30 * t42 - t25 * t41);
-        let t45 = k(5e-6) * t44;
-        let t46 = inner_ring_e0 * inner_ring_e1;
-        let t47 = inner_ring_e2 * inner_ring_e3;
-        let t48 = t47 - t46;
-        let t49 = k(2.0) * t48;
-        let t50 = t35 + t34;
-        let t51 = k(2.0) * t50;
-        let t52 = k(0.5) - (t24 + inner_ring_e3 * inner_ring_e3);
-        let t53 = k(2.0) * t52;
-        let t54 = t53 * t33 - (t51 * t23 - t49 * t27);
-        let t55 = t51 * t41 + t49 * t42 + t53 * t43;
-        let t56 = t55 * t45 + t54 * t38;
-        let t57 = k(1e-6)
-            + (k(1.25e-9) + (t55 * (k(5e-6) * t55) + t54 * (k(5e-6) * t54)));
-        let t58 = k(1.0) / t57;
-        let t59 = t58 * t56;
-        let t60 = t56 * t59 - (k(1e-6) + (t44 * t45 + t37 * t38));
-        let t61 = k(2.0) * (k(0.5) - (t10 + outer_ring_e2 * outer_ring_e2));
-        let t62 = t8 * t36 - (t61 * t30 + t18 * t25);
-        let t63 = k(0.5) - (t24 + inner_ring_e2 * inner_ring_e2);
-        let t64 = k(2.0) * t63;
-        let t65 = t29 - t28;
-        let t66 = k(2.0) * t65;
-        let t67 = t47 + t46;
-        let t68 = k(2.0) * t67;
-        let t69 = t68 * t33 + (t66 * t23 + t64 * t27);
-        let t70 = t68 * t43 - (t66 * t41 - t64 * t42);
-        let t71 = k(5e-6) * t69;
-        let t72 = k(5e-6) * t70;
-        let t73 = t55 * t72 + t54 * t71;
-        let t74 = t73 * t59 - (t70 * t45 + t69 * t38);
-        let t75 = t8 * t68 + (t18 * t66 + t61 * t64);
-        let t76 = t56 - t57 * t59;
-        let t77 = t8 * t53 - (t18 * t51 - t61 * t49);
-        let t78 = t77 * t76 - (t75 * t74 + t62 * t60);
-        let t79 = t58 * t73;
-        let t80 = t73 * t79 - (k(2e-6) + (k(1.25e-9) + (t70 * t72 + t69 * t71)));
-        let t81 = t73 - t57 * t79;
-        let t82 = t77 * t81 - (t75 * t80 + t62 * t74);
-        let t83 = t75 * t81 + t62 * t76;
-        let t84 = k(2.0) * (k(0.5) - (t26 + rotor_e1 * rotor_e1));
-        let t85 = k(2.0) * (t22 + t21);
-        let t86 = k(2.0) * (t40 - t39);
-        let t87 = t36 * t86 + (t30 * t85 + t25 * t84);
-        let t88 = inner_ring_wx * inner_ring_wy;
-        let t89 = t68 * t86 - (t64 * t85 + t66 * t84);
-        let t90 = inner_ring_wx * inner_ring_wx;
-        let t91 = inner_ring_wz * inner_ring_wz;
-        let t92 = t53 * t86 - (t49 * t85 - t51 * t84);
-        let t93 = inner_ring_wy * inner_ring_wz;
-        let t94 = rotor_wy * t44 + rotor_wz * t37;
-        let t95 = k(2.0)
-            * (inner_ring_wx * (rotor_wy * t55 + rotor_wz * t54) + inner_ring_wz * t94);
-        let t96 = rotor_wz * rotor_wz + rotor_wy * rotor_wy;
-        let t97 = rotor_wx * rotor_wy;
-        let t98 = rotor_wx * rotor_wz;
-        let t99 = t98 * t70 - (t97 * t69 - t96 * t89) + t95
-            + (t93 * t92 + ((t91 + t90) * t89 - t88 * t87));
-        let t100 = k(1.0) / (t69 * t55 - t70 * t54);
-        let t101 = inner_ring_wx * inner_ring_wz;
-        let t102 = inner_ring_wy * inner_ring_wy;
-        let t103 = t102 + t90;
-        let t104 = k(2.0)
-            * (inner_ring_wx * (rotor_wy * t70 + rotor_wz * t69) - inner_ring_wy * t94);
-        let t105 = t98 * t55 - (t97 * t54 - t96 * t92) - t104
-            + (t103 * t92 + (t93 * t89 + t101 * t87));
-        let t106 = t69 * t100 * t105 - t54 * t100 * t99;
-        let t107 = k(5e-6) * (t98 + t106);
-        let t108 = t70 * t100 * t105 - t55 * t100 * t99;
-        let t109 = k(5e-6) * (t97 + t108);
-        let t110 = inner_ring_wx - rotor_wx;
-        let t111 = t91 + t102;
-        let t112 = t51 * t101 + (t66 * t88 + t25 * t111);
-        let t113 = k(1e-5) * t112;
-        let t114 = k(0.00025) * t65;
-        let t115 = t49 * t101 - (t64 * t88 + t30 * t111);
-        let t116 = k(0.8) + k(1e-5) * t115;
-        let t117 = k(0.00025) * t63;
-        let t118 = t53 * t101 - (t68 * t88 - t36 * t111);
-        let t119 = k(1e-5) * t118;
-        let t120 = k(0.00025) * t67;
-        let t121 = t120 * t119 + (t117 * t116 - t114 * t113) + (t55 * t109 + t54 * t107);
-        let t122 = k(1e-6) * (t88 - (outer_ring_wz - inner_ring_wz)) - t121;
-        let t123 = t58 * t122;
-        let t124 = t56 * t123 - (k(1e-6) * (t93 - t110) - (t44 * t109 + t37 * t107));
-        let t125 = k(2.0) * (t17 + t16);
-        let t126 = t3 * t53 - (t125 * t49 - t13 * t51);
-        let t127 = k(2.0) * (t7 - t6);
-        let t128 = t14 * t51 + t127 * t49 + t11 * t53;
-        let t129 = outer_ring_wx * outer_ring_wz;
-        let t130 = t129 * t128
-            - (t0 * t77 - (t4 + outer_ring_wy * outer_ring_wy) * t126);
-        let t131 = t11 * t36 - (t127 * t30 - t14 * t25);
-        let t132 = t11 * t68 - (t14 * t66 - t127 * t64);
-        let t133 = inner_ring_wx * t132 - inner_ring_wy * t131;
-        let t134 = k(2.0)
-            * (outer_ring_wy * t133
-                + outer_ring_wz * (inner_ring_wx * t75 - inner_ring_wy * t62));
-        let t135 = t3 * t36 + (t125 * t30 + t13 * t25);
-        let t136 = t3 * t68 - (t125 * t64 + t13 * t66);
-        let t137 = t103 * t126 + (t93 * t136 + t101 * t135) - t134 + t130;
-        let t138 = k(1.0) / (t135 * t75 - t136 * t62);
-        let t139 = k(2.0)
-            * (outer_ring_wx * t133
-                + outer_ring_wz * (inner_ring_wx * t136 - inner_ring_wy * t135));
-        let t140 = t103 * t77 + (t93 * t75 + t101 * t62) + t139
-            + (t9 * t128 + (t5 * t77 - t0 * t126));
-        let t141 = t135 * t138 * t140 - t62 * t138 * t137;
-        let t142 = t136 * t138 * t140 - t75 * t138 * t137;
-        let t143 = k(0.00025) * t50;
-        let t144 = k(0.00025) * t48;
-        let t145 = k(0.00025) * t52;
-        let t146 = t145 * t119 + (t144 * t116 + t143 * t113) - (t70 * t109 + t69 * t107);
-        let t147 = t75 * (t80 * t142 + t74 * t141 - (t73 * t123 - t146));
-        let t148 = t77 * (t81 * t142 + t76 * t141 - (t122 - t57 * t123));
-        let t149 = t148 - (t147 + t62 * (t74 * t142 + t60 * t141 - t124));
-        let t150 = t75 * (t126 * t81 - (t136 * t80 + t135 * t74))
-            + t62 * (t126 * t76 - (t136 * t74 + t135 * t60));
-        let t151 = t11 * t15 * t19 - t14 * t15 * t12;
-        let t152 = t151 * (t128 * t83 + (t132 * t82 + t131 * t78))
-            + t20 * (t77 * (t136 * t81 + t135 * t76) + t150);
-        let t153 = (t152 - (k(1e-6) * (outer_ring_wy + t129) + t149))
-            / (k(1e-6) + (t77 * t83 + (t75 * t82 + t62 * t78)));
-        let t154 = t141 - (t131 * t151 - (t62 * t153 - t135 * t20));
-        let t155 = t142 - (t132 * t151 - (t75 * t153 - t136 * t20));
-        let t156 = t128 * t151 - (t77 * t153 - t126 * t20);
-        let t157 = t58 * (t122 + (t57 * t156 - (t73 * t155 + t56 * t154)));
-        let t158 = t156 - t157;
-        let t159 = t92 * t158 - (t89 * t155 + t87 * t154);
+        let t0 = (outer_ring_wz * outer_ring_wz + outer_ring_wx * outer_ring_wx)
+            * (k(0.5)
+                / (k(0.5)
+                    - (outer_ring_e0 * outer_ring_e0 + outer_ring_e2 * outer_ring_e2)));
+        let t1 = outer_ring_wy * outer_ring_wz
+            - k(2.0) * (outer_ring_e2 * outer_ring_e3 - outer_ring_e0 * outer_ring_e1)
+                * t0;
+        let t2 = inner_ring_e3 * rotor_e0 - inner_ring_e2 * rotor_e1
+            + inner_ring_e1 * rotor_e2 - inner_ring_e0 * rotor_e3;
+        let t3 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t4 = t3 * t2;
+        let t5 = inner_ring_e2 * rotor_e0 + inner_ring_e3 * rotor_e1
+            - inner_ring_e0 * rotor_e2 - inner_ring_e1 * rotor_e3;
+        let t6 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t7 = t6 * t5;
+        let t8 = t7 + t4;
+        let t9 = k(1e-5) * t8;
+        let t10 = k(2.0) * t8;
+        let t11 = t3 * t5;
+        let t12 = t6 * t2;
+        let t13 = t12 - t11;
+        let t14 = k(1e-5) * t13;
+        let t15 = k(2.0) * t13;
+        let t16 = t3 * t6;
+        let t17 = t5 * t2;
+        let t18 = t17 - t16;
+        let t19 = k(2.0) * t18;
+        let t20 = t3 * t3;
+        let t21 = k(0.5) - (t20 + t2 * t2);
+        let t22 = k(2.0) * t21;
+        let t23 = t22 * t14 - t19 * t9;
+        let t24 = k(1e-6)
+            + (k(1.25e-9) + (t22 * (k(1e-5) * t21) + t19 * (k(1e-5) * t18)));
+        let t25 = k(1.0) / t24;
+        let t26 = t25 * t23;
+        let t27 = t23 * t26 - (k(1e-6) + (t15 * t14 + t10 * t9));
+        let t28 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t29 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t30 = t29 * t28;
+        let t31 = outer_ring_e2 * inner_ring_e0 + outer_ring_e3 * inner_ring_e1
+            - outer_ring_e0 * inner_ring_e2 - outer_ring_e1 * inner_ring_e3;
+        let t32 = outer_ring_e1 * inner_ring_e0 - outer_ring_e0 * inner_ring_e1
+            - outer_ring_e3 * inner_ring_e2 + outer_ring_e2 * inner_ring_e3;
+        let t33 = t32 * t31;
+        let t34 = k(2.0) * (t33 - t30);
+        let t35 = k(0.5) - (t20 + t5 * t5);
+        let t36 = k(2.0) * t35;
+        let t37 = t17 + t16;
+        let t38 = k(2.0) * t37;
+        let t39 = k(1e-5) * t35;
+        let t40 = k(1e-5) * t37;
+        let t41 = t22 * t40 + t19 * t39;
+        let t42 = t41 * t26 - (t38 * t14 - t36 * t9);
+        let t43 = t29 * t29;
+        let t44 = k(2.0) * (k(0.5) - (t43 + t31 * t31));
+        let t45 = t44 * t42 - t34 * t27;
+        let t46 = t41 * (t25 * t41) - (k(2e-6) + (k(1.25e-9) + (t38 * t40 + t36 * t39)));
+        let t47 = t44 * t46 - t34 * t42;
+        let t48 = k(0.5) - (t20 + t6 * t6);
+        let t49 = inner_ring_wz * (k(2.0) * (t12 + t11))
+            + (inner_ring_wy * (k(2.0) * (t7 - t4)) - inner_ring_wx * (k(2.0) * t48));
+        let t50 = rotor_wx - t49;
+        let t51 = inner_ring_wz * t22 - (inner_ring_wy * t38 + inner_ring_wx * t15);
+        let t52 = rotor_wz + t51;
+        let t53 = inner_ring_wz * t19 - (inner_ring_wy * t36 - inner_ring_wx * t10);
+        let t54 = rotor_wy - t53;
+        let t55 = k(0.5) / t48 * (t54 * t54 + t52 * t52);
+        let t56 = rotor_wz * t49 + rotor_wx * t51 + (t15 * t55 - t52 * t50);
+        let t57 = k(5e-6) * (rotor_wx * rotor_wz - t56);
+        let t58 = rotor_wx * t53 - rotor_wy * t49 - (t10 * t55 - t54 * t50);
+        let t59 = k(5e-6) * (rotor_wx * rotor_wy + t58);
+        let t60 = inner_ring_wx - rotor_wx;
+        let t61 = k(1e-6) * (inner_ring_wy * inner_ring_wz - t60)
+            + (t15 * t59 - t10 * t57);
+        let t62 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
+        let t63 = inner_ring_e0 * inner_ring_e0;
+        let t64 = inner_ring_wx * inner_ring_wy;
+        let t65 = inner_ring_e0 * inner_ring_e3;
+        let t66 = inner_ring_e1 * inner_ring_e2;
+        let t67 = t66 - t65;
+        let t68 = k(2.0) * t67 * t64
+            + k(2.0) * (k(0.5) - (t63 + inner_ring_e1 * inner_ring_e1)) * t62;
+        let t69 = inner_ring_wx * inner_ring_wz;
+        let t70 = inner_ring_e0 * inner_ring_e2;
+        let t71 = inner_ring_e1 * inner_ring_e3;
+        let t72 = t71 + t70;
+        let t73 = k(2.0) * t72 * t69 + t68;
+        let t74 = k(1e-5) * t73;
+        let t75 = k(0.00025) * t67;
+        let t76 = k(0.5) - (t63 + inner_ring_e2 * inner_ring_e2);
+        let t77 = inner_ring_e0 * inner_ring_e1;
+        let t78 = inner_ring_e2 * inner_ring_e3;
+        let t79 = t78 - t77;
+        let t80 = k(2.0) * t79 * t69 - (k(2.0) * t76 * t64 + k(2.0) * (t66 + t65) * t62);
+        let t81 = k(0.8) + k(1e-5) * t80;
+        let t82 = k(0.00025) * t76;
+        let t83 = t78 + t77;
+        let t84 = k(0.5) - (t63 + inner_ring_e3 * inner_ring_e3);
+        let t85 = k(2.0) * t84 * t69 - (k(2.0) * t83 * t64 - k(2.0) * (t71 - t70) * t62);
+        let t86 = k(1e-5) * t85;
+        let t87 = k(0.00025) * t83;
+        let t88 = t87 * t86 + (t82 * t81 - t75 * t74) - (t22 * t59 + t19 * t57);
+        let t89 = k(1e-6) * (t64 - (outer_ring_wz - inner_ring_wz)) - t88;
+        let t90 = t25 * t89;
+        let t91 = t29 * t31;
+        let t92 = t32 * t28;
+        let t93 = t29 * t32;
+        let t94 = t31 * t28;
+        let t95 = outer_ring_wy * (k(2.0) * (t94 + t93))
+            + outer_ring_wx * (k(2.0) * (t92 - t91));
+        let t96 = k(0.5) - (t43 + t28 * t28);
+        let t97 = outer_ring_wz * (k(2.0) * t96) - t95;
+        let t98 = inner_ring_wz + t97;
+        let t99 = k(2.0) * (t33 + t30);
+        let t100 = k(2.0) * (t94 - t93);
+        let t101 = outer_ring_wz * t100 - (outer_ring_wy * t44 - outer_ring_wx * t99);
+        let t102 = inner_ring_wy - t101;
+        let t103 = k(2.0) * (k(0.5) - (t43 + t32 * t32));
+        let t104 = k(2.0) * (t92 + t91);
+        let t105 = outer_ring_wz * t104 + (outer_ring_wy * t34 - outer_ring_wx * t103);
+        let t106 = inner_ring_wx - t105;
+        let t107 = k(0.5) / t96 * (t106 * t106 + t102 * t102);
+        let t108 = inner_ring_wy * t97 + inner_ring_wz * t101
+            - (t100 * t107 - t102 * t98);
+        let t109 = inner_ring_wz * t105 + inner_ring_wx * t97
+            - (t104 * t107 - t106 * t98);
+        let t110 = t34 * (t42 * t109 - t27 * t108 + (t23 * t90 - t61));
+        let t111 = k(0.00025) * t72;
+        let t112 = k(0.00025) * t79;
+        let t113 = k(0.00025) * t84;
+        let t114 = t113 * t86 + (t112 * t81 + t111 * t74) + (t38 * t59 + t36 * t57);
+        let t115 = t44 * (t46 * t109 - t42 * t108 + (t41 * t90 - t114));
+        let t116 = t44 * (t99 * t46 - t103 * t42) - t34 * (t99 * t42 - t103 * t27);
+        let t117 = outer_ring_wx * outer_ring_wy
+            - k(2.0) * (outer_ring_e1 * outer_ring_e2 + outer_ring_e0 * outer_ring_e3)
+                * t0;
+        let t118 = t117 * (t100 * t47 + t104 * t45) - t1 * t116
+            + (k(1e-6) * (outer_ring_wy + outer_ring_wx * outer_ring_wz)
+                - (t115 - t110));
+        let t119 = t118 / (k(1e-6) - (t44 * t47 - t34 * t45));
+        let t120 = t108 + (t117 * t104 - (t34 * t119 - t1 * t103));
+        let t121 = t109 - (t117 * t100 + (t44 * t119 - t1 * t99));
+        let t122 = t25 * (t89 + (t41 * t121 - t23 * t120));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -t20,
-            t153,
-            t151,
+            -t1,
+            -t119,
+            t117,
             k(0.0),
             k(0.0),
             k(0.0),
-            t154,
-            t155,
-            t158,
-            k(0.000125) * t112 + (t114 * t158 - t143 * t155),
-            k(0.000125) * t115 - (t117 * t158 + t144 * t155),
-            t120 * t158 + t145 * t155 - k(0.000125) * t118,
-            k(100000.0) * (k(1e-6) * t110 + k(1e-5) * t159) - t159,
-            t106 - (t54 * t158 - (t69 * t155 + t37 * t154)),
-            t55 * t158 - (t70 * t155 + t44 * t154) - t108,
+            t120,
+            -t121,
+            -t122,
+            k(0.000125) * t73 - (t75 * t122 - t111 * t121),
+            k(0.000125) * t80 + (t82 * t122 + t112 * t121),
+            -(k(0.000125) * t85 + (t87 * t122 + t113 * t121)),
+            k(0.1) * t60,
+            -(t56 + (t19 * t122 - (t36 * t121 + t10 * t120))),
+            t22 * t122 - (t38 * t121 - t15 * t120) - t58,
         ];
     }
     /// Writes λ: 311 operations (120 ±, 188 ×, 3 ÷).
@@ -2132,12 +2106,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeViscous<T> {
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeViscous<T> {
     type Joints = [T; 7];
     type Rates = [T; 3];
+    type Solution = [T; 33];
     fn joint_start(&self) -> Self::Joints {
         let k = T::constant;
         [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(100.0), k(0.0)]
     }
     fn rates(&self) -> Self::Rates {
         [T::constant(0.0); 3]
+    }
+    fn solution(&self) -> Self::Solution {
+        [T::constant(0.0); 33]
     }
     /// Writes u̇: 28 operations (9 ±, 18 ×, 1 ÷) and 2 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
@@ -2441,14 +2419,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeViscous<T> {
         let t27 = inner_ring_wx * t26;
         let t28 = k(0.000125) * inner_ring_wz;
         let t29 = inner_ring_wx * t28;
-        let t30 = t25 * t29 - t22 * t27 - (t25 * t23 + t22 * t19);
+        let t30 = t29 * t25 - t27 * t22 - (t25 * t23 + t22 * t19);
         let t31 = rotor_e0 * rotor_e3;
         let t32 = rotor_e1 * rotor_e2;
         let t33 = inner_ring_wy * t26 + inner_ring_wz * t28;
         let t34 = rotor_e0 * rotor_e0;
         let t35 = k(2.0) * (k(0.5) - (t34 + rotor_e1 * rotor_e1)) * t33
             - k(2.0) * (t32 - t31) * t30;
-        let t36 = t22 * t29 + t25 * t27 - (t22 * t23 - t25 * t19);
+        let t36 = t29 * t22 + t27 * t25 - (t22 * t23 - t25 * t19);
         let t37 = rotor_e0 * rotor_e2;
         let t38 = rotor_e1 * rotor_e3;
         let t39 = k(2.0) * (t32 + t31) * t33
@@ -2591,6 +2569,153 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeViscous<T> {
             -t4,
             t32,
             -t22,
+        ];
+    }
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 247 operations (98 ±, 148 ×, 1 ÷).
+    fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        let t0 = outer_ring_wy * outer_ring_wz;
+        let t1 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t2 = k(2.0) * t1;
+        let t3 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t4 = t3 * t2;
+        let t5 = inner_ring_wx - rotor_wx;
+        let t6 = k(1.0) - t1 * t2;
+        let t7 = k(1e-5) * t6;
+        let t8 = outer_ring_wz - inner_ring_wz;
+        let t9 = t8 * t7;
+        let t10 = outer_ring_wy * t4;
+        let t11 = (t5 - k(0.20025) * t10) * t9 + k(1e-6) * (outer_ring_wy - t5 * t4);
+        let t12 = t11 / (k(8.00125e-6) - k(6.00125e-6) * (t4 * t4));
+        let t13 = outer_ring_wx * outer_ring_wy;
+        let t14 = t4 * t12;
+        let t15 = inner_ring_wy * t8 - (t14 - t0 * t6);
+        let t16 = inner_ring_wx * t8 - (t0 * t4 + t6 * t12);
+        let t17 = k(1e-6) * t8
+            - t7 * (k(10.0) + outer_ring_wy * (t5 + k(0.399875) * t10));
+        let t18 = t13 + k(166631.95167673402) * t17;
+        let t19 = k(0.000125) * t18;
+        let t20 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t21 = k(2.0) * t20;
+        let t22 = k(1.0) - t20 * t21;
+        let t23 = k(0.000125) * t16;
+        let t24 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t25 = t24 * t21;
+        let t26 = k(0.000125) * inner_ring_wy;
+        let t27 = inner_ring_wx * t26;
+        let t28 = k(0.000125) * inner_ring_wz;
+        let t29 = inner_ring_wx * t28;
+        let t30 = t29 * t25 - t27 * t22 - (t25 * t23 + t22 * t19);
+        let t31 = rotor_e0 * rotor_e3;
+        let t32 = rotor_e1 * rotor_e2;
+        let t33 = inner_ring_wy * t26 + inner_ring_wz * t28;
+        let t34 = rotor_e0 * rotor_e0;
+        let t35 = k(2.0) * (k(0.5) - (t34 + rotor_e1 * rotor_e1)) * t33
+            - k(2.0) * (t32 - t31) * t30;
+        let t36 = t29 * t22 + t27 * t25 - (t22 * t23 - t25 * t19);
+        let t37 = rotor_e0 * rotor_e2;
+        let t38 = rotor_e1 * rotor_e3;
+        let t39 = k(2.0) * (t38 + t37) * t36 + t35;
+        let t40 = k(2.0) * (t32 + t31) * t33
+            - k(2.0) * (k(0.5) - (t34 + rotor_e2 * rotor_e2)) * t30;
+        let t41 = rotor_e0 * rotor_e1;
+        let t42 = rotor_e2 * rotor_e3;
+        let t43 = k(2.0) * (t42 - t41) * t36 - t40;
+        let t44 = k(2.0) * (t38 - t37) * t33 + k(2.0) * (t42 + t41) * t30;
+        let t45 = k(2.0) * (k(0.5) - (t34 + rotor_e3 * rotor_e3)) * t36 + t44;
+        let t46 = k(1e-6) * t5;
+        let t47 = t14 - k(100000.0) * (t46 + outer_ring_wy * t9) + t15;
+        let t48 = rotor_wz * t5 + (t25 * t18 - t22 * t16);
+        let t49 = rotor_wy * t5 + (t22 * t18 + t25 * t16);
+        let t50 = k(0.08) * t39;
+        let t51 = k(0.8) + k(0.08) * t43;
+        let t52 = k(0.1) + t51;
+        let t53 = k(0.08) * t45;
+        let t54 = k(5e-6) * (rotor_wx * rotor_wy - t49);
+        let t55 = k(5e-6) * (rotor_wx * rotor_wz - t48);
+        let t56 = t25 * t55 + t22 * t54;
+        let t57 = inner_ring_e0 * inner_ring_e1;
+        let t58 = inner_ring_e2 * inner_ring_e3;
+        let t59 = inner_ring_e0 * inner_ring_e0;
+        let t60 = k(0.00025)
+            * (inner_ring_e1 * inner_ring_e2 - inner_ring_e0 * inner_ring_e3) * t50
+            - k(0.00025) * (k(0.5) - (t59 + inner_ring_e2 * inner_ring_e2)) * t51;
+        let t61 = t60 - k(0.00025) * (t58 + t57) * t53 - t56
+            + k(1e-6) * (inner_ring_wx * inner_ring_wy - t8 + t18);
+        let t62 = t61 + k(1e-6) * (t13 - (t13 - t8));
+        let t63 = k(2.0) * outer_ring_e2;
+        let t64 = outer_ring_e0 * t63;
+        let t65 = t22 * t55 - t25 * t54;
+        let t66 = k(0.00025)
+            * (inner_ring_e1 * inner_ring_e3 + inner_ring_e0 * inner_ring_e2) * t50
+            + k(0.00025) * (t58 - t57) * t51;
+        let t67 = t66
+            + k(0.00025) * (k(0.5) - (t59 + inner_ring_e3 * inner_ring_e3)) * t53 - t65;
+        let t68 = t67 - k(2e-6) * t16;
+        let t69 = t46 + k(1e-5) * t47
+            + k(1e-6) * (inner_ring_wy * inner_ring_wz - t5 + t15);
+        let t70 = t6 * t69 + t4 * t68;
+        let t71 = t70 + k(2e-6) * t0;
+        let t72 = k(1.0) - outer_ring_e2 * t63;
+        *out = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t0,
+            -t12,
+            t13,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t15,
+            t16,
+            t18,
+            t39,
+            t43,
+            -t45,
+            -t47,
+            -t48,
+            t49,
+            -t50,
+            -(k(0.1) + t52),
+            t53,
+            t72 * t71 - t64 * t62,
+            t64 * t71 + t72 * t62,
+            -t50,
+            -t52,
+            t53,
+            t6 * t68 - t4 * t69,
+            -t70,
+            -t50,
+            -t51,
+            t53,
+            t56,
+            t65,
         ];
     }
 }

@@ -19,7 +19,7 @@
 //! | gamma | γ | 13 | 25 | 0 | 38 | 3 of 5 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 8 | 13 | 0 | 21 | 0 of 5 |
 //! | applied_force | (f, n' − w̃'J'w') | 7 | 16 | 0 | 23 | 3 of 6 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 20 | 42 | 1 | 63 | 3 of 6 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 14 | 27 | 1 | 42 | 3 of 6 |
 //! | multipliers | λ, the accelerations being known | 11 | 26 | 1 | 38 | 0 of 5 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 18 | 0 | 26 | 0 of 9 |
 //! | energy | T and V | 11 | 24 | 0 | 35 | 0 of 2 |
@@ -34,6 +34,7 @@
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 7 | 12 | 0 | 19 | 0 of 1 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 7 | 14 | 0 | 21 | 3 of 6 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 5 | 14 | 0 | 19 | 0 of 5 |
+//! | corrected_solution | both | 10 | 23 | 0 | 33 | 6 of 11 |
 //!
 //! # Proof
 //!
@@ -50,7 +51,7 @@
 //! * joint_derivative: eqs. (14) and (16) on the constraints
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
-//! * corrected_multipliers: eq. (17) on the constraints
+//! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //!
 //! All of it holds but with a probability below 1e-149.
 //! Not proved: the size of rounding errors.
@@ -607,7 +608,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Torsion<T> {
             -(k(0.01) * disc_wz + k(0.5) * (turn0 + t4)),
         ];
     }
-    /// Solves eq. (17): 63 operations (20 ±, 42 ×, 1 ÷) and 3 functions.
+    /// Solves eq. (17): 42 operations (14 ±, 27 ×, 1 ÷) and 3 functions.
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let disc_e0 = y[3];
@@ -618,31 +619,25 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Torsion<T> {
         let disc_wy = y[11];
         let disc_wz = y[12];
         let turn0 = y[14];
-        let t0 = disc_wx * disc_wz;
-        let t1 = disc_e0 * disc_e0;
-        let t2 = k(2.0) * (k(0.5) - (t1 + disc_e1 * disc_e1));
-        let t3 = disc_wy * disc_wz;
-        let t4 = disc_e0 * disc_e3;
-        let t5 = disc_e1 * disc_e2;
-        let t6 = k(2.0) * (t5 - t4);
-        let t7 = disc_wy * disc_wy + disc_wx * disc_wx;
-        let t8 = k(2.0) * (disc_e1 * disc_e3 + disc_e0 * disc_e2) * t7
-            - (t6 * t3 - t2 * t0);
-        let t9 = k(2.0) * (t5 + t4);
-        let t10 = k(2.0) * (k(0.5) - (t1 + disc_e2 * disc_e2));
-        let t11 = k(1.0) / (t2 * t10 - t6 * t9);
-        let t12 = k(2.0) * (disc_e2 * disc_e3 - disc_e0 * disc_e1) * t7
-            + (t10 * t3 - t9 * t0);
-        let t13 = turn0.cos();
-        let t14 = turn0.sin();
-        let t15 = (t9 * t13 + t2 * t14).atan2(t9 * t14 - t2 * t13);
+        let t0 = disc_e0 * disc_e0;
+        let t1 = (disc_wy * disc_wy + disc_wx * disc_wx)
+            * (k(0.5) / (k(0.5) - (t0 + disc_e3 * disc_e3)));
+        let t2 = disc_wy * disc_wz
+            - k(2.0) * (disc_e2 * disc_e3 + disc_e0 * disc_e1) * t1;
+        let t3 = disc_wx * disc_wz
+            - k(2.0) * (disc_e1 * disc_e3 - disc_e0 * disc_e2) * t1;
+        let t4 = turn0.cos();
+        let t5 = k(2.0) * (k(0.5) - (t0 + disc_e1 * disc_e1));
+        let t6 = turn0.sin();
+        let t7 = k(2.0) * (disc_e1 * disc_e2 + disc_e0 * disc_e3);
+        let t8 = (t7 * t4 + t5 * t6).atan2(t7 * t6 - t5 * t4);
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            t2 * t11 * t12 + t9 * t11 * t8,
-            -(t6 * t11 * t12 + t10 * t11 * t8),
-            -(k(50.0) * (k(0.01) * disc_wz + k(0.5) * (turn0 + t15))),
+            t2,
+            -t3,
+            -(k(50.0) * (k(0.01) * disc_wz + k(0.5) * (turn0 + t8))),
         ];
     }
     /// Writes λ: 38 operations (11 ±, 26 ×, 1 ÷).
@@ -688,12 +683,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Torsion<T> {
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Torsion<T> {
     type Joints = [T; 3];
     type Rates = [T; 1];
+    type Solution = [T; 11];
     fn joint_start(&self) -> Self::Joints {
         let k = T::constant;
         [k(20.420352248333657), k(0.0), k(0.0)]
     }
     fn rates(&self) -> Self::Rates {
         [T::constant(0.0); 1]
+    }
+    fn solution(&self) -> Self::Solution {
+        [T::constant(0.0); 11]
     }
     /// Writes u̇: 3 operations (1 ±, 2 ×, 0 ÷).
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
@@ -830,6 +829,43 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Torsion<T> {
             -(k(4.0) * disc_dsz),
             t4 * t3 - t2 * t1,
             t4 * t1 + t2 * t3,
+        ];
+    }
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 33 operations (10 ±, 23 ×, 0 ÷) and 3 functions.
+    fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
+        let k = T::constant;
+        let disc_e0 = y[3];
+        let disc_e1 = y[4];
+        let disc_e2 = y[5];
+        let disc_e3 = y[6];
+        let disc_wx = y[10];
+        let disc_wy = y[11];
+        let disc_wz = y[12];
+        let turn0 = y[14];
+        let t0 = disc_wy * disc_wz;
+        let t1 = disc_wx * disc_wz;
+        let t2 = turn0.cos();
+        let t3 = k(2.0) * (k(0.5) - (disc_e0 * disc_e0 + disc_e1 * disc_e1));
+        let t4 = turn0.sin();
+        let t5 = k(2.0) * (disc_e1 * disc_e2 + disc_e0 * disc_e3);
+        let t6 = (t5 * t2 + t3 * t4).atan2(t5 * t4 - t3 * t2);
+        let t7 = k(0.02) * t1;
+        let t8 = k(2.0) * disc_e3;
+        let t9 = k(1.0) - disc_e3 * t8;
+        let t10 = k(0.02) * t0;
+        let t11 = disc_e0 * t8;
+        *out = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t0,
+            -t1,
+            -(k(25.0) * (turn0 + t6) + k(0.5) * disc_wz),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t9 * t7 - t11 * t10,
+            t9 * t10 + t11 * t7,
         ];
     }
 }

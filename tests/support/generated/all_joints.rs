@@ -18,7 +18,7 @@
 //! | gamma | γ | 1092 | 1437 | 4 | 2533 | 0 of 40 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 679 | 854 | 4 | 1537 | 0 of 40 |
 //! | applied_force | (f, n' − w̃'J'w') | 304 | 425 | 2 | 731 | 6 of 42 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 4849 | 5977 | 29 | 10855 | 0 of 51 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 4627 | 5724 | 29 | 10380 | 0 of 51 |
 //! | multipliers | λ, the accelerations being known | 1187 | 1646 | 12 | 2845 | 0 of 40 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 275 | 405 | 2 | 682 | 0 of 54 |
 //! | energy | T and V | 109 | 169 | 0 | 278 | 0 of 2 |
@@ -341,86 +341,86 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for AllJoints<T> {
         let t60 = k(0.1) * (k(2.0) * (t47 + t46) * slide_wy - t58 * slide_wz + t59);
         let t61 = k(0.23570226039551584) * (slide_sx + t60 - (slide_sy + k(0.1) * t57))
             + k(0.9428090415820634) * (slide_sz - t53);
-        let t62 = shaft_e0 * shaft_e2;
-        let t63 = shaft_e1 * shaft_e3;
-        let t64 = t63 - t62;
-        let t65 = shaft_e0 * shaft_e1;
-        let t66 = shaft_e2 * shaft_e3;
-        let t67 = t66 + t65;
-        let t68 = shaft_e0 * shaft_e0;
-        let t69 = k(0.5) - (t68 + shaft_e3 * shaft_e3);
-        let t70 = k(0.6030226891555273) * t69
-            + (k(0.6030226891555273) * t67 + k(1.8090680674665818) * t64);
-        let t71 = k(2.0) * t40;
-        let t72 = k(2.0) * t43;
-        let t73 = k(2.0) * t44;
-        let t74 = k(0.1) * (t73 * sleeve_wy + t72 * sleeve_wz)
-            - k(0.05) * (t73 * sleeve_wx + t71 * sleeve_wz);
-        let t75 = k(2.0) * t64;
-        let t76 = k(2.0) * t67;
-        let t77 = t76 * shaft_wx - t75 * shaft_wy;
-        let t78 = k(2.0) * t69;
-        let t79 = t78 * shaft_wy + t76 * shaft_wz;
-        let t80 = t78 * shaft_wx + t75 * shaft_wz;
-        let t81 = shaft_sz - (k(0.05) * t80 - k(0.2) * t79 - k(0.05) * t77)
-            - (sleeve_sz - (t74 + k(0.05) * (t72 * sleeve_wx - t71 * sleeve_wy)));
+        let t62 = k(2.0) * t40;
+        let t63 = k(2.0) * t43;
+        let t64 = k(2.0) * t44;
+        let t65 = k(0.1) * (t64 * sleeve_wy + t63 * sleeve_wz)
+            - k(0.05) * (t64 * sleeve_wx + t62 * sleeve_wz);
+        let t66 = shaft_e0 * shaft_e2;
+        let t67 = shaft_e1 * shaft_e3;
+        let t68 = t67 - t66;
+        let t69 = k(2.0) * t68;
+        let t70 = shaft_e0 * shaft_e1;
+        let t71 = shaft_e2 * shaft_e3;
+        let t72 = t71 + t70;
+        let t73 = k(2.0) * t72;
+        let t74 = t73 * shaft_wx - t69 * shaft_wy;
+        let t75 = shaft_e0 * shaft_e0;
+        let t76 = k(0.5) - (t75 + shaft_e3 * shaft_e3);
+        let t77 = k(2.0) * t76;
+        let t78 = t77 * shaft_wy + t73 * shaft_wz;
+        let t79 = t77 * shaft_wx + t69 * shaft_wz;
+        let t80 = shaft_sz - (k(0.05) * t79 - k(0.2) * t78 - k(0.05) * t74)
+            - (sleeve_sz - (t65 + k(0.05) * (t63 * sleeve_wx - t62 * sleeve_wy)));
+        let t81 = k(0.6030226891555273) * t76
+            + (k(0.6030226891555273) * t72 + k(1.8090680674665818) * t68);
         let t82 = sleeve_rz - (k(0.1) * t44 + (k(0.1) * t43 + k(0.2) * t40))
-            - (shaft_rz + (k(0.1) * t69 + (k(0.1) * t67 + k(0.4) * t64)));
+            - (shaft_rz + (k(0.1) * t76 + (k(0.1) * t72 + k(0.4) * t68)));
         let t83 = t82
-            * (k(0.9045340337332909) * t79 - k(0.30151134457776363) * t80
-                + k(0.30151134457776363) * t77) - t81 * t70;
-        let t84 = shaft_e0 * shaft_e3;
-        let t85 = shaft_e1 * shaft_e2;
-        let t86 = t85 + t84;
-        let t87 = k(0.5) - (t68 + shaft_e2 * shaft_e2);
-        let t88 = t66 - t65;
-        let t89 = k(0.6030226891555273) * t88
-            + (k(0.6030226891555273) * t87 - k(1.8090680674665818) * t86);
-        let t90 = t42 - t41;
-        let t91 = k(2.0) * t90;
-        let t92 = k(0.1) * (t91 * sleeve_wy + t36 * sleeve_wz)
-            - k(0.05) * (t91 * sleeve_wx - t34 * sleeve_wz);
-        let t93 = k(2.0) * t86;
-        let t94 = k(2.0) * t87;
-        let t95 = t94 * shaft_wx + t93 * shaft_wy;
-        let t96 = k(2.0) * t88;
-        let t97 = t96 * shaft_wy + t94 * shaft_wz;
-        let t98 = t96 * shaft_wx - t93 * shaft_wz;
-        let t99 = shaft_sy + (k(0.05) * t98 - k(0.2) * t97 - k(0.05) * t95)
-            - (sleeve_sy + (t92 + k(0.05) * (t36 * sleeve_wx + t34 * sleeve_wy)));
-        let t100 = sleeve_ry + (k(0.1) * t90 + (k(0.1) * t35 - k(0.2) * t33))
-            - (shaft_ry - (k(0.1) * t88 + (k(0.1) * t87 - k(0.4) * t86)));
+            * (k(0.9045340337332909) * t78 - k(0.30151134457776363) * t79
+                + k(0.30151134457776363) * t74) - t81 * t80;
+        let t84 = t42 - t41;
+        let t85 = k(2.0) * t84;
+        let t86 = k(0.1) * (t85 * sleeve_wy + t36 * sleeve_wz)
+            - k(0.05) * (t85 * sleeve_wx - t34 * sleeve_wz);
+        let t87 = shaft_e0 * shaft_e3;
+        let t88 = shaft_e1 * shaft_e2;
+        let t89 = t88 + t87;
+        let t90 = k(2.0) * t89;
+        let t91 = k(0.5) - (t75 + shaft_e2 * shaft_e2);
+        let t92 = k(2.0) * t91;
+        let t93 = t92 * shaft_wx + t90 * shaft_wy;
+        let t94 = t71 - t70;
+        let t95 = k(2.0) * t94;
+        let t96 = t95 * shaft_wy + t92 * shaft_wz;
+        let t97 = t95 * shaft_wx - t90 * shaft_wz;
+        let t98 = shaft_sy + (k(0.05) * t97 - k(0.2) * t96 - k(0.05) * t93)
+            - (sleeve_sy + (t86 + k(0.05) * (t36 * sleeve_wx + t34 * sleeve_wy)));
+        let t99 = k(0.6030226891555273) * t94
+            + (k(0.6030226891555273) * t91 - k(1.8090680674665818) * t89);
+        let t100 = sleeve_ry + (k(0.1) * t84 + (k(0.1) * t35 - k(0.2) * t33))
+            - (shaft_ry - (k(0.1) * t94 + (k(0.1) * t91 - k(0.4) * t89)));
         let t101 = t100
-            * (k(0.9045340337332909) * t97 - k(0.30151134457776363) * t98
-                + k(0.30151134457776363) * t95) - t99 * t89;
-        let t102 = k(0.5) - (t68 + shaft_e1 * shaft_e1);
-        let t103 = t85 - t84;
-        let t104 = t63 + t62;
-        let t105 = k(0.6030226891555273) * t104
-            - (k(0.6030226891555273) * t103 - k(1.8090680674665818) * t102);
-        let t106 = t39 + t38;
-        let t107 = k(2.0) * t106;
-        let t108 = k(0.1) * (t107 * sleeve_wy - t32 * sleeve_wz)
-            - k(0.05) * (t107 * sleeve_wx + t27 * sleeve_wz);
-        let t109 = k(2.0) * t102;
-        let t110 = k(2.0) * t103;
-        let t111 = t110 * shaft_wx + t109 * shaft_wy;
-        let t112 = k(2.0) * t104;
-        let t113 = t112 * shaft_wy - t110 * shaft_wz;
-        let t114 = t112 * shaft_wx + t109 * shaft_wz;
-        let t115 = shaft_sx + (k(0.05) * t114 - k(0.2) * t113 + k(0.05) * t111)
-            - (sleeve_sx + (t108 - k(0.05) * (t32 * sleeve_wx + t27 * sleeve_wy)));
-        let t116 = sleeve_rx + (k(0.1) * t106 - (k(0.1) * t31 - k(0.2) * t26))
-            - (shaft_rx - (k(0.1) * t104 - (k(0.1) * t103 - k(0.4) * t102)));
+            * (k(0.9045340337332909) * t96 - k(0.30151134457776363) * t97
+                + k(0.30151134457776363) * t93) - t99 * t98;
+        let t102 = t39 + t38;
+        let t103 = k(2.0) * t102;
+        let t104 = k(0.1) * (t103 * sleeve_wy - t32 * sleeve_wz)
+            - k(0.05) * (t103 * sleeve_wx + t27 * sleeve_wz);
+        let t105 = k(0.5) - (t75 + shaft_e1 * shaft_e1);
+        let t106 = k(2.0) * t105;
+        let t107 = t88 - t87;
+        let t108 = k(2.0) * t107;
+        let t109 = t108 * shaft_wx + t106 * shaft_wy;
+        let t110 = t67 + t66;
+        let t111 = k(2.0) * t110;
+        let t112 = t111 * shaft_wy - t108 * shaft_wz;
+        let t113 = t111 * shaft_wx + t106 * shaft_wz;
+        let t114 = shaft_sx + (k(0.05) * t113 - k(0.2) * t112 + k(0.05) * t109)
+            - (sleeve_sx + (t104 - k(0.05) * (t32 * sleeve_wx + t27 * sleeve_wy)));
+        let t115 = k(0.6030226891555273) * t110
+            - (k(0.6030226891555273) * t107 - k(1.8090680674665818) * t105);
+        let t116 = sleeve_rx + (k(0.1) * t102 - (k(0.1) * t31 - k(0.2) * t26))
+            - (shaft_rx - (k(0.1) * t110 - (k(0.1) * t107 - k(0.4) * t105)));
         let t117 = t116
-            * (k(0.9045340337332909) * t113 - k(0.30151134457776363) * t114
-                - k(0.30151134457776363) * t111) - t115 * t105;
+            * (k(0.9045340337332909) * t112 - k(0.30151134457776363) * t113
+                - k(0.30151134457776363) * t109) - t115 * t114;
         let t118 = t117 + t101 - t83;
         let t119 = t118 * (k(3.0) * t118)
             + (t61 * (k(0.5) * t61) + (t45 + t37 + t23 * t23));
         let t120 = k(0.19245008972987526) * (puck_wx + puck_wy)
             + k(0.9622504486493763) * puck_wz;
-        let t121 = k(0.05) - (t82 * t70 - (t100 * t89 + t116 * t105));
+        let t121 = k(0.05) - (t82 * t81 - (t100 * t99 + t116 * t115));
         let t122 = (k(0.0001) + t121 * t121).sqrt();
         let t123 = (k(1.0) - t121 / t122) * t118 + k(250.0) * (t121 - t122);
         let t124 = t118 * t123 + (t120 * (k(0.05) * (k(10.0) * t120).tanh()) + t119);
@@ -433,19 +433,19 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for AllJoints<T> {
         let t127 = carrier_e0 * carrier_e0;
         let t128 = carrier_e0 * carrier_e3;
         let t129 = carrier_e1 * carrier_e2;
-        let t130 = k(2.0) * (t129 + t128) * t93
-            + k(2.0) * (k(0.5) - (t127 + carrier_e1 * carrier_e1)) * t109;
+        let t130 = k(2.0) * (t129 + t128) * t90
+            + k(2.0) * (k(0.5) - (t127 + carrier_e1 * carrier_e1)) * t106;
         let t131 = carrier_e0 * carrier_e2;
         let t132 = carrier_e1 * carrier_e3;
-        let t133 = k(2.0) * (k(0.5) - (t127 + carrier_e2 * carrier_e2)) * t93
-            + k(2.0) * (t129 - t128) * t109;
+        let t133 = k(2.0) * (k(0.5) - (t127 + carrier_e2 * carrier_e2)) * t90
+            + k(2.0) * (t129 - t128) * t106;
         let t134 = carrier_e0 * carrier_e1;
         let t135 = carrier_e2 * carrier_e3;
-        let t136 = carrier_wy * (k(2.0) * (t135 + t134) * t75 - t133)
-            + carrier_wx * (k(2.0) * (t132 - t131) * t75 + t130);
-        let t137 = k(2.0) * (t135 - t134) * t93 - k(2.0) * (t132 + t131) * t109;
+        let t136 = carrier_wy * (k(2.0) * (t135 + t134) * t69 - t133)
+            + carrier_wx * (k(2.0) * (t132 - t131) * t69 + t130);
+        let t137 = k(2.0) * (t135 - t134) * t90 - k(2.0) * (t132 + t131) * t106;
         let t138 = carrier_wz
-            * (k(2.0) * (k(0.5) - (t127 + carrier_e3 * carrier_e3)) * t75 - t137);
+            * (k(2.0) * (k(0.5) - (t127 + carrier_e3 * carrier_e3)) * t69 - t137);
         let t139 = k(0.9045340337332909) * shaft_wx + k(0.30151134457776363) * shaft_wy
             - k(0.30151134457776363) * shaft_wz
             - (k(0.9045340337332909) * sleeve_wx + k(0.30151134457776363) * sleeve_wy
@@ -563,8 +563,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for AllJoints<T> {
             accelerations[40],
             accelerations[41],
             -t126,
-            k(0.3333333333333333) * carrier_wx + k(0.6666666666666666) * carrier_wy
-                + k(0.6666666666666666) * carrier_wz,
+            k(0.6666666666666666) * carrier_wz
+                + (k(0.6666666666666666) * carrier_wy
+                    + k(0.3333333333333333) * carrier_wx),
             shaft_wx + (t138 - t136),
             -t139,
             -t125,
@@ -1725,15 +1726,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for AllJoints<T> {
             let t185 = k(0.6666666666666666) * (t176 - t165)
                 - k(0.3333333333333333) * (slide_sz - k(0.1) * (t184 - t181));
             let t186 = t163 * slide_wx - t155 * slide_wz;
-            let t187 = t186 + t164;
+            let t187 = t164 + t186;
             let t188 = k(0.23570226039551584) * t187 - k(0.9428090415820634) * t159;
             let t189 = t174 * slide_wx + t167 * slide_wz;
-            let t190 = t189 + t175;
+            let t190 = t175 + t189;
             let t191 = k(0.23570226039551584) * t190 + k(0.9428090415820634) * t170;
             let t192 = t183 * slide_wx + t178 * slide_wz;
             let t193 = k(0.6666666666666666) * (t191 - t188)
                 + k(0.3333333333333333)
-                    * (k(0.23570226039551584) * (t192 + t184)
+                    * (k(0.23570226039551584) * (t184 + t192)
                         - k(0.9428090415820634) * t181);
             let t194 = k(0.6666666666666666) * t190 - k(0.3333333333333333) * t170
                 + (k(0.6666666666666666) * t187 + k(0.3333333333333333) * t159);
@@ -1893,7 +1894,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for AllJoints<T> {
             let t204 = t203 - t202;
             let t205 = k(2.0) * t204;
             let t206 = t197 * nut_wx - t205 * nut_wy;
-            let t207 = slide_sz - k(0.1) * (t192 - t184 + t181)
+            let t207 = slide_sz - k(0.1) * (t181 - (t184 - t192))
                 - (nut_sz + k(0.1) * (t206 - t201));
             let t208 = nut_rz - k(0.2) * (t204 - t199)
                 - (slide_rz - k(0.2) * (t182 - (t177 + t179)));
@@ -1909,7 +1910,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for AllJoints<T> {
             let t216 = t215 + t214;
             let t217 = k(2.0) * t216;
             let t218 = t210 * nut_wx + t217 * nut_wy;
-            let t219 = slide_sy + k(0.1) * (t186 - t164 + t159)
+            let t219 = slide_sy + k(0.1) * (t159 - (t164 - t186))
                 - (nut_sy - k(0.1) * (t218 - t213));
             let t220 = nut_ry - k(0.2) * (t216 + t211)
                 - (slide_ry + k(0.2) * (t162 + (t154 - t157)));
@@ -1923,7 +1924,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for AllJoints<T> {
             let t226 = k(0.5) - (t198 + nut_e1 * nut_e1);
             let t227 = k(2.0) * t226;
             let t228 = t222 * nut_wx + t227 * nut_wy;
-            let t229 = slide_sx + k(0.1) * (t189 - t175 - t170)
+            let t229 = slide_sx - k(0.1) * (t170 + (t175 - t189))
                 - (nut_sx + k(0.1) * (t228 + t225));
             let t230 = nut_rx + k(0.2) * (t226 - t223)
                 - (slide_rx + k(0.2) * (t173 - (t166 - t168)));
@@ -2727,7 +2728,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for AllJoints<T> {
                 - (sleeve_sz - (t123 + k(0.05) * (t101 * sleeve_wx - t122 * sleeve_wy)));
             let t128 = t121
                 * (k(0.9045340337332909) * t125 - k(0.30151134457776363) * t126
-                    + k(0.30151134457776363) * t124) - t127 * t119;
+                    + k(0.30151134457776363) * t124) - t119 * t127;
             let t129 = k(2.0) * t117;
             let t130 = k(0.1) * (t95 * sleeve_wy + t103 * sleeve_wz)
                 - k(0.05) * (t95 * sleeve_wx - t129 * sleeve_wz);
@@ -2738,7 +2739,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for AllJoints<T> {
                 - (sleeve_sy + (t130 + k(0.05) * (t103 * sleeve_wx + t129 * sleeve_wy)));
             let t135 = t118
                 * (k(0.9045340337332909) * t132 - k(0.30151134457776363) * t133
-                    + k(0.30151134457776363) * t131) - t134 * t116;
+                    + k(0.30151134457776363) * t131) - t116 * t134;
             let t136 = k(2.0) * t114;
             let t137 = k(0.1) * (t99 * sleeve_wy - t108 * sleeve_wz)
                 - k(0.05) * (t99 * sleeve_wx + t136 * sleeve_wz);
@@ -2749,7 +2750,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for AllJoints<T> {
                 - (sleeve_sx + (t137 - k(0.05) * (t108 * sleeve_wx + t136 * sleeve_wy)));
             let t142 = t115
                 * (k(0.9045340337332909) * t139 - k(0.30151134457776363) * t140
-                    - k(0.30151134457776363) * t138) - t141 * t113;
+                    - k(0.30151134457776363) * t138) - t113 * t141;
             let t143 = slide_e0 * slide_e2;
             let t144 = slide_e1 * slide_e3;
             let t145 = t144 + t143;
@@ -3041,8 +3042,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for AllJoints<T> {
             -(k(0.6666666666666666) * (t25 - t20) + k(0.3333333333333333) * t13),
             k(0.6666666666666666) * t25 + k(0.3333333333333333) * t20
                 - k(0.6666666666666666) * t13,
-            k(0.3333333333333333) * carrier_wx + k(0.6666666666666666) * carrier_wy
-                + k(0.6666666666666666) * carrier_wz,
+            k(0.6666666666666666) * carrier_wz
+                + (k(0.6666666666666666) * carrier_wy
+                    + k(0.3333333333333333) * carrier_wx),
             -t48,
             t23 * t43 + t50 + t49,
             -t74,
@@ -8537,7 +8539,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t101,
             t102,
             t104,
-            t126,
+            t124,
             t127,
             t128,
             t129,
@@ -8615,13 +8617,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t42 = t0 + t17;
             let t43 = t15 * t42 - (t10 * t19 - t5 * t11);
             let t44 = k(0.6666666666666666) * t43;
-            let t45 = k(0.6666666666666666) * t20 + k(0.3333333333333333) * t16 - t44;
+            let t45 = t44 - (k(0.6666666666666666) * t20 + k(0.3333333333333333) * t16);
             let t46 = t29 * t42 + (t25 * t19 - t23 * t11);
             let t47 = k(0.6666666666666666) * t46;
-            let t48 = k(0.6666666666666666) * t31 + k(0.3333333333333333) * t30 - t47;
+            let t48 = t47 - (k(0.6666666666666666) * t31 + k(0.3333333333333333) * t30);
             let t49 = t38 * t42 + (t36 * t19 + t34 * t11);
             let t50 = k(0.6666666666666666) * t49;
-            let t51 = k(0.6666666666666666) * t40 + k(0.3333333333333333) * t39 - t50;
+            let t51 = t50 - (k(0.6666666666666666) * t40 + k(0.3333333333333333) * t39);
             let t52 = shaft_wy * shaft_wy;
             let t53 = shaft_wz * shaft_wz;
             let t54 = t53 + t52;
@@ -8702,19 +8704,19 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t122 = shaft_sx + (k(0.05) * t116 - k(0.2) * t121 + k(0.05) * t115)
                 - (sleeve_sx + (t120 - k(0.05) * (t118 * sleeve_wx + t117 * sleeve_wy)));
             let t123 = t122 * (k(0.7071067811865476) * (t116 - t115));
-            let t124 = sleeve_wy * sleeve_wy;
-            let t125 = sleeve_wz * sleeve_wz;
-            let t126 = t125 + t124;
-            let t127 = sleeve_wx * sleeve_wy;
-            let t128 = sleeve_wx * sleeve_wz;
-            let t129 = k(0.1) * (t119 * t128 + (t118 * t127 + t117 * t126));
-            let t130 = sleeve_wx * sleeve_wx;
-            let t131 = t125 + t130;
-            let t132 = sleeve_wy * sleeve_wz;
-            let t133 = t119 * t132 - (t118 * t131 + t117 * t127);
-            let t134 = t124 + t130;
-            let t135 = k(0.05) * (t119 * t134 - (t118 * t132 - t117 * t128))
-                + (k(0.05) * t133 + t129);
+            let t124 = sleeve_wx * sleeve_wy;
+            let t125 = sleeve_wx * sleeve_wx;
+            let t126 = sleeve_wz * sleeve_wz;
+            let t127 = t126 + t125;
+            let t128 = sleeve_wy * sleeve_wz;
+            let t129 = t119 * t128 - (t118 * t127 + t117 * t124);
+            let t130 = sleeve_wy * sleeve_wy;
+            let t131 = t126 + t130;
+            let t132 = sleeve_wx * sleeve_wz;
+            let t133 = k(0.1) * (t119 * t132 + (t118 * t124 + t117 * t131));
+            let t134 = t130 + t125;
+            let t135 = k(0.05) * (t119 * t134 - (t118 * t128 - t117 * t132))
+                + (t133 + k(0.05) * t129);
             let t136 = t135 + (k(0.05) * t105 + (t69 + k(0.05) * t103));
             let t137 = k(1.4142135623730951) * (t61 + t66) * t136 + t123
                 + (t123 + t114 * (k(0.7071067811865476) * (t105 - t103)));
@@ -8738,10 +8740,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t153 = shaft_sy + (k(0.05) * t147 - k(0.2) * t152 - k(0.05) * t146)
                 - (sleeve_sy + (t151 + k(0.05) * (t149 * sleeve_wx + t148 * sleeve_wy)));
             let t154 = t153 * (k(0.7071067811865476) * (t147 + t146));
-            let t155 = k(0.1) * (t150 * t128 - (t149 * t127 + t148 * t126));
-            let t156 = t150 * t132 + (t149 * t131 + t148 * t127);
-            let t157 = k(0.05) * (t150 * t134 + (t149 * t132 - t148 * t128))
-                + (k(0.05) * t156 + t155);
+            let t155 = t150 * t128 + (t149 * t127 + t148 * t124);
+            let t156 = k(0.1) * (t150 * t132 - (t149 * t124 + t148 * t131));
+            let t157 = k(0.05) * (t150 * t134 + (t149 * t128 - t148 * t132))
+                + (t156 + k(0.05) * t155);
             let t158 = t157 + (k(0.05) * t139 + (t79 + k(0.05) * t138));
             let t159 = k(1.4142135623730951) * (t72 - t76) * t158 - t154
                 - (t154 + t145 * (k(0.7071067811865476) * (t139 - t138)));
@@ -8763,10 +8765,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t173 = shaft_sz - (k(0.05) * t167 - k(0.2) * t172 - k(0.05) * t166)
                 - (sleeve_sz - (t171 + k(0.05) * (t169 * sleeve_wx - t168 * sleeve_wy)));
             let t174 = t173 * (k(0.7071067811865476) * (t167 + t166));
-            let t175 = k(0.1) * (t170 * t128 - (t169 * t127 - t168 * t126));
-            let t176 = t170 * t132 + (t169 * t131 - t168 * t127);
-            let t177 = k(0.05) * (t170 * t134 + (t169 * t132 + t168 * t128))
-                + (k(0.05) * t176 + t175);
+            let t175 = t170 * t128 + (t169 * t127 - t168 * t124);
+            let t176 = k(0.1) * (t170 * t132 - (t169 * t124 - t168 * t131));
+            let t177 = k(0.05) * (t170 * t134 + (t169 * t128 + t168 * t132))
+                + (t176 + k(0.05) * t175);
             let t178 = t177 + (k(0.05) * t161 + (t87 + k(0.05) * t160));
             let t179 = k(1.4142135623730951) * (t82 - t84) * t178 + t174
                 + (t174 + t165 * (k(0.7071067811865476) * (t161 - t160)));
@@ -8859,7 +8861,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 t101,
                 t102,
                 t104,
-                t126,
+                t124,
                 t127,
                 t128,
                 t129,
@@ -8992,45 +8994,45 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t397,
             t399,
         ) = {
-            let t200 = t128 * t199 - (t127 * t198 - t126 * t190)
+            let t200 = t132 * t199 - (t124 * t198 - t131 * t190)
                 + k(2.0) * (shaft_wx * t197 + shaft_wz * t194);
             let t201 = k(0.9045340337332909)
                 * (t200 + (t102 * t191 + (t101 * t190 - t58 * t189)));
             let t202 = sleeve_wx * t193 + sleeve_wz * t189;
             let t203 = sleeve_wx * t196 + sleeve_wz * t191;
-            let t204 = t132 * t199 + (t131 * t198 - t127 * t190)
+            let t204 = t128 * t199 + (t127 * t198 - t124 * t190)
                 - k(2.0) * (shaft_wx * t203 + shaft_wz * t202);
             let t205 = t204 + (t102 * t195 + (t101 * t198 - t58 * t192));
             let t206 = sleeve_wx * t192 - sleeve_wy * t189;
             let t207 = sleeve_wx * t195 - sleeve_wy * t191;
-            let t208 = t134 * t199 + (t132 * t198 + t128 * t190)
+            let t208 = t134 * t199 + (t128 * t198 + t132 * t190)
                 + k(2.0) * (shaft_wx * t207 + shaft_wz * t206);
             let t209 = t208 + (t102 * t196 + (t101 * t199 - t58 * t193));
             let t210 = k(0.30151134457776363) * t209
                 + (k(0.30151134457776363) * t205 + t201);
             let t211 = sleeve_wy * t199 + sleeve_wz * t198;
-            let t212 = t128 * t196 - (t127 * t195 - t126 * t191)
+            let t212 = t132 * t196 - (t124 * t195 - t131 * t191)
                 - k(2.0) * (shaft_wx * t211 - shaft_wy * t194);
             let t213 = k(0.9045340337332909)
                 * (t212 + (t104 * t191 + (t102 * t190 + t63 * t189)));
             let t214 = sleeve_wx * t199 + sleeve_wz * t190;
-            let t215 = t132 * t196 + (t131 * t195 - t127 * t191)
+            let t215 = t128 * t196 + (t127 * t195 - t124 * t191)
                 + k(2.0) * (shaft_wx * t214 - shaft_wy * t202);
             let t216 = t215 + (t104 * t195 + (t102 * t198 + t63 * t192));
             let t217 = sleeve_wx * t198 - sleeve_wy * t190;
-            let t218 = t134 * t196 + (t132 * t195 + t128 * t191)
+            let t218 = t134 * t196 + (t128 * t195 + t132 * t191)
                 - k(2.0) * (shaft_wx * t217 - shaft_wy * t206);
             let t219 = t218 + (t104 * t196 + (t102 * t199 + t63 * t193));
             let t220 = k(0.30151134457776363) * t219
                 + (k(0.30151134457776363) * t216 + t213);
-            let t221 = t128 * t193 - (t127 * t192 - t126 * t189)
+            let t221 = t132 * t193 - (t124 * t192 - t131 * t189)
                 - k(2.0) * (shaft_wy * t197 + shaft_wz * t211);
             let t222 = k(0.9045340337332909)
                 * (t221 + (t63 * t191 - (t58 * t190 - t54 * t189)));
-            let t223 = t132 * t193 + (t131 * t192 - t127 * t189)
+            let t223 = t128 * t193 + (t127 * t192 - t124 * t189)
                 + k(2.0) * (shaft_wy * t203 + shaft_wz * t214);
             let t224 = t223 + (t63 * t195 - (t58 * t198 - t54 * t192));
-            let t225 = t134 * t193 + (t132 * t192 + t128 * t189)
+            let t225 = t134 * t193 + (t128 * t192 + t132 * t189)
                 - k(2.0) * (shaft_wy * t207 + shaft_wz * t217);
             let t226 = t225 + (t63 * t196 - (t58 * t199 - t54 * t193));
             let t227 = k(0.6396021490668313) * t210
@@ -9080,17 +9082,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t268 = t266 * t247 + (t264 * t245 + t262 * t239);
             let t269 = t229 + t246;
             let t270 = t243 * t245 - (t238 * t269 + t233 * t234);
-            let t271 = t244 - t270;
-            let t272 = k(0.9428090415820634) * t248 - k(0.23570226039551584) * t271;
+            let t271 = t270 - t244;
+            let t272 = k(0.9428090415820634) * t248 + k(0.23570226039551584) * t271;
             let t273 = t257 * t245 + (t253 * t269 + t251 * t234);
-            let t274 = t258 - t273;
-            let t275 = k(0.9428090415820634) * t259 - k(0.23570226039551584) * t274;
+            let t274 = t273 - t258;
+            let t275 = k(0.9428090415820634) * t259 + k(0.23570226039551584) * t274;
             let t276 = t266 * t245 + (t264 * t269 - t262 * t234);
             let t277 = k(0.3333333333333333)
-                * (k(0.9428090415820634) * t268 - k(0.23570226039551584) * (t267 - t276))
+                * (k(0.9428090415820634) * t268 + k(0.23570226039551584) * (t276 - t267))
                 - k(0.6666666666666666) * (t275 - t272);
-            let t278 = k(0.3333333333333333) * t259 + k(0.6666666666666666) * t274
-                + (k(0.3333333333333333) * t248 + k(0.6666666666666666) * t271);
+            let t278 = k(0.3333333333333333) * t259 - k(0.6666666666666666) * t274
+                + (k(0.3333333333333333) * t248 - k(0.6666666666666666) * t271);
             let t279 = nut_e0 * nut_e2;
             let t280 = nut_e1 * nut_e3;
             let t281 = t280 + t279;
@@ -9107,7 +9109,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t291 = k(2.0) * t283;
             let t292 = t289 * nut_wx + t291 * nut_wy + (t290 * nut_wy - t289 * nut_wz);
             let t293 = t238 * slide_wx + t233 * slide_wy;
-            let t294 = slide_sx + k(0.1) * (t285 - t286 - t293)
+            let t294 = slide_sx - k(0.1) * (t293 + (t286 - t285))
                 - (nut_sx + k(0.1) * t292);
             let t295 = t294
                 * (k(0.4472135954999579) * t286 - k(0.8944271909999159) * t285);
@@ -9121,7 +9123,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t303 = nut_wx * nut_wx;
             let t304 = t296 + t303;
             let t305 = t290 * t304 - (t289 * t302 - t291 * t300);
-            let t306 = k(0.1) * (t305 - t301 + (t248 - (t244 + t270)));
+            let t306 = k(0.1) * (t305 - t301 + (t248 - (t270 + t244)));
             let t307 = (k(1.7888543819998317) * t237 - k(0.8944271909999159) * t232)
                 * t306 + t295
                 + (t295
@@ -9140,13 +9142,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t317 = k(2.0) * t311;
             let t318 = t315 * nut_wx + t317 * nut_wy - (t316 * nut_wy + t315 * nut_wz);
             let t319 = t253 * slide_wx + t251 * slide_wy;
-            let t320 = slide_sy + k(0.1) * (t313 - t314 + t319)
+            let t320 = slide_sy + k(0.1) * (t319 - (t314 - t313))
                 - (nut_sy - k(0.1) * t318);
             let t321 = t320
                 * (k(0.4472135954999579) * t314 - k(0.8944271909999159) * t313);
             let t322 = t316 * t300 - (t315 * t299 + t317 * t298);
             let t323 = t316 * t304 + (t315 * t302 - t317 * t300);
-            let t324 = k(0.1) * (t323 - t322 + (t259 - (t258 + t273)));
+            let t324 = k(0.1) * (t323 - t322 + (t259 - (t273 + t258)));
             let t325 = (k(1.7888543819998317) * t252 - k(0.8944271909999159) * t250)
                 * t324 - t321
                 - (t321
@@ -9163,21 +9165,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t333 = k(2.0) * t327;
             let t334 = t331 * nut_wx - t333 * nut_wy - (t332 * nut_wy + t331 * nut_wz);
             let t335 = t264 * slide_wx - t262 * slide_wy;
-            let t336 = slide_sz - k(0.1) * (t329 - t330 + t335)
+            let t336 = slide_sz - k(0.1) * (t335 - (t330 - t329))
                 - (nut_sz + k(0.1) * t334);
             let t337 = t336
                 * (k(0.4472135954999579) * t330 - k(0.8944271909999159) * t329);
             let t338 = t332 * t300 - (t331 * t299 - t333 * t298);
             let t339 = t332 * t304 + (t331 * t302 + t333 * t300);
-            let t340 = k(0.1) * (t339 - t338 + (t268 - (t267 + t276)));
+            let t340 = k(0.1) * (t339 - t338 + (t268 - (t276 + t267)));
             let t341 = (k(1.7888543819998317) * t263 + k(0.8944271909999159) * t261)
                 * t340 + t337
                 + (t337
                     + t328
                         * (k(0.8944271909999159) * t276 + k(0.4472135954999579) * t267));
-            let t342 = t294
-                * (k(0.5962847939999439) * t286 + k(0.29814239699997197) * t285
-                    - k(0.7453559924999299) * t293);
+            let t342 = (k(0.5962847939999439) * t286 + k(0.29814239699997197) * t285
+                - k(0.7453559924999299) * t293) * t294;
             let t343 = t342
                 + t284
                     * (k(0.7453559924999299) * t248
@@ -9186,9 +9187,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t344 = (k(1.4907119849998598) * t242
                 + (k(0.5962847939999439) * t237 + k(1.1925695879998879) * t232)) * t306
                 - t342;
-            let t345 = t320
-                * (k(0.5962847939999439) * t314 + k(0.29814239699997197) * t313
-                    + k(0.7453559924999299) * t319);
+            let t345 = (k(0.5962847939999439) * t314 + k(0.29814239699997197) * t313
+                + k(0.7453559924999299) * t319) * t320;
             let t346 = t345
                 + t312
                     * (k(0.7453559924999299) * t259
@@ -9197,9 +9197,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t347 = (k(1.4907119849998598) * t256
                 - (k(0.5962847939999439) * t252 + k(1.1925695879998879) * t250)) * t324
                 - t345;
-            let t348 = t336
-                * (k(0.5962847939999439) * t330 + k(0.29814239699997197) * t329
-                    + k(0.7453559924999299) * t335);
+            let t348 = (k(0.5962847939999439) * t330 + k(0.29814239699997197) * t329
+                + k(0.7453559924999299) * t335) * t336;
             let t349 = t348
                 + t328
                     * (k(0.7453559924999299) * t268
@@ -9784,9 +9783,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
         let (t600, t606) = {
             let t600 = t599 * t599 * (k(2.0) * (t596 * t597 - t598 * t592))
                 * (t598 * t597 + t596 * t592);
-            let t601 = t44 + (k(0.3333333333333333) * t20 + k(0.6666666666666666) * t16);
-            let t602 = t47 + (k(0.3333333333333333) * t31 + k(0.6666666666666666) * t30);
-            let t603 = t50 + (k(0.3333333333333333) * t40 + k(0.6666666666666666) * t39);
+            let t601 = k(0.3333333333333333) * t20 + k(0.6666666666666666) * t16 + t44;
+            let t602 = k(0.3333333333333333) * t31 + k(0.6666666666666666) * t30 + t47;
+            let t603 = k(0.3333333333333333) * t40 + k(0.6666666666666666) * t39 + t50;
             let t604 = t597 * t592;
             let t605 = t604
                 + t598
@@ -9801,9 +9800,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             k(0.1) * t21,
             k(0.1) * t32,
             -(k(0.1) * t41),
-            -(k(0.6666666666666666) * t51
-                + (k(0.3333333333333333) * t48 + k(0.6666666666666666) * t45)),
-            -(k(0.3333333333333333) * t51 + k(0.6666666666666666) * (t48 - t45)),
+            k(0.6666666666666666) * t51
+                + (k(0.3333333333333333) * t48 + k(0.6666666666666666) * t45),
+            k(0.3333333333333333) * t51 + k(0.6666666666666666) * (t48 - t45),
             t69 + k(0.1) * (t21 - t43),
             t79 + k(0.1) * (t32 - t46),
             -(t87 + k(0.1) * (t41 - t49)),
@@ -9832,9 +9831,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             k(0.09622504486493763) * t503 - k(0.019245008972987525) * (t498 + t491),
             k(0.19611613513818404) * t513 + k(0.9805806756909201) * t510,
             k(0.1887128390240993) * t513 + t516,
-            k(0.2) * t509 + k(0.1) * t491 + (t129 + k(0.2) * t133),
-            k(0.2) * t515 + k(0.1) * t498 + (t155 + k(0.2) * t156),
-            -(k(0.2) * t512 + k(0.1) * t503 + (t175 + k(0.2) * t176)),
+            k(0.2) * t509 + k(0.1) * t491 + (k(0.2) * t129 + t133),
+            k(0.2) * t515 + k(0.1) * t498 + (k(0.2) * t155 + t156),
+            -(k(0.2) * t512 + k(0.1) * t503 + (k(0.2) * t175 + t176)),
             -(t543 + (t534 - t525)),
             t552 + t551 + (t549 - t548 + (t546 - t545)),
             -(k(0.5) * t572),
@@ -10013,116 +10012,116 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 - (t18 * t48 - (t5 * t45 + t12 * t43)) * t41;
             let t51 = k(0.01) * (carrier_wx * carrier_wy)
                 - (t33 * t48 - (t29 * t45 - t32 * t43)) * t41;
-            let t52 = k(0.6030226891555273) * t14
+            let t52 = sleeve_e0 * sleeve_e2;
+            let t53 = sleeve_e1 * sleeve_e3;
+            let t54 = t53 - t52;
+            let t55 = k(2.0) * t54;
+            let t56 = sleeve_e0 * sleeve_e1;
+            let t57 = sleeve_e2 * sleeve_e3;
+            let t58 = t57 + t56;
+            let t59 = k(2.0) * t58;
+            let t60 = sleeve_e0 * sleeve_e0;
+            let t61 = k(0.5) - (t60 + sleeve_e3 * sleeve_e3);
+            let t62 = k(2.0) * t61;
+            let t63 = k(0.1) * (t62 * sleeve_wy + t59 * sleeve_wz)
+                - k(0.05) * (t62 * sleeve_wx + t55 * sleeve_wz);
+            let t64 = t27 * shaft_wx - t48 * shaft_wy;
+            let t65 = t15 * shaft_wy + t27 * shaft_wz;
+            let t66 = t15 * shaft_wx + t48 * shaft_wz;
+            let t67 = shaft_sz - (k(0.05) * t66 - k(0.2) * t65 - k(0.05) * t64)
+                - (sleeve_sz - (t63 + k(0.05) * (t59 * sleeve_wx - t55 * sleeve_wy)));
+            let t68 = k(0.6030226891555273) * t14
                 + (k(0.6030226891555273) * t26 + k(1.8090680674665818) * t47);
-            let t53 = sleeve_e0 * sleeve_e2;
-            let t54 = sleeve_e1 * sleeve_e3;
-            let t55 = t54 - t53;
-            let t56 = k(2.0) * t55;
-            let t57 = sleeve_e0 * sleeve_e1;
-            let t58 = sleeve_e2 * sleeve_e3;
-            let t59 = t58 + t57;
-            let t60 = k(2.0) * t59;
-            let t61 = sleeve_e0 * sleeve_e0;
-            let t62 = k(0.5) - (t61 + sleeve_e3 * sleeve_e3);
-            let t63 = k(2.0) * t62;
-            let t64 = k(0.1) * (t63 * sleeve_wy + t60 * sleeve_wz)
-                - k(0.05) * (t63 * sleeve_wx + t56 * sleeve_wz);
-            let t65 = t27 * shaft_wx - t48 * shaft_wy;
-            let t66 = t15 * shaft_wy + t27 * shaft_wz;
-            let t67 = t15 * shaft_wx + t48 * shaft_wz;
-            let t68 = shaft_sz - (k(0.05) * t67 - k(0.2) * t66 - k(0.05) * t65)
-                - (sleeve_sz - (t64 + k(0.05) * (t60 * sleeve_wx - t56 * sleeve_wy)));
-            let t69 = sleeve_rz - (k(0.1) * t62 + (k(0.1) * t59 + k(0.2) * t55));
+            let t69 = sleeve_rz - (k(0.1) * t61 + (k(0.1) * t58 + k(0.2) * t54));
             let t70 = t69 - (shaft_rz + (k(0.1) * t14 + (k(0.1) * t26 + k(0.4) * t47)));
             let t71 = t70
-                * (k(0.9045340337332909) * t66 - k(0.30151134457776363) * t67
-                    + k(0.30151134457776363) * t65) - t68 * t52;
-            let t72 = k(0.6030226891555273) * t2
+                * (k(0.9045340337332909) * t65 - k(0.30151134457776363) * t66
+                    + k(0.30151134457776363) * t64) - t68 * t67;
+            let t72 = sleeve_e0 * sleeve_e3;
+            let t73 = sleeve_e1 * sleeve_e2;
+            let t74 = t73 + t72;
+            let t75 = k(2.0) * t74;
+            let t76 = k(0.5) - (t60 + sleeve_e2 * sleeve_e2);
+            let t77 = k(2.0) * t76;
+            let t78 = t57 - t56;
+            let t79 = k(2.0) * t78;
+            let t80 = k(0.1) * (t79 * sleeve_wy + t77 * sleeve_wz)
+                - k(0.05) * (t79 * sleeve_wx - t75 * sleeve_wz);
+            let t81 = t21 * shaft_wx + t45 * shaft_wy;
+            let t82 = t3 * shaft_wy + t21 * shaft_wz;
+            let t83 = t3 * shaft_wx - t45 * shaft_wz;
+            let t84 = shaft_sy + (k(0.05) * t83 - k(0.2) * t82 - k(0.05) * t81)
+                - (sleeve_sy + (t80 + k(0.05) * (t77 * sleeve_wx + t75 * sleeve_wy)));
+            let t85 = k(0.6030226891555273) * t2
                 + (k(0.6030226891555273) * t20 - k(1.8090680674665818) * t44);
-            let t73 = sleeve_e0 * sleeve_e3;
-            let t74 = sleeve_e1 * sleeve_e2;
-            let t75 = t74 + t73;
-            let t76 = k(2.0) * t75;
-            let t77 = k(0.5) - (t61 + sleeve_e2 * sleeve_e2);
-            let t78 = k(2.0) * t77;
-            let t79 = t58 - t57;
-            let t80 = k(2.0) * t79;
-            let t81 = k(0.1) * (t80 * sleeve_wy + t78 * sleeve_wz)
-                - k(0.05) * (t80 * sleeve_wx - t76 * sleeve_wz);
-            let t82 = t21 * shaft_wx + t45 * shaft_wy;
-            let t83 = t3 * shaft_wy + t21 * shaft_wz;
-            let t84 = t3 * shaft_wx - t45 * shaft_wz;
-            let t85 = shaft_sy + (k(0.05) * t84 - k(0.2) * t83 - k(0.05) * t82)
-                - (sleeve_sy + (t81 + k(0.05) * (t78 * sleeve_wx + t76 * sleeve_wy)));
-            let t86 = k(0.2) * t75;
-            let t87 = sleeve_ry + (k(0.1) * t79 + (k(0.1) * t77 - t86));
+            let t86 = k(0.2) * t74;
+            let t87 = sleeve_ry + (k(0.1) * t78 + (k(0.1) * t76 - t86));
             let t88 = t87 - (shaft_ry - (k(0.1) * t2 + (k(0.1) * t20 - k(0.4) * t44)));
             let t89 = t88
-                * (k(0.9045340337332909) * t83 - k(0.30151134457776363) * t84
-                    + k(0.30151134457776363) * t82) - t85 * t72;
-            let t90 = k(0.6030226891555273) * t8
+                * (k(0.9045340337332909) * t82 - k(0.30151134457776363) * t83
+                    + k(0.30151134457776363) * t81) - t85 * t84;
+            let t90 = k(0.5) - (t60 + sleeve_e1 * sleeve_e1);
+            let t91 = k(2.0) * t90;
+            let t92 = t73 - t72;
+            let t93 = k(2.0) * t92;
+            let t94 = t53 + t52;
+            let t95 = k(2.0) * t94;
+            let t96 = k(0.1) * (t95 * sleeve_wy - t93 * sleeve_wz)
+                - k(0.05) * (t95 * sleeve_wx + t91 * sleeve_wz);
+            let t97 = t25 * shaft_wx + t43 * shaft_wy;
+            let t98 = t9 * shaft_wy - t25 * shaft_wz;
+            let t99 = t9 * shaft_wx + t43 * shaft_wz;
+            let t100 = shaft_sx + (k(0.05) * t99 - k(0.2) * t98 + k(0.05) * t97)
+                - (sleeve_sx + (t96 - k(0.05) * (t93 * sleeve_wx + t91 * sleeve_wy)));
+            let t101 = k(0.6030226891555273) * t8
                 - (k(0.6030226891555273) * t24 - k(1.8090680674665818) * t42);
-            let t91 = k(0.5) - (t61 + sleeve_e1 * sleeve_e1);
-            let t92 = k(2.0) * t91;
-            let t93 = t74 - t73;
-            let t94 = k(2.0) * t93;
-            let t95 = t54 + t53;
-            let t96 = k(2.0) * t95;
-            let t97 = k(0.1) * (t96 * sleeve_wy - t94 * sleeve_wz)
-                - k(0.05) * (t96 * sleeve_wx + t92 * sleeve_wz);
-            let t98 = t25 * shaft_wx + t43 * shaft_wy;
-            let t99 = t9 * shaft_wy - t25 * shaft_wz;
-            let t100 = t9 * shaft_wx + t43 * shaft_wz;
-            let t101 = shaft_sx + (k(0.05) * t100 - k(0.2) * t99 + k(0.05) * t98)
-                - (sleeve_sx + (t97 - k(0.05) * (t94 * sleeve_wx + t92 * sleeve_wy)));
-            let t102 = sleeve_rx + (k(0.1) * t95 - (k(0.1) * t93 - k(0.2) * t91));
+            let t102 = sleeve_rx + (k(0.1) * t94 - (k(0.1) * t92 - k(0.2) * t90));
             let t103 = t102 - (shaft_rx - (k(0.1) * t8 - (k(0.1) * t24 - k(0.4) * t42)));
             let t104 = t103
-                * (k(0.9045340337332909) * t99 - k(0.30151134457776363) * t100
-                    - k(0.30151134457776363) * t98) - t101 * t90;
+                * (k(0.9045340337332909) * t98 - k(0.30151134457776363) * t99
+                    - k(0.30151134457776363) * t97) - t101 * t100;
             let t105 = t104 + t89 - t71;
             let t106 = k(3.0) * t105;
-            let t107 = t90 * t106;
-            let t108 = k(0.05) - (t70 * t52 - (t88 * t72 + t103 * t90));
+            let t107 = t101 * t106;
+            let t108 = k(0.05) - (t70 * t68 - (t88 * t85 + t103 * t101));
             let t109 = (k(0.0001) + t108 * t108).sqrt();
             let t110 = (k(1.0) - t108 / t109) * t105 + k(250.0) * (t108 - t109);
-            let t111 = t90 * t110;
-            let t112 = t72 * t106;
-            let t113 = t72 * t110;
-            let t114 = t52 * t110 + t52 * t106;
+            let t111 = t101 * t110;
+            let t112 = t85 * t106;
+            let t113 = t85 * t110;
+            let t114 = t68 * t110 + t68 * t106;
             let t115 = shaft_rx - t102;
             let t116 = shaft_ry - t87;
             let t117 = shaft_rz - t69;
-            let t118 = t27 * t117 - (t21 * t116 - t25 * t115);
-            let t119 = t15 * t117 - (t3 * t116 + t9 * t115);
+            let t118 = t15 * t117 - (t3 * t116 + t9 * t115);
+            let t119 = t27 * t117 - (t21 * t116 - t25 * t115);
             let t120 = k(0.30151134457776363) * (t119 - t118);
             let t121 = k(0.0002) * shaft_wz;
             let t122 = k(0.0001) * shaft_wy;
             let t123 = shaft_wy * shaft_wy;
             let t124 = shaft_wz * shaft_wz;
             let t125 = k(0.0003) * (t124 - t123) + shaft_wx * (t122 + t121)
-                + (t110 * t120 + (t41 + t106 * t120));
+                - (t110 * t120 + (t106 * t120 - t41));
             let t126 = k(0.30151134457776363) * (t48 * t117 + (t45 * t116 - t43 * t115));
-            let t127 = k(0.9045340337332909) * t119 - t126;
+            let t127 = t126 - k(0.9045340337332909) * t118;
             let t128 = shaft_wx * shaft_wx;
             let t129 = k(0.0003) * shaft_wx;
             let t130 = shaft_wy * (t121 - t129)
                 - (k(0.005) * (shaft_wx * shaft_wz) + k(0.0001) * (t124 - t128));
-            let t131 = t126 - k(0.9045340337332909) * t118;
+            let t131 = k(0.9045340337332909) * t119 - t126;
             let t132 = shaft_wz * (t122 + t129)
                 + (k(0.005) * (shaft_wx * shaft_wy) - k(0.0002) * (t123 - t128));
-            let t133 = t60 * t52 + (t78 * t72 - t94 * t90);
-            let t134 = t63 * t52 + (t80 * t72 + t96 * t90);
+            let t133 = t62 * t68 + (t79 * t85 + t95 * t101);
+            let t134 = t59 * t68 + (t77 * t85 - t93 * t101);
             let t135 = k(0.05) * (t134 - t133);
             let t136 = t106 * t135
-                - (k(0.05) * (k(0.2) * t77 + k(0.4) * t93) - k(0.02) * t55);
-            let t137 = k(0.05) * (t56 * t52 - (t76 * t72 - t92 * t90));
-            let t138 = k(0.1) * t134 - t137;
-            let t139 = t106 * t138 + (k(0.05) * (t86 + k(0.4) * t91) - k(0.02) * t59);
-            let t140 = t137 - k(0.1) * t133;
+                + (k(0.05) * (k(0.2) * t76 + k(0.4) * t92) - k(0.02) * t54);
+            let t137 = k(0.05) * (t55 * t68 - (t75 * t85 - t91 * t101));
+            let t138 = t137 - k(0.1) * t133;
+            let t139 = t106 * t138 - (k(0.05) * (t86 + k(0.4) * t90) - k(0.02) * t58);
+            let t140 = k(0.1) * t134 - t137;
             let t141 = k(0.001) * (sleeve_wx * sleeve_wy)
-                + (t110 * t140 + (t106 * t140 - k(0.02) * t62));
+                - (t110 * t140 + (t106 * t140 + k(0.02) * t61));
             let t142 = slide_e0 * slide_e2;
             let t143 = slide_e1 * slide_e3;
             let t144 = t143 - t142;
@@ -10270,13 +10269,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t113 + t112,
             -(k(0.5) * self.gravity + t114),
             t125,
-            -(t130 + (t110 * t127 + t106 * t127)),
-            t110 * t131 + t106 * t131 - t132,
+            t110 * t127 + t106 * t127 - t130,
+            -(t132 + (t110 * t131 + t106 * t131)),
             k(0.2) - t107 - t111,
             -(t113 + (k(0.1) + t112)),
             t114 - k(0.4) * self.gravity,
-            t110 * t135 + t136 - k(0.002) * (sleeve_wy * sleeve_wz),
-            k(0.001) * (sleeve_wx * sleeve_wz) - (t110 * t138 + t139),
+            -(k(0.002) * (sleeve_wy * sleeve_wz) + (t110 * t135 + t136)),
+            k(0.001) * (sleeve_wx * sleeve_wz) + (t110 * t138 + t139),
             t141,
             -t165,
             t165,
@@ -10304,7 +10303,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             -(k(0.001) * (puck_wx * puck_wy) + (k(0.048112522432468816) * t211 - t213)),
         ];
     }
-    /// Solves eq. (17): 10855 operations (4849 ±, 5977 ×, 29 ÷) and 7 functions.
+    /// Solves eq. (17): 10380 operations (4627 ±, 5724 ×, 29 ÷) and 7 functions.
     fn accelerations(&self, t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let carrier_rx = y[0];
@@ -10400,111 +10399,122 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
         let puck_wz = y[90];
         let turn1 = y[93];
         let (
-            t1,
+            t0,
+            t2,
+            t3,
             t4,
-            t7,
-            t12,
-            t13,
+            t6,
+            t9,
+            t10,
+            t11,
             t14,
             t15,
             t16,
+            t17,
+            t18,
             t19,
-            t23,
-            t24,
+            t20,
+            t22,
             t25,
-            t26,
-            t27,
+            t28,
+            t30,
+            t31,
             t32,
             t33,
+            t34,
+            t35,
             t37,
             t38,
-            t39,
             t40,
             t41,
             t42,
-            t45,
+            t43,
             t46,
             t47,
             t48,
-            t49,
+            t50,
             t51,
             t52,
             t53,
-            t54,
             t55,
             t56,
+            t57,
             t58,
             t59,
             t60,
             t61,
             t62,
-            t64,
             t65,
             t66,
             t67,
             t68,
             t69,
+            t70,
             t71,
-            t72,
-            t73,
             t74,
-            t75,
+            t76,
             t77,
             t78,
             t79,
             t80,
             t81,
-            t82,
-            t85,
+            t83,
+            t84,
+            t86,
             t87,
             t88,
             t89,
-            t90,
             t91,
             t92,
+            t93,
+            t94,
             t95,
             t96,
             t97,
             t98,
+            t99,
             t100,
             t101,
             t102,
             t103,
             t104,
             t105,
-            t106,
             t107,
             t108,
             t109,
+            t110,
+            t111,
+            t112,
+            t114,
+            t115,
+            t117,
             t118,
-            t121,
+            t119,
+            t120,
+            t122,
+            t123,
             t124,
             t125,
             t127,
             t128,
-            t129,
-            t130,
             t131,
             t132,
-            t133,
-            t134,
             t135,
             t136,
             t137,
             t138,
             t139,
             t140,
-            t143,
+            t141,
             t144,
+            t145,
+            t146,
             t147,
             t148,
             t149,
             t150,
-            t151,
             t153,
-            t155,
-            t156,
-            t157,
+            t154,
             t158,
             t159,
             t160,
@@ -10514,21 +10524,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t164,
             t165,
             t166,
-            t167,
-            t168,
-            t169,
-            t170,
             t171,
-            t172,
             t173,
-            t174,
             t175,
-            t176,
             t177,
-            t178,
-            t181,
-            t182,
-            t184,
+            t180,
+            t183,
             t185,
             t186,
             t187,
@@ -10545,332 +10546,347 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t198,
             t199,
         ) = {
-            let t0 = sleeve_e0 * sleeve_e0;
-            let t1 = k(0.5) - (t0 + sleeve_e1 * sleeve_e1);
-            let t2 = sleeve_e0 * sleeve_e3;
-            let t3 = sleeve_e1 * sleeve_e2;
-            let t4 = t3 - t2;
-            let t5 = sleeve_e0 * sleeve_e2;
-            let t6 = sleeve_e1 * sleeve_e3;
-            let t7 = t6 + t5;
-            let t8 = sleeve_rx + (k(0.1) * t7 - (k(0.1) * t4 - k(0.2) * t1));
-            let t9 = shaft_rx - t8;
-            let t10 = shaft_e0 * shaft_e3;
-            let t11 = shaft_e1 * shaft_e2;
-            let t12 = t11 - t10;
-            let t13 = k(2.0) * t12;
-            let t14 = t3 + t2;
-            let t15 = k(0.2) * t14;
-            let t16 = k(0.5) - (t0 + sleeve_e2 * sleeve_e2);
-            let t17 = sleeve_e0 * sleeve_e1;
-            let t18 = sleeve_e2 * sleeve_e3;
-            let t19 = t18 - t17;
-            let t20 = sleeve_ry + (k(0.1) * t19 + (k(0.1) * t16 - t15));
-            let t21 = shaft_ry - t20;
-            let t22 = shaft_e0 * shaft_e0;
-            let t23 = k(0.5) - (t22 + shaft_e2 * shaft_e2);
-            let t24 = k(2.0) * t23;
-            let t25 = t6 - t5;
-            let t26 = t18 + t17;
-            let t27 = k(0.5) - (t0 + sleeve_e3 * sleeve_e3);
-            let t28 = sleeve_rz - (k(0.1) * t27 + (k(0.1) * t26 + k(0.2) * t25));
-            let t29 = shaft_rz - t28;
-            let t30 = shaft_e0 * shaft_e1;
-            let t31 = shaft_e2 * shaft_e3;
-            let t32 = t31 + t30;
-            let t33 = k(2.0) * t32;
-            let t34 = t33 * t29 - (t24 * t21 - t13 * t9);
-            let t35 = shaft_e0 * shaft_e2;
-            let t36 = shaft_e1 * shaft_e3;
-            let t37 = t36 + t35;
-            let t38 = k(2.0) * t37;
-            let t39 = t31 - t30;
-            let t40 = k(2.0) * t39;
-            let t41 = k(0.5) - (t22 + shaft_e3 * shaft_e3);
-            let t42 = k(2.0) * t41;
-            let t43 = t42 * t29 - (t40 * t21 + t38 * t9);
-            let t44 = k(0.30151134457776363) * (t43 - t34);
-            let t45 = t36 - t35;
-            let t46 = k(0.6030226891555273) * t41
-                + (k(0.6030226891555273) * t32 + k(1.8090680674665818) * t45);
-            let t47 = k(2.0) * t25;
-            let t48 = k(2.0) * t26;
-            let t49 = k(2.0) * t27;
-            let t50 = k(0.1) * (t49 * sleeve_wy + t48 * sleeve_wz)
-                - k(0.05) * (t49 * sleeve_wx + t47 * sleeve_wz);
-            let t51 = k(2.0) * t45;
-            let t52 = t33 * shaft_wx - t51 * shaft_wy;
-            let t53 = t42 * shaft_wy + t33 * shaft_wz;
-            let t54 = t42 * shaft_wx + t51 * shaft_wz;
-            let t55 = shaft_sz - (k(0.05) * t54 - k(0.2) * t53 - k(0.05) * t52)
-                - (sleeve_sz - (t50 + k(0.05) * (t48 * sleeve_wx - t47 * sleeve_wy)));
-            let t56 = t28 - (shaft_rz + (k(0.1) * t41 + (k(0.1) * t32 + k(0.4) * t45)));
-            let t57 = t56
-                * (k(0.9045340337332909) * t53 - k(0.30151134457776363) * t54
-                    + k(0.30151134457776363) * t52) - t55 * t46;
-            let t58 = t11 + t10;
-            let t59 = k(0.6030226891555273) * t39
-                + (k(0.6030226891555273) * t23 - k(1.8090680674665818) * t58);
-            let t60 = k(2.0) * t14;
-            let t61 = k(2.0) * t16;
-            let t62 = k(2.0) * t19;
-            let t63 = k(0.1) * (t62 * sleeve_wy + t61 * sleeve_wz)
-                - k(0.05) * (t62 * sleeve_wx - t60 * sleeve_wz);
-            let t64 = k(2.0) * t58;
-            let t65 = t24 * shaft_wx + t64 * shaft_wy;
-            let t66 = t40 * shaft_wy + t24 * shaft_wz;
-            let t67 = t40 * shaft_wx - t64 * shaft_wz;
-            let t68 = shaft_sy + (k(0.05) * t67 - k(0.2) * t66 - k(0.05) * t65)
-                - (sleeve_sy + (t63 + k(0.05) * (t61 * sleeve_wx + t60 * sleeve_wy)));
-            let t69 = t20 - (shaft_ry - (k(0.1) * t39 + (k(0.1) * t23 - k(0.4) * t58)));
-            let t70 = t69
-                * (k(0.9045340337332909) * t66 - k(0.30151134457776363) * t67
-                    + k(0.30151134457776363) * t65) - t68 * t59;
-            let t71 = k(0.5) - (t22 + shaft_e1 * shaft_e1);
-            let t72 = k(0.6030226891555273) * t37
-                - (k(0.6030226891555273) * t12 - k(1.8090680674665818) * t71);
-            let t73 = k(2.0) * t1;
-            let t74 = k(2.0) * t4;
-            let t75 = k(2.0) * t7;
-            let t76 = k(0.1) * (t75 * sleeve_wy - t74 * sleeve_wz)
-                - k(0.05) * (t75 * sleeve_wx + t73 * sleeve_wz);
-            let t77 = k(2.0) * t71;
-            let t78 = t13 * shaft_wx + t77 * shaft_wy;
-            let t79 = t38 * shaft_wy - t13 * shaft_wz;
-            let t80 = t38 * shaft_wx + t77 * shaft_wz;
-            let t81 = shaft_sx + (k(0.05) * t80 - k(0.2) * t79 + k(0.05) * t78)
-                - (sleeve_sx + (t76 - k(0.05) * (t74 * sleeve_wx + t73 * sleeve_wy)));
-            let t82 = t8 - (shaft_rx - (k(0.1) * t37 - (k(0.1) * t12 - k(0.4) * t71)));
-            let t83 = t82
-                * (k(0.9045340337332909) * t79 - k(0.30151134457776363) * t80
-                    - k(0.30151134457776363) * t78) - t81 * t72;
-            let t84 = t83 + t70 - t57;
-            let t85 = k(3.0) * t84;
-            let t86 = carrier_e0 * carrier_e0;
-            let t87 = k(0.5) - (t86 + carrier_e2 * carrier_e2);
-            let t88 = k(2.0) * t87;
-            let t89 = carrier_e0 * carrier_e3;
-            let t90 = carrier_e1 * carrier_e2;
-            let t91 = t90 - t89;
-            let t92 = k(2.0) * t91;
-            let t93 = carrier_e0 * carrier_e1;
-            let t94 = carrier_e2 * carrier_e3;
-            let t95 = t94 + t93;
+            let t0 = shaft_wx * shaft_wy;
+            let t1 = shaft_e0 * shaft_e0;
+            let t2 = k(0.5) - (t1 + shaft_e1 * shaft_e1);
+            let t3 = k(2.0) * t2;
+            let t4 = shaft_wx * shaft_wx;
+            let t5 = shaft_wz * shaft_wz;
+            let t6 = t5 + t4;
+            let t7 = shaft_e0 * shaft_e3;
+            let t8 = shaft_e1 * shaft_e2;
+            let t9 = t8 - t7;
+            let t10 = k(2.0) * t9;
+            let t11 = shaft_wy * shaft_wz;
+            let t12 = shaft_e0 * shaft_e2;
+            let t13 = shaft_e1 * shaft_e3;
+            let t14 = t13 + t12;
+            let t15 = k(2.0) * t14;
+            let t16 = t15 * t11 - (t10 * t6 + t3 * t0);
+            let t17 = shaft_wx * shaft_wz;
+            let t18 = shaft_wy * shaft_wy;
+            let t19 = t18 + t4;
+            let t20 = t15 * t19 - (t10 * t11 - t3 * t17);
+            let t21 = sleeve_e0 * sleeve_e0;
+            let t22 = k(0.5) - (t21 + sleeve_e1 * sleeve_e1);
+            let t23 = sleeve_e0 * sleeve_e3;
+            let t24 = sleeve_e1 * sleeve_e2;
+            let t25 = t24 - t23;
+            let t26 = sleeve_e0 * sleeve_e2;
+            let t27 = sleeve_e1 * sleeve_e3;
+            let t28 = t27 + t26;
+            let t29 = sleeve_rx + (k(0.1) * t28 - (k(0.1) * t25 - k(0.2) * t22));
+            let t30 = t29 - (shaft_rx - (k(0.1) * t14 - (k(0.1) * t9 - k(0.4) * t2)));
+            let t31 = t10 * shaft_wx + t3 * shaft_wy;
+            let t32 = t15 * shaft_wx + t3 * shaft_wz;
+            let t33 = k(2.0) * t22;
+            let t34 = k(2.0) * t25;
+            let t35 = k(2.0) * t28;
+            let t36 = k(0.1) * (t35 * sleeve_wy - t34 * sleeve_wz)
+                - k(0.05) * (t35 * sleeve_wx + t33 * sleeve_wz);
+            let t37 = t15 * shaft_wy - t10 * shaft_wz;
+            let t38 = shaft_sx + (k(0.05) * t32 - k(0.2) * t37 + k(0.05) * t31)
+                - (sleeve_sx + (t36 - k(0.05) * (t34 * sleeve_wx + t33 * sleeve_wy)));
+            let t39 = t38 * (k(0.7071067811865476) * (t32 - t31));
+            let t40 = t5 + t18;
+            let t41 = t15 * t17 + (t10 * t0 + t3 * t40);
+            let t42 = k(0.2) * t41;
+            let t43 = sleeve_wx * sleeve_wy;
+            let t44 = sleeve_wx * sleeve_wx;
+            let t45 = sleeve_wz * sleeve_wz;
+            let t46 = t45 + t44;
+            let t47 = sleeve_wy * sleeve_wz;
+            let t48 = t35 * t47 - (t34 * t46 + t33 * t43);
+            let t49 = sleeve_wy * sleeve_wy;
+            let t50 = t45 + t49;
+            let t51 = sleeve_wx * sleeve_wz;
+            let t52 = k(0.1) * (t35 * t51 + (t34 * t43 + t33 * t50));
+            let t53 = t49 + t44;
+            let t54 = k(0.05) * (t35 * t53 - (t34 * t47 - t33 * t51))
+                + (t52 + k(0.05) * t48);
+            let t55 = t54 + (k(0.05) * t20 + (t42 + k(0.05) * t16));
+            let t56 = t9 + t14;
+            let t57 = k(1.4142135623730951) * t56;
+            let t58 = t57 * t55 + t39
+                + (t39 + t30 * (k(0.7071067811865476) * (t20 - t16)));
+            let t59 = t8 + t7;
+            let t60 = k(2.0) * t59;
+            let t61 = k(0.5) - (t1 + shaft_e2 * shaft_e2);
+            let t62 = k(2.0) * t61;
+            let t63 = shaft_e0 * shaft_e1;
+            let t64 = shaft_e2 * shaft_e3;
+            let t65 = t64 - t63;
+            let t66 = k(2.0) * t65;
+            let t67 = t66 * t11 + (t62 * t6 + t60 * t0);
+            let t68 = t66 * t19 + (t62 * t11 - t60 * t17);
+            let t69 = t24 + t23;
+            let t70 = k(0.2) * t69;
+            let t71 = k(0.5) - (t21 + sleeve_e2 * sleeve_e2);
+            let t72 = sleeve_e0 * sleeve_e1;
+            let t73 = sleeve_e2 * sleeve_e3;
+            let t74 = t73 - t72;
+            let t75 = sleeve_ry + (k(0.1) * t74 + (k(0.1) * t71 - t70));
+            let t76 = t75 - (shaft_ry - (k(0.1) * t65 + (k(0.1) * t61 - k(0.4) * t59)));
+            let t77 = t62 * shaft_wx + t60 * shaft_wy;
+            let t78 = t66 * shaft_wx - t60 * shaft_wz;
+            let t79 = k(2.0) * t69;
+            let t80 = k(2.0) * t71;
+            let t81 = k(2.0) * t74;
+            let t82 = k(0.1) * (t81 * sleeve_wy + t80 * sleeve_wz)
+                - k(0.05) * (t81 * sleeve_wx - t79 * sleeve_wz);
+            let t83 = t66 * shaft_wy + t62 * shaft_wz;
+            let t84 = shaft_sy + (k(0.05) * t78 - k(0.2) * t83 - k(0.05) * t77)
+                - (sleeve_sy + (t82 + k(0.05) * (t80 * sleeve_wx + t79 * sleeve_wy)));
+            let t85 = t84 * (k(0.7071067811865476) * (t78 + t77));
+            let t86 = t66 * t17 - (t62 * t0 + t60 * t40);
+            let t87 = k(0.2) * t86;
+            let t88 = t81 * t47 + (t80 * t46 + t79 * t43);
+            let t89 = k(0.1) * (t81 * t51 - (t80 * t43 + t79 * t50));
+            let t90 = k(0.05) * (t81 * t53 + (t80 * t47 - t79 * t51))
+                + (t89 + k(0.05) * t88);
+            let t91 = t90 + (k(0.05) * t68 + (t87 + k(0.05) * t67));
+            let t92 = t61 - t65;
+            let t93 = k(1.4142135623730951) * t92;
+            let t94 = t93 * t91 - t85
+                - (t85 + t76 * (k(0.7071067811865476) * (t68 - t67)));
+            let t95 = t13 - t12;
             let t96 = k(2.0) * t95;
-            let t97 = t96 * t42 - (t92 * t38 - t88 * t40);
-            let t98 = t96 * t33 + (t92 * t13 + t88 * t24);
-            let t99 = k(0.6) * t98;
-            let t100 = t94 - t93;
-            let t101 = k(2.0) * t100;
-            let t102 = carrier_e0 * carrier_e2;
-            let t103 = carrier_e1 * carrier_e3;
-            let t104 = t103 + t102;
-            let t105 = k(2.0) * t104;
-            let t106 = k(0.5) - (t86 + carrier_e3 * carrier_e3);
-            let t107 = k(2.0) * t106;
-            let t108 = t107 * t33 - (t105 * t13 - t101 * t24);
-            let t109 = t105 * t38 + t101 * t40 + t107 * t42;
-            let t110 = k(0.8) * t109;
-            let t111 = k(0.8) * (t110 - k(0.6) * t108) + k(0.6) * (t99 - k(0.8) * t97);
-            let t112 = turn1.cos();
-            let t113 = k(0.6) * t97;
-            let t114 = k(0.8) * t108;
-            let t115 = k(0.8) * (t114 + k(0.6) * t109) - k(0.6) * (t113 + k(0.8) * t98);
-            let t116 = turn1.sin();
-            let t117 = -(t112 * t115 + t116 * t111).atan2(t112 * t111 - t116 * t115);
-            let t118 = k(2.0) * (k(0.1) - (turn1 + t117));
-            let t119 = k(0.05) - (t56 * t46 - (t69 * t59 + t82 * t72));
-            let t120 = (k(0.0001) + t119 * t119).sqrt();
-            let t121 = (k(1.0) - t119 / t120) * t84 + k(250.0) * (t119 - t120);
-            let t122 = k(0.0002) * shaft_wz;
-            let t123 = k(0.0001) * shaft_wy;
-            let t124 = shaft_wy * shaft_wy;
-            let t125 = shaft_wz * shaft_wz;
-            let t126 = k(0.0003) * (t125 - t124) + shaft_wx * (t123 + t122)
-                + (t121 * t44 + (t118 + t85 * t44));
-            let t127 = t96 * t51 - (t88 * t64 + t92 * t77);
-            let t128 = t107 * t51 - (t101 * t64 - t105 * t77);
-            let t129 = k(0.8) * t128 - k(0.6) * t127;
-            let t130 = t72 * t85;
-            let t131 = t72 * t121;
-            let t132 = t131 + t130;
-            let t133 = k(0.4) * t37;
-            let t134 = t59 * t85;
-            let t135 = t59 * t121;
-            let t136 = t135 + t134;
-            let t137 = k(0.4) * t39;
-            let t138 = t46 * t121 + t46 * t85;
-            let t139 = k(0.5) * self.gravity + t138;
-            let t140 = k(0.4) * t41;
-            let t141 = k(0.30151134457776363) * (t51 * t29 + (t64 * t21 - t77 * t9));
-            let t142 = k(0.9045340337332909) * t43 - t141;
-            let t143 = shaft_wx * shaft_wx;
-            let t144 = shaft_wx * shaft_wz;
-            let t145 = k(0.0003) * shaft_wx;
-            let t146 = shaft_wy * (t122 - t145)
-                - (k(0.005) * t144 + k(0.0001) * (t125 - t143));
-            let t147 = t146 + (t121 * t142 + t85 * t142)
-                + (t140 * t139 + (t137 * t136 + t133 * t132));
-            let t148 = t99 - t114;
-            let t149 = k(0.4) * t12;
-            let t150 = k(0.4) * t23;
-            let t151 = k(0.4) * t32;
-            let t152 = t141 - k(0.9045340337332909) * t34;
-            let t153 = shaft_wx * shaft_wy;
-            let t154 = shaft_wz * (t123 + t145)
-                + (k(0.005) * t153 - k(0.0002) * (t124 - t143));
-            let t155 = t154 - (t121 * t152 + t85 * t152)
-                + (t151 * t139 + (t150 * t136 - t149 * t132));
-            let t156 = t110 - t113;
-            let t157 = t156 * t155 + (t148 * t147 + t129 * t126);
-            let t158 = k(0.0001) * t156 - (k(0.0002) * t148 - k(0.001) * t129);
-            let t159 = k(0.0003) * t156 + (k(0.026) * t148 - k(0.0002) * t129);
-            let t160 = k(0.026) * t156 + (k(0.0003) * t148 + k(0.0001) * t129);
-            let t161 = k(1.0) / (t156 * t160 + (t148 * t159 + t129 * t158));
-            let t162 = t161 * t157;
-            let t163 = t126 - t158 * t162;
-            let t164 = t158 * t161;
-            let t165 = k(0.001) - t158 * t164;
-            let t166 = k(1.0) / t165;
-            let t167 = t166 * t163;
-            let t168 = k(0.2) * t37;
-            let t169 = k(0.2) * t12;
-            let t170 = t156 * t169 - t148 * t168;
-            let t171 = t161 * t170;
-            let t172 = t158 * t171;
-            let t173 = t166 * t172;
-            let t174 = t172 - t165 * t173;
-            let t175 = carrier_wx * carrier_wz;
-            let t176 = k(0.5) - (t86 + carrier_e1 * carrier_e1);
-            let t177 = k(2.0) * t176;
-            let t178 = carrier_wy * carrier_wz;
-            let t179 = carrier_wx * carrier_wx;
-            let t180 = carrier_wy * carrier_wy;
-            let t181 = t180 + t179;
-            let t182 = t105 * t181 - (t92 * t178 - t177 * t175);
-            let t183 = carrier_wz * carrier_wz;
-            let t184 = t183 + t180;
-            let t185 = carrier_wx * carrier_wy;
-            let t186 = t105 * t175 + (t92 * t185 + t177 * t184);
-            let t187 = t183 + t179;
-            let t188 = t105 * t178 - (t92 * t187 + t177 * t185);
-            let t189 = t188 + t186;
-            let t190 = t125 + t124;
-            let t191 = t38 * t144 + (t13 * t153 + t77 * t190);
-            let t192 = k(0.2) * t191;
-            let t193 = t192 + k(0.1) * (t189 - t182);
-            let t194 = k(0.2) * t39;
-            let t195 = k(0.2) * t23;
-            let t196 = t156 * t195 + t148 * t194;
-            let t197 = t161 * t196;
-            let t198 = t158 * t197;
-            let t199 = t166 * t198;
+            let t97 = t64 + t63;
+            let t98 = k(2.0) * t97;
+            let t99 = k(0.5) - (t1 + shaft_e3 * shaft_e3);
+            let t100 = k(2.0) * t99;
+            let t101 = t100 * t11 + (t98 * t6 - t96 * t0);
+            let t102 = t100 * t19 + (t98 * t11 + t96 * t17);
+            let t103 = t27 - t26;
+            let t104 = t73 + t72;
+            let t105 = k(0.5) - (t21 + sleeve_e3 * sleeve_e3);
+            let t106 = sleeve_rz - (k(0.1) * t105 + (k(0.1) * t104 + k(0.2) * t103));
+            let t107 = t106
+                - (shaft_rz + (k(0.1) * t99 + (k(0.1) * t97 + k(0.4) * t95)));
+            let t108 = t98 * shaft_wx - t96 * shaft_wy;
+            let t109 = t100 * shaft_wx + t96 * shaft_wz;
+            let t110 = k(2.0) * t103;
+            let t111 = k(2.0) * t104;
+            let t112 = k(2.0) * t105;
+            let t113 = k(0.1) * (t112 * sleeve_wy + t111 * sleeve_wz)
+                - k(0.05) * (t112 * sleeve_wx + t110 * sleeve_wz);
+            let t114 = t100 * shaft_wy + t98 * shaft_wz;
+            let t115 = shaft_sz - (k(0.05) * t109 - k(0.2) * t114 - k(0.05) * t108)
+                - (sleeve_sz - (t113 + k(0.05) * (t111 * sleeve_wx - t110 * sleeve_wy)));
+            let t116 = t115 * (k(0.7071067811865476) * (t109 + t108));
+            let t117 = t100 * t17 - (t98 * t0 - t96 * t40);
+            let t118 = k(0.2) * t117;
+            let t119 = t112 * t47 + (t111 * t46 - t110 * t43);
+            let t120 = k(0.1) * (t112 * t51 - (t111 * t43 - t110 * t50));
+            let t121 = k(0.05) * (t112 * t53 + (t111 * t47 + t110 * t51))
+                + (t120 + k(0.05) * t119);
+            let t122 = t121 + (k(0.05) * t102 + (t118 + k(0.05) * t101));
+            let t123 = t97 - t99;
+            let t124 = k(1.4142135623730951) * t123;
+            let t125 = t124 * t122 + t116
+                + (t116 + t107 * (k(0.7071067811865476) * (t102 - t101)));
+            let t126 = carrier_e0 * carrier_e0;
+            let t127 = k(0.5) - (t126 + carrier_e2 * carrier_e2);
+            let t128 = k(2.0) * t127;
+            let t129 = carrier_e0 * carrier_e3;
+            let t130 = carrier_e1 * carrier_e2;
+            let t131 = t130 - t129;
+            let t132 = k(2.0) * t131;
+            let t133 = carrier_e0 * carrier_e1;
+            let t134 = carrier_e2 * carrier_e3;
+            let t135 = t134 + t133;
+            let t136 = k(2.0) * t135;
+            let t137 = t136 * t100 - (t132 * t15 - t128 * t66);
+            let t138 = t136 * t98 + (t132 * t10 + t128 * t62);
+            let t139 = k(0.6) * t138;
+            let t140 = t134 - t133;
+            let t141 = k(2.0) * t140;
+            let t142 = carrier_e0 * carrier_e2;
+            let t143 = carrier_e1 * carrier_e3;
+            let t144 = t143 + t142;
+            let t145 = k(2.0) * t144;
+            let t146 = k(0.5) - (t126 + carrier_e3 * carrier_e3);
+            let t147 = k(2.0) * t146;
+            let t148 = t147 * t98 - (t145 * t10 - t141 * t62);
+            let t149 = t145 * t15 + t141 * t66 + t147 * t100;
+            let t150 = k(0.8) * t149;
+            let t151 = k(0.8) * (t150 - k(0.6) * t148) + k(0.6) * (t139 - k(0.8) * t137);
+            let t152 = turn1.cos();
+            let t153 = k(0.6) * t137;
+            let t154 = k(0.8) * t148;
+            let t155 = k(0.8) * (t154 + k(0.6) * t149) - k(0.6) * (t153 + k(0.8) * t138);
+            let t156 = turn1.sin();
+            let t157 = -(t152 * t155 + t156 * t151).atan2(t152 * t151 - t156 * t155);
+            let t158 = k(2.0) * (k(0.1) - (turn1 + t157));
+            let t159 = k(0.5) - (t126 + carrier_e1 * carrier_e1);
+            let t160 = k(2.0) * t159;
+            let t161 = t130 + t129;
+            let t162 = k(2.0) * t161;
+            let t163 = t143 - t142;
+            let t164 = k(2.0) * t163;
+            let t165 = t164 * t96 + (t162 * t60 + t160 * t3);
+            let t166 = carrier_wy * carrier_wz;
+            let t167 = shaft_rx - t29;
+            let t168 = shaft_ry - t75;
+            let t169 = shaft_rz - t106;
+            let t170 = t100 * t169 - (t66 * t168 + t15 * t167);
+            let t171 = t98 * t169 - (t62 * t168 - t10 * t167);
+            let t172 = k(0.30151134457776363) * (t171 - t170);
+            let t173 = k(0.6030226891555273) * t99
+                + (k(0.6030226891555273) * t97 + k(1.8090680674665818) * t95);
+            let t174 = t107
+                * (k(0.9045340337332909) * t114 - k(0.30151134457776363) * t109
+                    + k(0.30151134457776363) * t108) - t173 * t115;
+            let t175 = k(0.6030226891555273) * t65
+                + (k(0.6030226891555273) * t61 - k(1.8090680674665818) * t59);
+            let t176 = t76
+                * (k(0.9045340337332909) * t83 - k(0.30151134457776363) * t78
+                    + k(0.30151134457776363) * t77) - t175 * t84;
+            let t177 = k(0.6030226891555273) * t14
+                - (k(0.6030226891555273) * t9 - k(1.8090680674665818) * t2);
+            let t178 = t30
+                * (k(0.9045340337332909) * t37 - k(0.30151134457776363) * t32
+                    - k(0.30151134457776363) * t31) - t177 * t38;
+            let t179 = t178 + t176 - t174;
+            let t180 = k(3.0) * t179;
+            let t181 = k(0.05) - (t107 * t173 - (t76 * t175 + t30 * t177));
+            let t182 = (k(0.0001) + t181 * t181).sqrt();
+            let t183 = (k(1.0) - t181 / t182) * t179 + k(250.0) * (t181 - t182);
+            let t184 = k(0.0002) * shaft_wz;
+            let t185 = k(0.0001) * shaft_wy;
+            let t186 = k(0.0003) * (t5 - t18) + shaft_wx * (t185 + t184)
+                - (t183 * t172 + (t180 * t172 - t158));
+            let t187 = t136 * t96 - (t128 * t60 + t132 * t3);
+            let t188 = t147 * t96 - (t141 * t60 - t145 * t3);
+            let t189 = k(0.8) * t188 - k(0.6) * t187;
+            let t190 = k(0.30151134457776363) * (t96 * t169 + (t60 * t168 - t3 * t167));
+            let t191 = t190 - k(0.9045340337332909) * t170;
+            let t192 = k(0.0003) * shaft_wx;
+            let t193 = shaft_wy * (t184 - t192)
+                - (k(0.005) * t17 + k(0.0001) * (t5 - t4));
+            let t194 = t177 * t180;
+            let t195 = t177 * t183;
+            let t196 = t195 + t194;
+            let t197 = k(0.4) * t14;
+            let t198 = t175 * t180;
+            let t199 = t175 * t183;
             (
-                t1,
+                t0,
+                t2,
+                t3,
                 t4,
-                t7,
-                t12,
-                t13,
+                t6,
+                t9,
+                t10,
+                t11,
                 t14,
                 t15,
                 t16,
+                t17,
+                t18,
                 t19,
-                t23,
-                t24,
+                t20,
+                t22,
                 t25,
-                t26,
-                t27,
+                t28,
+                t30,
+                t31,
                 t32,
                 t33,
+                t34,
+                t35,
                 t37,
                 t38,
-                t39,
                 t40,
                 t41,
                 t42,
-                t45,
+                t43,
                 t46,
                 t47,
                 t48,
-                t49,
+                t50,
                 t51,
                 t52,
                 t53,
-                t54,
                 t55,
                 t56,
+                t57,
                 t58,
                 t59,
                 t60,
                 t61,
                 t62,
-                t64,
                 t65,
                 t66,
                 t67,
                 t68,
                 t69,
+                t70,
                 t71,
-                t72,
-                t73,
                 t74,
-                t75,
+                t76,
                 t77,
                 t78,
                 t79,
                 t80,
                 t81,
-                t82,
-                t85,
+                t83,
+                t84,
+                t86,
                 t87,
                 t88,
                 t89,
-                t90,
                 t91,
                 t92,
+                t93,
+                t94,
                 t95,
                 t96,
                 t97,
                 t98,
+                t99,
                 t100,
                 t101,
                 t102,
                 t103,
                 t104,
                 t105,
-                t106,
                 t107,
                 t108,
                 t109,
+                t110,
+                t111,
+                t112,
+                t114,
+                t115,
+                t117,
                 t118,
-                t121,
+                t119,
+                t120,
+                t122,
+                t123,
                 t124,
                 t125,
                 t127,
                 t128,
-                t129,
-                t130,
                 t131,
                 t132,
-                t133,
-                t134,
                 t135,
                 t136,
                 t137,
                 t138,
                 t139,
                 t140,
-                t143,
+                t141,
                 t144,
+                t145,
+                t146,
                 t147,
                 t148,
                 t149,
                 t150,
-                t151,
                 t153,
-                t155,
-                t156,
-                t157,
+                t154,
                 t158,
                 t159,
                 t160,
@@ -10880,21 +10896,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 t164,
                 t165,
                 t166,
-                t167,
-                t168,
-                t169,
-                t170,
                 t171,
-                t172,
                 t173,
-                t174,
                 t175,
-                t176,
                 t177,
-                t178,
-                t181,
-                t182,
-                t184,
+                t180,
+                t183,
                 t185,
                 t186,
                 t187,
@@ -10915,543 +10922,557 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
         let (
             t201,
             t202,
-            t203,
             t204,
-            t205,
-            t207,
-            t208,
+            t206,
             t209,
-            t212,
+            t210,
+            t211,
+            t213,
             t214,
+            t215,
+            t216,
             t217,
             t218,
-            t219,
             t220,
-            t221,
-            t223,
+            t222,
             t224,
-            t225,
-            t227,
-            t228,
+            t229,
             t233,
-            t234,
-            t241,
-            t244,
+            t235,
+            t237,
+            t240,
+            t242,
             t245,
             t246,
             t247,
-            t253,
-            t262,
-            t268,
-            t273,
-            t275,
-            t276,
+            t249,
+            t252,
+            t254,
+            t257,
+            t258,
+            t259,
+            t261,
+            t264,
+            t266,
+            t270,
+            t271,
             t278,
             t281,
+            t282,
             t283,
-            t285,
-            t287,
-            t289,
-            t291,
-            t293,
-            t296,
-            t298,
-            t306,
-            t307,
-            t308,
-            t309,
+            t284,
+            t290,
+            t299,
+            t305,
             t310,
             t312,
+            t313,
+            t314,
+            t315,
+            t318,
             t320,
-            t321,
             t322,
-            t323,
             t324,
             t326,
-            t334,
+            t328,
+            t330,
+            t331,
+            t332,
+            t333,
             t335,
-            t336,
             t337,
-            t338,
             t339,
             t340,
+            t341,
             t342,
             t343,
+            t344,
             t345,
             t346,
+            t347,
             t349,
             t351,
             t353,
+            t354,
+            t355,
+            t356,
+            t357,
+            t358,
+            t359,
             t360,
             t361,
             t363,
-            t364,
-            t366,
+            t365,
+            t367,
             t368,
+            t369,
             t370,
             t371,
             t372,
+            t373,
+            t374,
+            t375,
+            t376,
+            t377,
             t378,
+            t379,
+            t380,
             t381,
             t382,
+            t383,
+            t384,
+            t385,
+            t386,
             t388,
             t389,
-            t390,
             t391,
+            t392,
+            t393,
+            t394,
             t395,
+            t397,
+            t398,
             t399,
         ) = {
-            let t200 = t198 - t165 * t199;
-            let t201 = t90 + t89;
-            let t202 = k(2.0) * t201;
-            let t203 = t101 * t181 + (t88 * t178 - t202 * t175);
-            let t204 = t101 * t175 - (t88 * t185 + t202 * t184);
-            let t205 = t101 * t178 + (t88 * t187 + t202 * t185);
-            let t206 = t205 + t204;
-            let t207 = t40 * t144 - (t24 * t153 + t64 * t190);
-            let t208 = k(0.2) * t207;
-            let t209 = t208 + k(0.1) * (t206 - t203);
-            let t210 = k(0.2) * t41;
-            let t211 = k(0.2) * t32;
-            let t212 = t156 * t211 + t148 * t210;
-            let t213 = t161 * t212;
-            let t214 = t158 * t213;
-            let t215 = t166 * t214;
-            let t216 = t214 - t165 * t215;
-            let t217 = t103 - t102;
-            let t218 = k(2.0) * t217;
-            let t219 = t107 * t181 + (t96 * t178 + t218 * t175);
-            let t220 = t107 * t175 - (t96 * t185 - t218 * t184);
-            let t221 = t107 * t178 + (t96 * t187 - t218 * t185);
-            let t222 = t221 + t220;
-            let t223 = t42 * t144 - (t33 * t153 - t51 * t190);
-            let t224 = k(0.2) * t223;
-            let t225 = t224 + k(0.1) * (t222 - t219);
-            let t226 = t225 * t216 + (t209 * t200 - t193 * t174) + (t163 - t165 * t167);
-            let t227 = t218 * t51 + (t202 * t64 + t177 * t77);
-            let t228 = k(0.0002) + t159 * t164;
-            let t229 = t228 * t173 + (t168 + t159 * t171);
-            let t230 = t228 * t199 - (t194 - t159 * t197);
-            let t231 = t228 * t215 - (t210 - t159 * t213);
-            let t232 = k(1.0) / (t148 * t148 + t156 * t156);
-            let t233 = t218 * t33 - (t202 * t24 + t177 * t13);
-            let t234 = t218 * t42 - (t202 * t40 - t177 * t38);
-            let t235 = shaft_wy * t234 + shaft_wz * t233;
-            let t236 = k(2.0)
-                * (carrier_wx * (shaft_wy * t109 + shaft_wz * t108) + carrier_wz * t235);
-            let t237 = t144 * t97 - (t153 * t98 - t190 * t127) + t236
-                + (t178 * t128 + (t187 * t127 - t185 * t227));
-            let t238 = k(2.0)
-                * (carrier_wx * (shaft_wy * t97 + shaft_wz * t98) - carrier_wy * t235);
-            let t239 = t144 * t109 - (t153 * t108 - t190 * t128) - t238
-                + (t181 * t128 + (t178 * t127 + t175 * t227));
-            let t240 = k(0.8) * t239 - k(0.6) * t237;
-            let t241 = t240 * (t156 * t232);
-            let t242 = t159 * t161;
-            let t243 = t166 * t228;
-            let t244 = t228 * t243 - (k(0.026) - t159 * t242);
-            let t245 = t240 * (t148 * t232);
-            let t246 = k(0.0001) - t160 * t164;
-            let t247 = t246 * t243 + (k(0.0003) - t160 * t242);
-            let t248 = t247 * t245 + t244 * t241
-                - (t225 * t231 + (t209 * t230 - t193 * t229));
-            let t249 = t248 - (t228 * t167 + (t147 - t159 * t162));
-            let t250 = t246 * t173 + (t169 - t160 * t171);
-            let t251 = t246 * t199 + (t195 - t160 * t197);
-            let t252 = t246 * t215 + (t211 - t160 * t213);
-            let t253 = t246 * (t166 * t246) - (k(0.026) - t160 * (t160 * t161));
-            let t254 = t253 * t245 + t247 * t241
-                - (t225 * t252 + (t209 * t251 - t193 * t250));
-            let t255 = t254 - (t246 * t167 - (t155 - t160 * t162));
-            let t256 = t172 * t173 + t170 * t171;
-            let t257 = t198 * t173 + t196 * t171;
-            let t258 = t214 * t173 + t212 * t171;
-            let t259 = t225 * t258 + (t209 * t257 - t193 * t256) + k(0.5) * t193;
-            let t260 = t250 * t245 + t229 * t241 - t259
-                - (t172 * t167 - (t132 + t170 * t162));
-            let t261 = t91 - t104;
-            let t262 = k(0.2) * t261;
-            let t263 = t198 * t199 + t196 * t197;
-            let t264 = t214 * t199 + t212 * t197;
-            let t265 = t225 * t264 + (t209 * t263 - t193 * t257) - k(0.5) * t209;
-            let t266 = t251 * t245 + t230 * t241 - t265
-                - (t198 * t167 + (t136 - t196 * t162));
-            let t267 = t87 + t100;
-            let t268 = k(0.2) * t267;
-            let t269 = t214 * t215 + t212 * t213;
-            let t270 = t225 * t269 + (t209 * t264 - t193 * t258) - k(0.5) * t225;
-            let t271 = t252 * t245 + t231 * t241 - t270
-                - (t214 * t167 + (t139 - t212 * t162));
-            let t272 = t95 + t106;
-            let t273 = k(0.2) * t272;
-            let t274 = t273 * t271 + (t268 * t266 + t262 * t260)
-                - (t234 * t255 + (t233 * t249 + t227 * t226));
-            let t275 = k(0.2) * t104;
-            let t276 = k(0.2) * t100;
-            let t277 = k(1.5) * self.gravity - t271;
-            let t278 = k(0.2) * t106;
-            let t279 = t278 * t277 - (t276 * t266 - t275 * t260);
-            let t280 = t176 + t104;
-            let t281 = k(0.2) * t280;
-            let t282 = t201 - t100;
-            let t283 = k(0.2) * t282;
-            let t284 = t217 + t106;
-            let t285 = k(0.2) * t284;
-            let t286 = t285 * t271 - (t283 * t266 + t281 * t260)
-                + (t97 * t255 + (t98 * t249 + t127 * t226));
-            let t287 = k(0.6666666666666666)
-                * (t279 - (k(0.005) * t175 - t127 * t118 + t286))
+            let t200 = t199 + t198;
+            let t201 = k(0.4) * t65;
+            let t202 = t173 * t183 + t173 * t180;
+            let t203 = k(0.5) * self.gravity + t202;
+            let t204 = k(0.4) * t99;
+            let t205 = t204 * t203 + (t201 * t200 + t197 * t196)
+                + (t193 - (t183 * t191 + t180 * t191));
+            let t206 = t139 - t154;
+            let t207 = k(0.9045340337332909) * t171 - t190;
+            let t208 = shaft_wz * (t185 + t192)
+                + (k(0.005) * t0 - k(0.0002) * (t18 - t4));
+            let t209 = k(0.4) * t9;
+            let t210 = k(0.4) * t61;
+            let t211 = k(0.4) * t97;
+            let t212 = t211 * t203 + (t210 * t200 - t209 * t196)
+                + (t208 + (t183 * t207 + t180 * t207));
+            let t213 = t150 - t153;
+            let t214 = t213 * t212 + (t206 * t205 + t189 * t186);
+            let t215 = k(0.0001) * t213 - (k(0.0002) * t206 - k(0.001) * t189);
+            let t216 = k(0.0003) * t213 + (k(0.026) * t206 - k(0.0002) * t189);
+            let t217 = k(0.026) * t213 + (k(0.0003) * t206 + k(0.0001) * t189);
+            let t218 = k(1.0) / (t213 * t217 + (t206 * t216 + t189 * t215));
+            let t219 = t218 * t214;
+            let t220 = t186 - t215 * t219;
+            let t221 = t215 * t218;
+            let t222 = k(1.0) / (k(0.001) - t215 * t221);
+            let t223 = t222 * t220;
+            let t224 = k(0.0002) + t216 * t221;
+            let t225 = carrier_wx * carrier_wz;
+            let t226 = carrier_wx * carrier_wx;
+            let t227 = carrier_wy * carrier_wy;
+            let t228 = t227 + t226;
+            let t229 = t145 * t228 - (t132 * t166 - t160 * t225);
+            let t230 = carrier_wz * carrier_wz;
+            let t231 = t230 + t227;
+            let t232 = carrier_wx * carrier_wy;
+            let t233 = t145 * t225 + (t132 * t232 + t160 * t231);
+            let t234 = t230 + t226;
+            let t235 = t145 * t166 - (t132 * t234 + t160 * t232);
+            let t236 = t235 + t233;
+            let t237 = t42 + k(0.1) * (t236 - t229);
+            let t238 = k(0.2) * t14;
+            let t239 = k(0.2) * t9;
+            let t240 = t213 * t239 - t206 * t238;
+            let t241 = t218 * t240;
+            let t242 = t215 * t241;
+            let t243 = t222 * t242;
+            let t244 = t224 * t243 + (t238 + t216 * t241);
+            let t245 = t141 * t228 + (t128 * t166 - t162 * t225);
+            let t246 = t141 * t225 - (t128 * t232 + t162 * t231);
+            let t247 = t141 * t166 + (t128 * t234 + t162 * t232);
+            let t248 = t247 + t246;
+            let t249 = t87 + k(0.1) * (t248 - t245);
+            let t250 = k(0.2) * t65;
+            let t251 = k(0.2) * t61;
+            let t252 = t213 * t251 + t206 * t250;
+            let t253 = t218 * t252;
+            let t254 = t215 * t253;
+            let t255 = t222 * t254;
+            let t256 = t224 * t255 - (t250 - t216 * t253);
+            let t257 = t147 * t228 + (t136 * t166 + t164 * t225);
+            let t258 = t147 * t225 - (t136 * t232 - t164 * t231);
+            let t259 = t147 * t166 + (t136 * t234 - t164 * t232);
+            let t260 = t259 + t258;
+            let t261 = t118 + k(0.1) * (t260 - t257);
+            let t262 = k(0.2) * t99;
+            let t263 = k(0.2) * t97;
+            let t264 = t213 * t263 + t206 * t262;
+            let t265 = t218 * t264;
+            let t266 = t215 * t265;
+            let t267 = t222 * t266;
+            let t268 = t224 * t267 - (t262 - t216 * t265);
+            let t269 = k(1.0) / (t206 * t206 + t213 * t213);
+            let t270 = t164 * t98 - (t162 * t62 + t160 * t10);
+            let t271 = t164 * t100 - (t162 * t66 - t160 * t15);
+            let t272 = shaft_wy * t271 + shaft_wz * t270;
+            let t273 = k(2.0)
+                * (carrier_wx * (shaft_wy * t149 + shaft_wz * t148) + carrier_wz * t272);
+            let t274 = t17 * t137 - (t0 * t138 - t40 * t187) + t273
+                + (t166 * t188 + (t234 * t187 - t232 * t165));
+            let t275 = k(2.0)
+                * (carrier_wx * (shaft_wy * t137 + shaft_wz * t138) - carrier_wy * t272);
+            let t276 = t17 * t149 - (t0 * t148 - t40 * t188) - t275
+                + (t228 * t188 + (t166 * t187 + t225 * t165));
+            let t277 = k(0.8) * t276 - k(0.6) * t274;
+            let t278 = t277 * (t213 * t269);
+            let t279 = t216 * t218;
+            let t280 = t222 * t224;
+            let t281 = t224 * t280 - (k(0.026) - t216 * t279);
+            let t282 = t206 * t269 * t277;
+            let t283 = k(0.0001) - t217 * t221;
+            let t284 = t283 * t280 + (k(0.0003) - t217 * t279);
+            let t285 = t284 * t282 + t281 * t278
+                - (t268 * t261 + (t256 * t249 - t244 * t237));
+            let t286 = t285 - (t224 * t223 + (t205 - t216 * t219));
+            let t287 = t283 * t243 + (t239 - t217 * t241);
+            let t288 = t283 * t255 + (t251 - t217 * t253);
+            let t289 = t283 * t267 + (t263 - t217 * t265);
+            let t290 = t283 * (t222 * t283) - (k(0.026) - t217 * (t217 * t218));
+            let t291 = t290 * t282 + t284 * t278
+                - (t289 * t261 + (t288 * t249 - t287 * t237));
+            let t292 = t291 - (t283 * t223 - (t212 - t217 * t219));
+            let t293 = t242 * t243 + t240 * t241;
+            let t294 = t254 * t243 + t252 * t241;
+            let t295 = t266 * t243 + t264 * t241;
+            let t296 = t295 * t261 + (t294 * t249 - t293 * t237) + k(0.5) * t237;
+            let t297 = t287 * t282 + t244 * t278 - t296
+                - (t242 * t223 - (t196 + t240 * t219));
+            let t298 = t131 - t144;
+            let t299 = k(0.2) * t298;
+            let t300 = t254 * t255 + t252 * t253;
+            let t301 = t266 * t255 + t264 * t253;
+            let t302 = t301 * t261 + (t300 * t249 - t294 * t237) - k(0.5) * t249;
+            let t303 = t288 * t282 + t256 * t278 - t302
+                - (t254 * t223 + (t200 - t252 * t219));
+            let t304 = t127 + t140;
+            let t305 = k(0.2) * t304;
+            let t306 = t266 * t267 + t264 * t265;
+            let t307 = t306 * t261 + (t301 * t249 - t295 * t237) - k(0.5) * t261;
+            let t308 = t289 * t282 + t268 * t278 - t307
+                - (t266 * t223 + (t203 - t264 * t219));
+            let t309 = t135 + t146;
+            let t310 = k(0.2) * t309;
+            let t311 = t310 * t308 + (t305 * t303 + t299 * t297)
+                - (t271 * t292 + t270 * t286);
+            let t312 = k(0.2) * t144;
+            let t313 = k(0.2) * t140;
+            let t314 = k(1.5) * self.gravity - t308;
+            let t315 = k(0.2) * t146;
+            let t316 = t315 * t314 - (t313 * t303 - t312 * t297);
+            let t317 = t159 + t144;
+            let t318 = k(0.2) * t317;
+            let t319 = t161 - t140;
+            let t320 = k(0.2) * t319;
+            let t321 = t163 + t146;
+            let t322 = k(0.2) * t321;
+            let t323 = t322 * t308 - (t320 * t303 + t318 * t297)
+                + (t137 * t292 + t138 * t286);
+            let t324 = k(0.6666666666666666)
+                * (t316 - (t323 + (k(0.005) * t225 - t187 * t158)))
                 - k(0.3333333333333333)
-                    * (t279 + (k(0.005) * t178 - t227 * t118 - t274));
-            let t288 = t217 - t95;
-            let t289 = k(0.2) * t288;
-            let t290 = t176 + t91;
-            let t291 = k(0.2) * t290;
-            let t292 = t201 + t87;
-            let t293 = k(0.2) * t292;
-            let t294 = t293 * t266 + t291 * t260;
-            let t295 = t294 - t289 * t271 - (t109 * t255 + (t108 * t249 + t128 * t226));
-            let t296 = t289 * t277 + t294 - (k(0.01) * t185 - t128 * t118 - t295);
-            let t297 = t278 * t258 + (t276 * t257 - t275 * t256);
-            let t298 = k(0.4) * t104;
-            let t299 = t298 + t297;
-            let t300 = t234 * t250 + (t233 * t229 - t227 * t174);
-            let t301 = t273 * t258 + (t268 * t257 + t262 * t256);
-            let t302 = t301 - k(0.1) * t261 - t300;
-            let t303 = t97 * t250 + (t98 * t229 - t127 * t174);
-            let t304 = t285 * t258 - (t283 * t257 + t281 * t256);
-            let t305 = t304 + k(0.1) * t280 + t303;
-            let t306 = t289 * t258 - (t293 * t257 + t291 * t256);
-            let t307 = t109 * t250 + (t108 * t229 - t128 * t174);
-            let t308 = t306 + k(0.1) * t290 + t307;
-            let t309 = k(0.6666666666666666) * (t308 + (t306 + k(0.4) * t290))
-                - (k(0.6666666666666666) * (t305 + t299)
-                    - k(0.3333333333333333) * (t302 + t299));
-            let t310 = k(0.1) * t189;
-            let t311 = t278 * t264 + (t276 * t263 - t275 * t257);
-            let t312 = k(0.4) * t100;
-            let t313 = t312 - t311;
-            let t314 = t234 * t251 + (t233 * t230 - t227 * t200);
-            let t315 = t273 * t264 + (t268 * t263 + t262 * t257);
-            let t316 = t315 - k(0.1) * t267 - t314;
-            let t317 = t97 * t251 + (t98 * t230 - t127 * t200);
-            let t318 = t285 * t264 - (t283 * t263 + t281 * t257);
-            let t319 = t318 + k(0.1) * t282 + t317;
-            let t320 = t289 * t264 - (t293 * t263 + t291 * t257);
-            let t321 = t109 * t251 + (t108 * t230 - t128 * t200);
-            let t322 = t320 + k(0.1) * t292 + t321;
-            let t323 = k(0.6666666666666666) * (t322 + (t320 + k(0.4) * t292))
-                - (k(0.6666666666666666) * (t319 - t313)
-                    - k(0.3333333333333333) * (t316 - t313));
-            let t324 = k(0.1) * t206;
-            let t325 = t278 * t269 + (t276 * t264 - t275 * t258);
-            let t326 = k(0.4) * t106;
-            let t327 = t326 - t325;
-            let t328 = t234 * t252 + (t233 * t231 - t227 * t216);
-            let t329 = t273 * t269 + (t268 * t264 + t262 * t258);
-            let t330 = t329 - k(0.1) * t272 - t328;
-            let t331 = t97 * t252 + (t98 * t231 - t127 * t216);
-            let t332 = t285 * t269 - (t283 * t264 + t281 * t258);
-            let t333 = t332 - k(0.1) * t284 + t331;
-            let t334 = t289 * t269 - (t293 * t264 + t291 * t258);
-            let t335 = t109 * t252 + (t108 * t231 - t128 * t216);
-            let t336 = t334 - k(0.1) * t288 + t335;
-            let t337 = k(0.6666666666666666) * (t336 + (t334 - k(0.4) * t288))
-                - (k(0.6666666666666666) * (t333 - t327)
-                    - k(0.3333333333333333) * (t330 - t327));
-            let t338 = k(0.1) * t222;
-            let t339 = k(0.6666666666666666) * t95;
-            let t340 = k(1.3333333333333333) * t217;
-            let t341 = t340 - t339;
-            let t342 = k(0.6666666666666666) * t87;
-            let t343 = k(1.3333333333333333) * t201;
-            let t344 = t343 + t342;
-            let t345 = k(1.3333333333333333) * t176;
-            let t346 = k(0.6666666666666666) * t91;
-            let t347 = t346 + t345;
-            let t348 = k(0.6666666666666666) * (t347 + t344)
-                - k(0.3333333333333333) * t341;
-            let t349 = k(0.6666666666666666) * t106;
-            let t350 = t340 + t349;
-            let t351 = k(0.6666666666666666) * t100;
-            let t352 = t343 - t351;
-            let t353 = k(0.6666666666666666) * t104;
-            let t354 = t353 + t345;
-            let t355 = k(0.6666666666666666) * (t354 + t352)
-                - k(0.3333333333333333) * t350;
-            let t356 = k(0.6666666666666666) * (t355 + t348);
-            let t357 = k(0.8888888888888888) * t261 - k(0.4444444444444444) * t267
-                - k(0.8888888888888888) * t272;
-            let t358 = k(0.6666666666666666)
-                * (k(0.8888888888888888) * (t261 + t267) + k(0.4444444444444444) * t272);
-            let t359 = t358 + k(0.3333333333333333) * t348;
-            let t360 = k(0.6666666666666666) * t354 - k(0.3333333333333333) * t352
-                + k(0.6666666666666666) * t350;
-            let t361 = k(0.3333333333333333) * t355 - t358;
-            let t362 = k(0.6666666666666666) * t347 - k(0.3333333333333333) * t344
-                + k(0.6666666666666666) * t341;
-            let t363 = k(1.0) / (t362 * t361 - (t360 * t359 - t357 * t356));
-            let t364 = k(0.6666666666666666) * t182;
-            let t365 = k(0.6666666666666666) * t188 + k(0.3333333333333333) * t186
-                - t364;
-            let t366 = k(0.6666666666666666) * t203;
-            let t367 = k(0.6666666666666666) * t205 + k(0.3333333333333333) * t204
-                - t366;
-            let t368 = k(0.6666666666666666) * t219;
-            let t369 = k(0.6666666666666666) * t221 + k(0.3333333333333333) * t220
-                - t368;
-            let t370 = k(0.6666666666666666) * t369
-                + (k(0.3333333333333333) * t367 + k(0.6666666666666666) * t365);
-            let t371 = k(0.3333333333333333) * t369
-                + k(0.6666666666666666) * (t367 - t365);
-            let t372 = t371 * (t363 * (k(0.6666666666666666) * (t360 + t362)))
-                + t370 * (t356 * t363);
-            let t373 = t234 * t247 + t233 * t244;
-            let t374 = t234 * t253 + t233 * t247;
-            let t375 = k(2.0) * (t273 * t328 + (t268 * t314 + t262 * t300))
-                - (t273 * t329 + (t268 * t315 + t262 * t301));
-            let t376 = k(0.02)
-                + (k(0.02) + (t375 + (k(0.01) - (t234 * t374 + t233 * t373))));
-            let t377 = t278 * t330 + (t276 * t316 - t275 * t302);
-            let t378 = t278 * t325 + (t276 * t311 - t275 * t297);
-            let t379 = t285 * t328 - (t283 * t314 + t281 * t300)
-                - (t273 * t331 + (t268 * t317 + t262 * t303));
-            let t380 = t379 - (t273 * t332 + (t268 * t318 + t262 * t304))
-                + (k(0.005) + (t97 * t374 + t98 * t373));
-            let t381 = t278 * t333 + (t276 * t319 - t275 * t305);
-            let t382 = t378 + (t381 + t377) - (k(0.02) + t380);
-            let t383 = t289 * t328 - (t293 * t314 + t291 * t300)
-                - (t273 * t335 + (t268 * t321 + t262 * t307));
-            let t384 = t383 - (t273 * t334 + (t268 * t320 + t262 * t306))
-                - (k(0.005) - (t109 * t374 + t108 * t373));
-            let t385 = t278 * t334 + (t276 * t320 - t275 * t306);
-            let t386 = t278 * t336 + (t276 * t322 - t275 * t308);
-            let t387 = t289 * t330 - (t293 * t316 + t291 * t302) + t386 + t385;
-            let t388 = t387 - t384;
-            let t389 = k(0.6666666666666666) * t388
-                - (k(0.6666666666666666) * t382
-                    - k(0.3333333333333333) * (t378 + k(2.0) * t377 - t376));
-            let t390 = k(0.6666666666666666) * t357;
-            let t391 = t371 * (t363 * (t390 + k(0.3333333333333333) * t362))
-                + t370 * (t359 * t363);
-            let t392 = t97 * t247 + t98 * t244;
-            let t393 = t97 * t253 + t98 * t247;
-            let t394 = k(2.0) * (t285 * t331 - (t283 * t317 + t281 * t303))
-                + (t285 * t332 - (t283 * t318 + t281 * t304));
-            let t395 = k(0.02)
-                + (k(0.03) - (t394 - (k(0.01) - (t97 * t393 + t98 * t392))));
-            let t396 = t289 * t331 - (t293 * t317 + t291 * t303)
-                + (t285 * t335 - (t283 * t321 + t281 * t307));
-            let t397 = t396 + (t285 * t334 - (t283 * t320 + t281 * t306))
-                - (k(0.005) - (t109 * t393 + t108 * t392));
-            let t398 = t385 + (t386 + (t289 * t333 - (t293 * t319 + t291 * t305)));
-            let t399 = k(0.6666666666666666) * (t398 + t397);
+                    * (t316 - (t311 - (k(0.005) * t166 - t165 * t158)));
+            let t325 = t163 - t135;
+            let t326 = k(0.2) * t325;
+            let t327 = t159 + t131;
+            let t328 = k(0.2) * t327;
+            let t329 = t161 + t127;
+            let t330 = k(0.2) * t329;
+            let t331 = t330 * t303 + t328 * t297;
+            let t332 = t331 - t326 * t308 - (t149 * t292 + t148 * t286)
+                - (k(0.01) * t232 - t188 * t158);
+            let t333 = k(0.1) * t236;
+            let t334 = t315 * t295 + (t313 * t294 - t312 * t293);
+            let t335 = k(0.4) * t144;
+            let t336 = t335 + t334;
+            let t337 = t271 * t287 + t270 * t244;
+            let t338 = t310 * t295 + (t305 * t294 + t299 * t293);
+            let t339 = t338 - k(0.1) * t298 - t337;
+            let t340 = t137 * t287 + t138 * t244;
+            let t341 = t322 * t295 - (t320 * t294 + t318 * t293);
+            let t342 = t341 + k(0.1) * t317 + t340;
+            let t343 = t326 * t295 - (t330 * t294 + t328 * t293);
+            let t344 = t149 * t287 + t148 * t244;
+            let t345 = t343 + k(0.1) * t327 + t344;
+            let t346 = k(0.6666666666666666) * (t345 + (t343 + k(0.4) * t327))
+                - (k(0.6666666666666666) * (t342 + t336)
+                    - k(0.3333333333333333) * (t339 + t336));
+            let t347 = k(0.1) * t248;
+            let t348 = t315 * t301 + (t313 * t300 - t312 * t294);
+            let t349 = k(0.4) * t140;
+            let t350 = t349 - t348;
+            let t351 = t271 * t288 + t270 * t256;
+            let t352 = t310 * t301 + (t305 * t300 + t299 * t294);
+            let t353 = t352 - k(0.1) * t304 - t351;
+            let t354 = t137 * t288 + t138 * t256;
+            let t355 = t322 * t301 - (t320 * t300 + t318 * t294);
+            let t356 = t355 + k(0.1) * t319 + t354;
+            let t357 = t326 * t301 - (t330 * t300 + t328 * t294);
+            let t358 = t149 * t288 + t148 * t256;
+            let t359 = t357 + k(0.1) * t329 + t358;
+            let t360 = k(0.6666666666666666) * (t359 + (t357 + k(0.4) * t329))
+                - (k(0.6666666666666666) * (t356 - t350)
+                    - k(0.3333333333333333) * (t353 - t350));
+            let t361 = k(0.1) * t260;
+            let t362 = t315 * t306 + (t313 * t301 - t312 * t295);
+            let t363 = k(0.4) * t146;
+            let t364 = t363 - t362;
+            let t365 = t271 * t289 + t270 * t268;
+            let t366 = t310 * t306 + (t305 * t301 + t299 * t295);
+            let t367 = t366 - k(0.1) * t309 - t365;
+            let t368 = t137 * t289 + t138 * t268;
+            let t369 = t322 * t306 - (t320 * t301 + t318 * t295);
+            let t370 = t369 - k(0.1) * t321 + t368;
+            let t371 = t326 * t306 - (t330 * t301 + t328 * t295);
+            let t372 = t149 * t289 + t148 * t268;
+            let t373 = t371 - k(0.1) * t325 + t372;
+            let t374 = k(0.6666666666666666) * (t373 + (t371 - k(0.4) * t325))
+                - (k(0.6666666666666666) * (t370 - t364)
+                    - k(0.3333333333333333) * (t367 - t364));
+            let t375 = k(0.6666666666666666) * t144;
+            let t376 = k(1.3333333333333333) * t140;
+            let t377 = k(1.3333333333333333) * t146;
+            let t378 = t377 - (t376 + t375);
+            let t379 = k(1.3333333333333333) * t127;
+            let t380 = k(0.6666666666666666) * t131;
+            let t381 = k(1.3333333333333333) * t135;
+            let t382 = t381 + (t380 - t379);
+            let t383 = k(0.6666666666666666) * t159;
+            let t384 = k(1.3333333333333333) * t161;
+            let t385 = k(1.3333333333333333) * t163;
+            let t386 = t385 + (t384 - t383);
+            let t387 = k(0.6666666666666666) * carrier_wx;
+            let t388 = t387 - k(0.3333333333333333) * carrier_wy;
+            let t389 = k(0.3333333333333333) * carrier_wz - t387;
+            let t390 = k(0.6666666666666666) * (carrier_wy - carrier_wz);
+            let t391 = (t390 * t390 + t389 * t389 + t388 * t388)
+                / (k(0.6666666666666666) * t378
+                    - (k(0.6666666666666666) * t382 + k(0.3333333333333333) * t386));
+            let t392 = k(0.6666666666666666) * carrier_wz
+                + (k(0.6666666666666666) * carrier_wy
+                    + k(0.3333333333333333) * carrier_wx);
+            let t393 = t390 * t392 - t391 * (k(0.6666666666666666) * (t382 + t378));
+            let t394 = t271 * t284 + t270 * t281;
+            let t395 = t271 * t290 + t270 * t284;
+            let t396 = k(2.0) * (t310 * t365 + (t305 * t351 + t299 * t337))
+                - (t310 * t366 + (t305 * t352 + t299 * t338));
+            let t397 = k(0.02)
+                + (k(0.02) + (t396 + (k(0.01) - (t271 * t395 + t270 * t394))));
+            let t398 = t315 * t367 + (t313 * t353 - t312 * t339);
+            let t399 = t315 * t362 + (t313 * t348 - t312 * t334);
             (
                 t201,
                 t202,
-                t203,
                 t204,
-                t205,
-                t207,
-                t208,
+                t206,
                 t209,
-                t212,
+                t210,
+                t211,
+                t213,
                 t214,
+                t215,
+                t216,
                 t217,
                 t218,
-                t219,
                 t220,
-                t221,
-                t223,
+                t222,
                 t224,
-                t225,
-                t227,
-                t228,
+                t229,
                 t233,
-                t234,
-                t241,
-                t244,
+                t235,
+                t237,
+                t240,
+                t242,
                 t245,
                 t246,
                 t247,
-                t253,
-                t262,
-                t268,
-                t273,
-                t275,
-                t276,
+                t249,
+                t252,
+                t254,
+                t257,
+                t258,
+                t259,
+                t261,
+                t264,
+                t266,
+                t270,
+                t271,
                 t278,
                 t281,
+                t282,
                 t283,
-                t285,
-                t287,
-                t289,
-                t291,
-                t293,
-                t296,
-                t298,
-                t306,
-                t307,
-                t308,
-                t309,
+                t284,
+                t290,
+                t299,
+                t305,
                 t310,
                 t312,
+                t313,
+                t314,
+                t315,
+                t318,
                 t320,
-                t321,
                 t322,
-                t323,
                 t324,
                 t326,
-                t334,
+                t328,
+                t330,
+                t331,
+                t332,
+                t333,
                 t335,
-                t336,
                 t337,
-                t338,
                 t339,
                 t340,
+                t341,
                 t342,
                 t343,
+                t344,
                 t345,
                 t346,
+                t347,
                 t349,
                 t351,
                 t353,
+                t354,
+                t355,
+                t356,
+                t357,
+                t358,
+                t359,
                 t360,
                 t361,
                 t363,
-                t364,
-                t366,
+                t365,
+                t367,
                 t368,
+                t369,
                 t370,
                 t371,
                 t372,
+                t373,
+                t374,
+                t375,
+                t376,
+                t377,
                 t378,
+                t379,
+                t380,
                 t381,
                 t382,
+                t383,
+                t384,
+                t385,
+                t386,
                 t388,
                 t389,
-                t390,
                 t391,
+                t392,
+                t393,
+                t394,
                 t395,
+                t397,
+                t398,
                 t399,
             )
         };
         let (
-            t408,
-            t410,
-            t412,
-            t413,
-            t415,
-            t418,
-            t421,
-            t430,
+            t429,
             t431,
-            t432,
             t433,
             t434,
-            t435,
             t436,
-            t437,
-            t438,
             t439,
-            t440,
-            t441,
             t442,
-            t443,
-            t444,
-            t446,
-            t448,
+            t450,
             t451,
+            t452,
+            t453,
             t454,
+            t455,
             t456,
             t457,
             t458,
-            t459,
             t460,
-            t461,
             t462,
-            t464,
             t465,
-            t466,
-            t469,
+            t468,
             t470,
+            t471,
             t472,
+            t473,
+            t474,
+            t475,
             t476,
-            t477,
             t478,
             t479,
             t480,
-            t481,
-            t482,
+            t483,
+            t484,
             t485,
             t486,
-            t487,
-            t488,
-            t489,
             t490,
             t491,
             t492,
             t493,
             t494,
+            t495,
             t496,
-            t498,
+            t499,
             t500,
+            t501,
             t502,
             t503,
+            t504,
             t505,
             t506,
             t507,
             t508,
-            t509,
             t510,
-            t511,
             t512,
-            t513,
             t514,
-            t515,
             t516,
             t517,
-            t518,
             t519,
             t520,
             t521,
             t522,
             t523,
             t524,
+            t525,
+            t526,
+            t527,
             t528,
             t529,
+            t530,
+            t531,
+            t532,
             t533,
             t534,
             t535,
+            t536,
+            t537,
             t538,
-            t539,
-            t540,
             t542,
-            t544,
-            t546,
+            t543,
             t547,
             t548,
+            t549,
+            t552,
             t553,
             t554,
-            t555,
             t556,
-            t557,
-            t558,
-            t562,
-            t564,
-            t565,
-            t567,
-            t569,
-            t570,
             t571,
+            t572,
             t573,
             t574,
             t575,
             t576,
             t577,
-            t578,
-            t579,
-            t581,
             t582,
             t583,
             t584,
@@ -11460,357 +11481,344 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t587,
             t588,
             t589,
-            t590,
-            t592,
             t593,
             t594,
-            t596,
+            t595,
             t597,
             t598,
             t599,
         ) = {
-            let t400 = t399
-                - (k(0.6666666666666666) * (k(2.0) * t381 + t378 - t395)
-                    - k(0.3333333333333333) * t382);
-            let t401 = t371 * (t363 * (k(0.3333333333333333) * t360 - t390))
-                + t370 * (t361 * t363);
-            let t402 = t109 * (t109 * t253 + t108 * t247)
-                + t108 * (t109 * t247 + t108 * t244);
-            let t403 = t289 * t334 - (t293 * t320 + t291 * t306);
-            let t404 = t403 + k(2.0) * (t289 * t335 - (t293 * t321 + t291 * t307));
-            let t405 = k(2.0) * (t289 * t336 - (t293 * t322 + t291 * t308)) + t403;
-            let t406 = k(0.6666666666666666)
-                * (t405 - (k(0.04) + (k(0.025) - (t404 - (k(0.01) - t402)))))
-                + (k(0.3333333333333333) * t388 - t399);
-            let t407 = t406 * t401 - (t400 * t391 + t389 * t372)
-                - (t338 * t337 + (t324 * t323 - t310 * t309));
-            let t408 = k(1.0)
-                / (k(0.6666666666666666) * t406
-                    - (k(0.6666666666666666) * t400 - k(0.3333333333333333) * t389));
-            let t409 = t408 * (t407 - (k(0.6666666666666666) * t296 - t287));
-            let t410 = t372 + k(0.3333333333333333) * t409;
-            let t411 = k(0.6666666666666666) * t409;
-            let t412 = t391 - t411;
-            let t413 = t401 - t411;
-            let t414 = t291 * t413;
-            let t415 = t310 - (t414 - (t275 * t412 + t275 * t410));
-            let t416 = t193 + (t281 * t412 - t262 * t410 - t414 + t415);
-            let t417 = t293 * t413;
-            let t418 = t324 + (t417 + (t276 * t412 + t276 * t410));
-            let t419 = t209 - (t283 * t412 - t268 * t410 - t417 - t418);
-            let t420 = t289 * t413;
-            let t421 = t338 - (t420 - (t278 * t412 + t278 * t410));
-            let t422 = t225 + (t285 * t412 + t273 * t410 - t420 + t421);
-            let t423 = t128 * t413 - (t127 * t412 - t227 * t410);
-            let t424 = t241 + (t108 * t413 - (t98 * t412 - t233 * t410));
-            let t425 = t245 + (t109 * t413 - (t97 * t412 - t234 * t410));
-            let t426 = t246 * t425 + (t228 * t424 + t165 * t423)
-                - (t214 * t422 + (t198 * t419 - t172 * t416));
-            let t427 = t423 + t166 * (t163 - t426);
-            let t428 = t160 * t425 - (t159 * t424 - t158 * t427)
-                + (t212 * t422 + (t196 * t419 - t170 * t416));
-            let t429 = t161 * (t157 - t428);
-            let t430 = t424 - t148 * t429;
-            let t431 = t425 + t156 * t429;
-            let t432 = t416 - (t149 * t431 + t133 * t430);
-            let t433 = t12 + t37;
-            let t434 = k(1.4142135623730951) * t433;
-            let t435 = t419 + (t150 * t431 - t137 * t430);
-            let t436 = t23 - t39;
-            let t437 = k(1.4142135623730951) * t436;
-            let t438 = t422 + (t151 * t431 - t140 * t430);
-            let t439 = t32 - t41;
-            let t440 = k(1.4142135623730951) * t439;
-            let t441 = t427 + t129 * t429;
-            let t442 = k(0.1) * t439;
-            let t443 = k(0.1) * t436;
-            let t444 = k(0.1) * t433;
-            let t445 = k(1.4142135623730951) * (t12 - t37) * t82 + t434 * t444
-                - (k(1.4142135623730951) * (t23 + t39) * t69 - t437 * t443);
-            let t446 = t445 + (k(1.4142135623730951) * (t32 + t41) * t56 + t440 * t442);
-            let t447 = k(0.1) * t45;
-            let t448 = t140 - t447;
-            let t449 = t56 * (k(1.4142135623730951) * t45);
-            let t450 = k(0.1) * t58;
-            let t451 = t137 + t450;
-            let t452 = t69 * (k(1.4142135623730951) * t58);
-            let t453 = k(0.1) * t71;
-            let t454 = t133 - t453;
-            let t455 = t82 * (k(1.4142135623730951) * t71);
-            let t456 = t455 - t434 * t454 - (t452 - t437 * t451) - (t449 - t440 * t448);
-            let t457 = t151 - t447;
-            let t458 = t150 + t450;
-            let t459 = t149 + t453;
-            let t460 = t455 - t434 * t459 - (t452 + t437 * t458) - (t449 + t440 * t457);
-            let t461 = t460 * t431 + (t456 * t430 + t446 * t441)
-                - (t440 * t438 + (t437 * t435 - t434 * t432));
-            let t462 = puck_wx * puck_wz;
-            let t463 = puck_e0 * puck_e0;
-            let t464 = k(0.5) - (t463 + puck_e1 * puck_e1);
-            let t465 = k(2.0) * t464;
-            let t466 = puck_wy * puck_wz;
-            let t467 = puck_e0 * puck_e3;
-            let t468 = puck_e1 * puck_e2;
-            let t469 = t468 - t467;
-            let t470 = k(2.0) * t469;
-            let t471 = puck_wx * puck_wx;
-            let t472 = puck_wy * puck_wy;
-            let t473 = t472 + t471;
-            let t474 = puck_e0 * puck_e2;
-            let t475 = puck_e1 * puck_e3;
-            let t476 = t475 + t474;
-            let t477 = k(2.0) * t476;
-            let t478 = t477 * t473 - (t470 * t466 - t465 * t462);
-            let t479 = t468 + t467;
-            let t480 = k(2.0) * t479;
-            let t481 = k(0.5) - (t463 + puck_e2 * puck_e2);
-            let t482 = k(2.0) * t481;
-            let t483 = puck_e0 * puck_e1;
-            let t484 = puck_e2 * puck_e3;
-            let t485 = t484 - t483;
-            let t486 = k(2.0) * t485;
-            let t487 = t486 * t473 + (t482 * t466 - t480 * t462);
-            let t488 = t475 - t474;
-            let t489 = k(2.0) * t488;
-            let t490 = t484 + t483;
+            let t400 = t322 * t365 - (t320 * t351 + t318 * t337)
+                - (t310 * t368 + (t305 * t354 + t299 * t340));
+            let t401 = t400 - (t310 * t369 + (t305 * t355 + t299 * t341))
+                + (k(0.005) + (t137 * t395 + t138 * t394));
+            let t402 = t315 * t370 + (t313 * t356 - t312 * t342);
+            let t403 = t399 + (t402 + t398) - (k(0.02) + t401);
+            let t404 = t326 * t365 - (t330 * t351 + t328 * t337)
+                - (t310 * t372 + (t305 * t358 + t299 * t344));
+            let t405 = t404 - (t310 * t371 + (t305 * t357 + t299 * t343))
+                - (k(0.005) - (t149 * t395 + t148 * t394));
+            let t406 = t315 * t371 + (t313 * t357 - t312 * t343);
+            let t407 = t315 * t373 + (t313 * t359 - t312 * t345);
+            let t408 = t326 * t367 - (t330 * t353 + t328 * t339) + t407 + t406;
+            let t409 = t408 - t405;
+            let t410 = k(0.6666666666666666) * t409
+                - (k(0.6666666666666666) * t403
+                    - k(0.3333333333333333) * (t399 + k(2.0) * t398 - t397));
+            let t411 = k(0.6666666666666666) * t386;
+            let t412 = t389 * t392 + t391 * (t411 + k(0.3333333333333333) * t378);
+            let t413 = t137 * t284 + t138 * t281;
+            let t414 = t137 * t290 + t138 * t284;
+            let t415 = k(2.0) * (t322 * t368 - (t320 * t354 + t318 * t340))
+                + (t322 * t369 - (t320 * t355 + t318 * t341));
+            let t416 = k(0.02)
+                + (k(0.03) - (t415 - (k(0.01) - (t137 * t414 + t138 * t413))));
+            let t417 = t326 * t368 - (t330 * t354 + t328 * t340)
+                + (t322 * t372 - (t320 * t358 + t318 * t344));
+            let t418 = t417 + (t322 * t371 - (t320 * t357 + t318 * t343))
+                - (k(0.005) - (t149 * t414 + t148 * t413));
+            let t419 = t406 + (t407 + (t326 * t370 - (t330 * t356 + t328 * t342)));
+            let t420 = k(0.6666666666666666) * (t419 + t418);
+            let t421 = t420
+                - (k(0.6666666666666666) * (k(2.0) * t402 + t399 - t416)
+                    - k(0.3333333333333333) * t403);
+            let t422 = t388 * t392 + (k(0.3333333333333333) * t382 - t411) * t391;
+            let t423 = t149 * (t149 * t290 + t148 * t284)
+                + t148 * (t149 * t284 + t148 * t281);
+            let t424 = t326 * t371 - (t330 * t357 + t328 * t343);
+            let t425 = t424 + k(2.0) * (t326 * t372 - (t330 * t358 + t328 * t344));
+            let t426 = k(2.0) * (t326 * t373 - (t330 * t359 + t328 * t345)) + t424;
+            let t427 = k(0.6666666666666666)
+                * (t426 - (k(0.04) + (k(0.025) - (t425 - (k(0.01) - t423)))))
+                + (k(0.3333333333333333) * t409 - t420);
+            let t428 = t427 * t422 - (t421 * t412 - t410 * t393)
+                + (t374 * t361 + (t360 * t347 - t346 * t333));
+            let t429 = k(1.0)
+                / (k(0.6666666666666666) * t427
+                    - (k(0.6666666666666666) * t421 - k(0.3333333333333333) * t410));
+            let t430 = t429
+                * (t428 + (k(0.6666666666666666) * (t326 * t314 + t331 + t332) - t324));
+            let t431 = t393 - k(0.3333333333333333) * t430;
+            let t432 = k(0.6666666666666666) * t430;
+            let t433 = t412 - t432;
+            let t434 = t422 - t432;
+            let t435 = t328 * t434;
+            let t436 = t333 + (t435 - (t312 * t433 - t312 * t431));
+            let t437 = t237 - (t318 * t433 + t299 * t431 - t435 - t436);
+            let t438 = t330 * t434;
+            let t439 = t347 - (t438 + (t313 * t433 - t313 * t431));
+            let t440 = t249 + (t320 * t433 + t305 * t431 - t438 + t439);
+            let t441 = t326 * t434;
+            let t442 = t361 + (t441 - (t315 * t433 - t315 * t431));
+            let t443 = t261 - (t322 * t433 - t310 * t431 - t441 - t442);
+            let t444 = t278 - (t148 * t434 - (t138 * t433 + t270 * t431));
+            let t445 = t282 - (t149 * t434 - (t137 * t433 + t271 * t431));
+            let t446 = t283 * t445 + t224 * t444
+                - (t266 * t443 + (t254 * t440 - t242 * t437));
+            let t447 = t222 * (t220 - t446);
+            let t448 = t217 * t445 - (t216 * t444 - t215 * t447)
+                + (t264 * t443 + (t252 * t440 - t240 * t437));
+            let t449 = t218 * (t214 - t448);
+            let t450 = t444 - t206 * t449;
+            let t451 = t445 + t213 * t449;
+            let t452 = t437 - (t209 * t451 + t197 * t450);
+            let t453 = t440 + (t210 * t451 - t201 * t450);
+            let t454 = t443 + (t211 * t451 - t204 * t450);
+            let t455 = t447 + t189 * t449;
+            let t456 = k(0.1) * t123;
+            let t457 = k(0.1) * t92;
+            let t458 = k(0.1) * t56;
+            let t459 = k(1.4142135623730951) * (t9 - t14) * t30 + t57 * t458
+                - (k(1.4142135623730951) * (t61 + t65) * t76 - t93 * t457);
+            let t460 = t459 + (k(1.4142135623730951) * (t97 + t99) * t107 + t124 * t456);
+            let t461 = k(0.1) * t95;
+            let t462 = t204 - t461;
+            let t463 = t107 * (k(1.4142135623730951) * t95);
+            let t464 = k(0.1) * t59;
+            let t465 = t201 + t464;
+            let t466 = t76 * (k(1.4142135623730951) * t59);
+            let t467 = k(0.1) * t2;
+            let t468 = t197 - t467;
+            let t469 = t30 * (k(1.4142135623730951) * t2);
+            let t470 = t469 - t57 * t468 - (t466 - t93 * t465) - (t463 - t124 * t462);
+            let t471 = t211 - t461;
+            let t472 = t210 + t464;
+            let t473 = t209 + t467;
+            let t474 = t469 - t57 * t473 - (t466 + t93 * t472) - (t463 + t124 * t471);
+            let t475 = t474 * t451 + (t470 * t450 + t460 * t455)
+                - (t124 * t454 + (t93 * t453 - t57 * t452));
+            let t476 = puck_wx * puck_wz;
+            let t477 = puck_e0 * puck_e0;
+            let t478 = k(0.5) - (t477 + puck_e1 * puck_e1);
+            let t479 = k(2.0) * t478;
+            let t480 = puck_wy * puck_wz;
+            let t481 = puck_e0 * puck_e3;
+            let t482 = puck_e1 * puck_e2;
+            let t483 = t482 - t481;
+            let t484 = k(2.0) * t483;
+            let t485 = puck_wx * puck_wx;
+            let t486 = puck_wy * puck_wy;
+            let t487 = t486 + t485;
+            let t488 = puck_e0 * puck_e2;
+            let t489 = puck_e1 * puck_e3;
+            let t490 = t489 + t488;
             let t491 = k(2.0) * t490;
-            let t492 = k(0.5) - (t463 + puck_e3 * puck_e3);
-            let t493 = k(2.0) * t492;
-            let t494 = t493 * t473 + (t491 * t466 + t489 * t462);
-            let t495 = k(0.09622504486493763) * t494
-                - k(0.019245008972987525) * (t487 + t478);
-            let t496 = k(0.19245008972987526) * t495;
-            let t497 = k(8.0) * t7;
-            let t498 = k(0.16) * t7;
-            let t499 = k(4.2105263157894735) * t7;
-            let t500 = k(0.016) * t7;
-            let t501 = k(0.4) * t1;
-            let t502 = k(0.2) * t4;
-            let t503 = t502 + t501;
-            let t504 = k(16.0) * t503;
-            let t505 = k(0.4) * t503;
-            let t506 = t505 * t504 + (t500 * t499 + t498 * t497);
-            let t507 = k(0.16) * t27;
-            let t508 = k(0.016) * t27;
-            let t509 = k(0.2) * t26;
-            let t510 = t509 - k(0.4) * t25;
-            let t511 = k(0.4) * t510;
-            let t512 = t511 * t504 - (t508 * t499 + t507 * t497);
-            let t513 = k(0.4) + self.puck_mass;
-            let t514 = k(0.9805806756909201) * t513
-                + (k(0.19611613513818404) * t512 - k(0.9805806756909201) * t506);
-            let t515 = t511 * (k(16.0) * t510)
-                + (t508 * (k(4.2105263157894735) * t27) + t507 * (k(8.0) * t27));
-            let t516 = k(0.19611613513818404) * t513
-                - (k(0.19611613513818404) * t515 - k(0.9805806756909201) * t512);
-            let t517 = k(1.0)
-                / (k(0.19611613513818404) * t516 + k(0.9805806756909201) * t514);
-            let t518 = t514 * t517;
-            let t519 = k(0.16) * t19;
-            let t520 = k(0.016) * t19;
-            let t521 = k(0.2) * t16;
-            let t522 = t521 + k(0.4) * t14;
-            let t523 = k(0.4) * t522;
-            let t524 = t504 * t523 - (t499 * t520 + t497 * t519);
-            let t525 = k(8.0) * t19;
-            let t526 = k(4.2105263157894735) * t19;
-            let t527 = k(16.0) * t522;
-            let t528 = t511 * t527 + (t508 * t526 + t507 * t525);
-            let t529 = k(0.19611613513818404) * t528 - k(0.9805806756909201) * t524;
-            let t530 = t524 + t529 * t518;
-            let t531 = t512 - t516 * t518;
-            let t532 = k(0.1887128390240993) * t531
-                + (k(0.9813067629253163) * t530
-                    + k(0.03774256780481986) * (t506 + t514 * t518));
-            let t533 = k(0.03774256780481986) * t513 - t532;
-            let t534 = t527 * t523 + (t526 * t520 + t525 * t519);
-            let t535 = t517 * t529;
-            let t536 = t528 - t516 * t535;
-            let t537 = k(0.1887128390240993) * t536
-                + (k(0.9813067629253163) * (t529 * t535 + t534)
-                    + k(0.03774256780481986) * t530);
-            let t538 = k(0.9813067629253163) * t513 - t537;
-            let t539 = k(0.9622504486493763) * t495;
-            let t540 = t516 * t517;
-            let t541 = k(0.1887128390240993) * (t515 + t516 * t540)
-                + (k(0.9813067629253163) * t536 + k(0.03774256780481986) * t531);
-            let t542 = k(0.1887128390240993) * t513 - t541;
-            let t543 = t131 - (k(0.2) - t130);
-            let t544 = k(0.4) * t7;
-            let t545 = t135 + (k(0.1) + t134);
-            let t546 = k(0.4) * t19;
-            let t547 = k(0.4) * self.gravity - t138;
-            let t548 = k(0.4) * t27;
-            let t549 = t48 * t46 + (t61 * t59 - t74 * t72);
-            let t550 = t49 * t46 + (t62 * t59 + t75 * t72);
-            let t551 = k(0.05) * (t550 - t549);
-            let t552 = t85 * t551 - (k(0.05) * (t521 + k(0.4) * t4) - k(0.02) * t25);
-            let t553 = sleeve_wy * sleeve_wz;
-            let t554 = k(0.002) * t553 - (t121 * t551 + t552)
-                + (t548 * t547 - (t546 * t545 + t544 * t543));
-            let t555 = k(50.0) * t554;
-            let t556 = k(0.2) * t7;
-            let t557 = k(0.2) * t19;
-            let t558 = k(0.2) * t27;
-            let t559 = k(0.05) * (t47 * t46 - (t60 * t59 - t73 * t72));
-            let t560 = k(0.1) * t550 - t559;
-            let t561 = t121 * t560
-                + (t85 * t560 + (k(0.05) * (t15 + t501) - k(0.02) * t26));
-            let t562 = sleeve_wx * sleeve_wz;
-            let t563 = k(0.001) * t562 - t561
-                + (t558 * t547 - (t557 * t545 + t556 * t543));
-            let t564 = k(0.4) * t554 - t563;
-            let t565 = k(263.1578947368421) * t564;
-            let t566 = t559 - k(0.1) * t549;
-            let t567 = sleeve_wx * sleeve_wy;
-            let t568 = k(0.001) * t567 + (t121 * t566 + (t85 * t566 - k(0.02) * t27));
-            let t569 = t568 + (t510 * t547 - (t522 * t545 - t503 * t543));
-            let t570 = k(40.0) * t569;
-            let t571 = sleeve_wx * sleeve_wx;
-            let t572 = sleeve_wz * sleeve_wz;
-            let t573 = t572 + t571;
-            let t574 = t75 * t553 - (t74 * t573 + t73 * t567);
-            let t575 = sleeve_wy * sleeve_wy;
-            let t576 = t572 + t575;
-            let t577 = k(0.1) * (t75 * t562 + (t74 * t567 + t73 * t576));
-            let t578 = puck_wx * puck_wy;
-            let t579 = puck_wz * puck_wz;
-            let t580 = t579 + t471;
-            let t581 = t477 * t466 - (t470 * t580 + t465 * t578);
-            let t582 = k(0.2) * t581 + k(0.1) * t478 + (t577 + k(0.2) * t574);
-            let t583 = t62 * t553 + (t61 * t573 + t60 * t567);
-            let t584 = k(0.1) * (t62 * t562 - (t61 * t567 + t60 * t576));
-            let t585 = t486 * t466 + (t482 * t580 + t480 * t578);
-            let t586 = k(0.2) * t585 + k(0.1) * t487 + (t584 + k(0.2) * t583);
-            let t587 = t49 * t553 + (t48 * t573 - t47 * t567);
-            let t588 = k(0.1) * (t49 * t562 - (t48 * t567 - t47 * t576));
-            let t589 = t493 * t466 + (t491 * t580 - t489 * t578);
-            let t590 = k(0.2) * t589 + k(0.1) * t494 + (t588 + k(0.2) * t587);
-            let t591 = t590 * t512 + (t586 * t524 - t582 * t506) + k(0.4) * t582;
-            let t592 = t591 + (t505 * t570 + (t500 * t565 - (t543 + t498 * t555)));
-            let t593 = k(0.2) * t469;
-            let t594 = k(0.4) * t476 + t593;
-            let t595 = t590 * t528 + (t586 * t534 - t582 * t524) - k(0.4) * t586;
-            let t596 = t595 + (t523 * t570 - (t520 * t565 - (t545 + t519 * t555)));
-            let t597 = k(0.2) * t481;
-            let t598 = k(0.4) * t485 - t597;
-            let t599 = t590 * t515 + (t586 * t528 - t582 * t512) - k(0.4) * t590;
+            let t492 = t491 * t487 - (t484 * t480 - t479 * t476);
+            let t493 = t482 + t481;
+            let t494 = k(2.0) * t493;
+            let t495 = k(0.5) - (t477 + puck_e2 * puck_e2);
+            let t496 = k(2.0) * t495;
+            let t497 = puck_e0 * puck_e1;
+            let t498 = puck_e2 * puck_e3;
+            let t499 = t498 - t497;
+            let t500 = k(2.0) * t499;
+            let t501 = t500 * t487 + (t496 * t480 - t494 * t476);
+            let t502 = t489 - t488;
+            let t503 = k(2.0) * t502;
+            let t504 = t498 + t497;
+            let t505 = k(2.0) * t504;
+            let t506 = k(0.5) - (t477 + puck_e3 * puck_e3);
+            let t507 = k(2.0) * t506;
+            let t508 = t507 * t487 + (t505 * t480 + t503 * t476);
+            let t509 = k(0.09622504486493763) * t508
+                - k(0.019245008972987525) * (t501 + t492);
+            let t510 = k(0.19245008972987526) * t509;
+            let t511 = k(8.0) * t28;
+            let t512 = k(0.16) * t28;
+            let t513 = k(4.2105263157894735) * t28;
+            let t514 = k(0.016) * t28;
+            let t515 = k(0.4) * t22;
+            let t516 = k(0.2) * t25;
+            let t517 = t516 + t515;
+            let t518 = k(16.0) * t517;
+            let t519 = k(0.4) * t517;
+            let t520 = t519 * t518 + (t514 * t513 + t512 * t511);
+            let t521 = k(0.16) * t105;
+            let t522 = k(0.016) * t105;
+            let t523 = k(0.2) * t104;
+            let t524 = t523 - k(0.4) * t103;
+            let t525 = k(0.4) * t524;
+            let t526 = t525 * t518 - (t522 * t513 + t521 * t511);
+            let t527 = k(0.4) + self.puck_mass;
+            let t528 = k(0.9805806756909201) * t527
+                + (k(0.19611613513818404) * t526 - k(0.9805806756909201) * t520);
+            let t529 = t525 * (k(16.0) * t524)
+                + (t522 * (k(4.2105263157894735) * t105) + t521 * (k(8.0) * t105));
+            let t530 = k(0.19611613513818404) * t527
+                - (k(0.19611613513818404) * t529 - k(0.9805806756909201) * t526);
+            let t531 = k(1.0)
+                / (k(0.19611613513818404) * t530 + k(0.9805806756909201) * t528);
+            let t532 = t528 * t531;
+            let t533 = k(0.16) * t74;
+            let t534 = k(0.016) * t74;
+            let t535 = k(0.2) * t71;
+            let t536 = t535 + k(0.4) * t69;
+            let t537 = k(0.4) * t536;
+            let t538 = t518 * t537 - (t513 * t534 + t511 * t533);
+            let t539 = k(8.0) * t74;
+            let t540 = k(4.2105263157894735) * t74;
+            let t541 = k(16.0) * t536;
+            let t542 = t525 * t541 + (t522 * t540 + t521 * t539);
+            let t543 = k(0.19611613513818404) * t542 - k(0.9805806756909201) * t538;
+            let t544 = t538 + t543 * t532;
+            let t545 = t526 - t530 * t532;
+            let t546 = k(0.1887128390240993) * t545
+                + (k(0.9813067629253163) * t544
+                    + k(0.03774256780481986) * (t520 + t528 * t532));
+            let t547 = k(0.03774256780481986) * t527 - t546;
+            let t548 = t541 * t537 + (t540 * t534 + t539 * t533);
+            let t549 = t531 * t543;
+            let t550 = t542 - t530 * t549;
+            let t551 = k(0.1887128390240993) * t550
+                + (k(0.9813067629253163) * (t543 * t549 + t548)
+                    + k(0.03774256780481986) * t544);
+            let t552 = k(0.9813067629253163) * t527 - t551;
+            let t553 = k(0.9622504486493763) * t509;
+            let t554 = t530 * t531;
+            let t555 = k(0.1887128390240993) * (t529 + t530 * t554)
+                + (k(0.9813067629253163) * t550 + k(0.03774256780481986) * t545);
+            let t556 = k(0.1887128390240993) * t527 - t555;
+            let t557 = k(0.1) * (puck_wy - puck_wz);
+            let t558 = k(0.1) * puck_wx;
+            let t559 = k(1.2) - (puck_rx + k(0.2) * (t483 + t490));
+            let t560 = k(1.0) - (puck_ry - k(0.2) * (t495 - t499));
+            let t561 = k(1.0) - (puck_rz + k(0.2) * (t504 - t506));
+            let t562 = (t561 * t561 + (t560 * t560 + t559 * t559)).sqrt();
+            let t563 = k(1.0) / t562;
+            let t564 = t559 * t563;
+            let t565 = t564 * (puck_sx + (t491 * t558 - (t484 * t558 + t479 * t557)));
+            let t566 = t560 * t563;
+            let t567 = t566 * (puck_sy + (t500 * t558 + (t496 * t558 + t494 * t557)));
+            let t568 = t561 * t563;
+            let t569 = t568 * (puck_sz - (t507 * t558 + (t505 * t558 - t503 * t557)));
+            let t570 = k(30.0) * (k(0.6) - t562) + (t569 + (t567 + t565));
+            let t571 = t564 * t570;
+            let t572 = t566 * t570;
+            let t573 = t568 * t570;
+            let t574 = t507 * t573 - (t500 * t572 + t491 * t571)
+                + (t505 * t573 - (t496 * t572 - t484 * t571));
+            let t575 = k(0.19245008972987526) * (puck_wx + puck_wy)
+                + k(0.9622504486493763) * puck_wz;
+            let t576 = (k(10.0) * t575).tanh();
+            let t577 = k(0.009622504486493762) * t576;
+            let t578 = t112 * t173 + (t81 * t175 + t35 * t177);
+            let t579 = t111 * t173 + (t80 * t175 - t34 * t177);
+            let t580 = k(0.05) * (t579 - t578);
+            let t581 = t180 * t580 + (k(0.05) * (t535 + k(0.4) * t25) - k(0.02) * t103);
+            let t582 = t195 - (k(0.2) - t194);
+            let t583 = k(0.4) * t28;
+            let t584 = t199 + (k(0.1) + t198);
+            let t585 = k(0.4) * t74;
+            let t586 = k(0.4) * self.gravity - t202;
+            let t587 = k(0.4) * t105;
+            let t588 = t587 * t586 - (t585 * t584 + t583 * t582)
+                + (k(0.002) * t47 + (t183 * t580 + t581));
+            let t589 = k(50.0) * t588;
+            let t590 = k(0.05) * (t110 * t173 - (t79 * t175 - t33 * t177));
+            let t591 = t590 - k(0.1) * t578;
+            let t592 = t183 * t591
+                + (t180 * t591 - (k(0.05) * (t70 + t515) - k(0.02) * t104));
+            let t593 = k(0.2) * t28;
+            let t594 = k(0.2) * t74;
+            let t595 = k(0.2) * t105;
+            let t596 = t595 * t586 - (t594 * t584 + t593 * t582)
+                + (k(0.001) * t51 + t592);
+            let t597 = k(0.4) * t588 - t596;
+            let t598 = k(263.1578947368421) * t597;
+            let t599 = k(0.1) * t579 - t590;
             (
-                t408,
-                t410,
-                t412,
-                t413,
-                t415,
-                t418,
-                t421,
-                t430,
+                t429,
                 t431,
-                t432,
                 t433,
                 t434,
-                t435,
                 t436,
-                t437,
-                t438,
                 t439,
-                t440,
-                t441,
                 t442,
-                t443,
-                t444,
-                t446,
-                t448,
+                t450,
                 t451,
+                t452,
+                t453,
                 t454,
+                t455,
                 t456,
                 t457,
                 t458,
-                t459,
                 t460,
-                t461,
                 t462,
-                t464,
                 t465,
-                t466,
-                t469,
+                t468,
                 t470,
+                t471,
                 t472,
+                t473,
+                t474,
+                t475,
                 t476,
-                t477,
                 t478,
                 t479,
                 t480,
-                t481,
-                t482,
+                t483,
+                t484,
                 t485,
                 t486,
-                t487,
-                t488,
-                t489,
                 t490,
                 t491,
                 t492,
                 t493,
                 t494,
+                t495,
                 t496,
-                t498,
+                t499,
                 t500,
+                t501,
                 t502,
                 t503,
+                t504,
                 t505,
                 t506,
                 t507,
                 t508,
-                t509,
                 t510,
-                t511,
                 t512,
-                t513,
                 t514,
-                t515,
                 t516,
                 t517,
-                t518,
                 t519,
                 t520,
                 t521,
                 t522,
                 t523,
                 t524,
+                t525,
+                t526,
+                t527,
                 t528,
                 t529,
+                t530,
+                t531,
+                t532,
                 t533,
                 t534,
                 t535,
+                t536,
+                t537,
                 t538,
-                t539,
-                t540,
                 t542,
-                t544,
-                t546,
+                t543,
                 t547,
                 t548,
+                t549,
+                t552,
                 t553,
                 t554,
-                t555,
                 t556,
-                t557,
-                t558,
-                t562,
-                t564,
-                t565,
-                t567,
-                t569,
-                t570,
                 t571,
+                t572,
                 t573,
                 t574,
                 t575,
                 t576,
                 t577,
-                t578,
-                t579,
-                t581,
                 t582,
                 t583,
                 t584,
@@ -11819,1222 +11827,1277 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 t587,
                 t588,
                 t589,
-                t590,
-                t592,
                 t593,
                 t594,
-                t596,
+                t595,
                 t597,
                 t598,
                 t599,
             )
         };
         let (
-            t601,
-            t602,
-            t637,
-            t641,
-            t649,
+            t603,
+            t604,
+            t614,
+            t615,
+            t618,
+            t619,
+            t622,
+            t623,
+            t638,
+            t642,
             t650,
-            t651,
             t652,
-            t661,
-            t668,
+            t653,
+            t654,
+            t662,
             t669,
             t670,
             t671,
-            t677,
-            t683,
-            t711,
-            t713,
-            t717,
-            t747,
-            t750,
-            t751,
+            t672,
+            t678,
+            t684,
+            t728,
+            t731,
+            t732,
+            t733,
+            t742,
+            t745,
+            t748,
             t752,
+            t753,
+            t754,
+            t755,
+            t756,
+            t757,
+            t758,
+            t759,
+            t760,
             t761,
-            t764,
+            t763,
+            t765,
             t767,
+            t768,
             t769,
             t770,
             t771,
-            t773,
+            t772,
             t774,
-            t775,
-            t778,
-            t780,
-            t781,
-            t782,
-            t783,
-            t786,
-            t787,
-            t788,
-            t789,
-            t790,
-            t791,
+            t777,
+            t779,
             t792,
             t793,
-            t794,
             t795,
             t796,
-            t797,
             t798,
             t799,
         ) = {
-            let t600 = t599 + (t511 * t570 - (t508 * t565 + (t547 - t507 * t555)));
-            let t601 = k(0.2) * t490;
-            let t602 = k(0.4) * t492 - t601;
-            let t603 = k(0.1) * (puck_wy - puck_wz);
-            let t604 = k(0.1) * puck_wx;
-            let t605 = k(1.2) - (puck_rx + k(0.2) * (t469 + t476));
-            let t606 = k(1.0) - (puck_ry - k(0.2) * (t481 - t485));
-            let t607 = k(1.0) - (puck_rz + k(0.2) * (t490 - t492));
-            let t608 = (t607 * t607 + (t606 * t606 + t605 * t605)).sqrt();
-            let t609 = k(1.0) / t608;
-            let t610 = t605 * t609;
-            let t611 = t610 * (puck_sx + (t477 * t604 - (t470 * t604 + t465 * t603)));
-            let t612 = t606 * t609;
-            let t613 = t612 * (puck_sy + (t486 * t604 + (t482 * t604 + t480 * t603)));
-            let t614 = t607 * t609;
-            let t615 = t614 * (puck_sz - (t493 * t604 + (t491 * t604 - t489 * t603)));
-            let t616 = k(30.0) * (k(0.6) - t608) + (t615 + (t613 + t611));
-            let t617 = t610 * t616;
-            let t618 = t612 * t616;
-            let t619 = t614 * t616;
-            let t620 = t493 * t619 - (t486 * t618 + t477 * t617)
-                + (t491 * t619 - (t482 * t618 - t470 * t617));
-            let t621 = (k(10.0)
-                * (k(0.19245008972987526) * (puck_wx + puck_wy)
-                    + k(0.9622504486493763) * puck_wz))
-                .tanh();
-            let t622 = k(0.009622504486493762) * t621;
-            let t623 = k(0.002) * t466 - (t622 - k(0.1) * t620)
-                + (t602 * t600 + (t598 * t596 - t594 * t592));
-            let t624 = t617 - t592;
-            let t625 = t618 + t596;
-            let t626 = self.gravity * self.puck_mass + t619 - t600;
-            let t627 = k(0.19611613513818404) * t626 - k(0.9805806756909201) * t624;
-            let t628 = t517 * t627;
-            let t629 = t602 * t512 + (t598 * t524 - t594 * t506);
-            let t630 = t629 + k(0.4) * t594;
-            let t631 = t601 * t512 + (t597 * t524 + t593 * t506);
-            let t632 = t631 - t513 * t593 - t630;
-            let t633 = t602 * t515 + (t598 * t528 - t594 * t512);
-            let t634 = t633 - k(0.4) * t602;
-            let t635 = t601 * t515 + (t597 * t528 + t593 * t512);
-            let t636 = t635 - t513 * t601 - t634;
-            let t637 = k(0.19611613513818404) * t636 - k(0.9805806756909201) * t632;
-            let t638 = t637 * t628 + (t601 * t626 - (t597 * t625 - t593 * t624) + t623);
-            let t639 = k(0.9813067629253163) * (t529 * t628 - t625)
-                + k(0.03774256780481986) * (t624 + t514 * t628);
-            let t640 = k(0.1887128390240993) * (t626 - t516 * t628) + t639;
-            let t641 = k(1.0)
-                / (k(0.1887128390240993) * t542
-                    + (k(0.9813067629253163) * t538 + k(0.03774256780481986) * t533));
-            let t642 = t641 * t640;
-            let t643 = t632 + t518 * t637;
-            let t644 = t602 * t528 + (t598 * t534 - t594 * t524);
-            let t645 = t644 - k(0.4) * t598;
-            let t646 = t601 * t528 + (t597 * t534 + t593 * t524);
-            let t647 = t535 * t637 + (t646 - t513 * t597 - t645);
-            let t648 = t636 - t540 * t637;
-            let t649 = k(0.1887128390240993) * t648
-                + (k(0.9813067629253163) * t647 + k(0.03774256780481986) * t643);
-            let t650 = k(0.2) * t464;
-            let t651 = k(0.2) * t479;
-            let t652 = k(0.2) * t488;
-            let t653 = k(0.1) * (t489 * t619 + (t480 * t618 - t465 * t617));
-            let t654 = k(0.001) * t462 + (t622 + t653)
-                - (t652 * t600 - (t651 * t596 + t650 * t592));
-            let t655 = t652 * t512 - (t651 * t524 + t650 * t506);
-            let t656 = t655 + k(0.08) * t464;
-            let t657 = t513 * t650 + t655 + t656;
-            let t658 = t652 * t515 - (t651 * t528 + t650 * t512);
-            let t659 = t658 - k(0.08) * t488;
-            let t660 = t513 * t652 - t658 - t659;
-            let t661 = k(0.19611613513818404) * t660 + k(0.9805806756909201) * t657;
-            let t662 = t661 * t628 - (t652 * t626 + (t651 * t625 - t650 * t624) + t654);
-            let t663 = t657 - t518 * t661;
-            let t664 = t652 * t528 - (t651 * t534 + t650 * t524);
-            let t665 = t664 + k(0.08) * t479;
-            let t666 = t535 * t661 - (t513 * t651 + t664 + t665);
-            let t667 = t660 - t540 * t661;
-            let t668 = k(0.1887128390240993) * t667
-                + (k(0.9813067629253163) * t666 - k(0.03774256780481986) * t663);
-            let t669 = k(0.4) * t464;
-            let t670 = k(0.4) * t479;
-            let t671 = k(0.4) * t488;
-            let t672 = k(0.001) * t578 + (k(0.048112522432468816) * t621 - t653)
-                - (t671 * t600 - (t670 * t596 + t669 * t592));
-            let t673 = t671 * t512 - (t670 * t524 + t669 * t506);
-            let t674 = t673 + k(0.16) * t464;
-            let t675 = t671 * t515 - (t670 * t528 + t669 * t512);
-            let t676 = t675 - k(0.16) * t488;
-            let t677 = k(0.19611613513818404) * t676 - k(0.9805806756909201) * t674;
-            let t678 = t674 + t518 * t677;
-            let t679 = t671 * t528 - (t670 * t534 + t669 * t524);
-            let t680 = t679 + k(0.16) * t479;
-            let t681 = t535 * t677 + t680;
-            let t682 = t676 - t540 * t677;
-            let t683 = k(0.1887128390240993) * t682
-                + (k(0.9813067629253163) * t681 + k(0.03774256780481986) * t678);
-            let t684 = k(0.9622504486493763) * (t683 * t642 + (t677 * t628 + t672))
-                - k(0.19245008972987526) * (t668 * t642 + t662 + (t649 * t642 + t638));
-            let t685 = t533 * t641;
-            let t686 = k(0.9622504486493763) * (t678 - t683 * t685)
-                + k(0.19245008972987526) * (t663 + t668 * t685 - (t643 - t649 * t685));
-            let t687 = t538 * t641;
-            let t688 = k(0.9622504486493763) * (t681 - t683 * t687)
-                - k(0.19245008972987526) * (t666 - t668 * t687 + (t647 - t649 * t687));
-            let t689 = t542 * t641;
-            let t690 = k(0.9622504486493763) * (t682 - t683 * t689)
-                - k(0.19245008972987526) * (t667 - t668 * t689 + (t648 - t649 * t689));
-            let t691 = k(0.3849001794597505) * t492;
-            let t692 = t691 + k(1.9245008972987525) * t488;
-            let t693 = k(0.3849001794597505) * t485;
-            let t694 = k(0.3849001794597505) * t476;
-            let t695 = t694 + k(1.9245008972987525) * t464;
-            let t696 = k(0.03774256780481986) * t695
-                - k(0.9813067629253163) * (t693 - k(1.9245008972987525) * t479)
-                - k(0.1887128390240993) * t692;
-            let t697 = t488 - t490;
-            let t698 = t464 + t469;
-            let t699 = k(0.19245008972987526)
-                * (k(0.014527121121346966) * t698 + k(0.3777051491550211) * (t479 + t481)
-                    - k(0.07263560560673482) * t697);
-            let t700 = t699 + k(0.9622504486493763) * t696;
-            let t701 = t691 + k(1.9245008972987525) * t490;
-            let t702 = t694 - k(1.9245008972987525) * t469;
-            let t703 = k(0.9805806756909201) * t702 + k(0.19611613513818404) * t701;
-            let t704 = k(0.03774256780481986) * t702
-                - k(0.9813067629253163) * (t693 + k(1.9245008972987525) * t481)
-                - k(0.1887128390240993) * t701;
-            let t705 = k(0.9622504486493763) * t704 - t699;
-            let t706 = k(0.9805806756909201) * t695 + k(0.19611613513818404) * t692;
-            let t707 = k(0.19245008972987526) * (t704 + t696);
-            let t708 = k(0.3774256780481986) * t698 + k(0.07548513560963972) * t697;
-            let t709 = k(1.0) / (t708 * t707 + (t706 * t705 - t703 * t700));
-            let t710 = t579 + t472;
-            let t711 = t477 * t462 + (t470 * t578 + t465 * t710);
-            let t712 = k(0.9622504486493763) * t478
-                - k(0.19245008972987526) * (t581 + t711);
-            let t713 = t493 * t462 - (t491 * t578 - t489 * t710);
-            let t714 = k(0.9622504486493763) * t494
-                - k(0.19245008972987526) * (t589 + t713);
-            let t715 = k(0.19611613513818404) * t714 + k(0.9805806756909201) * t712;
-            let t716 = k(0.19245008972987526) * t708;
-            let t717 = t486 * t462 - (t482 * t578 + t480 * t710);
-            let t718 = k(0.9813067629253163)
-                * (k(0.9622504486493763) * t487 - k(0.19245008972987526) * (t585 + t717))
-                - k(0.03774256780481986) * t712;
-            let t719 = k(0.1887128390240993) * t714 + t718;
-            let t720 = t719 * (t709 * (t716 + k(0.9622504486493763) * t706))
-                + t715 * (t700 * t709);
-            let t721 = k(0.004)
-                + (k(0.02) - (t602 * t633 + (t598 * t644 - t594 * t629)));
-            let t722 = k(0.01) * t513;
-            let t723 = k(2.0) * (t601 * t634 + (t597 * t645 + t593 * t630))
-                - (t601 * t635 + (t597 * t646 + t593 * t631));
-            let t724 = t517 * t637;
-            let t725 = t641 * t649;
-            let t726 = t652 * t634 - (t651 * t645 + t650 * t630)
-                - (t601 * t659 + (t597 * t665 + t593 * t656));
-            let t727 = t726 - (t601 * t658 + (t597 * t664 + t593 * t655))
-                + (t602 * t658 + (t598 * t664 - t594 * t655));
-            let t728 = t668 * t725 + (t661 * t724 + t727);
-            let t729 = t728 + (t649 * t725 + (t637 * t724 - (t723 + (t722 + t721))));
-            let t730 = t601 * t676 + (t597 * t680 + t593 * t674)
-                - (t602 * t675 + (t598 * t679 - t594 * t673));
-            let t731 = t683 * t725 + (t677 * t724 + t730);
-            let t732 = k(0.9622504486493763) * t731 - k(0.19245008972987526) * t729;
-            let t733 = t719 * (t709 * (k(0.9622504486493763) * t703 - t716))
-                + t715 * (t705 * t709);
-            let t734 = t652 * t658 - (t651 * t664 + t650 * t655);
-            let t735 = k(2.0) * (t652 * t659 - (t651 * t665 + t650 * t656)) + t734;
-            let t736 = t517 * t661;
-            let t737 = t641 * t668;
-            let t738 = t668 * t737
-                + (t661 * t736 + (t735 - (t722 + (k(0.005) + (k(0.004) - t734)))));
-            let t739 = t652 * t676 - (t651 * t680 + t650 * t674)
-                - (k(0.008) - (t652 * t675 - (t651 * t679 + t650 * t673)));
-            let t740 = t683 * t737 + (t677 * t736 - t739);
-            let t741 = k(0.9622504486493763) * t740
-                - k(0.19245008972987526) * (t738 + t728);
-            let t742 = t719 * (t709 * (k(0.19245008972987526) * (t703 + t706)))
-                + t715 * (t707 * t709);
-            let t743 = k(0.003)
-                + (k(0.016) - (t671 * t675 - (t670 * t679 + t669 * t673)));
-            let t744 = k(0.9622504486493763)
-                * (t683 * (t641 * t683) + (t677 * (t517 * t677) - t743));
-            let t745 = t744 - k(0.19245008972987526) * (t740 + t731);
-            let t746 = t745 * t742 + (t741 * t733 + t732 * t720)
-                + (t539 * t690 - (t496 * t688 - t496 * t686));
-            let t747 = k(1.0)
-                / (k(0.9622504486493763) * t745
-                    - k(0.19245008972987526) * (t741 + t732));
-            let t748 = t747 * (t746 - t684);
-            let t749 = k(0.19245008972987526) * t748;
-            let t750 = t720 + t749;
-            let t751 = t733 + t749;
-            let t752 = t742 - k(0.9622504486493763) * t748;
-            let t753 = t683 * t752 + (t668 * t751 + t649 * t750)
-                - (t542 * t539 - (t538 * t496 - t533 * t496));
-            let t754 = t641 * (t640 - t753);
-            let t755 = t496 - k(0.03774256780481986) * t754;
-            let t756 = t496 + k(0.9813067629253163) * t754;
-            let t757 = t539 - k(0.1887128390240993) * t754;
-            let t758 = t677 * t752 + (t661 * t751 + t637 * t750)
-                - (t516 * t757 + (t529 * t756 - t514 * t755));
-            let t759 = t517 * (t627 - t758);
-            let t760 = t650 * t751;
-            let t761 = t760 + t593 * t750 + (t755 + k(0.9805806756909201) * t759);
-            let t762 = t582 + (t669 * t752 - (t594 * t750 + t760) - t761);
-            let t763 = t651 * t751;
-            let t764 = t756 - (t763 + t597 * t750);
-            let t765 = t586 - (t670 * t752 + (t598 * t750 - t763) + t764);
-            let t766 = t652 * t751;
-            let t767 = t766 - t601 * t750 - (t757 - k(0.19611613513818404) * t759);
-            let t768 = t590 + (t671 * t752 - (t602 * t750 + t766) - t767);
-            let t769 = t47 * t489 + (t60 * t480 + t73 * t465);
-            let t770 = t47 * t491 - (t60 * t482 + t73 * t470);
-            let t771 = t47 * t493 - (t60 * t486 - t73 * t477);
-            let t772 = t771 * t752 + (t770 * t751 + t769 * t750);
-            let t773 = t48 * t489 - (t61 * t480 + t74 * t465);
-            let t774 = t48 * t491 + (t61 * t482 + t74 * t470);
-            let t775 = t48 * t493 + (t61 * t486 - t74 * t477);
-            let t776 = t775 * t752 + (t774 * t751 + t773 * t750);
-            let t777 = k(0.0038) * t776 + (t508 * t768 + (t520 * t765 + t500 * t762));
-            let t778 = t776 + k(263.1578947368421) * (t564 - t777);
-            let t779 = k(0.008) * t778 - k(0.02) * t772
-                + (t507 * t768 + (t519 * t765 + t498 * t762));
-            let t780 = t772 + k(50.0) * (t554 + t779);
-            let t781 = t49 * t489 - (t62 * t480 - t75 * t465);
-            let t782 = t49 * t491 + (t62 * t482 - t75 * t470);
-            let t783 = t49 * t493 + (t62 * t486 + t75 * t477);
-            let t784 = t783 * t752 + (t782 * t751 + t781 * t750);
-            let t785 = k(0.025) * t784 - (t511 * t768 + (t523 * t765 - t505 * t762));
-            let t786 = t784 + k(40.0) * (t569 - t785);
-            let t787 = t762 + (t503 * t786 + (t556 * t778 - t544 * t780));
-            let t788 = t765 - (t522 * t786 - (t557 * t778 - t546 * t780));
-            let t789 = t768 - (t510 * t786 - (t558 * t778 - t548 * t780));
-            let t790 = k(0.1) * (t26 - t27);
-            let t791 = k(0.1) * (t16 - t19);
-            let t792 = k(0.1) * (t4 + t7);
-            let t793 = t434 * t792 + t437 * t791 + t440 * t790;
-            let t794 = k(0.1) * t25;
-            let t795 = t558 - t794;
-            let t796 = k(0.1) * t14;
-            let t797 = t557 + t796;
-            let t798 = k(0.1) * t1;
-            let t799 = t556 - t798;
+            let t600 = k(0.001) * t43 - (t183 * t599 + (t180 * t599 + k(0.02) * t105));
+            let t601 = t524 * t586 - (t536 * t584 - t517 * t582) + t600;
+            let t602 = k(40.0) * t601;
+            let t603 = puck_wx * puck_wy;
+            let t604 = puck_wz * puck_wz;
+            let t605 = t604 + t485;
+            let t606 = k(0.2) * (t491 * t480 - (t484 * t605 + t479 * t603))
+                + k(0.1) * t492;
+            let t607 = t606 + (k(0.2) * t48 + t52);
+            let t608 = k(0.2) * (t500 * t480 + (t496 * t605 + t494 * t603))
+                + k(0.1) * t501;
+            let t609 = t608 + (k(0.2) * t88 + t89);
+            let t610 = k(0.2) * (t507 * t480 + (t505 * t605 - t503 * t603))
+                + k(0.1) * t508;
+            let t611 = t610 + (k(0.2) * t119 + t120);
+            let t612 = t526 * t611 + (t538 * t609 - t520 * t607) + k(0.4) * t607;
+            let t613 = t612 + (t519 * t602 + (t514 * t598 - (t582 + t512 * t589)));
+            let t614 = k(0.2) * t483;
+            let t615 = k(0.4) * t490 + t614;
+            let t616 = t542 * t611 + (t548 * t609 - t538 * t607) - k(0.4) * t609;
+            let t617 = t616 + (t537 * t602 - (t534 * t598 - (t584 + t533 * t589)));
+            let t618 = k(0.2) * t495;
+            let t619 = k(0.4) * t499 - t618;
+            let t620 = t529 * t611 + (t542 * t609 - t526 * t607) - k(0.4) * t611;
+            let t621 = t620 + (t525 * t602 - (t522 * t598 + (t586 - t521 * t589)));
+            let t622 = k(0.2) * t504;
+            let t623 = k(0.4) * t506 - t622;
+            let t624 = t623 * t621 + (t619 * t617 - t615 * t613)
+                + (k(0.002) * t480 - (t577 - k(0.1) * t574));
+            let t625 = t613 - t571;
+            let t626 = t617 + t572;
+            let t627 = t621 - (self.gravity * self.puck_mass + t573);
+            let t628 = k(0.19611613513818404) * t627 - k(0.9805806756909201) * t625;
+            let t629 = t531 * t628;
+            let t630 = t623 * t526 + (t619 * t538 - t615 * t520);
+            let t631 = t630 + k(0.4) * t615;
+            let t632 = t622 * t526 + (t618 * t538 + t614 * t520);
+            let t633 = t632 - t527 * t614 - t631;
+            let t634 = t623 * t529 + (t619 * t542 - t615 * t526);
+            let t635 = t634 - k(0.4) * t623;
+            let t636 = t622 * t529 + (t618 * t542 + t614 * t526);
+            let t637 = t636 - t527 * t622 - t635;
+            let t638 = k(0.19611613513818404) * t637 - k(0.9805806756909201) * t633;
+            let t639 = t638 * t629 + (t622 * t627 + (t618 * t626 + t614 * t625) - t624);
+            let t640 = k(0.9813067629253163) * (t543 * t629 + t626)
+                + k(0.03774256780481986) * (t625 + t528 * t629);
+            let t641 = k(0.1887128390240993) * (t627 - t530 * t629) + t640;
+            let t642 = k(1.0)
+                / (k(0.1887128390240993) * t556
+                    + (k(0.9813067629253163) * t552 + k(0.03774256780481986) * t547));
+            let t643 = t642 * t641;
+            let t644 = t633 + t532 * t638;
+            let t645 = t623 * t542 + (t619 * t548 - t615 * t538);
+            let t646 = t645 - k(0.4) * t619;
+            let t647 = t622 * t542 + (t618 * t548 + t614 * t538);
+            let t648 = t549 * t638 + (t647 - t527 * t618 - t646);
+            let t649 = t637 - t554 * t638;
+            let t650 = k(0.1887128390240993) * t649
+                + (k(0.9813067629253163) * t648 + k(0.03774256780481986) * t644);
+            let t651 = k(0.1) * (t503 * t573 + (t494 * t572 - t479 * t571));
+            let t652 = k(0.2) * t478;
+            let t653 = k(0.2) * t493;
+            let t654 = k(0.2) * t502;
+            let t655 = t654 * t621 - (t653 * t617 + t652 * t613)
+                - (k(0.001) * t476 + (t577 + t651));
+            let t656 = t654 * t526 - (t653 * t538 + t652 * t520);
+            let t657 = t656 + k(0.08) * t478;
+            let t658 = t527 * t652 + t656 + t657;
+            let t659 = t654 * t529 - (t653 * t542 + t652 * t526);
+            let t660 = t659 - k(0.08) * t502;
+            let t661 = t527 * t654 - t659 - t660;
+            let t662 = k(0.19611613513818404) * t661 + k(0.9805806756909201) * t658;
+            let t663 = t662 * t629 - (t654 * t627 - (t653 * t626 + t652 * t625) + t655);
+            let t664 = t658 - t532 * t662;
+            let t665 = t654 * t542 - (t653 * t548 + t652 * t538);
+            let t666 = t665 + k(0.08) * t493;
+            let t667 = t549 * t662 - (t527 * t653 + t665 + t666);
+            let t668 = t661 - t554 * t662;
+            let t669 = k(0.1887128390240993) * t668
+                + (k(0.9813067629253163) * t667 - k(0.03774256780481986) * t664);
+            let t670 = k(0.4) * t478;
+            let t671 = k(0.4) * t493;
+            let t672 = k(0.4) * t502;
+            let t673 = t672 * t621 - (t671 * t617 + t670 * t613)
+                - (k(0.001) * t603 + (k(0.048112522432468816) * t576 - t651));
+            let t674 = t672 * t526 - (t671 * t538 + t670 * t520);
+            let t675 = t674 + k(0.16) * t478;
+            let t676 = t672 * t529 - (t671 * t542 + t670 * t526);
+            let t677 = t676 - k(0.16) * t502;
+            let t678 = k(0.19611613513818404) * t677 - k(0.9805806756909201) * t675;
+            let t679 = t675 + t532 * t678;
+            let t680 = t672 * t542 - (t671 * t548 + t670 * t538);
+            let t681 = t680 + k(0.16) * t493;
+            let t682 = t549 * t678 + t681;
+            let t683 = t677 - t554 * t678;
+            let t684 = k(0.1887128390240993) * t683
+                + (k(0.9813067629253163) * t682 + k(0.03774256780481986) * t679);
+            let t685 = k(0.9622504486493763) * (t684 * t643 + (t678 * t629 + t673))
+                - k(0.19245008972987526) * (t669 * t643 + t663 + (t650 * t643 + t639));
+            let t686 = t547 * t642;
+            let t687 = k(0.9622504486493763) * (t679 - t684 * t686)
+                + k(0.19245008972987526) * (t664 + t669 * t686 - (t644 - t650 * t686));
+            let t688 = t552 * t642;
+            let t689 = k(0.9622504486493763) * (t682 - t684 * t688)
+                - k(0.19245008972987526) * (t667 - t669 * t688 + (t648 - t650 * t688));
+            let t690 = t556 * t642;
+            let t691 = k(0.9622504486493763) * (t683 - t684 * t690)
+                - k(0.19245008972987526) * (t668 - t669 * t690 + (t649 - t650 * t690));
+            let t692 = k(1.9245008972987525) * t504
+                + k(0.3849001794597505) * (t483 - t495);
+            let t693 = k(0.3849001794597505) * (t490 + t499)
+                - k(1.9245008972987525) * t506;
+            let t694 = k(0.19245008972987526) * t693;
+            let t695 = k(1.9245008972987525) * t502
+                - k(0.3849001794597505) * (t478 - t493);
+            let t696 = k(0.19245008972987526) * (puck_wx - puck_wy);
+            let t697 = k(0.19245008972987526) * puck_wz;
+            let t698 = t697 - k(0.9622504486493763) * puck_wx;
+            let t699 = k(0.9622504486493763) * puck_wy - t697;
+            let t700 = (t699 * t699 + t698 * t698 + t696 * t696)
+                / (k(0.9622504486493763) * t693
+                    + k(0.19245008972987526) * (t692 + t695));
+            let t701 = t575 * t699 - t700 * (t694 - k(0.9622504486493763) * t692);
+            let t702 = k(0.004)
+                + (k(0.02) - (t623 * t634 + (t619 * t645 - t615 * t630)));
+            let t703 = k(0.01) * t527;
+            let t704 = k(2.0) * (t622 * t635 + (t618 * t646 + t614 * t631))
+                - (t622 * t636 + (t618 * t647 + t614 * t632));
+            let t705 = t531 * t638;
+            let t706 = t642 * t650;
+            let t707 = t654 * t635 - (t653 * t646 + t652 * t631)
+                - (t622 * t660 + (t618 * t666 + t614 * t657));
+            let t708 = t707 - (t622 * t659 + (t618 * t665 + t614 * t656))
+                + (t623 * t659 + (t619 * t665 - t615 * t656));
+            let t709 = t669 * t706 + (t662 * t705 + t708);
+            let t710 = t709 + (t650 * t706 + (t638 * t705 - (t704 + (t703 + t702))));
+            let t711 = t622 * t677 + (t618 * t681 + t614 * t675)
+                - (t623 * t676 + (t619 * t680 - t615 * t674));
+            let t712 = t684 * t706 + (t678 * t705 + t711);
+            let t713 = k(0.9622504486493763) * t712 - k(0.19245008972987526) * t710;
+            let t714 = t575 * t698 - t700 * (k(0.9622504486493763) * t695 - t694);
+            let t715 = t654 * t659 - (t653 * t665 + t652 * t656);
+            let t716 = k(2.0) * (t654 * t660 - (t653 * t666 + t652 * t657)) + t715;
+            let t717 = t531 * t662;
+            let t718 = t642 * t669;
+            let t719 = t669 * t718
+                + (t662 * t717 + (t716 - (t703 + (k(0.005) + (k(0.004) - t715)))));
+            let t720 = t654 * t677 - (t653 * t681 + t652 * t675)
+                - (k(0.008) - (t654 * t676 - (t653 * t680 + t652 * t674)));
+            let t721 = t684 * t718 + (t678 * t717 - t720);
+            let t722 = k(0.9622504486493763) * t721
+                - k(0.19245008972987526) * (t719 + t709);
+            let t723 = t575 * t696 - k(0.19245008972987526) * (t692 - t695) * t700;
+            let t724 = k(0.003)
+                + (k(0.016) - (t672 * t676 - (t671 * t680 + t670 * t674)));
+            let t725 = k(0.9622504486493763)
+                * (t684 * (t642 * t684) + (t678 * (t531 * t678) - t724));
+            let t726 = t725 - k(0.19245008972987526) * (t721 + t712);
+            let t727 = t726 * t723 - (t722 * t714 + t713 * t701)
+                + (t691 * t553 - (t689 * t510 - t510 * t687));
+            let t728 = k(1.0)
+                / (k(0.9622504486493763) * t726
+                    - k(0.19245008972987526) * (t722 + t713));
+            let t729 = t728 * (t727 + t685);
+            let t730 = k(0.19245008972987526) * t729;
+            let t731 = t701 - t730;
+            let t732 = t714 - t730;
+            let t733 = t723 - k(0.9622504486493763) * t729;
+            let t734 = t684 * t733 - (t669 * t732 + t650 * t731)
+                - (t556 * t553 - (t552 * t510 - t547 * t510));
+            let t735 = t642 * (t641 + t734);
+            let t736 = t510 + k(0.03774256780481986) * t735;
+            let t737 = t510 - k(0.9813067629253163) * t735;
+            let t738 = t553 + k(0.1887128390240993) * t735;
+            let t739 = t678 * t733 - (t662 * t732 + t638 * t731)
+                - (t530 * t738 + (t543 * t737 - t528 * t736));
+            let t740 = t531 * (t628 + t739);
+            let t741 = t652 * t732;
+            let t742 = t741 + t614 * t731 - (t736 - k(0.9805806756909201) * t740);
+            let t743 = t607 + (t670 * t733 + (t615 * t731 + t741) + t742);
+            let t744 = t653 * t732;
+            let t745 = t737 + (t744 + t618 * t731);
+            let t746 = t609 - (t671 * t733 - (t619 * t731 - t744) + t745);
+            let t747 = t654 * t732;
+            let t748 = t747 - t622 * t731 + (t738 + k(0.19611613513818404) * t740);
+            let t749 = t611 + (t672 * t733 + (t623 * t731 + t747) + t748);
+            let t750 = t597 - (t522 * t749 + (t534 * t746 + t514 * t743));
+            let t751 = k(2.1052631578947367) * t750
+                + (t521 * t749 + (t533 * t746 + t512 * t743));
+            let t752 = k(50.0) * (t588 + t751);
+            let t753 = k(263.1578947368421) * t750;
+            let t754 = k(40.0) * (t601 + (t525 * t749 + (t537 * t746 - t519 * t743)));
+            let t755 = t743 + (t517 * t754 + (t593 * t753 - t583 * t752));
+            let t756 = t746 - (t536 * t754 - (t594 * t753 - t585 * t752));
+            let t757 = t749 - (t524 * t754 - (t595 * t753 - t587 * t752));
+            let t758 = k(0.1) * (t104 - t105);
+            let t759 = k(0.1) * (t71 - t74);
+            let t760 = k(0.1) * (t25 + t28);
+            let t761 = t57 * t760 + t93 * t759 + t124 * t758;
+            let t762 = k(0.1) * t103;
+            let t763 = t595 - t762;
+            let t764 = k(0.1) * t69;
+            let t765 = t594 + t764;
+            let t766 = k(0.1) * t22;
+            let t767 = t593 - t766;
+            let t768 = t57 * t767 - t93 * t765 - t124 * t763;
+            let t769 = t762 - t523;
+            let t770 = t764 + t535;
+            let t771 = t766 + t516;
+            let t772 = t57 * t771 + t93 * t770 - t124 * t769;
+            let t773 = t772 * t754 + (t768 * t753 - t761 * t752)
+                - (t124 * t757 + (t93 * t756 - t57 * t755));
+            let t774 = t773 + t475 - (t125 + (t94 - t58));
+            let t775 = t470 + (t204 * t124 + (t201 * t93 - t197 * t57));
+            let t776 = t474 - (t211 * t124 + (t210 * t93 + t209 * t57));
+            let t777 = t213 * t776 - (t206 * t775 - t460 * t189);
+            let t778 = t777 * t218;
+            let t779 = t460 - t215 * t778;
+            let t780 = t779 * t222;
+            let t781 = t780 * t224 - (t775 + t216 * t778);
+            let t782 = t780 * t283 - (t776 - t217 * t778);
+            let t783 = t780 * t242 - (t57 + t778 * t240);
+            let t784 = t780 * t254 - (t93 + t778 * t252);
+            let t785 = t780 * t266 - (t124 + t778 * t264);
+            let t786 = t310 * t785 + (t305 * t784 + t299 * t783)
+                - (t782 * t271 + t781 * t270);
+            let t787 = t315 * t785 + (t313 * t784 - t312 * t783);
+            let t788 = t322 * t785 - (t320 * t784 + t318 * t783)
+                + (t137 * t782 + t138 * t781);
+            let t789 = t326 * t785 - (t330 * t784 + t328 * t783);
+            let t790 = k(0.6666666666666666)
+                * (t789 + (t789 + (t149 * t782 + t148 * t781)))
+                - (k(0.6666666666666666) * (t787 + t788)
+                    - k(0.3333333333333333) * (t787 + t786));
+            let t791 = t790 * t429;
+            let t792 = k(0.3333333333333333) * t791;
+            let t793 = k(0.6666666666666666) * t791;
+            let t794 = t328 * t793;
+            let t795 = t794 - (t312 * t793 - t312 * t792);
+            let t796 = t318 * t793 + t299 * t792 - t794 - t795;
+            let t797 = t330 * t793;
+            let t798 = t797 + (t313 * t793 - t313 * t792);
+            let t799 = t320 * t793 + t305 * t792 - t797 - t798;
             (
-                t601,
-                t602,
-                t637,
-                t641,
-                t649,
+                t603,
+                t604,
+                t614,
+                t615,
+                t618,
+                t619,
+                t622,
+                t623,
+                t638,
+                t642,
                 t650,
-                t651,
                 t652,
-                t661,
-                t668,
+                t653,
+                t654,
+                t662,
                 t669,
                 t670,
                 t671,
-                t677,
-                t683,
-                t711,
-                t713,
-                t717,
-                t747,
-                t750,
-                t751,
+                t672,
+                t678,
+                t684,
+                t728,
+                t731,
+                t732,
+                t733,
+                t742,
+                t745,
+                t748,
                 t752,
+                t753,
+                t754,
+                t755,
+                t756,
+                t757,
+                t758,
+                t759,
+                t760,
                 t761,
-                t764,
+                t763,
+                t765,
                 t767,
+                t768,
                 t769,
                 t770,
                 t771,
-                t773,
+                t772,
                 t774,
-                t775,
-                t778,
-                t780,
-                t781,
-                t782,
-                t783,
-                t786,
-                t787,
-                t788,
-                t789,
-                t790,
-                t791,
+                t777,
+                t779,
                 t792,
                 t793,
-                t794,
                 t795,
                 t796,
-                t797,
                 t798,
                 t799,
             )
         };
         let (
-            t806,
-            t807,
+            t801,
             t809,
+            t810,
+            t811,
             t812,
-            t828,
-            t848,
-            t849,
-            t851,
+            t813,
+            t814,
+            t835,
+            t836,
+            t844,
+            t847,
+            t850,
             t854,
+            t855,
+            t856,
             t857,
-            t866,
-            t867,
-            t868,
-            t869,
-            t870,
-            t871,
-            t892,
-            t893,
-            t901,
-            t904,
-            t907,
-            t912,
+            t858,
+            t859,
+            t861,
+            t888,
+            t889,
+            t890,
+            t908,
+            t909,
+            t911,
             t914,
             t917,
-            t918,
-            t919,
-            t920,
-            t922,
-            t923,
-            t924,
             t925,
-            t936,
-            t937,
-            t938,
-            t949,
-            t950,
+            t926,
+            t927,
+            t928,
+            t929,
+            t930,
             t951,
+            t952,
+            t960,
+            t963,
+            t966,
+            t970,
             t971,
             t972,
+            t973,
             t974,
+            t975,
             t977,
+            t978,
+            t979,
             t980,
-            t989,
-            t990,
+            t981,
+            t982,
+            t983,
+            t984,
+            t985,
+            t986,
+            t987,
+            t988,
             t991,
             t992,
-            t993,
             t994,
             t995,
             t996,
-            t997,
             t998,
             t999,
         ) = {
-            let t800 = t434 * t799 - t437 * t797 - t440 * t795;
-            let t801 = t794 - t509;
-            let t802 = t796 + t521;
-            let t803 = t798 + t502;
-            let t804 = t434 * t803 + t437 * t802 - t440 * t801;
-            let t805 = t804 * t786 + (t800 * t778 - t793 * t780)
-                - (t440 * t789 + (t437 * t788 - t434 * t787));
-            let t806 = t125 + t143;
-            let t807 = shaft_wy * shaft_wz;
-            let t808 = t38 * t807 - (t13 * t806 + t77 * t153);
-            let t809 = t124 + t143;
-            let t810 = t38 * t809 - (t13 * t807 - t77 * t144);
-            let t811 = t81 * (k(0.7071067811865476) * (t80 - t78));
-            let t812 = t575 + t571;
-            let t813 = k(0.05) * (t75 * t812 - (t74 * t553 - t73 * t562))
-                + (k(0.05) * t574 + t577);
-            let t814 = t813 + (k(0.05) * t810 + (t192 + k(0.05) * t808));
-            let t815 = t434 * t814 + t811
-                + (t811 + t82 * (k(0.7071067811865476) * (t810 - t808)));
-            let t816 = t40 * t807 + (t24 * t806 + t64 * t153);
-            let t817 = t40 * t809 + (t24 * t807 - t64 * t144);
-            let t818 = t68 * (k(0.7071067811865476) * (t67 + t65));
-            let t819 = k(0.05) * (t62 * t812 + (t61 * t553 - t60 * t562))
-                + (k(0.05) * t583 + t584);
-            let t820 = t819 + (k(0.05) * t817 + (t208 + k(0.05) * t816));
-            let t821 = t437 * t820 - t818
-                - (t818 + t69 * (k(0.7071067811865476) * (t817 - t816)));
-            let t822 = t42 * t807 + (t33 * t806 - t51 * t153);
-            let t823 = t42 * t809 + (t33 * t807 + t51 * t144);
-            let t824 = t55 * (k(0.7071067811865476) * (t54 + t52));
-            let t825 = k(0.05) * (t49 * t812 + (t48 * t553 + t47 * t562))
-                + (k(0.05) * t587 + t588);
-            let t826 = t825 + (k(0.05) * t823 + (t224 + k(0.05) * t822));
-            let t827 = t440 * t826 + t824
-                + (t824 + t56 * (k(0.7071067811865476) * (t823 - t822)));
-            let t828 = t827 + (t821 - t815) - (t805 + t461);
-            let t829 = t456 + (t140 * t440 + (t137 * t437 - t133 * t434));
-            let t830 = t460 - (t151 * t440 + (t150 * t437 + t149 * t434));
-            let t831 = t156 * t830 - (t148 * t829 - t446 * t129);
-            let t832 = t831 * t161;
-            let t833 = t446 - t158 * t832;
-            let t834 = t833 * t166;
-            let t835 = t833 - t165 * t834;
-            let t836 = t834 * t228 - (t829 + t159 * t832);
-            let t837 = t834 * t246 - (t830 - t160 * t832);
-            let t838 = t834 * t172 - (t434 + t832 * t170);
-            let t839 = t834 * t198 - (t437 + t832 * t196);
-            let t840 = t834 * t214 - (t440 + t832 * t212);
-            let t841 = t273 * t840 + (t268 * t839 + t262 * t838)
-                - (t234 * t837 + (t233 * t836 - t227 * t835));
-            let t842 = t278 * t840 + (t276 * t839 - t275 * t838);
-            let t843 = t285 * t840 - (t283 * t839 + t281 * t838)
-                + (t97 * t837 + (t98 * t836 - t127 * t835));
-            let t844 = t289 * t840 - (t293 * t839 + t291 * t838);
-            let t845 = t844 + (t844 + (t109 * t837 + (t108 * t836 - t128 * t835)));
-            let t846 = k(0.6666666666666666) * t845
-                - (k(0.6666666666666666) * (t842 + t843)
-                    - k(0.3333333333333333) * (t842 + t841));
-            let t847 = t846 * t408;
-            let t848 = k(0.3333333333333333) * t847;
-            let t849 = k(0.6666666666666666) * t847;
-            let t850 = t291 * t849;
-            let t851 = t850 - (t275 * t849 - t275 * t848);
-            let t852 = t281 * t849 + t262 * t848 - t850 - t851;
-            let t853 = t293 * t849;
-            let t854 = t853 + (t276 * t849 - t276 * t848);
-            let t855 = t283 * t849 + t268 * t848 - t853 - t854;
-            let t856 = t289 * t849;
-            let t857 = t856 - (t278 * t849 - t278 * t848);
-            let t858 = t285 * t849 - t273 * t848 - t856 - t857;
-            let t859 = t128 * t849 - (t127 * t849 + t227 * t848);
-            let t860 = t108 * t849 - (t98 * t849 + t233 * t848);
-            let t861 = t109 * t849 - (t97 * t849 + t234 * t848);
-            let t862 = t246 * t861 + (t228 * t860 + t165 * t859)
-                - (t214 * t858 - (t198 * t855 + t172 * t852));
-            let t863 = t859 + t166 * (t833 - t862);
-            let t864 = t160 * t861 - (t159 * t860 - t158 * t863)
-                + (t212 * t858 - (t196 * t855 + t170 * t852));
-            let t865 = t161 * (t831 - t864);
-            let t866 = t860 - t148 * t865;
-            let t867 = t861 + t156 * t865;
-            let t868 = t852 - (t149 * t867 + t133 * t866);
-            let t869 = t855 - (t150 * t867 - t137 * t866);
-            let t870 = t858 + (t151 * t867 - t140 * t866);
-            let t871 = t863 + t129 * t865;
-            let t872 = t460 * t867 + (t456 * t866 + t446 * t871)
-                - (t440 * t870 - (t437 * t869 + t434 * t868));
-            let t873 = t793 - (t440 * t548 + (t437 * t546 - t434 * t544));
-            let t874 = k(50.0) * t873;
-            let t875 = k(0.4) * t873
-                - (t800 - (t440 * t558 + (t437 * t557 - t434 * t556)));
-            let t876 = k(263.1578947368421) * t875;
-            let t877 = t804 + (t440 * t510 + (t437 * t522 + t434 * t503));
-            let t878 = k(40.0) * t877;
-            let t879 = t878 * t505 - (t876 * t500 + (t434 - t874 * t498));
-            let t880 = t878 * t523 + (t876 * t520 - (t437 + t874 * t519));
-            let t881 = t878 * t511 + (t876 * t508 - (t440 + t874 * t507));
-            let t882 = t601 * t881 + (t597 * t880 + t593 * t879)
-                - (t602 * t881 + (t598 * t880 - t594 * t879));
-            let t883 = k(0.19611613513818404) * t881 - k(0.9805806756909201) * t879;
-            let t884 = t883 * t517;
-            let t885 = k(0.9813067629253163) * (t884 * t529 + t880)
-                + k(0.03774256780481986) * (t879 + t514 * t884);
-            let t886 = k(0.1887128390240993) * (t881 - t516 * t884) + t885;
-            let t887 = t886 * t641;
-            let t888 = t884 * t661
-                - k(2.0) * (t652 * t881 - (t651 * t880 + t650 * t879));
-            let t889 = t887 * t668 + t888 + (t887 * t649 + (t884 * t637 + t882));
-            let t890 = t884 * t677 + (t671 * t881 - (t670 * t880 + t669 * t879));
-            let t891 = (k(0.9622504486493763) * (t887 * t683 + t890)
-                - k(0.19245008972987526) * t889) * t747;
-            let t892 = k(0.19245008972987526) * t891;
-            let t893 = k(0.9622504486493763) * t891;
-            let t894 = t641 * (t886 - (t683 * t893 - (t668 * t892 + t649 * t892)));
-            let t895 = k(0.03774256780481986) * t894;
-            let t896 = k(0.9813067629253163) * t894;
-            let t897 = k(0.1887128390240993) * t894;
-            let t898 = t677 * t893 - (t661 * t892 + t637 * t892)
-                + (t516 * t897 - (t529 * t896 + t514 * t895));
-            let t899 = t517 * (t883 - t898);
-            let t900 = t650 * t892;
-            let t901 = t900 + t593 * t892 + (t895 - k(0.9805806756909201) * t899);
-            let t902 = t669 * t893 + (t594 * t892 + t900) + t901;
-            let t903 = t651 * t892;
-            let t904 = t896 + (t903 + t597 * t892);
-            let t905 = t670 * t893 - (t598 * t892 - t903) + t904;
-            let t906 = t652 * t892;
-            let t907 = t906 - t601 * t892 - (t897 + k(0.19611613513818404) * t899);
-            let t908 = t671 * t893 + (t602 * t892 + t906) + t907;
-            let t909 = t893 * t771 - (t892 * t770 + t892 * t769);
-            let t910 = t893 * t775 - (t892 * t774 + t892 * t773);
-            let t911 = k(0.0038) * t910 + (t508 * t908 - (t520 * t905 - t500 * t902));
-            let t912 = t910 + k(263.1578947368421) * (t875 - t911);
-            let t913 = k(0.008) * t912 - k(0.02) * t909
-                + (t507 * t908 - (t519 * t905 - t498 * t902));
-            let t914 = t909 + k(50.0) * (t873 + t913);
-            let t915 = t893 * t783 - (t892 * t782 + t892 * t781);
-            let t916 = k(0.025) * t915 - (t511 * t908 - (t523 * t905 + t505 * t902));
-            let t917 = t915 - k(40.0) * (t877 + t916);
-            let t918 = t902 + (t503 * t917 + (t556 * t912 - t544 * t914));
-            let t919 = t905 + (t522 * t917 - (t557 * t912 - t546 * t914));
-            let t920 = t908 - (t510 * t917 - (t558 * t912 - t548 * t914));
-            let t921 = t804 * t917 + (t800 * t912 - t793 * t914)
-                - (t440 * t920 - (t437 * t919 + t434 * t918));
-            let t922 = k(1.0) / (t921 - t872);
-            let t923 = k(1.2792042981336627) * t37
-                - (k(1.2792042981336627) * t12 + k(0.8528028654224418) * t71);
-            let t924 = k(1.2792042981336627) * t39
-                + (k(1.2792042981336627) * t23 + k(0.8528028654224418) * t58);
-            let t925 = k(1.2792042981336627) * t41
-                + (k(1.2792042981336627) * t32 - k(0.8528028654224418) * t45);
-            let t926 = t82 * (k(1.2792042981336627) * t433) + t444 * t923
-                - (t69 * (k(1.2792042981336627) * t436) + t443 * t924);
-            let t927 = t926 + (t56 * (k(1.2792042981336627) * t439) - t442 * t925);
-            let t928 = k(1.2792042981336627) * t45;
-            let t929 = k(1.2792042981336627) * t58;
-            let t930 = k(1.2792042981336627) * t71;
-            let t931 = t82 * (k(0.8528028654224418) * t37 + t930) - t454 * t923
-                + (t69 * (k(0.8528028654224418) * t39 - t929) - t451 * t924);
-            let t932 = t931 - (t56 * (k(0.8528028654224418) * t41 + t928) + t448 * t925);
-            let t933 = t82 * (t930 - k(0.8528028654224418) * t12) + t459 * t923
-                - (t69 * (t929 - k(0.8528028654224418) * t23) + t458 * t924);
-            let t934 = t933 - (t56 * (t928 + k(0.8528028654224418) * t32) + t457 * t925);
-            let t935 = t934 * t431 - (t932 * t430 + t927 * t441)
-                - (t925 * t438 + (t924 * t435 + t923 * t432));
-            let t936 = t792 * t923 - t791 * t924 - t790 * t925;
-            let t937 = t799 * t923 + t797 * t924 + t795 * t925;
-            let t938 = t803 * t923 - t802 * t924 + t801 * t925;
-            let t939 = t938 * t786 + (t937 * t778 - t936 * t780)
-                + (t925 * t789 + (t924 * t788 + t923 * t787));
-            let t940 = t81
-                * (k(0.4264014327112209) * t79 + k(0.6396021490668313) * t80
-                    + k(0.6396021490668313) * t78);
-            let t941 = t940
-                - t82
-                    * (k(0.6396021490668313) * t810
-                        + (k(0.6396021490668313) * t808 - k(0.4264014327112209) * t191));
-            let t942 = t68
-                * (k(0.4264014327112209) * t66 + k(0.6396021490668313) * t67
-                    - k(0.6396021490668313) * t65);
-            let t943 = t942
-                - t69
-                    * (k(0.6396021490668313) * t817
-                        + (k(0.6396021490668313) * t816 - k(0.4264014327112209) * t207));
-            let t944 = t924 * t820 - t942 - t943 + (t923 * t814 - t940 - t941);
-            let t945 = t55
-                * (k(0.4264014327112209) * t53 + k(0.6396021490668313) * t54
-                    - k(0.6396021490668313) * t52);
-            let t946 = t945
-                - t56
-                    * (k(0.6396021490668313) * t823
-                        + (k(0.6396021490668313) * t822 - k(0.4264014327112209) * t223));
-            let t947 = t934 * t867 - (t932 * t866 + t927 * t871)
-                - (t925 * t870 - (t924 * t869 - t923 * t868));
-            let t948 = t938 * t917 + (t937 * t912 - t936 * t914)
-                + (t925 * t920 - (t924 * t919 - t923 * t918));
-            let t949 = t948 + t947;
-            let t950 = t922 * t949;
-            let t951 = t950 * t828 + (t925 * t826 + t945 + t946 + t944 + (t939 - t935));
-            let t952 = t932 - (t140 * t925 + (t137 * t924 + t133 * t923));
-            let t953 = t934 - (t151 * t925 + (t150 * t924 - t149 * t923));
-            let t954 = t156 * t953 + (t148 * t952 - t927 * t129);
-            let t955 = t161 * t954;
-            let t956 = t927 + t158 * t955;
-            let t957 = t166 * t956;
-            let t958 = t956 - t165 * t957;
-            let t959 = t228 * t957 - (t952 - t159 * t955);
-            let t960 = t246 * t957 + (t953 - t160 * t955);
-            let t961 = t172 * t957 - (t923 - t170 * t955);
-            let t962 = t198 * t957 + (t924 + t196 * t955);
-            let t963 = t214 * t957 + (t925 + t212 * t955);
-            let t964 = t273 * t963 + (t268 * t962 + t262 * t961)
-                - (t234 * t960 + (t233 * t959 - t227 * t958));
-            let t965 = t278 * t963 + (t276 * t962 - t275 * t961);
-            let t966 = t285 * t963 - (t283 * t962 + t281 * t961)
-                + (t97 * t960 + (t98 * t959 - t127 * t958));
-            let t967 = t289 * t963 - (t293 * t962 + t291 * t961);
-            let t968 = t967 + (t967 + (t109 * t960 + (t108 * t959 - t128 * t958)));
-            let t969 = k(0.6666666666666666) * t968
-                - (k(0.6666666666666666) * (t965 + t966)
-                    - k(0.3333333333333333) * (t965 + t964));
-            let t970 = t408 * t969;
-            let t971 = k(0.3333333333333333) * t970;
-            let t972 = k(0.6666666666666666) * t970;
-            let t973 = t291 * t972;
-            let t974 = t973 - (t275 * t972 - t275 * t971);
-            let t975 = t281 * t972 + t262 * t971 - t973 - t974;
-            let t976 = t293 * t972;
-            let t977 = t976 + (t276 * t972 - t276 * t971);
-            let t978 = t283 * t972 + t268 * t971 - t976 - t977;
-            let t979 = t289 * t972;
-            let t980 = t979 - (t278 * t972 - t278 * t971);
-            let t981 = t285 * t972 - t273 * t971 - t979 - t980;
-            let t982 = t128 * t972 - (t127 * t972 + t227 * t971);
-            let t983 = t108 * t972 - (t98 * t972 + t233 * t971);
-            let t984 = t109 * t972 - (t97 * t972 + t234 * t971);
-            let t985 = t246 * t984 + (t228 * t983 + t165 * t982)
-                - (t214 * t981 - (t198 * t978 + t172 * t975));
-            let t986 = t982 + t166 * (t956 - t985);
-            let t987 = t160 * t984 - (t159 * t983 - t158 * t986)
-                + (t212 * t981 - (t196 * t978 + t170 * t975));
-            let t988 = t161 * (t954 + t987);
-            let t989 = t983 + t148 * t988;
-            let t990 = t984 - t156 * t988;
-            let t991 = t975 - (t149 * t990 + t133 * t989);
-            let t992 = t978 - (t150 * t990 - t137 * t989);
-            let t993 = t981 + (t151 * t990 - t140 * t989);
-            let t994 = t986 - t129 * t988;
-            let t995 = t934 * t990 - (t932 * t989 + t927 * t994)
-                - (t925 * t993 - (t924 * t992 - t923 * t991));
-            let t996 = t936 + (t925 * t548 + (t924 * t546 + t923 * t544));
-            let t997 = k(50.0) * t996;
-            let t998 = k(0.4) * t996
-                - (t937 + (t558 * t925 + (t557 * t924 + t556 * t923)));
-            let t999 = k(263.1578947368421) * t998;
+            let t800 = t326 * t793;
+            let t801 = t800 - (t315 * t793 - t315 * t792);
+            let t802 = t322 * t793 - t310 * t792 - t800 - t801;
+            let t803 = t148 * t793 - (t138 * t793 + t270 * t792);
+            let t804 = t149 * t793 - (t137 * t793 + t271 * t792);
+            let t805 = t283 * t804 + t224 * t803
+                - (t266 * t802 - (t254 * t799 + t242 * t796));
+            let t806 = t222 * (t779 - t805);
+            let t807 = t217 * t804 - (t216 * t803 - t215 * t806)
+                + (t264 * t802 - (t252 * t799 + t240 * t796));
+            let t808 = t218 * (t777 - t807);
+            let t809 = t803 - t206 * t808;
+            let t810 = t804 + t213 * t808;
+            let t811 = t796 - (t209 * t810 + t197 * t809);
+            let t812 = t799 - (t210 * t810 - t201 * t809);
+            let t813 = t802 + (t211 * t810 - t204 * t809);
+            let t814 = t806 + t189 * t808;
+            let t815 = t474 * t810 + (t470 * t809 + t460 * t814)
+                - (t124 * t813 - (t93 * t812 + t57 * t811));
+            let t816 = t761 - (t124 * t587 + (t93 * t585 - t57 * t583));
+            let t817 = k(50.0) * t816;
+            let t818 = k(0.4) * t816
+                - (t768 - (t124 * t595 + (t93 * t594 - t57 * t593)));
+            let t819 = k(263.1578947368421) * t818;
+            let t820 = t772 + (t124 * t524 + (t93 * t536 + t57 * t517));
+            let t821 = k(40.0) * t820;
+            let t822 = t821 * t519 - (t819 * t514 + (t57 - t817 * t512));
+            let t823 = t821 * t537 + (t819 * t534 - (t93 + t817 * t533));
+            let t824 = t821 * t525 + (t819 * t522 - (t124 + t817 * t521));
+            let t825 = t622 * t824 + (t618 * t823 + t614 * t822)
+                - (t623 * t824 + (t619 * t823 - t615 * t822));
+            let t826 = k(0.19611613513818404) * t824 - k(0.9805806756909201) * t822;
+            let t827 = t826 * t531;
+            let t828 = k(0.9813067629253163) * (t827 * t543 + t823)
+                + k(0.03774256780481986) * (t822 + t528 * t827);
+            let t829 = k(0.1887128390240993) * (t824 - t530 * t827) + t828;
+            let t830 = t829 * t642;
+            let t831 = t827 * t662
+                - k(2.0) * (t654 * t824 - (t653 * t823 + t652 * t822));
+            let t832 = t830 * t669 + t831 + (t830 * t650 + (t827 * t638 + t825));
+            let t833 = t827 * t678 + (t672 * t824 - (t671 * t823 + t670 * t822));
+            let t834 = (k(0.9622504486493763) * (t830 * t684 + t833)
+                - k(0.19245008972987526) * t832) * t728;
+            let t835 = k(0.19245008972987526) * t834;
+            let t836 = k(0.9622504486493763) * t834;
+            let t837 = t642 * (t829 - (t684 * t836 - (t669 * t835 + t650 * t835)));
+            let t838 = k(0.03774256780481986) * t837;
+            let t839 = k(0.9813067629253163) * t837;
+            let t840 = k(0.1887128390240993) * t837;
+            let t841 = t678 * t836 - (t662 * t835 + t638 * t835)
+                + (t530 * t840 - (t543 * t839 + t528 * t838));
+            let t842 = t531 * (t826 - t841);
+            let t843 = t652 * t835;
+            let t844 = t843 + t614 * t835 + (t838 - k(0.9805806756909201) * t842);
+            let t845 = t670 * t836 + (t615 * t835 + t843) + t844;
+            let t846 = t653 * t835;
+            let t847 = t839 + (t846 + t618 * t835);
+            let t848 = t671 * t836 - (t619 * t835 - t846) + t847;
+            let t849 = t654 * t835;
+            let t850 = t849 - t622 * t835 - (t840 + k(0.19611613513818404) * t842);
+            let t851 = t672 * t836 + (t623 * t835 + t849) + t850;
+            let t852 = t818 - (t522 * t851 - (t534 * t848 - t514 * t845));
+            let t853 = k(2.1052631578947367) * t852
+                + (t521 * t851 - (t533 * t848 - t512 * t845));
+            let t854 = k(50.0) * (t816 + t853);
+            let t855 = k(263.1578947368421) * t852;
+            let t856 = k(40.0) * (t820 - (t525 * t851 - (t537 * t848 + t519 * t845)));
+            let t857 = t845 - (t517 * t856 - (t593 * t855 - t583 * t854));
+            let t858 = t848 - (t536 * t856 + (t594 * t855 - t585 * t854));
+            let t859 = t851 + (t524 * t856 + (t595 * t855 - t587 * t854));
+            let t860 = t772 * t856 - (t768 * t855 - t761 * t854)
+                + (t124 * t859 - (t93 * t858 + t57 * t857));
+            let t861 = k(1.0) / (t860 + t815);
+            let t862 = t38
+                * (k(0.4264014327112209) * t37 + k(0.6396021490668313) * t32
+                    + k(0.6396021490668313) * t31);
+            let t863 = t862
+                - t30
+                    * (k(0.6396021490668313) * t20
+                        + (k(0.6396021490668313) * t16 - k(0.4264014327112209) * t41));
+            let t864 = k(1.2792042981336627) * t14
+                - (k(1.2792042981336627) * t9 + k(0.8528028654224418) * t2);
+            let t865 = t84
+                * (k(0.4264014327112209) * t83 + k(0.6396021490668313) * t78
+                    - k(0.6396021490668313) * t77);
+            let t866 = t865
+                - t76
+                    * (k(0.6396021490668313) * t68
+                        + (k(0.6396021490668313) * t67 - k(0.4264014327112209) * t86));
+            let t867 = k(1.2792042981336627) * t65
+                + (k(1.2792042981336627) * t61 + k(0.8528028654224418) * t59);
+            let t868 = t867 * t91 - t865 - t866 + (t864 * t55 - t862 - t863);
+            let t869 = t115
+                * (k(0.4264014327112209) * t114 + k(0.6396021490668313) * t109
+                    - k(0.6396021490668313) * t108);
+            let t870 = t869
+                - t107
+                    * (k(0.6396021490668313) * t102
+                        + (k(0.6396021490668313) * t101 - k(0.4264014327112209) * t117));
+            let t871 = k(1.2792042981336627) * t99
+                + (k(1.2792042981336627) * t97 - k(0.8528028654224418) * t95);
+            let t872 = t30 * (k(1.2792042981336627) * t56) + t458 * t864
+                - (t76 * (k(1.2792042981336627) * t92) + t457 * t867);
+            let t873 = t872 + (t107 * (k(1.2792042981336627) * t123) - t456 * t871);
+            let t874 = k(1.2792042981336627) * t95;
+            let t875 = k(1.2792042981336627) * t59;
+            let t876 = k(1.2792042981336627) * t2;
+            let t877 = t30 * (k(0.8528028654224418) * t14 + t876) - t468 * t864
+                + (t76 * (k(0.8528028654224418) * t65 - t875) - t465 * t867);
+            let t878 = t877
+                - (t107 * (k(0.8528028654224418) * t99 + t874) + t462 * t871);
+            let t879 = t30 * (t876 - k(0.8528028654224418) * t9) + t473 * t864
+                - (t76 * (t875 - k(0.8528028654224418) * t61) + t472 * t867);
+            let t880 = t879
+                - (t107 * (t874 + k(0.8528028654224418) * t97) + t471 * t871);
+            let t881 = t880 * t451 - (t878 * t450 + t873 * t455)
+                - (t871 * t454 + (t867 * t453 + t864 * t452));
+            let t882 = t760 * t864 - t759 * t867 - t758 * t871;
+            let t883 = t767 * t864 + t765 * t867 + t763 * t871;
+            let t884 = t771 * t864 - t770 * t867 + t769 * t871;
+            let t885 = t884 * t754 + (t883 * t753 - t882 * t752)
+                + (t871 * t757 + (t867 * t756 + t864 * t755));
+            let t886 = t880 * t810 - (t878 * t809 + t873 * t814)
+                - (t871 * t813 - (t867 * t812 - t864 * t811));
+            let t887 = t884 * t856 - (t883 * t855 - t882 * t854)
+                - (t871 * t859 - (t867 * t858 - t864 * t857));
+            let t888 = t887 - t886;
+            let t889 = t861 * t888;
+            let t890 = t889 * t774 - (t885 - t881 + (t871 * t122 + t869 + t870 + t868));
+            let t891 = t878 - (t204 * t871 + (t201 * t867 + t197 * t864));
+            let t892 = t880 - (t211 * t871 + (t210 * t867 - t209 * t864));
+            let t893 = t213 * t892 + (t206 * t891 - t873 * t189);
+            let t894 = t218 * t893;
+            let t895 = t873 + t215 * t894;
+            let t896 = t222 * t895;
+            let t897 = t224 * t896 - (t891 - t216 * t894);
+            let t898 = t283 * t896 + (t892 - t217 * t894);
+            let t899 = t242 * t896 - (t864 - t240 * t894);
+            let t900 = t254 * t896 + (t867 + t252 * t894);
+            let t901 = t266 * t896 + (t871 + t264 * t894);
+            let t902 = t310 * t901 + (t305 * t900 + t299 * t899)
+                - (t271 * t898 + t270 * t897);
+            let t903 = t315 * t901 + (t313 * t900 - t312 * t899);
+            let t904 = t322 * t901 - (t320 * t900 + t318 * t899)
+                + (t137 * t898 + t138 * t897);
+            let t905 = t326 * t901 - (t330 * t900 + t328 * t899);
+            let t906 = k(0.6666666666666666)
+                * (t905 + (t905 + (t149 * t898 + t148 * t897)))
+                - (k(0.6666666666666666) * (t903 + t904)
+                    - k(0.3333333333333333) * (t903 + t902));
+            let t907 = t429 * t906;
+            let t908 = k(0.3333333333333333) * t907;
+            let t909 = k(0.6666666666666666) * t907;
+            let t910 = t328 * t909;
+            let t911 = t910 - (t312 * t909 - t312 * t908);
+            let t912 = t318 * t909 + t299 * t908 - t910 - t911;
+            let t913 = t330 * t909;
+            let t914 = t913 + (t313 * t909 - t313 * t908);
+            let t915 = t320 * t909 + t305 * t908 - t913 - t914;
+            let t916 = t326 * t909;
+            let t917 = t916 - (t315 * t909 - t315 * t908);
+            let t918 = t322 * t909 - t310 * t908 - t916 - t917;
+            let t919 = t148 * t909 - (t138 * t909 + t270 * t908);
+            let t920 = t149 * t909 - (t137 * t909 + t271 * t908);
+            let t921 = t283 * t920 + t224 * t919
+                - (t266 * t918 - (t254 * t915 + t242 * t912));
+            let t922 = t222 * (t895 - t921);
+            let t923 = t217 * t920 - (t216 * t919 - t215 * t922)
+                + (t264 * t918 - (t252 * t915 + t240 * t912));
+            let t924 = t218 * (t893 + t923);
+            let t925 = t919 + t206 * t924;
+            let t926 = t920 - t213 * t924;
+            let t927 = t912 - (t209 * t926 + t197 * t925);
+            let t928 = t915 - (t210 * t926 - t201 * t925);
+            let t929 = t918 + (t211 * t926 - t204 * t925);
+            let t930 = t922 - t189 * t924;
+            let t931 = t880 * t926 - (t878 * t925 + t873 * t930)
+                - (t871 * t929 - (t867 * t928 - t864 * t927));
+            let t932 = t882 + (t871 * t587 + (t867 * t585 + t864 * t583));
+            let t933 = k(50.0) * t932;
+            let t934 = k(0.4) * t932
+                - (t883 + (t595 * t871 + (t594 * t867 + t593 * t864)));
+            let t935 = k(263.1578947368421) * t934;
+            let t936 = t884 - (t871 * t524 + (t867 * t536 - t864 * t517));
+            let t937 = k(40.0) * t936;
+            let t938 = t519 * t937 - (t514 * t935 + (t864 - t512 * t933));
+            let t939 = t537 * t937 + (t534 * t935 + (t867 - t533 * t933));
+            let t940 = t525 * t937 + (t522 * t935 + (t871 - t521 * t933));
+            let t941 = t622 * t940 + (t618 * t939 + t614 * t938)
+                - (t623 * t940 + (t619 * t939 - t615 * t938));
+            let t942 = k(0.19611613513818404) * t940 - k(0.9805806756909201) * t938;
+            let t943 = t531 * t942;
+            let t944 = k(0.9813067629253163) * (t543 * t943 + t939)
+                + k(0.03774256780481986) * (t938 + t528 * t943);
+            let t945 = k(0.1887128390240993) * (t940 - t530 * t943) + t944;
+            let t946 = t642 * t945;
+            let t947 = t662 * t943
+                - k(2.0) * (t654 * t940 - (t653 * t939 + t652 * t938));
+            let t948 = t669 * t946 + t947 + (t650 * t946 + (t638 * t943 + t941));
+            let t949 = t678 * t943 + (t672 * t940 - (t671 * t939 + t670 * t938));
+            let t950 = t728
+                * (k(0.9622504486493763) * (t684 * t946 + t949)
+                    - k(0.19245008972987526) * t948);
+            let t951 = k(0.19245008972987526) * t950;
+            let t952 = k(0.9622504486493763) * t950;
+            let t953 = t642 * (t945 - (t684 * t952 - (t669 * t951 + t650 * t951)));
+            let t954 = k(0.03774256780481986) * t953;
+            let t955 = k(0.9813067629253163) * t953;
+            let t956 = k(0.1887128390240993) * t953;
+            let t957 = t678 * t952 - (t662 * t951 + t638 * t951)
+                + (t530 * t956 - (t543 * t955 + t528 * t954));
+            let t958 = t531 * (t942 - t957);
+            let t959 = t652 * t951;
+            let t960 = t959 + t614 * t951 + (t954 - k(0.9805806756909201) * t958);
+            let t961 = t670 * t952 + (t615 * t951 + t959) + t960;
+            let t962 = t653 * t951;
+            let t963 = t955 + (t962 + t618 * t951);
+            let t964 = t671 * t952 - (t619 * t951 - t962) + t963;
+            let t965 = t654 * t951;
+            let t966 = t965 - t622 * t951 - (t956 + k(0.19611613513818404) * t958);
+            let t967 = t672 * t952 + (t623 * t951 + t965) + t966;
+            let t968 = t934 - (t522 * t967 - (t534 * t964 - t514 * t961));
+            let t969 = k(2.1052631578947367) * t968
+                + (t521 * t967 - (t533 * t964 - t512 * t961));
+            let t970 = k(50.0) * (t932 + t969);
+            let t971 = k(263.1578947368421) * t968;
+            let t972 = k(40.0) * (t936 - (t525 * t967 - (t537 * t964 + t519 * t961)));
+            let t973 = t961 - (t517 * t972 - (t593 * t971 - t583 * t970));
+            let t974 = t964 - (t536 * t972 + (t594 * t971 - t585 * t970));
+            let t975 = t967 + (t524 * t972 + (t595 * t971 - t587 * t970));
+            let t976 = t884 * t972 - (t883 * t971 - t882 * t970)
+                - (t871 * t975 - (t867 * t974 - t864 * t973));
+            let t977 = k(1.0) / (t888 * t889 - (t976 - t931));
+            let t978 = t96 * t110 + (t60 * t79 + t3 * t33);
+            let t979 = t98 * t110 - (t62 * t79 + t10 * t33);
+            let t980 = t100 * t110 - (t66 * t79 - t15 * t33);
+            let t981 = t96 * t111 - (t60 * t80 + t3 * t34);
+            let t982 = t96 * t112 - (t60 * t81 - t3 * t35);
+            let t983 = sleeve_wy * t982 + sleeve_wz * t981;
+            let t984 = t100 * t111 - (t15 * t34 - t66 * t80);
+            let t985 = t15 * t35 + t66 * t81 + t100 * t112;
+            let t986 = sleeve_wy * t985 + sleeve_wz * t984;
+            let t987 = t98 * t111 + (t10 * t34 + t62 * t80);
+            let t988 = t98 * t112 - (t10 * t35 - t62 * t81);
+            let t989 = t51 * t988 - (t43 * t987 - t50 * t979)
+                + k(2.0) * (shaft_wx * t986 + shaft_wz * t983);
+            let t990 = k(0.9045340337332909)
+                * (t989 + (t11 * t980 + (t6 * t979 - t0 * t978)));
+            let t991 = sleeve_wx * t982 + sleeve_wz * t978;
+            let t992 = sleeve_wx * t985 + sleeve_wz * t980;
+            let t993 = t47 * t988 + (t46 * t987 - t43 * t979)
+                - k(2.0) * (shaft_wx * t992 + shaft_wz * t991);
+            let t994 = t993 + (t11 * t984 + (t6 * t987 - t0 * t981));
+            let t995 = sleeve_wx * t981 - sleeve_wy * t978;
+            let t996 = sleeve_wx * t984 - sleeve_wy * t980;
+            let t997 = t53 * t988 + (t47 * t987 + t51 * t979)
+                + k(2.0) * (shaft_wx * t996 + shaft_wz * t995);
+            let t998 = t997 + (t11 * t985 + (t6 * t988 - t0 * t982));
+            let t999 = k(0.30151134457776363) * t998
+                + (k(0.30151134457776363) * t994 + t990);
             (
-                t806,
-                t807,
+                t801,
                 t809,
+                t810,
+                t811,
                 t812,
-                t828,
-                t848,
-                t849,
-                t851,
+                t813,
+                t814,
+                t835,
+                t836,
+                t844,
+                t847,
+                t850,
                 t854,
+                t855,
+                t856,
                 t857,
-                t866,
-                t867,
-                t868,
-                t869,
-                t870,
-                t871,
-                t892,
-                t893,
-                t901,
-                t904,
-                t907,
-                t912,
+                t858,
+                t859,
+                t861,
+                t888,
+                t889,
+                t890,
+                t908,
+                t909,
+                t911,
                 t914,
                 t917,
-                t918,
-                t919,
-                t920,
-                t922,
-                t923,
-                t924,
                 t925,
-                t936,
-                t937,
-                t938,
-                t949,
-                t950,
+                t926,
+                t927,
+                t928,
+                t929,
+                t930,
                 t951,
+                t952,
+                t960,
+                t963,
+                t966,
+                t970,
                 t971,
                 t972,
+                t973,
                 t974,
+                t975,
                 t977,
+                t978,
+                t979,
                 t980,
-                t989,
-                t990,
+                t981,
+                t982,
+                t983,
+                t984,
+                t985,
+                t986,
+                t987,
+                t988,
                 t991,
                 t992,
-                t993,
                 t994,
                 t995,
                 t996,
-                t997,
                 t998,
                 t999,
             )
         };
         let (
+            t1003,
+            t1005,
+            t1006,
+            t1008,
             t1015,
             t1016,
-            t1024,
-            t1027,
+            t1017,
+            t1029,
             t1030,
-            t1035,
-            t1037,
-            t1040,
-            t1041,
-            t1042,
-            t1043,
-            t1045,
-            t1046,
-            t1047,
-            t1048,
+            t1032,
+            t1033,
+            t1034,
             t1050,
             t1051,
-            t1052,
-            t1055,
+            t1053,
+            t1054,
             t1056,
             t1057,
+            t1059,
             t1060,
-            t1061,
-            t1062,
-            t1078,
-            t1079,
-            t1081,
-            t1082,
-            t1083,
-            t1085,
-            t1086,
-            t1090,
-            t1092,
-            t1093,
-            t1095,
+            t1067,
+            t1068,
+            t1069,
+            t1087,
+            t1088,
             t1096,
             t1097,
-            t1098,
+            t1099,
             t1100,
-            t1101,
             t1102,
+            t1103,
+            t1106,
+            t1107,
+            t1108,
+            t1110,
+            t1114,
+            t1116,
+            t1118,
             t1120,
             t1121,
+            t1122,
             t1123,
             t1124,
+            t1125,
             t1126,
-            t1127,
+            t1128,
             t1129,
-            t1130,
-            t1138,
-            t1139,
-            t1140,
-            t1158,
+            t1131,
+            t1132,
+            t1135,
+            t1136,
+            t1137,
+            t1153,
+            t1154,
+            t1156,
+            t1157,
             t1159,
-            t1167,
-            t1168,
+            t1160,
+            t1162,
+            t1163,
             t1170,
             t1171,
-            t1173,
+            t1172,
             t1174,
-            t1178,
-            t1180,
-            t1183,
-            t1185,
-            t1186,
-            t1188,
-            t1189,
             t1190,
             t1191,
-            t1192,
-            t1193,
             t1194,
             t1195,
             t1197,
+            t1198,
             t1199,
         ) = {
-            let t1000 = t938 - (t925 * t510 + (t924 * t522 - t923 * t503));
-            let t1001 = k(40.0) * t1000;
-            let t1002 = t505 * t1001 - (t500 * t999 + (t923 - t498 * t997));
-            let t1003 = t523 * t1001 + (t520 * t999 + (t924 - t519 * t997));
-            let t1004 = t511 * t1001 + (t508 * t999 + (t925 - t507 * t997));
-            let t1005 = t601 * t1004 + (t597 * t1003 + t593 * t1002)
-                - (t602 * t1004 + (t598 * t1003 - t594 * t1002));
-            let t1006 = k(0.19611613513818404) * t1004 - k(0.9805806756909201) * t1002;
-            let t1007 = t517 * t1006;
-            let t1008 = k(0.9813067629253163) * (t529 * t1007 + t1003)
-                + k(0.03774256780481986) * (t1002 + t514 * t1007);
-            let t1009 = k(0.1887128390240993) * (t1004 - t516 * t1007) + t1008;
-            let t1010 = t641 * t1009;
-            let t1011 = t661 * t1007
-                - k(2.0) * (t652 * t1004 - (t651 * t1003 + t650 * t1002));
-            let t1012 = t668 * t1010 + t1011 + (t649 * t1010 + (t637 * t1007 + t1005));
-            let t1013 = t677 * t1007 + (t671 * t1004 - (t670 * t1003 + t669 * t1002));
-            let t1014 = t747
-                * (k(0.9622504486493763) * (t683 * t1010 + t1013)
-                    - k(0.19245008972987526) * t1012);
-            let t1015 = k(0.19245008972987526) * t1014;
-            let t1016 = k(0.9622504486493763) * t1014;
-            let t1017 = t641 * (t1009 - (t683 * t1016 - (t668 * t1015 + t649 * t1015)));
-            let t1018 = k(0.03774256780481986) * t1017;
-            let t1019 = k(0.9813067629253163) * t1017;
-            let t1020 = k(0.1887128390240993) * t1017;
-            let t1021 = t677 * t1016 - (t661 * t1015 + t637 * t1015)
-                + (t516 * t1020 - (t529 * t1019 + t514 * t1018));
-            let t1022 = t517 * (t1006 - t1021);
-            let t1023 = t650 * t1015;
-            let t1024 = t1023 + t593 * t1015 + (t1018 - k(0.9805806756909201) * t1022);
-            let t1025 = t669 * t1016 + (t594 * t1015 + t1023) + t1024;
-            let t1026 = t651 * t1015;
-            let t1027 = t1019 + (t1026 + t597 * t1015);
-            let t1028 = t670 * t1016 - (t598 * t1015 - t1026) + t1027;
-            let t1029 = t652 * t1015;
-            let t1030 = t1029 - t601 * t1015 - (t1020 + k(0.19611613513818404) * t1022);
-            let t1031 = t671 * t1016 + (t602 * t1015 + t1029) + t1030;
-            let t1032 = t771 * t1016 - (t770 * t1015 + t769 * t1015);
-            let t1033 = t775 * t1016 - (t774 * t1015 + t773 * t1015);
-            let t1034 = k(0.0038) * t1033
-                + (t508 * t1031 - (t520 * t1028 - t500 * t1025));
-            let t1035 = t1033 + k(263.1578947368421) * (t998 - t1034);
-            let t1036 = k(0.008) * t1035 - k(0.02) * t1032
-                + (t507 * t1031 - (t519 * t1028 - t498 * t1025));
-            let t1037 = t1032 + k(50.0) * (t996 + t1036);
-            let t1038 = t783 * t1016 - (t782 * t1015 + t781 * t1015);
-            let t1039 = k(0.025) * t1038
-                - (t511 * t1031 - (t523 * t1028 + t505 * t1025));
-            let t1040 = t1038 - k(40.0) * (t1000 + t1039);
-            let t1041 = t1025 + (t503 * t1040 + (t556 * t1035 - t544 * t1037));
-            let t1042 = t1028 + (t522 * t1040 - (t557 * t1035 - t546 * t1037));
-            let t1043 = t1031 - (t510 * t1040 - (t558 * t1035 - t548 * t1037));
-            let t1044 = t938 * t1040 + (t937 * t1035 - t936 * t1037)
-                + (t925 * t1043 - (t924 * t1042 - t923 * t1041));
-            let t1045 = k(1.0) / (t949 * t950 - (t1044 + t995));
-            let t1046 = t33 * t47 - (t24 * t60 + t13 * t73);
-            let t1047 = t33 * t48 + (t13 * t74 + t24 * t61);
-            let t1048 = t33 * t49 - (t13 * t75 - t24 * t62);
-            let t1049 = k(0.30151134457776363) * t1048
-                + (k(0.30151134457776363) * t1047 + k(0.9045340337332909) * t1046);
-            let t1050 = t42 * t47 - (t40 * t60 - t38 * t73);
-            let t1051 = t42 * t48 - (t38 * t74 - t40 * t61);
-            let t1052 = t38 * t75 + t40 * t62 + t42 * t49;
-            let t1053 = k(0.30151134457776363) * t1052
-                + (k(0.30151134457776363) * t1051 + k(0.9045340337332909) * t1050);
-            let t1054 = k(0.7071067811865476) * (t1053 + t1049);
-            let t1055 = t51 * t47 + (t64 * t60 + t77 * t73);
-            let t1056 = t51 * t48 - (t64 * t61 + t77 * t74);
-            let t1057 = t51 * t49 - (t64 * t62 - t77 * t75);
-            let t1058 = k(0.30151134457776363) * t1057
-                + (k(0.30151134457776363) * t1056 + k(0.9045340337332909) * t1055);
-            let t1059 = k(0.7071067811865476) * t1058;
-            let t1060 = t1048 - t1047;
-            let t1061 = t1052 - t1051;
-            let t1062 = t1061 - t1060;
-            let t1063 = k(0.21320071635561044) * t1062;
-            let t1064 = k(0.30151134457776363) * t1050;
-            let t1065 = k(0.9045340337332909) * t1052 - t1064;
-            let t1066 = k(0.30151134457776363) * t1046;
-            let t1067 = k(0.9045340337332909) * t1048 - t1066;
-            let t1068 = k(0.7071067811865476) * (t1067 - t1065);
-            let t1069 = t1064 - k(0.9045340337332909) * t1051;
-            let t1070 = t1066 - k(0.9045340337332909) * t1047;
-            let t1071 = t1070 - t1069;
-            let t1072 = k(0.7071067811865476) * t1071;
-            let t1073 = t1072 * t786 + (t1068 * t778 + t1063 * t780)
-                - (t1059 * t431 + (t1059 * t430 - t1054 * t441));
-            let t1074 = sleeve_wy * t1057 + sleeve_wz * t1056;
-            let t1075 = sleeve_wy * t1052 + sleeve_wz * t1051;
-            let t1076 = t562 * t1048 - (t567 * t1047 - t576 * t1046)
-                + k(2.0) * (shaft_wx * t1075 + shaft_wz * t1074);
-            let t1077 = k(0.9045340337332909)
-                * (t1076 + (t807 * t1050 + (t806 * t1046 - t153 * t1055)));
-            let t1078 = sleeve_wx * t1057 + sleeve_wz * t1055;
-            let t1079 = sleeve_wx * t1052 + sleeve_wz * t1050;
-            let t1080 = t553 * t1048 + (t573 * t1047 - t567 * t1046)
-                - k(2.0) * (shaft_wx * t1079 + shaft_wz * t1078);
-            let t1081 = t1080 + (t807 * t1051 + (t806 * t1047 - t153 * t1056));
-            let t1082 = sleeve_wx * t1056 - sleeve_wy * t1055;
-            let t1083 = sleeve_wx * t1051 - sleeve_wy * t1050;
-            let t1084 = t812 * t1048 + (t553 * t1047 + t562 * t1046)
-                + k(2.0) * (shaft_wx * t1083 + shaft_wz * t1082);
-            let t1085 = t1084 + (t807 * t1052 + (t806 * t1048 - t153 * t1057));
-            let t1086 = k(0.30151134457776363) * t1085
-                + (k(0.30151134457776363) * t1081 + t1077);
-            let t1087 = sleeve_wy * t1048 + sleeve_wz * t1047;
-            let t1088 = t562 * t1052 - (t567 * t1051 - t576 * t1050)
-                - k(2.0) * (shaft_wx * t1087 - shaft_wy * t1074);
-            let t1089 = k(0.9045340337332909)
-                * (t1088 + (t809 * t1050 + (t807 * t1046 + t144 * t1055)));
-            let t1090 = sleeve_wx * t1048 + sleeve_wz * t1046;
-            let t1091 = t553 * t1052 + (t573 * t1051 - t567 * t1050)
-                + k(2.0) * (shaft_wx * t1090 - shaft_wy * t1078);
-            let t1092 = t1091 + (t809 * t1051 + (t807 * t1047 + t144 * t1056));
-            let t1093 = sleeve_wx * t1047 - sleeve_wy * t1046;
-            let t1094 = t812 * t1052 + (t553 * t1051 + t562 * t1050)
-                - k(2.0) * (shaft_wx * t1093 - shaft_wy * t1082);
-            let t1095 = t1094 + (t809 * t1052 + (t807 * t1048 + t144 * t1057));
-            let t1096 = k(0.30151134457776363) * t1095
-                + (k(0.30151134457776363) * t1092 + t1089);
-            let t1097 = t1072 * t917 + (t1068 * t912 + t1063 * t914)
-                + (t1059 * t867 + (t1059 * t866 - t1054 * t871));
-            let t1098 = t922 * t1097;
-            let t1099 = t1072 * t1040 + (t1068 * t1035 + t1063 * t1037)
-                + (t1059 * t990 + (t1059 * t989 - t1054 * t994));
-            let t1100 = t949 * t1098 - t1099;
-            let t1101 = t1045 * t1100;
-            let t1102 = t1101 * t951
-                - (t1098 * t828 - (k(0.7071067811865476) * (t1096 - t1086) - t1073));
-            let t1103 = t156 * t1059 - (t148 * t1059 + t1054 * t129);
-            let t1104 = t161 * t1103;
-            let t1105 = t1054 + t158 * t1104;
-            let t1106 = t166 * t1105;
-            let t1107 = t1105 - t165 * t1106;
-            let t1108 = t228 * t1106 + (t1059 + t159 * t1104);
-            let t1109 = t246 * t1106 + (t1059 - t160 * t1104);
-            let t1110 = t172 * t1106 + t170 * t1104;
-            let t1111 = t198 * t1106 + t196 * t1104;
-            let t1112 = t214 * t1106 + t212 * t1104;
-            let t1113 = t273 * t1112 + (t268 * t1111 + t262 * t1110)
-                - (t234 * t1109 + (t233 * t1108 - t227 * t1107));
-            let t1114 = t278 * t1112 + (t276 * t1111 - t275 * t1110);
-            let t1115 = t285 * t1112 - (t283 * t1111 + t281 * t1110)
-                + (t97 * t1109 + (t98 * t1108 - t127 * t1107));
-            let t1116 = t289 * t1112 - (t293 * t1111 + t291 * t1110);
-            let t1117 = t1116 + (t1116 + (t109 * t1109 + (t108 * t1108 - t128 * t1107)));
-            let t1118 = k(0.6666666666666666) * t1117
-                - (k(0.6666666666666666) * (t1114 + t1115)
-                    - k(0.3333333333333333) * (t1114 + t1113));
-            let t1119 = t408 * t1118;
-            let t1120 = k(0.3333333333333333) * t1119;
-            let t1121 = k(0.6666666666666666) * t1119;
-            let t1122 = t291 * t1121;
-            let t1123 = t1122 - (t275 * t1121 - t275 * t1120);
-            let t1124 = t281 * t1121 + t262 * t1120 - t1122 - t1123;
-            let t1125 = t293 * t1121;
-            let t1126 = t1125 + (t276 * t1121 - t276 * t1120);
-            let t1127 = t283 * t1121 + t268 * t1120 - t1125 - t1126;
-            let t1128 = t289 * t1121;
-            let t1129 = t1128 - (t278 * t1121 - t278 * t1120);
-            let t1130 = t285 * t1121 - t273 * t1120 - t1128 - t1129;
-            let t1131 = t128 * t1121 - (t127 * t1121 + t227 * t1120);
-            let t1132 = t108 * t1121 - (t98 * t1121 + t233 * t1120);
-            let t1133 = t109 * t1121 - (t97 * t1121 + t234 * t1120);
-            let t1134 = t246 * t1133 + (t228 * t1132 + t165 * t1131)
-                - (t214 * t1130 - (t198 * t1127 + t172 * t1124));
-            let t1135 = t1131 + t166 * (t1105 - t1134);
-            let t1136 = t160 * t1133 - (t159 * t1132 - t158 * t1135)
-                + (t212 * t1130 - (t196 * t1127 + t170 * t1124));
-            let t1137 = t161 * (t1103 + t1136);
-            let t1138 = t1135 - t129 * t1137;
-            let t1139 = t1132 + t148 * t1137;
-            let t1140 = t1133 - t156 * t1137;
-            let t1141 = k(10.660035817780521) * t1062;
-            let t1142 = t1068 + k(0.08528028654224418) * t1062;
-            let t1143 = k(263.1578947368421) * t1142;
-            let t1144 = k(28.284271247461902) * t1071;
-            let t1145 = t505 * t1144 + (t500 * t1143 - t498 * t1141);
-            let t1146 = t523 * t1144 - (t520 * t1143 - t519 * t1141);
-            let t1147 = t511 * t1144 - (t508 * t1143 - t507 * t1141);
-            let t1148 = t601 * t1147 + (t597 * t1146 + t593 * t1145)
-                - (t602 * t1147 + (t598 * t1146 - t594 * t1145));
-            let t1149 = k(0.19611613513818404) * t1147 - k(0.9805806756909201) * t1145;
-            let t1150 = t517 * t1149;
-            let t1151 = k(0.9813067629253163) * (t529 * t1150 + t1146)
-                + k(0.03774256780481986) * (t1145 + t514 * t1150);
-            let t1152 = k(0.1887128390240993) * (t1147 - t516 * t1150) + t1151;
-            let t1153 = t641 * t1152;
-            let t1154 = t661 * t1150
-                - k(2.0) * (t652 * t1147 - (t651 * t1146 + t650 * t1145));
-            let t1155 = t668 * t1153 + t1154 + (t649 * t1153 + (t637 * t1150 + t1148));
-            let t1156 = t677 * t1150 + (t671 * t1147 - (t670 * t1146 + t669 * t1145));
-            let t1157 = t747
-                * (k(0.9622504486493763) * (t683 * t1153 + t1156)
-                    - k(0.19245008972987526) * t1155);
-            let t1158 = k(0.19245008972987526) * t1157;
-            let t1159 = k(0.9622504486493763) * t1157;
-            let t1160 = t641 * (t1152 - (t683 * t1159 - (t668 * t1158 + t649 * t1158)));
-            let t1161 = k(0.03774256780481986) * t1160;
-            let t1162 = k(0.9813067629253163) * t1160;
-            let t1163 = k(0.1887128390240993) * t1160;
-            let t1164 = t677 * t1159 - (t661 * t1158 + t637 * t1158)
-                + (t516 * t1163 - (t529 * t1162 + t514 * t1161));
-            let t1165 = t517 * (t1149 - t1164);
-            let t1166 = t650 * t1158;
-            let t1167 = t1166 + t593 * t1158 + (t1161 - k(0.9805806756909201) * t1165);
-            let t1168 = t669 * t1159 + (t594 * t1158 + t1166) + t1167;
-            let t1169 = t651 * t1158;
-            let t1170 = t1162 + (t1169 + t597 * t1158);
-            let t1171 = t670 * t1159 - (t598 * t1158 - t1169) + t1170;
-            let t1172 = t652 * t1158;
-            let t1173 = t1172 - t601 * t1158 - (t1163 + k(0.19611613513818404) * t1165);
-            let t1174 = t671 * t1159 + (t602 * t1158 + t1172) + t1173;
-            let t1175 = t771 * t1159 - (t770 * t1158 + t769 * t1158);
-            let t1176 = t775 * t1159 - (t774 * t1158 + t773 * t1158);
-            let t1177 = k(0.0038) * t1176
-                + (t508 * t1174 - (t520 * t1171 - t500 * t1168));
-            let t1178 = t1176 - k(263.1578947368421) * (t1142 + t1177);
-            let t1179 = k(0.008) * t1178 - k(0.02) * t1175
-                + (t507 * t1174 - (t519 * t1171 - t498 * t1168));
-            let t1180 = t1175 - k(50.0) * (t1063 - t1179);
-            let t1181 = t783 * t1159 - (t782 * t1158 + t781 * t1158);
-            let t1182 = k(0.025) * t1181
-                - (t511 * t1174 - (t523 * t1171 + t505 * t1168));
-            let t1183 = t1181 - k(40.0) * (t1072 + t1182);
-            let t1184 = t1072 * t1183 + (t1068 * t1178 + t1063 * t1180)
-                + (t1059 * t1140 + (t1059 * t1139 - t1054 * t1138));
-            let t1185 = k(1.0) / (t1100 * t1101 - (t1097 * t1098 - t1184));
-            let t1186 = k(0.6396021490668313) * (t1053 - t1049);
-            let t1187 = k(0.6396021490668313) * t1058;
-            let t1188 = k(0.4264014327112209) * t1053 + t1187;
-            let t1189 = t1187 + k(0.4264014327112209) * t1049;
-            let t1190 = t1057 - t1056;
-            let t1191 = k(0.128564869306645) * t1190 - k(0.19284730395996752) * t1060
-                - k(0.19284730395996752) * t1061;
-            let t1192 = k(0.30151134457776363) * t1055;
-            let t1193 = k(0.4264014327112209) * (k(0.9045340337332909) * t1057 - t1192)
-                - k(0.6396021490668313) * t1067 - k(0.6396021490668313) * t1065;
-            let t1194 = k(0.4264014327112209) * (t1192 - k(0.9045340337332909) * t1056)
-                - k(0.6396021490668313) * t1070 - k(0.6396021490668313) * t1069;
-            let t1195 = t1194 * t786 + (t1193 * t778 - t1191 * t780)
-                + (t1189 * t431 - (t1188 * t430 + t1186 * t441));
-            let t1196 = t562 * t1057 - (t567 * t1056 - t576 * t1055)
-                - k(2.0) * (shaft_wy * t1075 + shaft_wz * t1087);
-            let t1197 = k(0.9045340337332909)
-                * (t1196 + (t144 * t1050 - (t153 * t1046 - t190 * t1055)));
-            let t1198 = t553 * t1057 + (t573 * t1056 - t567 * t1055)
-                + k(2.0) * (shaft_wy * t1079 + shaft_wz * t1090);
-            let t1199 = t1198 + (t144 * t1051 - (t153 * t1047 - t190 * t1056));
+            let t1000 = sleeve_wy * t988 + sleeve_wz * t987;
+            let t1001 = t51 * t985 - (t43 * t984 - t50 * t980)
+                - k(2.0) * (shaft_wx * t1000 - shaft_wy * t983);
+            let t1002 = k(0.9045340337332909)
+                * (t1001 + (t19 * t980 + (t11 * t979 + t17 * t978)));
+            let t1003 = sleeve_wx * t988 + sleeve_wz * t979;
+            let t1004 = t47 * t985 + (t46 * t984 - t43 * t980)
+                + k(2.0) * (shaft_wx * t1003 - shaft_wy * t991);
+            let t1005 = t1004 + (t19 * t984 + (t11 * t987 + t17 * t981));
+            let t1006 = sleeve_wx * t987 - sleeve_wy * t979;
+            let t1007 = t53 * t985 + (t47 * t984 + t51 * t980)
+                - k(2.0) * (shaft_wx * t1006 - shaft_wy * t995);
+            let t1008 = t1007 + (t19 * t985 + (t11 * t988 + t17 * t982));
+            let t1009 = k(0.30151134457776363) * t1008
+                + (k(0.30151134457776363) * t1005 + t1002);
+            let t1010 = k(0.30151134457776363) * t988
+                + (k(0.30151134457776363) * t987 + k(0.9045340337332909) * t979);
+            let t1011 = k(0.30151134457776363) * t985
+                + (k(0.30151134457776363) * t984 + k(0.9045340337332909) * t980);
+            let t1012 = k(0.7071067811865476) * (t1011 + t1010);
+            let t1013 = k(0.30151134457776363) * t982
+                + (k(0.30151134457776363) * t981 + k(0.9045340337332909) * t978);
+            let t1014 = k(0.7071067811865476) * t1013;
+            let t1015 = t988 - t987;
+            let t1016 = t985 - t984;
+            let t1017 = t1016 - t1015;
+            let t1018 = k(0.21320071635561044) * t1017;
+            let t1019 = k(0.30151134457776363) * t980;
+            let t1020 = k(0.9045340337332909) * t985 - t1019;
+            let t1021 = k(0.30151134457776363) * t979;
+            let t1022 = k(0.9045340337332909) * t988 - t1021;
+            let t1023 = k(0.7071067811865476) * (t1022 - t1020);
+            let t1024 = t1019 - k(0.9045340337332909) * t984;
+            let t1025 = t1021 - k(0.9045340337332909) * t987;
+            let t1026 = t1025 - t1024;
+            let t1027 = k(0.7071067811865476) * t1026;
+            let t1028 = t1027 * t754 + (t1023 * t753 + t1018 * t752)
+                - (t1014 * t451 + (t1014 * t450 - t1012 * t455));
+            let t1029 = t1027 * t856 - (t1023 * t855 + t1018 * t854)
+                - (t1014 * t810 + (t1014 * t809 - t1012 * t814));
+            let t1030 = t861 * t1029;
+            let t1031 = t1027 * t972 - (t1023 * t971 + t1018 * t970)
+                - (t1014 * t926 + (t1014 * t925 - t1012 * t930));
+            let t1032 = t888 * t1030 - t1031;
+            let t1033 = t977 * t1032;
+            let t1034 = t1033 * t890
+                - (t1030 * t774 - (t1028 - k(0.7071067811865476) * (t1009 - t999)));
+            let t1035 = t213 * t1014 - (t206 * t1014 + t1012 * t189);
+            let t1036 = t218 * t1035;
+            let t1037 = t1012 + t215 * t1036;
+            let t1038 = t222 * t1037;
+            let t1039 = t224 * t1038 + (t1014 + t216 * t1036);
+            let t1040 = t283 * t1038 + (t1014 - t217 * t1036);
+            let t1041 = t242 * t1038 + t240 * t1036;
+            let t1042 = t254 * t1038 + t252 * t1036;
+            let t1043 = t266 * t1038 + t264 * t1036;
+            let t1044 = t310 * t1043 + (t305 * t1042 + t299 * t1041)
+                - (t271 * t1040 + t270 * t1039);
+            let t1045 = t315 * t1043 + (t313 * t1042 - t312 * t1041);
+            let t1046 = t322 * t1043 - (t320 * t1042 + t318 * t1041)
+                + (t137 * t1040 + t138 * t1039);
+            let t1047 = t326 * t1043 - (t330 * t1042 + t328 * t1041);
+            let t1048 = k(0.6666666666666666)
+                * (t1047 + (t1047 + (t149 * t1040 + t148 * t1039)))
+                - (k(0.6666666666666666) * (t1045 + t1046)
+                    - k(0.3333333333333333) * (t1045 + t1044));
+            let t1049 = t429 * t1048;
+            let t1050 = k(0.3333333333333333) * t1049;
+            let t1051 = k(0.6666666666666666) * t1049;
+            let t1052 = t328 * t1051;
+            let t1053 = t1052 - (t312 * t1051 - t312 * t1050);
+            let t1054 = t318 * t1051 + t299 * t1050 - t1052 - t1053;
+            let t1055 = t330 * t1051;
+            let t1056 = t1055 + (t313 * t1051 - t313 * t1050);
+            let t1057 = t320 * t1051 + t305 * t1050 - t1055 - t1056;
+            let t1058 = t326 * t1051;
+            let t1059 = t1058 - (t315 * t1051 - t315 * t1050);
+            let t1060 = t322 * t1051 - t310 * t1050 - t1058 - t1059;
+            let t1061 = t148 * t1051 - (t138 * t1051 + t270 * t1050);
+            let t1062 = t149 * t1051 - (t137 * t1051 + t271 * t1050);
+            let t1063 = t283 * t1062 + t224 * t1061
+                - (t266 * t1060 - (t254 * t1057 + t242 * t1054));
+            let t1064 = t222 * (t1037 - t1063);
+            let t1065 = t217 * t1062 - (t216 * t1061 - t215 * t1064)
+                + (t264 * t1060 - (t252 * t1057 + t240 * t1054));
+            let t1066 = t218 * (t1035 + t1065);
+            let t1067 = t1064 - t189 * t1066;
+            let t1068 = t1061 + t206 * t1066;
+            let t1069 = t1062 - t213 * t1066;
+            let t1070 = k(10.660035817780521) * t1017;
+            let t1071 = t1023 + k(0.08528028654224418) * t1017;
+            let t1072 = k(263.1578947368421) * t1071;
+            let t1073 = k(28.284271247461902) * t1026;
+            let t1074 = t519 * t1073 + (t514 * t1072 - t512 * t1070);
+            let t1075 = t537 * t1073 - (t534 * t1072 - t533 * t1070);
+            let t1076 = t525 * t1073 - (t522 * t1072 - t521 * t1070);
+            let t1077 = t622 * t1076 + (t618 * t1075 + t614 * t1074)
+                - (t623 * t1076 + (t619 * t1075 - t615 * t1074));
+            let t1078 = k(0.19611613513818404) * t1076 - k(0.9805806756909201) * t1074;
+            let t1079 = t531 * t1078;
+            let t1080 = k(0.9813067629253163) * (t543 * t1079 + t1075)
+                + k(0.03774256780481986) * (t1074 + t528 * t1079);
+            let t1081 = k(0.1887128390240993) * (t1076 - t530 * t1079) + t1080;
+            let t1082 = t642 * t1081;
+            let t1083 = t662 * t1079
+                - k(2.0) * (t654 * t1076 - (t653 * t1075 + t652 * t1074));
+            let t1084 = t669 * t1082 + t1083 + (t650 * t1082 + (t638 * t1079 + t1077));
+            let t1085 = t678 * t1079 + (t672 * t1076 - (t671 * t1075 + t670 * t1074));
+            let t1086 = t728
+                * (k(0.9622504486493763) * (t684 * t1082 + t1085)
+                    - k(0.19245008972987526) * t1084);
+            let t1087 = k(0.19245008972987526) * t1086;
+            let t1088 = k(0.9622504486493763) * t1086;
+            let t1089 = t642 * (t1081 - (t684 * t1088 - (t669 * t1087 + t650 * t1087)));
+            let t1090 = k(0.03774256780481986) * t1089;
+            let t1091 = k(0.9813067629253163) * t1089;
+            let t1092 = k(0.1887128390240993) * t1089;
+            let t1093 = t678 * t1088 - (t662 * t1087 + t638 * t1087)
+                + (t530 * t1092 - (t543 * t1091 + t528 * t1090));
+            let t1094 = t531 * (t1078 - t1093);
+            let t1095 = t652 * t1087;
+            let t1096 = t1095 + t614 * t1087 + (t1090 - k(0.9805806756909201) * t1094);
+            let t1097 = t670 * t1088 + (t615 * t1087 + t1095) + t1096;
+            let t1098 = t653 * t1087;
+            let t1099 = t1091 + (t1098 + t618 * t1087);
+            let t1100 = t671 * t1088 - (t619 * t1087 - t1098) + t1099;
+            let t1101 = t654 * t1087;
+            let t1102 = t1101 - t622 * t1087 - (t1092 + k(0.19611613513818404) * t1094);
+            let t1103 = t672 * t1088 + (t623 * t1087 + t1101) + t1102;
+            let t1104 = t1071 + (t522 * t1103 - (t534 * t1100 - t514 * t1097));
+            let t1105 = k(2.1052631578947367) * t1104
+                - (t521 * t1103 - (t533 * t1100 - t512 * t1097));
+            let t1106 = k(50.0) * (t1018 + t1105);
+            let t1107 = k(263.1578947368421) * t1104;
+            let t1108 = k(40.0)
+                * (t1027 - (t525 * t1103 - (t537 * t1100 + t519 * t1097)));
+            let t1109 = t1027 * t1108 + (t1023 * t1107 + t1018 * t1106)
+                - (t1014 * t1069 + (t1014 * t1068 - t1012 * t1067));
+            let t1110 = k(1.0) / (t1032 * t1033 - (t1029 * t1030 - t1109));
+            let t1111 = t51 * t982 - (t43 * t981 - t50 * t978)
+                - k(2.0) * (shaft_wy * t986 + shaft_wz * t1000);
+            let t1112 = k(0.9045340337332909)
+                * (t1111 + (t17 * t980 - (t0 * t979 - t40 * t978)));
+            let t1113 = t47 * t982 + (t46 * t981 - t43 * t978)
+                + k(2.0) * (shaft_wy * t992 + shaft_wz * t1003);
+            let t1114 = t1113 + (t17 * t984 - (t0 * t987 - t40 * t981));
+            let t1115 = t53 * t982 + (t47 * t981 + t51 * t978)
+                - k(2.0) * (shaft_wy * t996 + shaft_wz * t1006);
+            let t1116 = t1115 + (t17 * t985 - (t0 * t988 - t40 * t982));
+            let t1117 = k(0.6396021490668313) * t999
+                - k(0.4264014327112209)
+                    * (k(0.30151134457776363) * t1116
+                        + (k(0.30151134457776363) * t1114 + t1112));
+            let t1118 = k(0.6396021490668313) * (t1011 - t1010);
+            let t1119 = k(0.6396021490668313) * t1013;
+            let t1120 = k(0.4264014327112209) * t1011 + t1119;
+            let t1121 = t1119 + k(0.4264014327112209) * t1010;
+            let t1122 = t982 - t981;
+            let t1123 = k(0.128564869306645) * t1122 - k(0.19284730395996752) * t1015
+                - k(0.19284730395996752) * t1016;
+            let t1124 = k(0.30151134457776363) * t978;
+            let t1125 = k(0.4264014327112209) * (k(0.9045340337332909) * t982 - t1124)
+                - k(0.6396021490668313) * t1022 - k(0.6396021490668313) * t1020;
+            let t1126 = k(0.4264014327112209) * (t1124 - k(0.9045340337332909) * t981)
+                - k(0.6396021490668313) * t1025 - k(0.6396021490668313) * t1024;
+            let t1127 = t1126 * t754 + (t1125 * t753 - t1123 * t752)
+                + (t1121 * t451 - (t1120 * t450 + t1118 * t455));
+            let t1128 = t1126 * t856 - (t1125 * t855 - t1123 * t854)
+                + (t1121 * t810 - (t1120 * t809 + t1118 * t814));
+            let t1129 = t861 * t1128;
+            let t1130 = t1126 * t972 - (t1125 * t971 - t1123 * t970)
+                + (t1121 * t926 - (t1120 * t925 + t1118 * t930));
+            let t1131 = t888 * t1129 - t1130;
+            let t1132 = t977 * t1131;
+            let t1133 = t1132 * t890
+                - (t1129 * t774 - (t1127 - (k(0.6396021490668313) * t1009 + t1117)));
+            let t1134 = t1126 * t1108 + (t1125 * t1107 - t1123 * t1106)
+                + (t1121 * t1069 - (t1120 * t1068 + t1118 * t1067));
+            let t1135 = t1032 * t1132 - (t1029 * t1129 - t1134);
+            let t1136 = t1110 * t1135;
+            let t1137 = t1136 * t1034 - t1133;
+            let t1138 = t213 * t1121 + (t206 * t1120 - t1118 * t189);
+            let t1139 = t218 * t1138;
+            let t1140 = t1118 + t215 * t1139;
+            let t1141 = t222 * t1140;
+            let t1142 = t224 * t1141 - (t1120 - t216 * t1139);
+            let t1143 = t283 * t1141 + (t1121 - t217 * t1139);
+            let t1144 = t242 * t1141 + t240 * t1139;
+            let t1145 = t254 * t1141 + t252 * t1139;
+            let t1146 = t266 * t1141 + t264 * t1139;
+            let t1147 = t310 * t1146 + (t305 * t1145 + t299 * t1144)
+                - (t271 * t1143 + t270 * t1142);
+            let t1148 = t315 * t1146 + (t313 * t1145 - t312 * t1144);
+            let t1149 = t322 * t1146 - (t320 * t1145 + t318 * t1144)
+                + (t137 * t1143 + t138 * t1142);
+            let t1150 = t326 * t1146 - (t330 * t1145 + t328 * t1144);
+            let t1151 = k(0.6666666666666666)
+                * (t1150 + (t1150 + (t149 * t1143 + t148 * t1142)))
+                - (k(0.6666666666666666) * (t1148 + t1149)
+                    - k(0.3333333333333333) * (t1148 + t1147));
+            let t1152 = t429 * t1151;
+            let t1153 = k(0.3333333333333333) * t1152;
+            let t1154 = k(0.6666666666666666) * t1152;
+            let t1155 = t328 * t1154;
+            let t1156 = t1155 - (t312 * t1154 - t312 * t1153);
+            let t1157 = t318 * t1154 + t299 * t1153 - t1155 - t1156;
+            let t1158 = t330 * t1154;
+            let t1159 = t1158 + (t313 * t1154 - t313 * t1153);
+            let t1160 = t320 * t1154 + t305 * t1153 - t1158 - t1159;
+            let t1161 = t326 * t1154;
+            let t1162 = t1161 - (t315 * t1154 - t315 * t1153);
+            let t1163 = t322 * t1154 - t310 * t1153 - t1161 - t1162;
+            let t1164 = t148 * t1154 - (t138 * t1154 + t270 * t1153);
+            let t1165 = t149 * t1154 - (t137 * t1154 + t271 * t1153);
+            let t1166 = t283 * t1165 + t224 * t1164
+                - (t266 * t1163 - (t254 * t1160 + t242 * t1157));
+            let t1167 = t222 * (t1140 - t1166);
+            let t1168 = t217 * t1165 - (t216 * t1164 - t215 * t1167)
+                + (t264 * t1163 - (t252 * t1160 + t240 * t1157));
+            let t1169 = t218 * (t1138 + t1168);
+            let t1170 = t1167 - t189 * t1169;
+            let t1171 = t1164 + t206 * t1169;
+            let t1172 = t1165 - t213 * t1169;
+            let t1173 = k(50.0) * t1123;
+            let t1174 = t1125 - k(0.4) * t1123;
+            let t1175 = k(263.1578947368421) * t1174;
+            let t1176 = k(40.0) * t1126;
+            let t1177 = t519 * t1176 + (t514 * t1175 + t512 * t1173);
+            let t1178 = t537 * t1176 - (t534 * t1175 + t533 * t1173);
+            let t1179 = t525 * t1176 - (t522 * t1175 + t521 * t1173);
+            let t1180 = t622 * t1179 + (t618 * t1178 + t614 * t1177)
+                - (t623 * t1179 + (t619 * t1178 - t615 * t1177));
+            let t1181 = k(0.19611613513818404) * t1179 - k(0.9805806756909201) * t1177;
+            let t1182 = t531 * t1181;
+            let t1183 = k(0.9813067629253163) * (t543 * t1182 + t1178)
+                + k(0.03774256780481986) * (t1177 + t528 * t1182);
+            let t1184 = k(0.1887128390240993) * (t1179 - t530 * t1182) + t1183;
+            let t1185 = t642 * t1184;
+            let t1186 = t662 * t1182
+                - k(2.0) * (t654 * t1179 - (t653 * t1178 + t652 * t1177));
+            let t1187 = t669 * t1185 + t1186 + (t650 * t1185 + (t638 * t1182 + t1180));
+            let t1188 = t678 * t1182 + (t672 * t1179 - (t671 * t1178 + t670 * t1177));
+            let t1189 = t728
+                * (k(0.9622504486493763) * (t684 * t1185 + t1188)
+                    - k(0.19245008972987526) * t1187);
+            let t1190 = k(0.19245008972987526) * t1189;
+            let t1191 = k(0.9622504486493763) * t1189;
+            let t1192 = t642 * (t1184 - (t684 * t1191 - (t669 * t1190 + t650 * t1190)));
+            let t1193 = k(0.03774256780481986) * t1192;
+            let t1194 = k(0.9813067629253163) * t1192;
+            let t1195 = k(0.1887128390240993) * t1192;
+            let t1196 = t678 * t1191 - (t662 * t1190 + t638 * t1190)
+                + (t530 * t1195 - (t543 * t1194 + t528 * t1193));
+            let t1197 = t531 * (t1181 - t1196);
+            let t1198 = t652 * t1190;
+            let t1199 = t1198 + t614 * t1190 + (t1193 - k(0.9805806756909201) * t1197);
             (
+                t1003,
+                t1005,
+                t1006,
+                t1008,
                 t1015,
                 t1016,
-                t1024,
-                t1027,
+                t1017,
+                t1029,
                 t1030,
-                t1035,
-                t1037,
-                t1040,
-                t1041,
-                t1042,
-                t1043,
-                t1045,
-                t1046,
-                t1047,
-                t1048,
+                t1032,
+                t1033,
+                t1034,
                 t1050,
                 t1051,
-                t1052,
-                t1055,
+                t1053,
+                t1054,
                 t1056,
                 t1057,
+                t1059,
                 t1060,
-                t1061,
-                t1062,
-                t1078,
-                t1079,
-                t1081,
-                t1082,
-                t1083,
-                t1085,
-                t1086,
-                t1090,
-                t1092,
-                t1093,
-                t1095,
+                t1067,
+                t1068,
+                t1069,
+                t1087,
+                t1088,
                 t1096,
                 t1097,
-                t1098,
+                t1099,
                 t1100,
-                t1101,
                 t1102,
+                t1103,
+                t1106,
+                t1107,
+                t1108,
+                t1110,
+                t1114,
+                t1116,
+                t1118,
                 t1120,
                 t1121,
+                t1122,
                 t1123,
                 t1124,
+                t1125,
                 t1126,
-                t1127,
+                t1128,
                 t1129,
-                t1130,
-                t1138,
-                t1139,
-                t1140,
-                t1158,
+                t1131,
+                t1132,
+                t1135,
+                t1136,
+                t1137,
+                t1153,
+                t1154,
+                t1156,
+                t1157,
                 t1159,
-                t1167,
-                t1168,
+                t1160,
+                t1162,
+                t1163,
                 t1170,
                 t1171,
-                t1173,
+                t1172,
                 t1174,
-                t1178,
-                t1180,
-                t1183,
-                t1185,
-                t1186,
-                t1188,
-                t1189,
                 t1190,
                 t1191,
-                t1192,
-                t1193,
                 t1194,
                 t1195,
                 t1197,
+                t1198,
                 t1199,
             )
         };
         let (
-            t1201,
+            t1200,
+            t1202,
             t1203,
-            t1204,
+            t1205,
             t1206,
-            t1207,
+            t1209,
             t1210,
             t1211,
-            t1212,
+            t1213,
+            t1218,
+            t1220,
+            t1223,
+            t1225,
+            t1228,
             t1230,
-            t1231,
             t1233,
             t1234,
+            t1235,
             t1236,
             t1237,
+            t1238,
             t1239,
-            t1240,
+            t1242,
+            t1245,
+            t1246,
+            t1247,
             t1248,
-            t1249,
             t1250,
+            t1254,
+            t1256,
+            t1257,
+            t1258,
+            t1259,
+            t1260,
+            t1261,
+            t1262,
+            t1264,
+            t1265,
+            t1266,
+            t1267,
             t1268,
             t1269,
+            t1271,
+            t1273,
+            t1275,
+            t1276,
             t1277,
             t1278,
+            t1279,
             t1280,
             t1281,
             t1283,
             t1284,
+            t1285,
+            t1286,
+            t1287,
             t1288,
             t1290,
-            t1293,
+            t1291,
+            t1292,
             t1295,
             t1296,
-            t1298,
             t1299,
-            t1300,
+            t1302,
             t1303,
             t1304,
+            t1306,
             t1307,
+            t1308,
+            t1309,
             t1310,
             t1311,
-            t1312,
             t1314,
             t1315,
             t1316,
+            t1317,
+            t1318,
             t1319,
+            t1320,
             t1321,
             t1322,
-            t1323,
-            t1326,
+            t1324,
             t1327,
             t1328,
+            t1329,
+            t1330,
             t1331,
             t1332,
             t1333,
             t1334,
-            t1336,
-            t1337,
-            t1338,
+            t1335,
             t1339,
-            t1340,
-            t1341,
             t1342,
             t1343,
             t1344,
             t1345,
-            t1348,
-            t1349,
-            t1350,
-            t1351,
+            t1346,
+            t1347,
             t1352,
             t1353,
             t1354,
-            t1355,
             t1356,
             t1357,
             t1360,
             t1361,
-            t1362,
             t1364,
+            t1365,
+            t1366,
             t1367,
             t1368,
-            t1369,
-            t1370,
             t1371,
             t1372,
             t1373,
@@ -13044,335 +13107,376 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t1377,
             t1378,
             t1379,
+            t1380,
+            t1381,
+            t1382,
             t1383,
+            t1384,
+            t1385,
             t1386,
             t1387,
             t1388,
             t1389,
             t1390,
             t1391,
+            t1392,
             t1393,
+            t1395,
+            t1396,
             t1397,
-            t1398,
             t1399,
         ) = {
-            let t1200 = t812 * t1057 + (t553 * t1056 + t562 * t1055)
-                - k(2.0) * (shaft_wy * t1083 + shaft_wz * t1093);
-            let t1201 = t1200 + (t144 * t1052 - (t153 * t1048 - t190 * t1057));
-            let t1202 = k(0.6396021490668313) * t1086
-                - k(0.4264014327112209)
-                    * (k(0.30151134457776363) * t1201
-                        + (k(0.30151134457776363) * t1199 + t1197));
-            let t1203 = t1194 * t917 + (t1193 * t912 - t1191 * t914)
-                - (t1189 * t867 - (t1188 * t866 + t1186 * t871));
-            let t1204 = t922 * t1203;
-            let t1205 = t1194 * t1040 + (t1193 * t1035 - t1191 * t1037)
-                - (t1189 * t990 - (t1188 * t989 + t1186 * t994));
-            let t1206 = t949 * t1204 - t1205;
-            let t1207 = t1045 * t1206;
-            let t1208 = t1207 * t951
-                - (t1204 * t828 - (k(0.6396021490668313) * t1096 + t1202 - t1195));
-            let t1209 = t1194 * t1183 + (t1193 * t1178 - t1191 * t1180)
-                - (t1189 * t1140 - (t1188 * t1139 + t1186 * t1138));
-            let t1210 = t1100 * t1207 - (t1097 * t1204 - t1209);
-            let t1211 = t1185 * t1210;
-            let t1212 = t1211 * t1102 - t1208;
-            let t1213 = t156 * t1189 + (t148 * t1188 - t1186 * t129);
-            let t1214 = t161 * t1213;
-            let t1215 = t1186 + t158 * t1214;
-            let t1216 = t166 * t1215;
-            let t1217 = t1215 - t165 * t1216;
-            let t1218 = t228 * t1216 - (t1188 - t159 * t1214);
-            let t1219 = t246 * t1216 + (t1189 - t160 * t1214);
-            let t1220 = t172 * t1216 + t170 * t1214;
-            let t1221 = t198 * t1216 + t196 * t1214;
-            let t1222 = t214 * t1216 + t212 * t1214;
-            let t1223 = t273 * t1222 + (t268 * t1221 + t262 * t1220)
-                - (t234 * t1219 + (t233 * t1218 - t227 * t1217));
-            let t1224 = t278 * t1222 + (t276 * t1221 - t275 * t1220);
-            let t1225 = t285 * t1222 - (t283 * t1221 + t281 * t1220)
-                + (t97 * t1219 + (t98 * t1218 - t127 * t1217));
-            let t1226 = t289 * t1222 - (t293 * t1221 + t291 * t1220);
-            let t1227 = t1226 + (t1226 + (t109 * t1219 + (t108 * t1218 - t128 * t1217)));
-            let t1228 = k(0.6666666666666666) * t1227
-                - (k(0.6666666666666666) * (t1224 + t1225)
-                    - k(0.3333333333333333) * (t1224 + t1223));
-            let t1229 = t408 * t1228;
-            let t1230 = k(0.3333333333333333) * t1229;
-            let t1231 = k(0.6666666666666666) * t1229;
-            let t1232 = t291 * t1231;
-            let t1233 = t1232 - (t275 * t1231 - t275 * t1230);
-            let t1234 = t281 * t1231 + t262 * t1230 - t1232 - t1233;
-            let t1235 = t293 * t1231;
-            let t1236 = t1235 + (t276 * t1231 - t276 * t1230);
-            let t1237 = t283 * t1231 + t268 * t1230 - t1235 - t1236;
-            let t1238 = t289 * t1231;
-            let t1239 = t1238 - (t278 * t1231 - t278 * t1230);
-            let t1240 = t285 * t1231 - t273 * t1230 - t1238 - t1239;
-            let t1241 = t128 * t1231 - (t127 * t1231 + t227 * t1230);
-            let t1242 = t108 * t1231 - (t98 * t1231 + t233 * t1230);
-            let t1243 = t109 * t1231 - (t97 * t1231 + t234 * t1230);
-            let t1244 = t246 * t1243 + (t228 * t1242 + t165 * t1241)
-                - (t214 * t1240 - (t198 * t1237 + t172 * t1234));
-            let t1245 = t1241 + t166 * (t1215 - t1244);
-            let t1246 = t160 * t1243 - (t159 * t1242 - t158 * t1245)
-                + (t212 * t1240 - (t196 * t1237 + t170 * t1234));
-            let t1247 = t161 * (t1213 + t1246);
-            let t1248 = t1245 - t129 * t1247;
-            let t1249 = t1242 + t148 * t1247;
-            let t1250 = t1243 - t156 * t1247;
-            let t1251 = k(50.0) * t1191;
-            let t1252 = t1193 - k(0.4) * t1191;
-            let t1253 = k(263.1578947368421) * t1252;
-            let t1254 = k(40.0) * t1194;
-            let t1255 = t505 * t1254 + (t500 * t1253 + t498 * t1251);
-            let t1256 = t523 * t1254 - (t520 * t1253 + t519 * t1251);
-            let t1257 = t511 * t1254 - (t508 * t1253 + t507 * t1251);
-            let t1258 = t601 * t1257 + (t597 * t1256 + t593 * t1255)
-                - (t602 * t1257 + (t598 * t1256 - t594 * t1255));
-            let t1259 = k(0.19611613513818404) * t1257 - k(0.9805806756909201) * t1255;
-            let t1260 = t517 * t1259;
-            let t1261 = k(0.9813067629253163) * (t529 * t1260 + t1256)
-                + k(0.03774256780481986) * (t1255 + t514 * t1260);
-            let t1262 = k(0.1887128390240993) * (t1257 - t516 * t1260) + t1261;
-            let t1263 = t641 * t1262;
-            let t1264 = t661 * t1260
-                - k(2.0) * (t652 * t1257 - (t651 * t1256 + t650 * t1255));
-            let t1265 = t668 * t1263 + t1264 + (t649 * t1263 + (t637 * t1260 + t1258));
-            let t1266 = t677 * t1260 + (t671 * t1257 - (t670 * t1256 + t669 * t1255));
-            let t1267 = t747
-                * (k(0.9622504486493763) * (t683 * t1263 + t1266)
-                    - k(0.19245008972987526) * t1265);
-            let t1268 = k(0.19245008972987526) * t1267;
-            let t1269 = k(0.9622504486493763) * t1267;
-            let t1270 = t641 * (t1262 - (t683 * t1269 - (t668 * t1268 + t649 * t1268)));
-            let t1271 = k(0.03774256780481986) * t1270;
-            let t1272 = k(0.9813067629253163) * t1270;
-            let t1273 = k(0.1887128390240993) * t1270;
-            let t1274 = t677 * t1269 - (t661 * t1268 + t637 * t1268)
-                + (t516 * t1273 - (t529 * t1272 + t514 * t1271));
-            let t1275 = t517 * (t1259 - t1274);
-            let t1276 = t650 * t1268;
-            let t1277 = t1276 + t593 * t1268 + (t1271 - k(0.9805806756909201) * t1275);
-            let t1278 = t669 * t1269 + (t594 * t1268 + t1276) + t1277;
-            let t1279 = t651 * t1268;
-            let t1280 = t1272 + (t1279 + t597 * t1268);
-            let t1281 = t670 * t1269 - (t598 * t1268 - t1279) + t1280;
-            let t1282 = t652 * t1268;
-            let t1283 = t1282 - t601 * t1268 - (t1273 + k(0.19611613513818404) * t1275);
-            let t1284 = t671 * t1269 + (t602 * t1268 + t1282) + t1283;
-            let t1285 = t771 * t1269 - (t770 * t1268 + t769 * t1268);
-            let t1286 = t775 * t1269 - (t774 * t1268 + t773 * t1268);
-            let t1287 = k(0.0038) * t1286
-                + (t508 * t1284 - (t520 * t1281 - t500 * t1278));
-            let t1288 = t1286 - k(263.1578947368421) * (t1252 + t1287);
-            let t1289 = k(0.008) * t1288 - k(0.02) * t1285
-                + (t507 * t1284 - (t519 * t1281 - t498 * t1278));
-            let t1290 = t1285 + k(50.0) * (t1191 + t1289);
-            let t1291 = t783 * t1269 - (t782 * t1268 + t781 * t1268);
-            let t1292 = k(0.025) * t1291
-                - (t511 * t1284 - (t523 * t1281 + t505 * t1278));
-            let t1293 = t1291 - k(40.0) * (t1194 + t1292);
-            let t1294 = t1194 * t1293 + (t1193 * t1288 - t1191 * t1290)
-                + (t1189 * t1250 - (t1188 * t1249 + t1186 * t1248));
-            let t1295 = k(1.0)
-                / (t1210 * t1211 - (t1206 * t1207 - (t1203 * t1204 - t1294)));
-            let t1296 = nut_wx * nut_wz;
-            let t1297 = nut_e0 * nut_e0;
-            let t1298 = k(0.5) - (t1297 + nut_e1 * nut_e1);
-            let t1299 = k(2.0) * t1298;
-            let t1300 = nut_wy * nut_wz;
-            let t1301 = nut_e0 * nut_e3;
-            let t1302 = nut_e1 * nut_e2;
-            let t1303 = t1302 - t1301;
-            let t1304 = k(2.0) * t1303;
-            let t1305 = nut_wx * nut_wx;
-            let t1306 = nut_wy * nut_wy;
-            let t1307 = t1306 + t1305;
-            let t1308 = nut_e0 * nut_e2;
-            let t1309 = nut_e1 * nut_e3;
-            let t1310 = t1309 + t1308;
+            let t1200 = t670 * t1191 + (t615 * t1190 + t1198) + t1199;
+            let t1201 = t653 * t1190;
+            let t1202 = t1194 + (t1201 + t618 * t1190);
+            let t1203 = t671 * t1191 - (t619 * t1190 - t1201) + t1202;
+            let t1204 = t654 * t1190;
+            let t1205 = t1204 - t622 * t1190 - (t1195 + k(0.19611613513818404) * t1197);
+            let t1206 = t672 * t1191 + (t623 * t1190 + t1204) + t1205;
+            let t1207 = t1174 + (t522 * t1206 - (t534 * t1203 - t514 * t1200));
+            let t1208 = k(2.1052631578947367) * t1207
+                - (t521 * t1206 - (t533 * t1203 - t512 * t1200));
+            let t1209 = k(50.0) * (t1123 - t1208);
+            let t1210 = k(263.1578947368421) * t1207;
+            let t1211 = k(40.0)
+                * (t1126 - (t525 * t1206 - (t537 * t1203 + t519 * t1200)));
+            let t1212 = t1126 * t1211 + (t1125 * t1210 + t1123 * t1209)
+                - (t1121 * t1172 - (t1120 * t1171 + t1118 * t1170));
+            let t1213 = k(1.0)
+                / (t1135 * t1136 - (t1131 * t1132 - (t1128 * t1129 - t1212)));
+            let t1214 = lid_wy * lid_wy;
+            let t1215 = lid_wz * lid_wz;
+            let t1216 = t1215 + t1214;
+            let t1217 = lid_e0 * lid_e0;
+            let t1218 = k(0.5) - (t1217 + lid_e1 * lid_e1);
+            let t1219 = k(2.0) * t1218;
+            let t1220 = lid_wx * lid_wy;
+            let t1221 = lid_e0 * lid_e3;
+            let t1222 = lid_e1 * lid_e2;
+            let t1223 = t1222 - t1221;
+            let t1224 = k(2.0) * t1223;
+            let t1225 = lid_wx * lid_wz;
+            let t1226 = lid_e0 * lid_e2;
+            let t1227 = lid_e1 * lid_e3;
+            let t1228 = t1227 + t1226;
+            let t1229 = k(2.0) * t1228;
+            let t1230 = t1229 * t1225 + (t1224 * t1220 + t1219 * t1216);
+            let t1231 = lid_wx * lid_wx;
+            let t1232 = t1215 + t1231;
+            let t1233 = lid_wy * lid_wz;
+            let t1234 = t1229 * t1233 - (t1224 * t1232 + t1219 * t1220);
+            let t1235 = puck_rx + t652 - (lid_rx - (k(0.4) * t1218 + k(0.2) * t1228));
+            let t1236 = t1229 * lid_wx + t1219 * lid_wz;
+            let t1237 = t1229 * lid_wy - t1224 * lid_wz;
+            let t1238 = t1224 * lid_wx + t1219 * lid_wy;
+            let t1239 = lid_sx - (k(0.2) * t1237 - k(0.1) * t1238)
+                - (puck_sx + k(0.1) * (t491 * puck_wy - t484 * puck_wz));
+            let t1240 = t1239
+                * (k(0.4472135954999579) * t1237 - k(0.8944271909999159) * t1236);
+            let t1241 = t1214 + t1231;
+            let t1242 = t1229 * t1241 - (t1224 * t1233 - t1219 * t1225);
+            let t1243 = k(0.1) * t1242;
+            let t1244 = t604 + t486;
+            let t1245 = k(0.1) * (t491 * t476 + (t484 * t603 + t479 * t1244))
+                + (t1243 + k(0.2) * t1230);
+            let t1246 = k(1.7888543819998317) * t1223 - k(0.8944271909999159) * t1218;
+            let t1247 = t1246 * t1245 - t1240
+                - (t1240
+                    + t1235
+                        * (k(0.8944271909999159) * t1234
+                            + k(0.4472135954999579) * t1230));
+            let t1248 = t1222 + t1221;
+            let t1249 = k(2.0) * t1248;
+            let t1250 = k(0.5) - (t1217 + lid_e2 * lid_e2);
+            let t1251 = k(2.0) * t1250;
+            let t1252 = lid_e0 * lid_e1;
+            let t1253 = lid_e2 * lid_e3;
+            let t1254 = t1253 - t1252;
+            let t1255 = k(2.0) * t1254;
+            let t1256 = t1255 * t1225 - (t1251 * t1220 + t1249 * t1216);
+            let t1257 = t1255 * t1233 + (t1251 * t1232 + t1249 * t1220);
+            let t1258 = puck_ry - t653 - (lid_ry + (k(0.4) * t1248 - k(0.2) * t1254));
+            let t1259 = t1255 * lid_wx - t1249 * lid_wz;
+            let t1260 = t1255 * lid_wy + t1251 * lid_wz;
+            let t1261 = t1251 * lid_wx + t1249 * lid_wy;
+            let t1262 = lid_sy - (k(0.2) * t1260 + k(0.1) * t1261)
+                - (puck_sy + k(0.1) * (t500 * puck_wy + t496 * puck_wz));
+            let t1263 = t1262
+                * (k(0.4472135954999579) * t1260 - k(0.8944271909999159) * t1259);
+            let t1264 = t1255 * t1241 + (t1251 * t1233 - t1249 * t1225);
+            let t1265 = k(0.1) * t1264;
+            let t1266 = k(0.1) * (t500 * t476 - (t496 * t603 + t494 * t1244))
+                + (t1265 + k(0.2) * t1256);
+            let t1267 = k(1.7888543819998317) * t1250 - k(0.8944271909999159) * t1248;
+            let t1268 = t1267 * t1266 + t1263
+                + (t1263
+                    + t1258
+                        * (k(0.8944271909999159) * t1257
+                            + k(0.4472135954999579) * t1256));
+            let t1269 = t1227 - t1226;
+            let t1270 = k(2.0) * t1269;
+            let t1271 = t1253 + t1252;
+            let t1272 = k(2.0) * t1271;
+            let t1273 = k(0.5) - (t1217 + lid_e3 * lid_e3);
+            let t1274 = k(2.0) * t1273;
+            let t1275 = t1274 * t1225 - (t1272 * t1220 - t1270 * t1216);
+            let t1276 = t1274 * t1233 + (t1272 * t1232 - t1270 * t1220);
+            let t1277 = puck_rz - t654 - (lid_rz + (k(0.4) * t1269 + k(0.2) * t1273));
+            let t1278 = t1274 * lid_wx + t1270 * lid_wz;
+            let t1279 = t1274 * lid_wy + t1272 * lid_wz;
+            let t1280 = t1272 * lid_wx - t1270 * lid_wy;
+            let t1281 = lid_sz + (k(0.2) * t1279 + k(0.1) * t1280)
+                - (puck_sz - k(0.1) * (t507 * puck_wy + t505 * puck_wz));
+            let t1282 = t1281
+                * (k(0.4472135954999579) * t1279 - k(0.8944271909999159) * t1278);
+            let t1283 = t1274 * t1241 + (t1272 * t1233 + t1270 * t1225);
+            let t1284 = k(0.1) * t1283;
+            let t1285 = k(0.1) * (t507 * t476 - (t505 * t603 - t503 * t1244))
+                + (t1284 + k(0.2) * t1275);
+            let t1286 = k(1.7888543819998317) * t1271 + k(0.8944271909999159) * t1269;
+            let t1287 = t1286 * t1285 - t1282
+                - (t1282
+                    + t1277
+                        * (k(0.8944271909999159) * t1276
+                            + k(0.4472135954999579) * t1275));
+            let t1288 = nut_wx * nut_wz;
+            let t1289 = nut_e0 * nut_e0;
+            let t1290 = k(0.5) - (t1289 + nut_e1 * nut_e1);
+            let t1291 = k(2.0) * t1290;
+            let t1292 = nut_wy * nut_wz;
+            let t1293 = nut_e0 * nut_e3;
+            let t1294 = nut_e1 * nut_e2;
+            let t1295 = t1294 - t1293;
+            let t1296 = k(2.0) * t1295;
+            let t1297 = nut_wx * nut_wx;
+            let t1298 = nut_wy * nut_wy;
+            let t1299 = t1298 + t1297;
+            let t1300 = nut_e0 * nut_e2;
+            let t1301 = nut_e1 * nut_e3;
+            let t1302 = t1301 + t1300;
+            let t1303 = k(2.0) * t1302;
+            let t1304 = t1303 * t1299 - (t1296 * t1292 - t1291 * t1288);
+            let t1305 = nut_wz * nut_wz;
+            let t1306 = t1305 + t1298;
+            let t1307 = nut_wx * nut_wy;
+            let t1308 = t1303 * t1288 + (t1296 * t1307 + t1291 * t1306);
+            let t1309 = t1243 - k(0.05) * t1230 - (k(0.05) * t1308 - k(0.1) * t1304);
+            let t1310 = k(0.5) - (t1289 + nut_e2 * nut_e2);
             let t1311 = k(2.0) * t1310;
-            let t1312 = t1311 * t1307 - (t1304 * t1300 - t1299 * t1296);
-            let t1313 = nut_wz * nut_wz;
-            let t1314 = t1313 + t1306;
-            let t1315 = nut_wx * nut_wy;
-            let t1316 = t1311 * t1296 + (t1304 * t1315 + t1299 * t1314);
-            let t1317 = lid_wy * lid_wy;
-            let t1318 = lid_wz * lid_wz;
-            let t1319 = t1318 + t1317;
-            let t1320 = lid_e0 * lid_e0;
-            let t1321 = k(0.5) - (t1320 + lid_e1 * lid_e1);
-            let t1322 = k(2.0) * t1321;
-            let t1323 = lid_wx * lid_wy;
-            let t1324 = lid_e0 * lid_e3;
-            let t1325 = lid_e1 * lid_e2;
-            let t1326 = t1325 - t1324;
-            let t1327 = k(2.0) * t1326;
-            let t1328 = lid_wx * lid_wz;
-            let t1329 = lid_e0 * lid_e2;
-            let t1330 = lid_e1 * lid_e3;
-            let t1331 = t1330 + t1329;
+            let t1312 = nut_e0 * nut_e1;
+            let t1313 = nut_e2 * nut_e3;
+            let t1314 = t1313 + t1312;
+            let t1315 = k(2.0) * t1314;
+            let t1316 = t1315 * t1270 - (t1311 * t1249 + t1296 * t1219);
+            let t1317 = t1294 + t1293;
+            let t1318 = k(2.0) * t1317;
+            let t1319 = t1301 - t1300;
+            let t1320 = k(2.0) * t1319;
+            let t1321 = t1320 * t1270 + (t1318 * t1249 + t1291 * t1219);
+            let t1322 = t1315 * t1272 + (t1311 * t1251 + t1296 * t1224);
+            let t1323 = t1321 * t1322;
+            let t1324 = t1320 * t1272 - (t1318 * t1251 + t1291 * t1224);
+            let t1325 = t1324 * t1316 - t1323;
+            let t1326 = k(1.0) / (t1321 * t1325);
+            let t1327 = t1320 * t1274 - (t1318 * t1255 - t1291 * t1229);
+            let t1328 = t1315 * t1274 + (t1311 * t1255 - t1296 * t1229);
+            let t1329 = t1313 - t1312;
+            let t1330 = k(2.0) * t1329;
+            let t1331 = k(0.5) - (t1289 + nut_e3 * nut_e3);
             let t1332 = k(2.0) * t1331;
-            let t1333 = t1332 * t1328 + (t1327 * t1323 + t1322 * t1319);
-            let t1334 = lid_wy * lid_wz;
-            let t1335 = lid_wx * lid_wx;
-            let t1336 = t1317 + t1335;
-            let t1337 = t1332 * t1336 - (t1327 * t1334 - t1322 * t1328);
-            let t1338 = k(0.1) * t1337;
-            let t1339 = t1338 - k(0.05) * t1333 - (k(0.05) * t1316 - k(0.1) * t1312);
-            let t1340 = t1325 + t1324;
-            let t1341 = k(2.0) * t1340;
-            let t1342 = k(0.5) - (t1297 + nut_e2 * nut_e2);
-            let t1343 = k(2.0) * t1342;
-            let t1344 = t1330 - t1329;
-            let t1345 = k(2.0) * t1344;
-            let t1346 = nut_e0 * nut_e1;
-            let t1347 = nut_e2 * nut_e3;
-            let t1348 = t1347 + t1346;
-            let t1349 = k(2.0) * t1348;
-            let t1350 = t1349 * t1345 - (t1343 * t1341 + t1304 * t1322);
-            let t1351 = t1302 + t1301;
-            let t1352 = k(2.0) * t1351;
-            let t1353 = t1309 - t1308;
-            let t1354 = k(2.0) * t1353;
-            let t1355 = t1354 * t1345 + (t1352 * t1341 + t1299 * t1322);
-            let t1356 = k(0.5) - (t1320 + lid_e2 * lid_e2);
+            let t1333 = t1332 * t1274 + (t1330 * t1255 + t1303 * t1229);
+            let t1334 = t1332 * t1270 - (t1330 * t1249 - t1303 * t1219);
+            let t1335 = t1332 * t1272 + (t1330 * t1251 - t1303 * t1224);
+            let t1336 = lid_wx * t1335 - lid_wy * t1334;
+            let t1337 = k(2.0)
+                * (nut_wy * t1336 + nut_wz * (lid_wx * t1322 - lid_wy * t1316));
+            let t1338 = t1241 * t1327 + (t1233 * t1324 + t1225 * t1321) - t1337
+                + (t1288 * t1333 - (t1307 * t1328 - t1306 * t1327));
+            let t1339 = t1305 + t1297;
+            let t1340 = k(2.0)
+                * (nut_wx * t1336 + nut_wz * (lid_wx * t1324 - lid_wy * t1321));
+            let t1341 = t1241 * t1328 + (t1233 * t1322 + t1225 * t1316) + t1340
+                + (t1292 * t1333 + (t1339 * t1328 - t1307 * t1327));
+            let t1342 = t1341 * (t1326 * (t1321 * t1321))
+                - t1338 * (t1326 * (t1321 * t1316));
+            let t1343 = k(0.04) * t1223;
+            let t1344 = t1341 * (t1326 * (t1324 * t1321)) - t1338 * (t1323 * t1326);
+            let t1345 = k(0.2) * t1218;
+            let t1346 = k(0.1) * t1228 + t1345;
+            let t1347 = k(0.2) * t1346;
+            let t1348 = nut_wy * (lid_wx * t1333 + lid_wz * t1334)
+                + nut_wz * (lid_wx * t1328 + lid_wz * t1316);
+            let t1349 = t1233 * t1327 + (t1232 * t1324 - t1220 * t1321) + k(2.0) * t1348;
+            let t1350 = t1325 * t1326
+                * (t1349 + (t1288 * t1335 - (t1307 * t1322 - t1306 * t1324)));
+            let t1351 = t1326 * (t1321 * t1327) * t1341
+                - t1326 * (t1327 * t1316) * t1338;
+            let t1352 = t1351 - t1350;
+            let t1353 = k(0.02) * t1223;
+            let t1354 = t1353 * t1352 + (t1347 * t1344 + t1343 * t1342) - k(0.2) * t1309;
+            let t1355 = slide_e0 * slide_e0;
+            let t1356 = k(0.5) - (t1355 + slide_e3 * slide_e3);
             let t1357 = k(2.0) * t1356;
-            let t1358 = lid_e0 * lid_e1;
-            let t1359 = lid_e2 * lid_e3;
-            let t1360 = t1359 + t1358;
+            let t1358 = slide_e0 * slide_e1;
+            let t1359 = slide_e2 * slide_e3;
+            let t1360 = t1359 - t1358;
             let t1361 = k(2.0) * t1360;
-            let t1362 = t1349 * t1361 + (t1343 * t1357 + t1304 * t1327);
-            let t1363 = t1355 * t1362;
-            let t1364 = t1354 * t1361 - (t1352 * t1357 + t1299 * t1327);
-            let t1365 = t1364 * t1350 - t1363;
-            let t1366 = k(1.0) / (t1355 * t1365);
-            let t1367 = t1359 - t1358;
+            let t1362 = slide_e0 * slide_e2;
+            let t1363 = slide_e1 * slide_e3;
+            let t1364 = t1363 + t1362;
+            let t1365 = k(2.0) * t1364;
+            let t1366 = t1365 * t1303 + t1361 * t1330 + t1357 * t1332;
+            let t1367 = k(0.5) - (t1355 + slide_e2 * slide_e2);
             let t1368 = k(2.0) * t1367;
-            let t1369 = k(0.5) - (t1320 + lid_e3 * lid_e3);
-            let t1370 = k(2.0) * t1369;
-            let t1371 = t1354 * t1370 - (t1352 * t1368 - t1299 * t1332);
-            let t1372 = t1349 * t1370 + (t1343 * t1368 - t1304 * t1332);
-            let t1373 = t1347 - t1346;
+            let t1369 = slide_e0 * slide_e3;
+            let t1370 = slide_e1 * slide_e2;
+            let t1371 = t1370 - t1369;
+            let t1372 = k(2.0) * t1371;
+            let t1373 = t1359 + t1358;
             let t1374 = k(2.0) * t1373;
-            let t1375 = k(0.5) - (t1297 + nut_e3 * nut_e3);
-            let t1376 = k(2.0) * t1375;
-            let t1377 = t1376 * t1370 + (t1374 * t1368 + t1311 * t1332);
-            let t1378 = t1376 * t1345 - (t1374 * t1341 - t1311 * t1322);
-            let t1379 = t1376 * t1361 + (t1374 * t1357 - t1311 * t1327);
-            let t1380 = lid_wx * t1379 - lid_wy * t1378;
-            let t1381 = k(2.0)
-                * (nut_wy * t1380 + nut_wz * (lid_wx * t1362 - lid_wy * t1350));
-            let t1382 = t1336 * t1371 + (t1334 * t1364 + t1328 * t1355) - t1381
-                + (t1296 * t1377 - (t1315 * t1372 - t1314 * t1371));
-            let t1383 = t1313 + t1305;
-            let t1384 = k(2.0)
-                * (nut_wx * t1380 + nut_wz * (lid_wx * t1364 - lid_wy * t1355));
-            let t1385 = t1336 * t1372 + (t1334 * t1362 + t1328 * t1350) + t1384
-                + (t1300 * t1377 + (t1383 * t1372 - t1315 * t1371));
-            let t1386 = t1385 * (t1366 * (t1355 * t1355))
-                - t1382 * (t1366 * (t1355 * t1350));
-            let t1387 = k(0.04) * t1326;
-            let t1388 = t1385 * (t1366 * (t1364 * t1355)) - t1382 * (t1363 * t1366);
-            let t1389 = k(0.2) * t1321;
-            let t1390 = k(0.1) * t1331 + t1389;
-            let t1391 = k(0.2) * t1390;
-            let t1392 = nut_wy * (lid_wx * t1377 + lid_wz * t1378)
-                + nut_wz * (lid_wx * t1372 + lid_wz * t1350);
-            let t1393 = t1318 + t1335;
-            let t1394 = t1334 * t1371 + (t1393 * t1364 - t1323 * t1355) + k(2.0) * t1392;
-            let t1395 = (t1394 + (t1296 * t1379 - (t1315 * t1362 - t1314 * t1364)))
-                * (t1365 * t1366);
-            let t1396 = t1385 * (t1366 * (t1355 * t1371))
-                - t1382 * (t1366 * (t1371 * t1350));
-            let t1397 = t1396 - t1395;
-            let t1398 = k(0.02) * t1326;
-            let t1399 = t1398 * t1397 + (t1391 * t1388 + t1387 * t1386) - k(0.2) * t1339;
+            let t1375 = t1374 * t1332 - (t1372 * t1303 - t1368 * t1330);
+            let t1376 = k(0.5) - (t1355 + slide_e1 * slide_e1);
+            let t1377 = k(2.0) * t1376;
+            let t1378 = t1370 + t1369;
+            let t1379 = k(2.0) * t1378;
+            let t1380 = t1363 - t1362;
+            let t1381 = k(2.0) * t1380;
+            let t1382 = t1381 * t1332 - (t1379 * t1330 - t1377 * t1303);
+            let t1383 = t1381 * t1320 + (t1379 * t1318 + t1377 * t1291);
+            let t1384 = t1381 * t1315 - (t1379 * t1311 + t1377 * t1296);
+            let t1385 = k(0.8944271909999159) * t1384 + k(0.4472135954999579) * t1383;
+            let t1386 = t1374 * t1320 - (t1368 * t1318 + t1372 * t1291);
+            let t1387 = t1374 * t1315 + (t1372 * t1296 + t1368 * t1311);
+            let t1388 = k(0.8944271909999159) * t1387 + k(0.4472135954999579) * t1386;
+            let t1389 = k(0.8944271909999159) * t1388 + k(0.4472135954999579) * t1385;
+            let t1390 = t1357 * t1320 - (t1361 * t1318 - t1365 * t1291);
+            let t1391 = t1357 * t1315 - (t1365 * t1296 - t1361 * t1311);
+            let t1392 = k(0.8944271909999159) * t1391 + k(0.4472135954999579) * t1390;
+            let t1393 = k(0.7453559924999299) * t1392
+                - (k(0.29814239699997197) * t1388 - k(0.5962847939999439) * t1385);
+            let t1394 = t1393 * (k(0.4) * t1382 + k(0.8) * t1375)
+                - t1389
+                    * (k(0.5333333333333333) * t1382 - k(0.26666666666666666) * t1375
+                        + k(0.6666666666666666) * t1366);
+            let t1395 = k(1.0) / (t1393 * t1393 + t1389 * t1389);
+            let t1396 = t1395 * t1394;
+            let t1397 = k(0.3333333333333333) * t1366;
+            let t1398 = t1393 * (k(0.2) * t1382 + k(0.4) * t1375)
+                - t1389
+                    * (k(0.26666666666666666) * t1382 - k(0.13333333333333333) * t1375
+                        + t1397);
+            let t1399 = t1395 * t1398;
             (
-                t1201,
+                t1200,
+                t1202,
                 t1203,
-                t1204,
+                t1205,
                 t1206,
-                t1207,
+                t1209,
                 t1210,
                 t1211,
-                t1212,
+                t1213,
+                t1218,
+                t1220,
+                t1223,
+                t1225,
+                t1228,
                 t1230,
-                t1231,
                 t1233,
                 t1234,
+                t1235,
                 t1236,
                 t1237,
+                t1238,
                 t1239,
-                t1240,
+                t1242,
+                t1245,
+                t1246,
+                t1247,
                 t1248,
-                t1249,
                 t1250,
+                t1254,
+                t1256,
+                t1257,
+                t1258,
+                t1259,
+                t1260,
+                t1261,
+                t1262,
+                t1264,
+                t1265,
+                t1266,
+                t1267,
                 t1268,
                 t1269,
+                t1271,
+                t1273,
+                t1275,
+                t1276,
                 t1277,
                 t1278,
+                t1279,
                 t1280,
                 t1281,
                 t1283,
                 t1284,
+                t1285,
+                t1286,
+                t1287,
                 t1288,
                 t1290,
-                t1293,
+                t1291,
+                t1292,
                 t1295,
                 t1296,
-                t1298,
                 t1299,
-                t1300,
+                t1302,
                 t1303,
                 t1304,
+                t1306,
                 t1307,
+                t1308,
+                t1309,
                 t1310,
                 t1311,
-                t1312,
                 t1314,
                 t1315,
                 t1316,
+                t1317,
+                t1318,
                 t1319,
+                t1320,
                 t1321,
                 t1322,
-                t1323,
-                t1326,
+                t1324,
                 t1327,
                 t1328,
+                t1329,
+                t1330,
                 t1331,
                 t1332,
                 t1333,
                 t1334,
-                t1336,
-                t1337,
-                t1338,
+                t1335,
                 t1339,
-                t1340,
-                t1341,
                 t1342,
                 t1343,
                 t1344,
                 t1345,
-                t1348,
-                t1349,
-                t1350,
-                t1351,
+                t1346,
+                t1347,
                 t1352,
                 t1353,
                 t1354,
-                t1355,
                 t1356,
                 t1357,
                 t1360,
                 t1361,
-                t1362,
                 t1364,
+                t1365,
+                t1366,
                 t1367,
                 t1368,
-                t1369,
-                t1370,
                 t1371,
                 t1372,
                 t1373,
@@ -13382,30 +13486,37 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 t1377,
                 t1378,
                 t1379,
+                t1380,
+                t1381,
+                t1382,
                 t1383,
+                t1384,
+                t1385,
                 t1386,
                 t1387,
                 t1388,
                 t1389,
                 t1390,
                 t1391,
+                t1392,
                 t1393,
+                t1395,
+                t1396,
                 t1397,
-                t1398,
                 t1399,
             )
         };
         let (
-            t1401,
-            t1402,
+            t1403,
             t1405,
             t1406,
+            t1407,
+            t1408,
             t1409,
             t1410,
             t1411,
-            t1412,
             t1413,
-            t1416,
+            t1414,
             t1417,
             t1418,
             t1419,
@@ -13414,360 +13525,350 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t1422,
             t1423,
             t1424,
-            t1425,
             t1426,
             t1427,
-            t1428,
-            t1429,
-            t1430,
-            t1431,
-            t1432,
             t1433,
             t1434,
             t1435,
             t1436,
-            t1437,
-            t1438,
-            t1440,
             t1441,
             t1444,
-            t1448,
-            t1450,
+            t1445,
+            t1446,
             t1451,
             t1452,
             t1453,
-            t1454,
-            t1455,
             t1456,
-            t1457,
             t1458,
-            t1459,
-            t1461,
-            t1462,
+            t1460,
+            t1463,
+            t1464,
             t1465,
-            t1466,
             t1467,
-            t1468,
-            t1469,
             t1470,
-            t1471,
-            t1472,
             t1473,
-            t1474,
-            t1475,
+            t1476,
             t1477,
-            t1478,
-            t1484,
-            t1485,
+            t1480,
+            t1483,
             t1486,
             t1487,
-            t1492,
-            t1495,
+            t1490,
+            t1493,
             t1496,
             t1497,
-            t1502,
-            t1503,
-            t1504,
-            t1507,
-            t1509,
             t1511,
-            t1514,
-            t1515,
-            t1516,
-            t1518,
-            t1521,
-            t1524,
-            t1527,
-            t1528,
-            t1531,
-            t1534,
-            t1537,
-            t1538,
-            t1541,
-            t1544,
+            t1519,
+            t1523,
+            t1525,
+            t1526,
             t1547,
-            t1548,
+            t1549,
+            t1551,
+            t1553,
+            t1556,
+            t1557,
+            t1558,
+            t1559,
+            t1560,
             t1562,
-            t1570,
+            t1563,
+            t1564,
+            t1566,
+            t1573,
             t1574,
-            t1576,
+            t1575,
             t1577,
-            t1582,
-            t1586,
-            t1590,
+            t1578,
+            t1580,
+            t1585,
+            t1587,
+            t1589,
+            t1592,
             t1593,
+            t1594,
             t1595,
             t1596,
             t1597,
             t1598,
             t1599,
         ) = {
-            let t1400 = slide_e0 * slide_e0;
-            let t1401 = k(0.5) - (t1400 + slide_e3 * slide_e3);
-            let t1402 = k(2.0) * t1401;
-            let t1403 = slide_e0 * slide_e1;
-            let t1404 = slide_e2 * slide_e3;
-            let t1405 = t1404 - t1403;
-            let t1406 = k(2.0) * t1405;
-            let t1407 = slide_e0 * slide_e2;
-            let t1408 = slide_e1 * slide_e3;
-            let t1409 = t1408 + t1407;
-            let t1410 = k(2.0) * t1409;
-            let t1411 = t1410 * t1311 + t1406 * t1374 + t1402 * t1376;
-            let t1412 = k(0.5) - (t1400 + slide_e2 * slide_e2);
-            let t1413 = k(2.0) * t1412;
-            let t1414 = slide_e0 * slide_e3;
-            let t1415 = slide_e1 * slide_e2;
-            let t1416 = t1415 - t1414;
-            let t1417 = k(2.0) * t1416;
-            let t1418 = t1404 + t1403;
-            let t1419 = k(2.0) * t1418;
-            let t1420 = t1419 * t1376 - (t1417 * t1311 - t1413 * t1374);
-            let t1421 = k(0.5) - (t1400 + slide_e1 * slide_e1);
-            let t1422 = k(2.0) * t1421;
-            let t1423 = t1415 + t1414;
-            let t1424 = k(2.0) * t1423;
-            let t1425 = t1408 - t1407;
-            let t1426 = k(2.0) * t1425;
-            let t1427 = t1426 * t1376 - (t1424 * t1374 - t1422 * t1311);
-            let t1428 = t1426 * t1354 + (t1424 * t1352 + t1422 * t1299);
-            let t1429 = t1426 * t1349 - (t1424 * t1343 + t1422 * t1304);
-            let t1430 = k(0.8944271909999159) * t1429 + k(0.4472135954999579) * t1428;
-            let t1431 = t1419 * t1354 - (t1413 * t1352 + t1417 * t1299);
-            let t1432 = t1419 * t1349 + (t1417 * t1304 + t1413 * t1343);
-            let t1433 = k(0.8944271909999159) * t1432 + k(0.4472135954999579) * t1431;
-            let t1434 = k(0.8944271909999159) * t1433 + k(0.4472135954999579) * t1430;
-            let t1435 = t1402 * t1354 - (t1406 * t1352 - t1410 * t1299);
-            let t1436 = t1402 * t1349 - (t1410 * t1304 - t1406 * t1343);
-            let t1437 = k(0.8944271909999159) * t1436 + k(0.4472135954999579) * t1435;
-            let t1438 = k(0.7453559924999299) * t1437
-                - (k(0.29814239699997197) * t1433 - k(0.5962847939999439) * t1430);
-            let t1439 = t1438 * (k(0.4) * t1427 + k(0.8) * t1420)
-                - t1434
-                    * (k(0.5333333333333333) * t1427 - k(0.26666666666666666) * t1420
-                        + k(0.6666666666666666) * t1411);
-            let t1440 = k(1.0) / (t1438 * t1438 + t1434 * t1434);
-            let t1441 = t1440 * t1439;
-            let t1442 = k(0.3333333333333333) * t1411;
-            let t1443 = t1438 * (k(0.2) * t1427 + k(0.4) * t1420)
-                - t1434
-                    * (k(0.26666666666666666) * t1427 - k(0.13333333333333333) * t1420
-                        + t1442);
-            let t1444 = t1440 * t1443;
-            let t1445 = k(0.4472135954999579) * t1432 - k(0.8944271909999159) * t1431;
-            let t1446 = k(0.4472135954999579) * t1429 - k(0.8944271909999159) * t1428;
-            let t1447 = k(0.5962847939999439) * t1446 - k(0.29814239699997197) * t1445
+            let t1400 = k(0.4472135954999579) * t1387 - k(0.8944271909999159) * t1386;
+            let t1401 = k(0.4472135954999579) * t1384 - k(0.8944271909999159) * t1383;
+            let t1402 = k(0.5962847939999439) * t1401 - k(0.29814239699997197) * t1400
                 + k(0.7453559924999299)
-                    * (k(0.4472135954999579) * t1436 - k(0.8944271909999159) * t1435);
-            let t1448 = t1440
-                * (t1438
-                    * (k(0.4472135954999579) * t1446 + k(0.8944271909999159) * t1445)
-                    - t1434 * t1447);
-            let t1449 = k(0.0021220659078919376) * t1448
-                - (k(0.0010610329539459688) * t1444 + k(0.0021220659078919376) * t1441);
-            let t1450 = k(0.6666666666666666) * t1416;
-            let t1451 = k(1.3333333333333333) * t1409;
-            let t1452 = t1451 - (t1450 + k(1.3333333333333333) * t1421);
-            let t1453 = t1452 * t1449;
-            let t1454 = t1374 * t1307 + (t1343 * t1300 - t1352 * t1296);
-            let t1455 = t1374 * t1296 - (t1343 * t1315 + t1352 * t1314);
-            let t1456 = t1368 * t1328 - (t1357 * t1323 + t1341 * t1319);
-            let t1457 = t1368 * t1336 + (t1357 * t1334 - t1341 * t1328);
-            let t1458 = k(0.1) * t1457;
-            let t1459 = t1458 - k(0.05) * t1456 - (k(0.05) * t1455 - k(0.1) * t1454);
-            let t1460 = k(0.04) * t1356;
-            let t1461 = k(0.2) * t1340;
-            let t1462 = k(0.1) * t1367 - t1461;
-            let t1463 = k(0.2) * t1462;
-            let t1464 = k(0.02) * t1356;
-            let t1465 = t1464 * t1397 - (t1463 * t1388 - t1460 * t1386) + k(0.2) * t1459;
-            let t1466 = k(0.6666666666666666) * t1412;
-            let t1467 = k(1.3333333333333333) * t1405;
-            let t1468 = t1467 + (t1466 + k(1.3333333333333333) * t1423);
-            let t1469 = t1468 * t1449;
-            let t1470 = t1376 * t1307 + (t1349 * t1300 + t1354 * t1296);
-            let t1471 = t1376 * t1296 - (t1349 * t1315 - t1354 * t1314);
-            let t1472 = t1370 * t1328 - (t1361 * t1323 - t1345 * t1319);
-            let t1473 = t1370 * t1336 + (t1361 * t1334 + t1345 * t1328);
-            let t1474 = k(0.1) * t1473;
-            let t1475 = t1474 - k(0.05) * t1472 - (k(0.05) * t1471 - k(0.1) * t1470);
-            let t1476 = k(0.04) * t1360;
-            let t1477 = k(0.2) * t1344;
-            let t1478 = k(0.1) * t1369 + t1477;
-            let t1479 = k(0.2) * t1478;
-            let t1480 = k(0.02) * t1360;
-            let t1481 = t1480 * t1397 - (t1479 * t1388 - t1476 * t1386) + k(0.2) * t1475;
-            let t1482 = k(0.2) * self.gravity;
-            let t1483 = t1482 + t1481;
-            let t1484 = k(0.3) * self.gravity + t1483;
-            let t1485 = k(1.3333333333333333) * t1401
-                + (k(0.6666666666666666) * t1418 - k(1.3333333333333333) * t1425);
-            let t1486 = t1485 * t1449;
-            let t1487 = k(0.2) * t1360;
-            let t1488 = k(0.001) * t1397 + k(0.003) * t1386
-                + (t1475 * t1476 + (t1459 * t1460 - t1339 * t1387));
-            let t1489 = t1488 - (k(0.0005) * t1334 - t1482 * t1487);
-            let t1490 = k(0.004) * t1388
-                - (t1475 * t1479 + (t1459 * t1463 + t1339 * t1391));
-            let t1491 = t1490 + (k(0.001) * t1328 - t1482 * t1478);
-            let t1492 = k(0.1) * t1360;
-            let t1493 = k(0.0025) * t1397 + k(0.001) * t1386
-                + (t1475 * t1480 + (t1459 * t1464 - t1339 * t1398));
-            let t1494 = t1493 + (k(0.0005) * t1323 + t1482 * t1492);
-            let t1495 = k(0.2) * t1348;
-            let t1496 = k(0.2) * t1303;
-            let t1497 = k(0.2) * t1342;
-            let t1498 = t1497 * t1465 + t1496 * t1399;
-            let t1499 = t1498 + t1495 * t1483
-                + (t1371 * t1494 + (t1364 * t1491 + t1355 * t1489));
-            let t1500 = k(0.6666666666666666) * self.motor;
-            let t1501 = t1495 * t1484 + t1498;
-            let t1502 = k(0.1) * t1310 + k(0.2) * t1298;
-            let t1503 = k(0.1) * t1373 - k(0.2) * t1351;
-            let t1504 = k(0.1) * t1375 + k(0.2) * t1353;
-            let t1505 = t1504 * t1483 + (t1503 * t1465 - t1502 * t1399)
-                - (t1372 * t1494 + (t1362 * t1491 + t1350 * t1489));
-            let t1506 = t1298 + t1310;
-            let t1507 = k(0.2) * t1506;
-            let t1508 = t1351 - t1373;
-            let t1509 = k(0.2) * t1508;
-            let t1510 = t1353 + t1375;
-            let t1511 = k(0.2) * t1510;
-            let t1512 = t1511 * t1484 - (t1509 * t1465 + t1507 * t1399)
-                + (k(0.3333333333333333) * self.motor - k(0.001) * t1296 + t1505);
-            let t1513 = k(0.3333333333333333) * t1512
-                + k(0.6666666666666666) * (t1501 + (t1500 - k(0.0005) * t1300 + t1499));
-            let t1514 = k(0.1) * t1303;
-            let t1515 = k(0.1) * t1342;
-            let t1516 = k(0.1) * t1348;
-            let t1517 = t1516 * t1483 + (t1515 * t1465 + t1514 * t1399)
-                + (t1377 * t1494 + (t1379 * t1491 + t1378 * t1489));
-            let t1518 = k(0.6666666666666666)
-                * (t1501 - (t1500 - k(0.0005) * t1315 - t1517)) - t1513
-                - (t1486 * t1484 + (t1469 * t1465 - t1453 * t1399));
-            let t1519 = t1371 * t1398 + (t1364 * t1391 + t1355 * t1387);
-            let t1520 = t1519 + k(0.04) * t1303;
-            let t1521 = t1514 + t1520;
-            let t1522 = t1372 * t1398 + (t1362 * t1391 + t1350 * t1387);
-            let t1523 = k(0.2) * t1502 + t1522;
-            let t1524 = t1523 + k(0.1) * t1506;
-            let t1525 = t1377 * t1398 + (t1379 * t1391 + t1378 * t1387);
-            let t1526 = t1525 + k(0.02) * t1303;
-            let t1527 = t1514 + t1526;
-            let t1528 = k(0.6666666666666666) * t1527
-                + (k(0.3333333333333333) * t1524 - k(0.6666666666666666) * t1521)
-                + k(0.5) * t1453;
-            let t1529 = t1371 * t1464 - (t1364 * t1463 - t1355 * t1460);
-            let t1530 = t1529 + k(0.04) * t1342;
-            let t1531 = t1515 + t1530;
-            let t1532 = t1372 * t1464 - (t1362 * t1463 - t1350 * t1460);
-            let t1533 = k(0.2) * t1503 - t1532;
-            let t1534 = t1533 - k(0.1) * t1508;
-            let t1535 = t1377 * t1464 - (t1379 * t1463 - t1378 * t1460);
-            let t1536 = t1535 + k(0.02) * t1342;
-            let t1537 = t1515 + t1536;
-            let t1538 = k(0.6666666666666666) * t1537
-                - (k(0.3333333333333333) * t1534 + k(0.6666666666666666) * t1531)
-                - k(0.5) * t1469;
-            let t1539 = t1371 * t1480 - (t1364 * t1479 - t1355 * t1476);
-            let t1540 = t1539 + k(0.04) * t1348;
-            let t1541 = t1516 + t1540;
-            let t1542 = t1372 * t1480 - (t1362 * t1479 - t1350 * t1476);
-            let t1543 = k(0.2) * t1504 - t1542;
-            let t1544 = t1543 + k(0.1) * t1510;
-            let t1545 = t1377 * t1480 - (t1379 * t1479 - t1378 * t1476);
-            let t1546 = t1545 + k(0.02) * t1348;
-            let t1547 = t1516 + t1546;
-            let t1548 = k(0.6666666666666666) * t1547
-                - (k(0.3333333333333333) * t1544 + k(0.6666666666666666) * t1541)
-                - k(0.5) * t1486;
-            let t1549 = t1495 * t1540 + (t1497 * t1530 + t1496 * t1520);
-            let t1550 = k(0.001) * t1371 + k(0.003) * t1355;
-            let t1551 = k(0.004) * t1364;
-            let t1552 = k(0.0025) * t1371 + k(0.001) * t1355;
-            let t1553 = k(0.002) + (t1371 * t1552 + (t1364 * t1551 + t1355 * t1550))
-                + k(2.0) * (t1495 * t1539 + (t1497 * t1529 + t1496 * t1519));
-            let t1554 = t1504 * t1539 + (t1503 * t1529 - t1502 * t1519)
-                - (t1495 * t1542 + (t1497 * t1532 + t1496 * t1522));
-            let t1555 = t1495 * t1543 + (t1497 * t1533 - t1496 * t1523);
-            let t1556 = t1555 + (t1511 * t1540 - (t1509 * t1530 + t1507 * t1520))
-                + (t1554 - (t1372 * t1552 + (t1362 * t1551 + t1350 * t1550)));
-            let t1557 = k(0.3333333333333333) * t1556
+                    * (k(0.4472135954999579) * t1391 - k(0.8944271909999159) * t1390);
+            let t1403 = t1395
+                * (t1393
+                    * (k(0.4472135954999579) * t1401 + k(0.8944271909999159) * t1400)
+                    - t1389 * t1402);
+            let t1404 = k(0.0021220659078919376) * t1403
+                - (k(0.0010610329539459688) * t1399 + k(0.0021220659078919376) * t1396);
+            let t1405 = k(0.6666666666666666) * t1371;
+            let t1406 = k(1.3333333333333333) * t1364;
+            let t1407 = t1406 - (t1405 + k(1.3333333333333333) * t1376);
+            let t1408 = t1407 * t1404;
+            let t1409 = t1330 * t1299 + (t1311 * t1292 - t1318 * t1288);
+            let t1410 = t1330 * t1288 - (t1311 * t1307 + t1318 * t1306);
+            let t1411 = t1265 - k(0.05) * t1256 - (k(0.05) * t1410 - k(0.1) * t1409);
+            let t1412 = k(0.04) * t1250;
+            let t1413 = k(0.2) * t1248;
+            let t1414 = k(0.1) * t1254 - t1413;
+            let t1415 = k(0.2) * t1414;
+            let t1416 = k(0.02) * t1250;
+            let t1417 = t1416 * t1352 - (t1415 * t1344 - t1412 * t1342) + k(0.2) * t1411;
+            let t1418 = k(0.6666666666666666) * t1367;
+            let t1419 = k(1.3333333333333333) * t1360;
+            let t1420 = t1419 + (t1418 + k(1.3333333333333333) * t1378);
+            let t1421 = t1420 * t1404;
+            let t1422 = t1332 * t1299 + (t1315 * t1292 + t1320 * t1288);
+            let t1423 = t1332 * t1288 - (t1315 * t1307 - t1320 * t1306);
+            let t1424 = t1284 - k(0.05) * t1275 - (k(0.05) * t1423 - k(0.1) * t1422);
+            let t1425 = k(0.04) * t1271;
+            let t1426 = k(0.2) * t1269;
+            let t1427 = k(0.1) * t1273 + t1426;
+            let t1428 = k(0.2) * t1427;
+            let t1429 = k(0.02) * t1271;
+            let t1430 = t1429 * t1352 - (t1428 * t1344 - t1425 * t1342) + k(0.2) * t1424;
+            let t1431 = k(0.2) * self.gravity;
+            let t1432 = t1431 + t1430;
+            let t1433 = k(0.3) * self.gravity + t1432;
+            let t1434 = k(1.3333333333333333) * t1356
+                + (k(0.6666666666666666) * t1373 - k(1.3333333333333333) * t1380);
+            let t1435 = t1434 * t1404;
+            let t1436 = k(0.2) * t1271;
+            let t1437 = k(0.001) * t1352 + k(0.003) * t1342
+                + (t1425 * t1424 + (t1412 * t1411 - t1343 * t1309));
+            let t1438 = t1437 - (k(0.0005) * t1233 - t1431 * t1436);
+            let t1439 = k(0.004) * t1344
+                - (t1428 * t1424 + (t1415 * t1411 + t1347 * t1309));
+            let t1440 = t1439 + (k(0.001) * t1225 - t1431 * t1427);
+            let t1441 = k(0.1) * t1271;
+            let t1442 = k(0.0025) * t1352 + k(0.001) * t1342
+                + (t1429 * t1424 + (t1416 * t1411 - t1353 * t1309));
+            let t1443 = t1442 + (k(0.0005) * t1220 + t1431 * t1441);
+            let t1444 = k(0.2) * t1314;
+            let t1445 = k(0.2) * t1295;
+            let t1446 = k(0.2) * t1310;
+            let t1447 = t1446 * t1417 + t1445 * t1354;
+            let t1448 = t1447 + t1444 * t1432
+                + (t1327 * t1443 + (t1324 * t1440 + t1321 * t1438));
+            let t1449 = k(0.6666666666666666) * self.motor;
+            let t1450 = t1444 * t1433 + t1447;
+            let t1451 = k(0.1) * t1302 + k(0.2) * t1290;
+            let t1452 = k(0.1) * t1329 - k(0.2) * t1317;
+            let t1453 = k(0.1) * t1331 + k(0.2) * t1319;
+            let t1454 = t1453 * t1432 + (t1452 * t1417 - t1451 * t1354)
+                - (t1328 * t1443 + (t1322 * t1440 + t1316 * t1438));
+            let t1455 = t1290 + t1302;
+            let t1456 = k(0.2) * t1455;
+            let t1457 = t1317 - t1329;
+            let t1458 = k(0.2) * t1457;
+            let t1459 = t1319 + t1331;
+            let t1460 = k(0.2) * t1459;
+            let t1461 = t1460 * t1433 - (t1458 * t1417 + t1456 * t1354)
+                + (k(0.3333333333333333) * self.motor - k(0.001) * t1288 + t1454);
+            let t1462 = k(0.3333333333333333) * t1461
+                + k(0.6666666666666666) * (t1450 + (t1449 - k(0.0005) * t1292 + t1448));
+            let t1463 = k(0.1) * t1295;
+            let t1464 = k(0.1) * t1310;
+            let t1465 = k(0.1) * t1314;
+            let t1466 = t1465 * t1432 + (t1464 * t1417 + t1463 * t1354)
+                + (t1333 * t1443 + (t1335 * t1440 + t1334 * t1438));
+            let t1467 = k(0.6666666666666666)
+                * (t1450 - (t1449 - k(0.0005) * t1307 - t1466)) - t1462
+                - (t1435 * t1433 + (t1421 * t1417 - t1408 * t1354));
+            let t1468 = t1327 * t1353 + (t1324 * t1347 + t1321 * t1343);
+            let t1469 = t1468 + k(0.04) * t1295;
+            let t1470 = t1463 + t1469;
+            let t1471 = t1328 * t1353 + (t1322 * t1347 + t1316 * t1343);
+            let t1472 = k(0.2) * t1451 + t1471;
+            let t1473 = t1472 + k(0.1) * t1455;
+            let t1474 = t1333 * t1353 + (t1335 * t1347 + t1334 * t1343);
+            let t1475 = t1474 + k(0.02) * t1295;
+            let t1476 = t1463 + t1475;
+            let t1477 = k(0.6666666666666666) * t1476
+                + (k(0.3333333333333333) * t1473 - k(0.6666666666666666) * t1470)
+                + k(0.5) * t1408;
+            let t1478 = t1327 * t1416 - (t1324 * t1415 - t1321 * t1412);
+            let t1479 = t1478 + k(0.04) * t1310;
+            let t1480 = t1464 + t1479;
+            let t1481 = t1328 * t1416 - (t1322 * t1415 - t1316 * t1412);
+            let t1482 = k(0.2) * t1452 - t1481;
+            let t1483 = t1482 - k(0.1) * t1457;
+            let t1484 = t1333 * t1416 - (t1335 * t1415 - t1334 * t1412);
+            let t1485 = t1484 + k(0.02) * t1310;
+            let t1486 = t1464 + t1485;
+            let t1487 = k(0.6666666666666666) * t1486
+                - (k(0.3333333333333333) * t1483 + k(0.6666666666666666) * t1480)
+                - k(0.5) * t1421;
+            let t1488 = t1327 * t1429 - (t1324 * t1428 - t1321 * t1425);
+            let t1489 = t1488 + k(0.04) * t1314;
+            let t1490 = t1465 + t1489;
+            let t1491 = t1328 * t1429 - (t1322 * t1428 - t1316 * t1425);
+            let t1492 = k(0.2) * t1453 - t1491;
+            let t1493 = t1492 + k(0.1) * t1459;
+            let t1494 = t1333 * t1429 - (t1335 * t1428 - t1334 * t1425);
+            let t1495 = t1494 + k(0.02) * t1314;
+            let t1496 = t1465 + t1495;
+            let t1497 = k(0.6666666666666666) * t1496
+                - (k(0.3333333333333333) * t1493 + k(0.6666666666666666) * t1490)
+                - k(0.5) * t1435;
+            let t1498 = t1444 * t1489 + (t1446 * t1479 + t1445 * t1469);
+            let t1499 = k(0.001) * t1327 + k(0.003) * t1321;
+            let t1500 = k(0.004) * t1324;
+            let t1501 = k(0.0025) * t1327 + k(0.001) * t1321;
+            let t1502 = k(0.002) + (t1327 * t1501 + (t1324 * t1500 + t1321 * t1499))
+                + k(2.0) * (t1444 * t1488 + (t1446 * t1478 + t1445 * t1468));
+            let t1503 = t1453 * t1488 + (t1452 * t1478 - t1451 * t1468)
+                - (t1444 * t1491 + (t1446 * t1481 + t1445 * t1471));
+            let t1504 = t1444 * t1492 + (t1446 * t1482 - t1445 * t1472);
+            let t1505 = t1504 + (t1460 * t1489 - (t1458 * t1479 + t1456 * t1469))
+                + (t1503 - (t1328 * t1501 + (t1322 * t1500 + t1316 * t1499)));
+            let t1506 = k(0.3333333333333333) * t1505
                 + k(0.6666666666666666)
-                    * (k(0.005) + (k(0.002) + t1553) + k(2.0) * t1549);
-            let t1558 = t1495 * t1546 + (t1497 * t1536 + t1496 * t1526);
-            let t1559 = t1516 * t1539 + (t1515 * t1529 + t1514 * t1519)
-                + (t1495 * t1545 + (t1497 * t1535 + t1496 * t1525));
-            let t1560 = k(0.001) + (t1377 * t1552 + (t1379 * t1551 + t1378 * t1550))
-                + t1559;
-            let t1561 = k(0.6666666666666666) * (k(0.005) + t1560 + (t1558 + t1549));
-            let t1562 = t1561 - t1557
-                - (t1486 * t1541 + (t1469 * t1531 - t1453 * t1521));
-            let t1563 = k(0.001) * t1372 + k(0.003) * t1350;
-            let t1564 = k(0.004) * t1362;
-            let t1565 = k(0.0025) * t1372 + k(0.001) * t1350;
-            let t1566 = k(0.0025) + (t1372 * t1565 + (t1362 * t1564 + t1350 * t1563))
-                - k(2.0) * (t1504 * t1542 + (t1503 * t1532 - t1502 * t1522));
-            let t1567 = k(0.01) + (k(0.0025) + t1566)
-                + k(2.0) * (t1511 * t1543 - (t1509 * t1533 - t1507 * t1523));
-            let t1568 = t1516 * t1542 + (t1515 * t1532 + t1514 * t1522)
-                - (t1504 * t1545 + (t1503 * t1535 - t1502 * t1525));
-            let t1569 = t1511 * t1546 - (t1509 * t1536 + t1507 * t1526) + t1555
-                - (t1568 + (t1377 * t1565 + (t1379 * t1564 + t1378 * t1563)));
-            let t1570 = k(0.6666666666666666) * t1569
-                - (k(0.3333333333333333) * t1567 + k(0.6666666666666666) * t1556)
-                - (t1486 * t1544 + (t1469 * t1534 + t1453 * t1524));
-            let t1571 = t1379 * (k(0.004) * t1379)
-                + t1378 * (k(0.001) * t1377 + k(0.003) * t1378);
-            let t1572 = k(0.0005)
-                + (t1377 * (k(0.0025) * t1377 + k(0.001) * t1378) + t1571)
-                + k(2.0) * (t1516 * t1545 + (t1515 * t1535 + t1514 * t1525));
-            let t1573 = k(0.6666666666666666)
-                * (k(0.005) + (k(0.003) + t1572) + k(2.0) * t1558)
-                - (k(0.3333333333333333) * t1569 + t1561);
-            let t1574 = t1573 - (t1486 * t1547 + (t1469 * t1537 - t1453 * t1527));
-            let t1575 = k(0.6666666666666666) * t1574
-                - (k(0.3333333333333333) * t1570 + k(0.6666666666666666) * t1562)
-                - (t1486 * t1548 + (t1469 * t1538 - t1453 * t1528));
-            let t1576 = k(1.0) / t1575;
-            let t1577 = t1576 * t1518;
-            let t1578 = k(0.6666666666666666) * t1432;
-            let t1579 = t1578 + k(0.3333333333333333) * t1431;
-            let t1580 = k(0.6666666666666666) * t1429;
-            let t1581 = t1580 + k(0.3333333333333333) * t1428;
-            let t1582 = k(0.4472135954999579) * t1581 + k(0.8944271909999159) * t1579;
-            let t1583 = t1431 + t1420;
-            let t1584 = t1428 + t1427;
-            let t1585 = k(0.29814239699997197) * t1584 + k(0.5962847939999439) * t1583;
-            let t1586 = k(0.6666666666666666) * t1585;
-            let t1587 = k(0.6666666666666666) * t1436;
-            let t1588 = k(0.5962847939999439) * t1581 - k(0.29814239699997197) * t1579
-                + k(0.7453559924999299) * (t1587 + k(0.3333333333333333) * t1435);
-            let t1589 = k(0.6666666666666666)
-                * (k(0.3975231959999626) * t1584 - k(0.1987615979999813) * t1583
-                    + k(0.49690399499995325) * (t1435 + t1411));
-            let t1590 = t1589 + k(0.3333333333333333) * t1588;
-            let t1591 = k(0.3333333333333333) * t1420 - t1578;
-            let t1592 = k(0.3333333333333333) * t1427 - t1580;
-            let t1593 = k(0.4472135954999579) * t1592 + k(0.8944271909999159) * t1591;
-            let t1594 = k(0.5962847939999439) * t1592 - k(0.29814239699997197) * t1591
-                + k(0.7453559924999299) * (t1442 - t1587);
-            let t1595 = k(0.6666666666666666) * (t1594 - t1588);
-            let t1596 = k(0.3333333333333333) * t1594 + t1589;
-            let t1597 = k(1.0) / (t1582 * t1596 + (t1585 * t1595 - t1593 * t1590));
-            let t1598 = t1597 * (t1586 + k(0.3333333333333333) * t1582);
-            let t1599 = k(0.0031830988618379067) * t1441;
+                    * (k(0.005) + (k(0.002) + t1502) + k(2.0) * t1498);
+            let t1507 = t1444 * t1495 + (t1446 * t1485 + t1445 * t1475);
+            let t1508 = t1465 * t1488 + (t1464 * t1478 + t1463 * t1468)
+                + (t1444 * t1494 + (t1446 * t1484 + t1445 * t1474));
+            let t1509 = k(0.001) + (t1333 * t1501 + (t1335 * t1500 + t1334 * t1499))
+                + t1508;
+            let t1510 = k(0.6666666666666666) * (k(0.005) + t1509 + (t1507 + t1498));
+            let t1511 = t1510 - t1506
+                - (t1435 * t1490 + (t1421 * t1480 - t1408 * t1470));
+            let t1512 = k(0.001) * t1328 + k(0.003) * t1316;
+            let t1513 = k(0.004) * t1322;
+            let t1514 = k(0.0025) * t1328 + k(0.001) * t1316;
+            let t1515 = k(0.0025) + (t1328 * t1514 + (t1322 * t1513 + t1316 * t1512))
+                - k(2.0) * (t1453 * t1491 + (t1452 * t1481 - t1451 * t1471));
+            let t1516 = k(0.01) + (k(0.0025) + t1515)
+                + k(2.0) * (t1460 * t1492 - (t1458 * t1482 - t1456 * t1472));
+            let t1517 = t1465 * t1491 + (t1464 * t1481 + t1463 * t1471)
+                - (t1453 * t1494 + (t1452 * t1484 - t1451 * t1474));
+            let t1518 = t1460 * t1495 - (t1458 * t1485 + t1456 * t1475) + t1504
+                - (t1517 + (t1333 * t1514 + (t1335 * t1513 + t1334 * t1512)));
+            let t1519 = k(0.6666666666666666) * t1518
+                - (k(0.3333333333333333) * t1516 + k(0.6666666666666666) * t1505)
+                - (t1435 * t1493 + (t1421 * t1483 + t1408 * t1473));
+            let t1520 = t1335 * (k(0.004) * t1335)
+                + t1334 * (k(0.001) * t1333 + k(0.003) * t1334);
+            let t1521 = k(0.0005)
+                + (t1333 * (k(0.0025) * t1333 + k(0.001) * t1334) + t1520)
+                + k(2.0) * (t1465 * t1494 + (t1464 * t1484 + t1463 * t1474));
+            let t1522 = k(0.6666666666666666)
+                * (k(0.005) + (k(0.003) + t1521) + k(2.0) * t1507)
+                - (k(0.3333333333333333) * t1518 + t1510);
+            let t1523 = t1522 - (t1435 * t1496 + (t1421 * t1486 - t1408 * t1476));
+            let t1524 = k(0.6666666666666666) * t1523
+                - (k(0.3333333333333333) * t1519 + k(0.6666666666666666) * t1511)
+                - (t1435 * t1497 + (t1421 * t1487 - t1408 * t1477));
+            let t1525 = k(1.0) / t1524;
+            let t1526 = t1525 * t1467;
+            let t1527 = k(0.6666666666666666) * t1387;
+            let t1528 = t1527 + k(0.3333333333333333) * t1386;
+            let t1529 = k(0.6666666666666666) * t1384;
+            let t1530 = t1529 + k(0.3333333333333333) * t1383;
+            let t1531 = k(0.4472135954999579) * t1530 + k(0.8944271909999159) * t1528;
+            let t1532 = t1386 + t1375;
+            let t1533 = t1383 + t1382;
+            let t1534 = k(0.29814239699997197) * t1533 + k(0.5962847939999439) * t1532;
+            let t1535 = k(0.6666666666666666) * t1534;
+            let t1536 = k(0.6666666666666666) * t1391;
+            let t1537 = k(0.5962847939999439) * t1530 - k(0.29814239699997197) * t1528
+                + k(0.7453559924999299) * (t1536 + k(0.3333333333333333) * t1390);
+            let t1538 = k(0.6666666666666666)
+                * (k(0.3975231959999626) * t1533 - k(0.1987615979999813) * t1532
+                    + k(0.49690399499995325) * (t1390 + t1366));
+            let t1539 = t1538 + k(0.3333333333333333) * t1537;
+            let t1540 = k(0.3333333333333333) * t1375 - t1527;
+            let t1541 = k(0.3333333333333333) * t1382 - t1529;
+            let t1542 = k(0.4472135954999579) * t1541 + k(0.8944271909999159) * t1540;
+            let t1543 = k(0.5962847939999439) * t1541 - k(0.29814239699997197) * t1540
+                + k(0.7453559924999299) * (t1397 - t1536);
+            let t1544 = k(0.6666666666666666) * (t1543 - t1537);
+            let t1545 = k(0.3333333333333333) * t1543 + t1538;
+            let t1546 = k(1.0) / (t1531 * t1545 + (t1534 * t1544 - t1542 * t1539));
+            let t1547 = t1546 * (t1535 + k(0.3333333333333333) * t1531);
+            let t1548 = k(0.0031830988618379067) * t1396;
+            let t1549 = t1546 * (k(0.6666666666666666) * (t1542 - t1531));
+            let t1550 = k(0.0031830988618379067) * t1399;
+            let t1551 = t1546 * (k(0.3333333333333333) * t1542 + t1535);
+            let t1552 = k(0.0031830988618379067) * t1403;
+            let t1553 = t1552 * t1551 + (t1550 * t1549 + t1548 * t1547);
+            let t1554 = slide_wy * slide_wy;
+            let t1555 = slide_wz * slide_wz;
+            let t1556 = t1555 + t1554;
+            let t1557 = slide_wx * slide_wy;
+            let t1558 = slide_wx * slide_wz;
+            let t1559 = nut_wy * t1375 + nut_wz * t1387;
+            let t1560 = nut_wy * t1366 + nut_wz * t1391;
+            let t1561 = t1288 * t1382 - (t1307 * t1384 - t1306 * t1383)
+                - k(2.0) * (slide_wy * t1560 + slide_wz * t1559);
+            let t1562 = t1561 + (t1558 * t1390 - (t1557 * t1386 - t1556 * t1383));
+            let t1563 = nut_wx * t1375 + nut_wz * t1386;
+            let t1564 = nut_wx * t1366 + nut_wz * t1390;
+            let t1565 = t1292 * t1382 + (t1339 * t1384 - t1307 * t1383)
+                + k(2.0) * (slide_wy * t1564 + slide_wz * t1563);
+            let t1566 = t1565 + (t1558 * t1391 - (t1557 * t1387 - t1556 * t1384));
+            let t1567 = nut_wx * t1387 - nut_wy * t1386;
+            let t1568 = nut_wx * t1391 - nut_wy * t1390;
+            let t1569 = t1299 * t1382 + (t1292 * t1384 + t1288 * t1383)
+                - k(2.0) * (slide_wy * t1568 + slide_wz * t1567);
+            let t1570 = k(0.6666666666666666)
+                * (t1569 + (t1558 * t1366 - (t1557 * t1375 - t1556 * t1382)));
+            let t1571 = t1570
+                + (k(0.3333333333333333) * t1566 - k(0.6666666666666666) * t1562);
+            let t1572 = slide_wx * slide_wx;
+            let t1573 = t1555 + t1572;
+            let t1574 = slide_wy * slide_wz;
+            let t1575 = nut_wy * t1382 + nut_wz * t1384;
+            let t1576 = t1288 * t1375 - (t1307 * t1387 - t1306 * t1386)
+                + k(2.0) * (slide_wx * t1560 + slide_wz * t1575);
+            let t1577 = t1576 + (t1574 * t1390 + (t1573 * t1386 - t1557 * t1383));
+            let t1578 = nut_wx * t1382 + nut_wz * t1383;
+            let t1579 = t1292 * t1375 + (t1339 * t1387 - t1307 * t1386)
+                - k(2.0) * (slide_wx * t1564 + slide_wz * t1578);
+            let t1580 = t1579 + (t1574 * t1391 + (t1573 * t1387 - t1557 * t1384));
+            let t1581 = nut_wx * t1384 - nut_wy * t1383;
+            let t1582 = t1299 * t1375 + (t1292 * t1387 + t1288 * t1386)
+                + k(2.0) * (slide_wx * t1568 + slide_wz * t1581);
+            let t1583 = k(0.6666666666666666)
+                * (t1582 + (t1574 * t1366 + (t1573 * t1375 - t1557 * t1382)));
+            let t1584 = t1583
+                + (k(0.3333333333333333) * t1580 - k(0.6666666666666666) * t1577);
+            let t1585 = t1554 + t1572;
+            let t1586 = t1288 * t1366 - (t1307 * t1391 - t1306 * t1390)
+                - k(2.0) * (slide_wx * t1559 - slide_wy * t1575);
+            let t1587 = t1586 + (t1585 * t1390 + (t1574 * t1386 + t1558 * t1383));
+            let t1588 = t1292 * t1366 + (t1339 * t1391 - t1307 * t1390)
+                + k(2.0) * (slide_wx * t1563 - slide_wy * t1578);
+            let t1589 = t1588 + (t1585 * t1391 + (t1574 * t1387 + t1558 * t1384));
+            let t1590 = t1299 * t1366 + (t1292 * t1391 + t1288 * t1390)
+                - k(2.0) * (slide_wx * t1567 - slide_wy * t1581);
+            let t1591 = k(0.6666666666666666)
+                * (t1590 + (t1585 * t1366 + (t1574 * t1375 + t1558 * t1382)));
+            let t1592 = k(0.7453559924999299)
+                * (t1591
+                    + (k(0.3333333333333333) * t1589 - k(0.6666666666666666) * t1587))
+                - (k(0.29814239699997197) * t1584 - k(0.5962847939999439) * t1571);
+            let t1593 = t1539 * t1546;
+            let t1594 = t1544 * t1546;
+            let t1595 = t1545 * t1546;
+            let t1596 = t1552 * t1595 + (t1550 * t1594 + t1548 * t1593);
+            let t1597 = k(0.8944271909999159) * t1584 + k(0.4472135954999579) * t1571;
+            let t1598 = t1365 * t1558 + (t1372 * t1557 + t1377 * t1556);
+            let t1599 = t1365 * t1574 - (t1372 * t1573 + t1377 * t1557);
             (
-                t1401,
-                t1402,
+                t1403,
                 t1405,
                 t1406,
+                t1407,
+                t1408,
                 t1409,
                 t1410,
                 t1411,
-                t1412,
                 t1413,
-                t1416,
+                t1414,
                 t1417,
                 t1418,
                 t1419,
@@ -13776,88 +13877,68 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 t1422,
                 t1423,
                 t1424,
-                t1425,
                 t1426,
                 t1427,
-                t1428,
-                t1429,
-                t1430,
-                t1431,
-                t1432,
                 t1433,
                 t1434,
                 t1435,
                 t1436,
-                t1437,
-                t1438,
-                t1440,
                 t1441,
                 t1444,
-                t1448,
-                t1450,
+                t1445,
+                t1446,
                 t1451,
                 t1452,
                 t1453,
-                t1454,
-                t1455,
                 t1456,
-                t1457,
                 t1458,
-                t1459,
-                t1461,
-                t1462,
+                t1460,
+                t1463,
+                t1464,
                 t1465,
-                t1466,
                 t1467,
-                t1468,
-                t1469,
                 t1470,
-                t1471,
-                t1472,
                 t1473,
-                t1474,
-                t1475,
+                t1476,
                 t1477,
-                t1478,
-                t1484,
-                t1485,
+                t1480,
+                t1483,
                 t1486,
                 t1487,
-                t1492,
-                t1495,
+                t1490,
+                t1493,
                 t1496,
                 t1497,
-                t1502,
-                t1503,
-                t1504,
-                t1507,
-                t1509,
                 t1511,
-                t1514,
-                t1515,
-                t1516,
-                t1518,
-                t1521,
-                t1524,
-                t1527,
-                t1528,
-                t1531,
-                t1534,
-                t1537,
-                t1538,
-                t1541,
-                t1544,
+                t1519,
+                t1523,
+                t1525,
+                t1526,
                 t1547,
-                t1548,
+                t1549,
+                t1551,
+                t1553,
+                t1556,
+                t1557,
+                t1558,
+                t1559,
+                t1560,
                 t1562,
-                t1570,
+                t1563,
+                t1564,
+                t1566,
+                t1573,
                 t1574,
-                t1576,
+                t1575,
                 t1577,
-                t1582,
-                t1586,
-                t1590,
+                t1578,
+                t1580,
+                t1585,
+                t1587,
+                t1589,
+                t1592,
                 t1593,
+                t1594,
                 t1595,
                 t1596,
                 t1597,
@@ -13866,66 +13947,66 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             )
         };
         let (
-            t1649,
-            t1650,
-            t1651,
+            t1605,
+            t1613,
+            t1619,
+            t1628,
+            t1634,
             t1652,
-            t1656,
-            t1663,
-            t1664,
-            t1665,
-            t1666,
-            t1670,
-            t1678,
-            t1679,
+            t1676,
             t1680,
-            t1685,
-            t1703,
-            t1727,
+            t1681,
+            t1683,
+            t1684,
+            t1686,
+            t1687,
+            t1688,
+            t1689,
+            t1690,
+            t1691,
+            t1697,
+            t1698,
+            t1700,
+            t1701,
+            t1702,
+            t1705,
+            t1707,
+            t1708,
+            t1709,
+            t1711,
+            t1717,
+            t1718,
+            t1719,
+            t1720,
+            t1721,
+            t1722,
+            t1728,
             t1729,
-            t1731,
+            t1730,
             t1732,
+            t1733,
             t1734,
             t1735,
-            t1737,
             t1738,
-            t1739,
-            t1740,
             t1741,
-            t1742,
             t1748,
-            t1749,
-            t1751,
-            t1752,
-            t1753,
-            t1756,
+            t1750,
+            t1754,
+            t1757,
             t1758,
-            t1759,
             t1760,
-            t1762,
-            t1768,
-            t1769,
+            t1761,
+            t1763,
+            t1767,
             t1770,
             t1771,
-            t1772,
             t1773,
-            t1774,
             t1775,
             t1776,
             t1777,
-            t1778,
-            t1779,
             t1780,
-            t1781,
-            t1783,
+            t1782,
             t1784,
-            t1785,
-            t1786,
-            t1787,
-            t1789,
-            t1790,
-            t1792,
-            t1793,
             t1794,
             t1795,
             t1796,
@@ -13933,386 +14014,387 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t1798,
             t1799,
         ) = {
-            let t1600 = t1597 * (k(0.6666666666666666) * (t1593 - t1582));
-            let t1601 = k(0.0031830988618379067) * t1444;
-            let t1602 = t1597 * (k(0.3333333333333333) * t1593 + t1586);
-            let t1603 = k(0.0031830988618379067) * t1448;
-            let t1604 = t1603 * t1602 + (t1601 * t1600 + t1599 * t1598);
-            let t1605 = slide_wy * slide_wy;
-            let t1606 = slide_wz * slide_wz;
-            let t1607 = t1606 + t1605;
-            let t1608 = slide_wx * slide_wy;
-            let t1609 = slide_wx * slide_wz;
-            let t1610 = nut_wy * t1420 + nut_wz * t1432;
-            let t1611 = nut_wy * t1411 + nut_wz * t1436;
-            let t1612 = t1296 * t1427 - (t1315 * t1429 - t1314 * t1428)
-                - k(2.0) * (slide_wy * t1611 + slide_wz * t1610);
-            let t1613 = t1612 + (t1609 * t1435 - (t1608 * t1431 - t1607 * t1428));
-            let t1614 = nut_wx * t1420 + nut_wz * t1431;
-            let t1615 = nut_wx * t1411 + nut_wz * t1435;
-            let t1616 = t1300 * t1427 + (t1383 * t1429 - t1315 * t1428)
-                + k(2.0) * (slide_wy * t1615 + slide_wz * t1614);
-            let t1617 = t1616 + (t1609 * t1436 - (t1608 * t1432 - t1607 * t1429));
-            let t1618 = nut_wx * t1432 - nut_wy * t1431;
-            let t1619 = nut_wx * t1436 - nut_wy * t1435;
-            let t1620 = t1307 * t1427 + (t1300 * t1429 + t1296 * t1428)
-                - k(2.0) * (slide_wy * t1619 + slide_wz * t1618);
-            let t1621 = k(0.6666666666666666)
-                * (t1620 + (t1609 * t1411 - (t1608 * t1420 - t1607 * t1427)));
-            let t1622 = t1621
-                + (k(0.3333333333333333) * t1617 - k(0.6666666666666666) * t1613);
-            let t1623 = slide_wx * slide_wx;
-            let t1624 = t1606 + t1623;
-            let t1625 = slide_wy * slide_wz;
-            let t1626 = nut_wy * t1427 + nut_wz * t1429;
-            let t1627 = t1296 * t1420 - (t1315 * t1432 - t1314 * t1431)
-                + k(2.0) * (slide_wx * t1611 + slide_wz * t1626);
-            let t1628 = t1627 + (t1625 * t1435 + (t1624 * t1431 - t1608 * t1428));
-            let t1629 = nut_wx * t1427 + nut_wz * t1428;
-            let t1630 = t1300 * t1420 + (t1383 * t1432 - t1315 * t1431)
-                - k(2.0) * (slide_wx * t1615 + slide_wz * t1629);
-            let t1631 = t1630 + (t1625 * t1436 + (t1624 * t1432 - t1608 * t1429));
-            let t1632 = nut_wx * t1429 - nut_wy * t1428;
-            let t1633 = t1307 * t1420 + (t1300 * t1432 + t1296 * t1431)
-                + k(2.0) * (slide_wx * t1619 + slide_wz * t1632);
-            let t1634 = k(0.6666666666666666)
-                * (t1633 + (t1625 * t1411 + (t1624 * t1420 - t1608 * t1427)));
-            let t1635 = t1634
-                + (k(0.3333333333333333) * t1631 - k(0.6666666666666666) * t1628);
-            let t1636 = t1605 + t1623;
-            let t1637 = t1296 * t1411 - (t1315 * t1436 - t1314 * t1435)
-                - k(2.0) * (slide_wx * t1610 - slide_wy * t1626);
-            let t1638 = t1637 + (t1636 * t1435 + (t1625 * t1431 + t1609 * t1428));
-            let t1639 = t1300 * t1411 + (t1383 * t1436 - t1315 * t1435)
-                + k(2.0) * (slide_wx * t1614 - slide_wy * t1629);
-            let t1640 = t1639 + (t1636 * t1436 + (t1625 * t1432 + t1609 * t1429));
-            let t1641 = t1307 * t1411 + (t1300 * t1436 + t1296 * t1435)
-                - k(2.0) * (slide_wx * t1618 - slide_wy * t1632);
-            let t1642 = k(0.6666666666666666)
-                * (t1641 + (t1636 * t1411 + (t1625 * t1420 + t1609 * t1427)));
-            let t1643 = k(0.7453559924999299)
-                * (t1642
-                    + (k(0.3333333333333333) * t1640 - k(0.6666666666666666) * t1638))
-                - (k(0.29814239699997197) * t1635 - k(0.5962847939999439) * t1622);
-            let t1644 = t1590 * t1597;
-            let t1645 = t1595 * t1597;
-            let t1646 = t1596 * t1597;
-            let t1647 = t1603 * t1646 + (t1601 * t1645 + t1599 * t1644);
-            let t1648 = k(0.8944271909999159) * t1635 + k(0.4472135954999579) * t1622;
-            let t1649 = t1410 * t1609 + (t1417 * t1608 + t1422 * t1607);
-            let t1650 = t1410 * t1625 - (t1417 * t1624 + t1422 * t1608);
-            let t1651 = t1410 * t1636 - (t1417 * t1625 - t1422 * t1609);
-            let t1652 = t1421 - t1416;
-            let t1653 = nut_rx + k(0.2) * (t1298 - t1310);
-            let t1654 = t1653 - (slide_rx + k(0.2) * (t1409 - t1652));
-            let t1655 = t1417 * slide_wx + t1422 * slide_wy;
-            let t1656 = t1410 * slide_wx + t1422 * slide_wz;
-            let t1657 = t1410 * slide_wy - t1417 * slide_wz;
-            let t1658 = t1304 * nut_wx + t1299 * nut_wy
-                + (t1311 * nut_wy - t1304 * nut_wz);
-            let t1659 = slide_sx + k(0.1) * (t1656 - t1657 - t1655)
-                - (nut_sx + k(0.1) * t1658);
-            let t1660 = t1659
-                * (k(0.6666666666666666) * t1657 + k(0.3333333333333333) * t1656
-                    + k(0.6666666666666666) * t1655);
-            let t1661 = t1660
-                - t1654
-                    * (k(0.6666666666666666) * t1651
-                        + (k(0.3333333333333333) * t1650
-                            - k(0.6666666666666666) * t1649));
-            let t1662 = k(0.1) * (t1312 - t1316 + (t1651 - (t1649 + t1650)));
-            let t1663 = t1406 * t1609 - (t1413 * t1608 + t1424 * t1607);
-            let t1664 = t1406 * t1625 + (t1413 * t1624 + t1424 * t1608);
-            let t1665 = t1406 * t1636 + (t1413 * t1625 - t1424 * t1609);
-            let t1666 = t1423 - t1412;
-            let t1667 = nut_ry - k(0.2) * (t1351 + t1373);
-            let t1668 = t1667 - (slide_ry + k(0.2) * (t1405 + t1666));
-            let t1669 = t1413 * slide_wx + t1424 * slide_wy;
-            let t1670 = t1406 * slide_wx - t1424 * slide_wz;
-            let t1671 = t1406 * slide_wy + t1413 * slide_wz;
-            let t1672 = t1343 * nut_wx + t1352 * nut_wy
-                - (t1374 * nut_wy + t1343 * nut_wz);
-            let t1673 = slide_sy + k(0.1) * (t1670 - t1671 + t1669)
-                - (nut_sy - k(0.1) * t1672);
-            let t1674 = t1673
-                * (k(0.6666666666666666) * t1671 + k(0.3333333333333333) * t1670
-                    - k(0.6666666666666666) * t1669);
-            let t1675 = t1674
-                - t1668
-                    * (k(0.6666666666666666) * t1665
-                        + (k(0.3333333333333333) * t1664
-                            - k(0.6666666666666666) * t1663));
-            let t1676 = k(0.1) * (t1454 - t1455 + (t1665 - (t1663 + t1664)));
-            let t1677 = t1468 * t1676 + t1674 + t1675 + (t1452 * t1662 + t1660 + t1661);
-            let t1678 = t1402 * t1609 - (t1419 * t1608 - t1426 * t1607);
-            let t1679 = t1402 * t1625 + (t1419 * t1624 - t1426 * t1608);
-            let t1680 = t1402 * t1636 + (t1419 * t1625 + t1426 * t1609);
-            let t1681 = t1425 + t1418;
-            let t1682 = nut_rz - k(0.2) * (t1353 - t1375);
-            let t1683 = t1682 - (slide_rz - k(0.2) * (t1401 - t1681));
-            let t1684 = t1419 * slide_wx - t1426 * slide_wy;
-            let t1685 = t1402 * slide_wx + t1426 * slide_wz;
-            let t1686 = t1402 * slide_wy + t1419 * slide_wz;
-            let t1687 = t1349 * nut_wx - t1354 * nut_wy
-                - (t1376 * nut_wy + t1349 * nut_wz);
-            let t1688 = slide_sz - k(0.1) * (t1685 - t1686 + t1684)
-                - (nut_sz + k(0.1) * t1687);
-            let t1689 = t1688
-                * (k(0.6666666666666666) * t1686 + k(0.3333333333333333) * t1685
-                    - k(0.6666666666666666) * t1684);
-            let t1690 = t1689
-                - t1683
-                    * (k(0.6666666666666666) * t1680
-                        + (k(0.3333333333333333) * t1679
-                            - k(0.6666666666666666) * t1678));
-            let t1691 = k(0.1) * (t1470 - t1471 + (t1680 - (t1678 + t1679)));
-            let t1692 = k(0.4472135954999579)
-                * (t1611 + (slide_wx * t1431 - slide_wy * t1428))
+            let t1600 = t1365 * t1585 - (t1372 * t1574 - t1377 * t1558);
+            let t1601 = t1376 - t1371;
+            let t1602 = nut_rx + k(0.2) * (t1290 - t1302);
+            let t1603 = t1602 - (slide_rx + k(0.2) * (t1364 - t1601));
+            let t1604 = t1372 * slide_wx + t1377 * slide_wy;
+            let t1605 = t1365 * slide_wx + t1377 * slide_wz;
+            let t1606 = t1365 * slide_wy - t1372 * slide_wz;
+            let t1607 = t1296 * nut_wx + t1291 * nut_wy
+                + (t1303 * nut_wy - t1296 * nut_wz);
+            let t1608 = slide_sx - k(0.1) * (t1604 + (t1606 - t1605))
+                - (nut_sx + k(0.1) * t1607);
+            let t1609 = t1608
+                * (k(0.6666666666666666) * t1606 + k(0.3333333333333333) * t1605
+                    + k(0.6666666666666666) * t1604);
+            let t1610 = t1609
+                - t1603
+                    * (k(0.6666666666666666) * t1600
+                        + (k(0.3333333333333333) * t1599
+                            - k(0.6666666666666666) * t1598));
+            let t1611 = k(0.1) * (t1304 - t1308 + (t1600 - (t1599 + t1598)));
+            let t1612 = t1361 * t1558 - (t1368 * t1557 + t1379 * t1556);
+            let t1613 = t1361 * t1574 + (t1368 * t1573 + t1379 * t1557);
+            let t1614 = t1361 * t1585 + (t1368 * t1574 - t1379 * t1558);
+            let t1615 = t1378 - t1367;
+            let t1616 = nut_ry - k(0.2) * (t1317 + t1329);
+            let t1617 = t1616 - (slide_ry + k(0.2) * (t1360 + t1615));
+            let t1618 = t1368 * slide_wx + t1379 * slide_wy;
+            let t1619 = t1361 * slide_wx - t1379 * slide_wz;
+            let t1620 = t1361 * slide_wy + t1368 * slide_wz;
+            let t1621 = t1311 * nut_wx + t1318 * nut_wy
+                - (t1330 * nut_wy + t1311 * nut_wz);
+            let t1622 = slide_sy + k(0.1) * (t1618 - (t1620 - t1619))
+                - (nut_sy - k(0.1) * t1621);
+            let t1623 = t1622
+                * (k(0.6666666666666666) * t1620 + k(0.3333333333333333) * t1619
+                    - k(0.6666666666666666) * t1618);
+            let t1624 = t1623
+                - t1617
+                    * (k(0.6666666666666666) * t1614
+                        + (k(0.3333333333333333) * t1613
+                            - k(0.6666666666666666) * t1612));
+            let t1625 = k(0.1) * (t1409 - t1410 + (t1614 - (t1613 + t1612)));
+            let t1626 = t1420 * t1625 + t1623 + t1624 + (t1407 * t1611 + t1609 + t1610);
+            let t1627 = t1357 * t1558 - (t1374 * t1557 - t1381 * t1556);
+            let t1628 = t1357 * t1574 + (t1374 * t1573 - t1381 * t1557);
+            let t1629 = t1357 * t1585 + (t1374 * t1574 + t1381 * t1558);
+            let t1630 = t1380 + t1373;
+            let t1631 = nut_rz - k(0.2) * (t1319 - t1331);
+            let t1632 = t1631 - (slide_rz - k(0.2) * (t1356 - t1630));
+            let t1633 = t1374 * slide_wx - t1381 * slide_wy;
+            let t1634 = t1357 * slide_wx + t1381 * slide_wz;
+            let t1635 = t1357 * slide_wy + t1374 * slide_wz;
+            let t1636 = t1315 * nut_wx - t1320 * nut_wy
+                - (t1332 * nut_wy + t1315 * nut_wz);
+            let t1637 = slide_sz - k(0.1) * (t1633 - (t1635 - t1634))
+                - (nut_sz + k(0.1) * t1636);
+            let t1638 = t1637
+                * (k(0.6666666666666666) * t1635 + k(0.3333333333333333) * t1634
+                    - k(0.6666666666666666) * t1633);
+            let t1639 = t1638
+                - t1632
+                    * (k(0.6666666666666666) * t1629
+                        + (k(0.3333333333333333) * t1628
+                            - k(0.6666666666666666) * t1627));
+            let t1640 = k(0.1) * (t1422 - t1423 + (t1629 - (t1628 + t1627)));
+            let t1641 = k(0.4472135954999579)
+                * (t1560 + (slide_wx * t1386 - slide_wy * t1383))
                 - k(0.8944271909999159)
-                    * (t1615 - (slide_wx * t1432 - slide_wy * t1429));
-            let t1693 = k(0.4472135954999579)
-                * (t1610 - (slide_wx * t1435 + slide_wz * t1428))
+                    * (t1564 - (slide_wx * t1387 - slide_wy * t1384));
+            let t1642 = k(0.4472135954999579)
+                * (t1559 - (slide_wx * t1390 + slide_wz * t1383))
                 - k(0.8944271909999159)
-                    * (t1614 + (slide_wx * t1436 + slide_wz * t1429));
-            let t1694 = k(0.4472135954999579)
-                * (t1626 + (slide_wy * t1435 + slide_wz * t1431))
+                    * (t1563 + (slide_wx * t1391 + slide_wz * t1384));
+            let t1643 = k(0.4472135954999579)
+                * (t1575 + (slide_wy * t1390 + slide_wz * t1386))
                 - k(0.8944271909999159)
-                    * (t1629 - (slide_wy * t1436 + slide_wz * t1432));
-            let t1695 = k(0.5962847939999439) * t1694 - k(0.29814239699997197) * t1693
-                + k(0.7453559924999299) * t1692;
-            let t1696 = k(0.4472135954999579) * t1694 + k(0.8944271909999159) * t1693;
-            let t1697 = t1440 * t1440 * (k(2.0) * (t1434 * t1696 + t1438 * t1695))
-                * (t1438 * t1696 - t1434 * t1695);
-            let t1698 = k(0.8944271909999159) * t1617 + k(0.4472135954999579) * t1613;
-            let t1699 = k(0.8944271909999159) * t1631 + k(0.4472135954999579) * t1628;
-            let t1700 = t1696 * t1695;
-            let t1701 = k(0.7453559924999299)
-                * (k(0.8944271909999159) * t1640 + k(0.4472135954999579) * t1638)
-                - (k(0.29814239699997197) * t1699 - k(0.5962847939999439) * t1698);
-            let t1702 = t1434 * t1701 - t1700
-                + (t1700
-                    - t1438
-                        * (k(0.8944271909999159) * t1699
-                            + k(0.4472135954999579) * t1698));
-            let t1703 = t1440 * t1702 - t1697;
-            let t1704 = k(0.0031830988618379067) * t1703
-                - (t1485 * t1691 - t1689 - t1690 + t1677);
-            let t1705 = t1659
-                * (k(0.4472135954999579) * t1657 - k(0.8944271909999159) * t1656);
-            let t1706 = k(1.7888543819998317) * t1416 - k(0.8944271909999159) * t1421;
-            let t1707 = t1706 * t1662 + t1705
-                + (t1705
-                    + t1654
-                        * (k(0.8944271909999159) * t1650
-                            + k(0.4472135954999579) * t1649));
-            let t1708 = t1673
-                * (k(0.4472135954999579) * t1671 - k(0.8944271909999159) * t1670);
-            let t1709 = k(1.7888543819998317) * t1412 - k(0.8944271909999159) * t1423;
-            let t1710 = t1709 * t1676 - t1708
-                - (t1708
-                    + t1668
-                        * (k(0.8944271909999159) * t1664
-                            + k(0.4472135954999579) * t1663));
-            let t1711 = t1688
-                * (k(0.4472135954999579) * t1686 - k(0.8944271909999159) * t1685);
-            let t1712 = k(1.7888543819998317) * t1418 + k(0.8944271909999159) * t1425;
-            let t1713 = t1712 * t1691 + t1711
-                + (t1711
-                    + t1683
-                        * (k(0.8944271909999159) * t1679
-                            + k(0.4472135954999579) * t1678));
-            let t1714 = t1713 + (t1710 - t1707);
-            let t1715 = t1659
-                * (k(0.5962847939999439) * t1657 + k(0.29814239699997197) * t1656
-                    - k(0.7453559924999299) * t1655);
-            let t1716 = t1715
-                + t1654
-                    * (k(0.7453559924999299) * t1651
-                        - (k(0.29814239699997197) * t1650
-                            - k(0.5962847939999439) * t1649));
-            let t1717 = k(1.4907119849998598) * t1409
-                + (k(0.5962847939999439) * t1416 + k(1.1925695879998879) * t1421);
-            let t1718 = t1673
-                * (k(0.5962847939999439) * t1671 + k(0.29814239699997197) * t1670
-                    + k(0.7453559924999299) * t1669);
-            let t1719 = t1718
-                + t1668
-                    * (k(0.7453559924999299) * t1665
-                        - (k(0.29814239699997197) * t1664
-                            - k(0.5962847939999439) * t1663));
-            let t1720 = k(1.4907119849998598) * t1405
-                - (k(0.5962847939999439) * t1412 + k(1.1925695879998879) * t1423);
-            let t1721 = t1720 * t1676 - t1718 - t1719 + (t1717 * t1662 - t1715 - t1716);
-            let t1722 = t1688
-                * (k(0.5962847939999439) * t1686 + k(0.29814239699997197) * t1685
-                    + k(0.7453559924999299) * t1684);
-            let t1723 = t1722
-                + t1683
-                    * (k(0.7453559924999299) * t1680
-                        - (k(0.29814239699997197) * t1679
-                            - k(0.5962847939999439) * t1678));
-            let t1724 = k(1.4907119849998598) * t1401
-                - (k(0.5962847939999439) * t1418 - k(1.1925695879998879) * t1425);
-            let t1725 = t1724 * t1691 + t1722 + t1723 + t1721;
-            let t1726 = t1717 * t1725 - t1706 * t1714 - t1452 * t1704
-                + t1648 * (t1452 * t1647);
-            let t1727 = t1726 - t1643 * (t1452 * t1604);
-            let t1728 = t1528 * t1576;
-            let t1729 = t1528 * t1728;
-            let t1730 = t1720 * t1725 + t1709 * t1714 - t1468 * t1704
-                + t1648 * (t1468 * t1647);
-            let t1731 = t1730 - t1643 * (t1468 * t1604);
-            let t1732 = t1538 * t1728;
-            let t1733 = t1724 * t1725 + t1712 * t1714 - t1485 * t1704
-                + t1648 * (t1485 * t1647);
-            let t1734 = t1733 - t1643 * (t1485 * t1604);
-            let t1735 = t1548 * t1728;
-            let t1736 = t1735 * t1734 + (t1732 * t1731 - t1729 * t1727) + k(0.5) * t1727;
-            let t1737 = t1521 - t1562 * t1728;
-            let t1738 = t1643 * t1598 - t1648 * t1644;
-            let t1739 = t1524 + t1570 * t1728;
-            let t1740 = t1643 * t1600 - t1648 * t1645;
-            let t1741 = t1527 - t1574 * t1728;
-            let t1742 = t1643 * t1602 - t1648 * t1646;
-            let t1743 = t1742 * t1741 - (t1740 * t1739 - t1738 * t1737) - t1736
-                + (t1399 - t1528 * t1577);
-            let t1744 = slide_sx + k(0.1) * (t1657 + t1655)
-                - (slide_sy + k(0.1) * (t1671 - t1669));
-            let t1745 = k(0.23570226039551584) * t1744
-                + k(0.9428090415820634) * (slide_sz - k(0.1) * (t1686 - t1684));
-            let t1746 = k(0.11785113019775792) * t1745;
-            let t1747 = t1538 * t1576;
-            let t1748 = t1538 * t1747;
-            let t1749 = t1548 * t1747;
-            let t1750 = t1749 * t1734 + (t1748 * t1731 - t1732 * t1727) - k(0.5) * t1731;
-            let t1751 = t1531 - t1562 * t1747;
-            let t1752 = t1534 - t1570 * t1747;
-            let t1753 = t1537 - t1574 * t1747;
-            let t1754 = t1742 * t1753 + (t1740 * t1752 + t1738 * t1751) - t1750
-                + (t1465 - t1538 * t1577);
-            let t1755 = t1548 * t1576;
-            let t1756 = t1548 * t1755;
-            let t1757 = t1756 * t1734 + (t1749 * t1731 - t1735 * t1727) - k(0.5) * t1734;
-            let t1758 = t1541 - t1562 * t1755;
-            let t1759 = t1544 - t1570 * t1755;
-            let t1760 = t1547 - t1574 * t1755;
-            let t1761 = t1742 * t1760 + (t1740 * t1759 + t1738 * t1758) - t1757
-                + (t1484 - t1548 * t1577);
-            let t1762 = k(0.9428090415820634)
-                * (k(0.8) * self.gravity + k(0.4714045207910317) * t1745 + t1761)
-                + k(0.23570226039551584) * (t1746 + t1754 + (t1746 + t1743));
-            let t1763 = t1651 - t1649;
-            let t1764 = t1665 - t1663;
-            let t1765 = k(0.05) * (t1764 + t1763);
-            let t1766 = k(0.03333333333333333) * (t1680 - t1678)
-                - k(0.06666666666666667) * (t1764 - t1763);
-            let t1767 = k(0.6666666666666666) * t1766;
-            let t1768 = t1767 + t1765;
-            let t1769 = k(0.3064129385141706)
-                - (k(0.9428090415820634) * t1735
-                    + k(0.23570226039551584) * (t1732 + t1729));
-            let t1770 = t1767 - t1765;
-            let t1771 = k(0.3064129385141706)
-                - (k(0.9428090415820634) * t1749
-                    + k(0.23570226039551584) * (t1748 + t1732));
-            let t1772 = k(0.3333333333333333) * t1766;
-            let t1773 = k(1.2256517540566825)
-                - (k(0.9428090415820634) * t1756
-                    + k(0.23570226039551584) * (t1749 + t1735));
-            let t1774 = slide_rx - t1653;
-            let t1775 = slide_ry - t1667;
-            let t1776 = slide_rz - t1682;
-            let t1777 = t1402 * t1776 - (t1406 * t1775 + t1410 * t1774);
-            let t1778 = t1419 * t1776 - (t1413 * t1775 - t1417 * t1774);
-            let t1779 = t1410 * t1778 + t1417 * t1777;
-            let t1780 = t1406 * t1778 - t1413 * t1777;
-            let t1781 = t1402 * t1778 - t1419 * t1777;
-            let t1782 = t1735 * t1781 + (t1732 * t1780 - t1729 * t1779) + k(0.5) * t1779;
-            let t1783 = k(0.2) * t1416;
-            let t1784 = k(0.2) * t1412;
-            let t1785 = k(0.2) * t1418;
-            let t1786 = t1785 * t1735 + (t1784 * t1732 + t1783 * t1729)
-                - k(0.26) * t1416;
-            let t1787 = t1786
-                - (t1782 + (t1427 * t1741 + (t1429 * t1739 + t1428 * t1737)));
-            let t1788 = t1749 * t1781 + (t1748 * t1780 - t1732 * t1779) - k(0.5) * t1780;
-            let t1789 = t1785 * t1749 + (t1784 * t1748 + t1783 * t1732)
-                - k(0.26) * t1412;
-            let t1790 = t1789
-                - (t1788 + (t1427 * t1753 - (t1429 * t1752 - t1428 * t1751)));
-            let t1791 = t1756 * t1781 + (t1749 * t1780 - t1735 * t1779) - k(0.5) * t1781;
-            let t1792 = t1785 * t1756 + (t1784 * t1749 + t1783 * t1735)
-                - k(0.26) * t1418;
-            let t1793 = t1792
-                - (t1791 + (t1427 * t1760 - (t1429 * t1759 - t1428 * t1758)));
-            let t1794 = k(0.31426968052735443) * (t1666 + t1652)
-                + k(0.15713484026367722) * t1681;
-            let t1795 = k(0.4714045207910317) * t1405;
-            let t1796 = t1795 - k(1.8856180831641267) * t1423;
-            let t1797 = k(0.4714045207910317) * t1409;
-            let t1798 = t1797 + k(1.8856180831641267) * t1421;
-            let t1799 = k(0.7071067811865476) * (t1798 + t1796);
+                    * (t1578 - (slide_wy * t1391 + slide_wz * t1387));
+            let t1644 = k(0.5962847939999439) * t1643 - k(0.29814239699997197) * t1642
+                + k(0.7453559924999299) * t1641;
+            let t1645 = k(0.4472135954999579) * t1643 + k(0.8944271909999159) * t1642;
+            let t1646 = t1395 * t1395 * (k(2.0) * (t1389 * t1645 + t1393 * t1644))
+                * (t1393 * t1645 - t1389 * t1644);
+            let t1647 = k(0.8944271909999159) * t1566 + k(0.4472135954999579) * t1562;
+            let t1648 = k(0.8944271909999159) * t1580 + k(0.4472135954999579) * t1577;
+            let t1649 = t1645 * t1644;
+            let t1650 = k(0.7453559924999299)
+                * (k(0.8944271909999159) * t1589 + k(0.4472135954999579) * t1587)
+                - (k(0.29814239699997197) * t1648 - k(0.5962847939999439) * t1647);
+            let t1651 = t1389 * t1650 - t1649
+                + (t1649
+                    - t1393
+                        * (k(0.8944271909999159) * t1648
+                            + k(0.4472135954999579) * t1647));
+            let t1652 = t1395 * t1651 - t1646;
+            let t1653 = k(0.0031830988618379067) * t1652
+                - (t1434 * t1640 - t1638 - t1639 + t1626);
+            let t1654 = t1608
+                * (k(0.4472135954999579) * t1606 - k(0.8944271909999159) * t1605);
+            let t1655 = k(1.7888543819998317) * t1371 - k(0.8944271909999159) * t1376;
+            let t1656 = t1655 * t1611 + t1654
+                + (t1654
+                    + t1603
+                        * (k(0.8944271909999159) * t1599
+                            + k(0.4472135954999579) * t1598));
+            let t1657 = t1622
+                * (k(0.4472135954999579) * t1620 - k(0.8944271909999159) * t1619);
+            let t1658 = k(1.7888543819998317) * t1367 - k(0.8944271909999159) * t1378;
+            let t1659 = t1658 * t1625 - t1657
+                - (t1657
+                    + t1617
+                        * (k(0.8944271909999159) * t1613
+                            + k(0.4472135954999579) * t1612));
+            let t1660 = t1637
+                * (k(0.4472135954999579) * t1635 - k(0.8944271909999159) * t1634);
+            let t1661 = k(1.7888543819998317) * t1373 + k(0.8944271909999159) * t1380;
+            let t1662 = t1661 * t1640 + t1660
+                + (t1660
+                    + t1632
+                        * (k(0.8944271909999159) * t1628
+                            + k(0.4472135954999579) * t1627));
+            let t1663 = t1662 + (t1659 - t1656);
+            let t1664 = (k(0.5962847939999439) * t1606 + k(0.29814239699997197) * t1605
+                - k(0.7453559924999299) * t1604) * t1608;
+            let t1665 = t1664
+                + t1603
+                    * (k(0.7453559924999299) * t1600
+                        - (k(0.29814239699997197) * t1599
+                            - k(0.5962847939999439) * t1598));
+            let t1666 = k(1.4907119849998598) * t1364
+                + (k(0.5962847939999439) * t1371 + k(1.1925695879998879) * t1376);
+            let t1667 = (k(0.5962847939999439) * t1620 + k(0.29814239699997197) * t1619
+                + k(0.7453559924999299) * t1618) * t1622;
+            let t1668 = t1667
+                + t1617
+                    * (k(0.7453559924999299) * t1614
+                        - (k(0.29814239699997197) * t1613
+                            - k(0.5962847939999439) * t1612));
+            let t1669 = k(1.4907119849998598) * t1360
+                - (k(0.5962847939999439) * t1367 + k(1.1925695879998879) * t1378);
+            let t1670 = t1669 * t1625 - t1667 - t1668 + (t1666 * t1611 - t1664 - t1665);
+            let t1671 = (k(0.5962847939999439) * t1635 + k(0.29814239699997197) * t1634
+                + k(0.7453559924999299) * t1633) * t1637;
+            let t1672 = t1671
+                + t1632
+                    * (k(0.7453559924999299) * t1629
+                        - (k(0.29814239699997197) * t1628
+                            - k(0.5962847939999439) * t1627));
+            let t1673 = k(1.4907119849998598) * t1356
+                - (k(0.5962847939999439) * t1373 - k(1.1925695879998879) * t1380);
+            let t1674 = t1673 * t1640 + t1671 + t1672 + t1670;
+            let t1675 = t1666 * t1674 - t1655 * t1663 - t1407 * t1653
+                + t1597 * (t1407 * t1596);
+            let t1676 = t1675 - t1592 * (t1407 * t1553);
+            let t1677 = t1477 * t1525;
+            let t1678 = t1477 * t1677;
+            let t1679 = t1669 * t1674 + t1658 * t1663 - t1420 * t1653
+                + t1597 * (t1420 * t1596);
+            let t1680 = t1679 - t1592 * (t1420 * t1553);
+            let t1681 = t1487 * t1677;
+            let t1682 = t1673 * t1674 + t1661 * t1663 - t1434 * t1653
+                + t1597 * (t1434 * t1596);
+            let t1683 = t1682 - t1592 * (t1434 * t1553);
+            let t1684 = t1497 * t1677;
+            let t1685 = t1684 * t1683 + (t1681 * t1680 - t1678 * t1676) + k(0.5) * t1676;
+            let t1686 = t1470 - t1511 * t1677;
+            let t1687 = t1592 * t1547 - t1597 * t1593;
+            let t1688 = t1473 + t1519 * t1677;
+            let t1689 = t1592 * t1549 - t1597 * t1594;
+            let t1690 = t1476 - t1523 * t1677;
+            let t1691 = t1551 * t1592 - t1595 * t1597;
+            let t1692 = t1691 * t1690 - (t1689 * t1688 - t1687 * t1686) - t1685
+                + (t1354 - t1477 * t1526);
+            let t1693 = slide_sx + k(0.1) * (t1606 + t1604)
+                - (slide_sy + k(0.1) * (t1620 - t1618));
+            let t1694 = k(0.23570226039551584) * t1693
+                + k(0.9428090415820634) * (slide_sz - k(0.1) * (t1635 - t1633));
+            let t1695 = k(0.11785113019775792) * t1694;
+            let t1696 = t1487 * t1525;
+            let t1697 = t1487 * t1696;
+            let t1698 = t1497 * t1696;
+            let t1699 = t1698 * t1683 + (t1697 * t1680 - t1681 * t1676) - k(0.5) * t1680;
+            let t1700 = t1480 - t1511 * t1696;
+            let t1701 = t1483 - t1519 * t1696;
+            let t1702 = t1486 - t1523 * t1696;
+            let t1703 = t1691 * t1702 + (t1689 * t1701 + t1687 * t1700) - t1699
+                + (t1417 - t1487 * t1526);
+            let t1704 = t1497 * t1525;
+            let t1705 = t1497 * t1704;
+            let t1706 = t1705 * t1683 + (t1698 * t1680 - t1684 * t1676) - k(0.5) * t1683;
+            let t1707 = t1490 - t1511 * t1704;
+            let t1708 = t1493 - t1519 * t1704;
+            let t1709 = t1496 - t1523 * t1704;
+            let t1710 = t1691 * t1709 + (t1689 * t1708 + t1687 * t1707) - t1706
+                + (t1433 - t1497 * t1526);
+            let t1711 = k(0.9428090415820634)
+                * (t1710 + (k(0.8) * self.gravity + k(0.4714045207910317) * t1694))
+                + k(0.23570226039551584) * (t1703 + t1695 + (t1695 + t1692));
+            let t1712 = t1600 - t1598;
+            let t1713 = t1614 - t1612;
+            let t1714 = k(0.05) * (t1713 + t1712);
+            let t1715 = k(0.03333333333333333) * (t1629 - t1627)
+                - k(0.06666666666666667) * (t1713 - t1712);
+            let t1716 = k(0.6666666666666666) * t1715;
+            let t1717 = t1716 + t1714;
+            let t1718 = k(0.3064129385141706)
+                - (k(0.9428090415820634) * t1684
+                    + k(0.23570226039551584) * (t1681 + t1678));
+            let t1719 = t1716 - t1714;
+            let t1720 = k(0.3064129385141706)
+                - (k(0.9428090415820634) * t1698
+                    + k(0.23570226039551584) * (t1697 + t1681));
+            let t1721 = k(0.3333333333333333) * t1715;
+            let t1722 = k(1.2256517540566825)
+                - (k(0.9428090415820634) * t1705
+                    + k(0.23570226039551584) * (t1698 + t1684));
+            let t1723 = slide_rx - t1602;
+            let t1724 = slide_ry - t1616;
+            let t1725 = slide_rz - t1631;
+            let t1726 = t1357 * t1725 - (t1361 * t1724 + t1365 * t1723);
+            let t1727 = t1374 * t1725 - (t1368 * t1724 - t1372 * t1723);
+            let t1728 = t1365 * t1727 + t1372 * t1726;
+            let t1729 = t1361 * t1727 - t1368 * t1726;
+            let t1730 = t1357 * t1727 - t1374 * t1726;
+            let t1731 = t1684 * t1730 + (t1681 * t1729 - t1678 * t1728) + k(0.5) * t1728;
+            let t1732 = k(0.2) * t1371;
+            let t1733 = k(0.2) * t1367;
+            let t1734 = k(0.2) * t1373;
+            let t1735 = t1734 * t1684 + (t1733 * t1681 + t1732 * t1678)
+                - k(0.26) * t1371;
+            let t1736 = t1735
+                - (t1731 + (t1382 * t1690 + (t1384 * t1688 + t1383 * t1686)));
+            let t1737 = t1698 * t1730 + (t1697 * t1729 - t1681 * t1728) - k(0.5) * t1729;
+            let t1738 = t1734 * t1698 + (t1733 * t1697 + t1732 * t1681)
+                - k(0.26) * t1367;
+            let t1739 = t1738
+                - (t1737 + (t1382 * t1702 - (t1384 * t1701 - t1383 * t1700)));
+            let t1740 = t1705 * t1730 + (t1698 * t1729 - t1684 * t1728) - k(0.5) * t1730;
+            let t1741 = t1734 * t1705 + (t1733 * t1698 + t1732 * t1684)
+                - k(0.26) * t1373;
+            let t1742 = t1741
+                - (t1740 + (t1382 * t1709 - (t1384 * t1708 - t1383 * t1707)));
+            let t1743 = k(0.31426968052735443) * (t1615 + t1601)
+                + k(0.15713484026367722) * t1630;
+            let t1744 = k(0.4714045207910317) * t1360;
+            let t1745 = t1744 - k(1.8856180831641267) * t1378;
+            let t1746 = k(0.4714045207910317) * t1364;
+            let t1747 = t1746 + k(1.8856180831641267) * t1376;
+            let t1748 = k(0.7071067811865476) * (t1747 + t1745);
+            let t1749 = k(0.4714045207910317) * t1356;
+            let t1750 = k(0.6666666666666666) * (t1747 - t1745)
+                + k(0.3333333333333333) * (t1749 + k(1.8856180831641267) * t1380);
+            let t1751 = t1615 - t1601;
+            let t1752 = k(0.3333333333333333) * t1751;
+            let t1753 = t1752 * t1750 + t1748 * t1743;
+            let t1754 = k(0.7071067811865476) * (t1406 - t1405 + (t1419 + t1418));
+            let t1755 = t1744 - k(1.8856180831641267) * t1367;
+            let t1756 = t1746 + k(1.8856180831641267) * t1371;
+            let t1757 = k(0.6666666666666666) * (t1756 - t1755)
+                + k(0.3333333333333333) * (t1749 - k(1.8856180831641267) * t1373);
+            let t1758 = k(0.7071067811865476) * (t1756 + t1755);
+            let t1759 = t1758 * t1743 + t1752 * t1757;
+            let t1760 = k(0.7071067811865476)
+                * (t1406 - k(0.6666666666666666) * t1376
+                    + (t1419 + k(0.6666666666666666) * t1378));
+            let t1761 = t1748 * t1757 - t1758 * t1750;
+            let t1762 = k(0.9428090415820634) * t1751;
+            let t1763 = k(1.0) / (t1762 * t1761 - (t1760 * t1759 - t1754 * t1753));
+            let t1764 = t1599 - t1598;
+            let t1765 = t1613 - t1612;
+            let t1766 = k(0.3333333333333333) * t1614 - k(0.6666666666666666) * t1765
+                + (k(0.3333333333333333) * t1600 - k(0.6666666666666666) * t1764);
+            let t1767 = k(0.7071067811865476) * t1766;
+            let t1768 = k(0.9428090415820634) * t1600 + k(0.23570226039551584) * t1764;
+            let t1769 = k(0.9428090415820634) * t1614 + k(0.23570226039551584) * t1765;
+            let t1770 = k(0.7071067811865476) * (t1769 + t1768);
+            let t1771 = k(0.3333333333333333)
+                * (k(0.9428090415820634) * t1629
+                    + k(0.23570226039551584) * (t1628 - t1627))
+                - k(0.6666666666666666) * (t1769 - t1768);
+            let t1772 = t1771 * (t1763 * (t1748 * t1762 - t1752 * t1760))
+                - t1770 * (t1763 * (t1743 * t1760 + t1750 * t1762));
+            let t1773 = t1772 - t1767 * (t1753 * t1763);
+            let t1774 = t1381 * t1725 + (t1379 * t1724 - t1377 * t1723);
+            let t1775 = t1365 * t1774 - t1377 * t1726;
+            let t1776 = t1361 * t1774 + t1379 * t1726;
+            let t1777 = t1357 * t1774 - t1381 * t1726;
+            let t1778 = t1684 * t1777 + (t1681 * t1776 - t1678 * t1775) + k(0.5) * t1775;
+            let t1779 = t1376 + t1364;
+            let t1780 = k(0.2) * t1779;
+            let t1781 = t1378 - t1360;
+            let t1782 = k(0.2) * t1781;
+            let t1783 = t1380 + t1356;
+            let t1784 = k(0.2) * t1783;
+            let t1785 = t1784 * t1684 - (t1782 * t1681 + t1780 * t1678)
+                + k(0.26) * t1779;
+            let t1786 = t1785
+                - (t1778 - (t1375 * t1690 + (t1387 * t1688 + t1386 * t1686)));
+            let t1787 = t1698 * t1777 + (t1697 * t1776 - t1681 * t1775) - k(0.5) * t1776;
+            let t1788 = t1784 * t1698 - (t1782 * t1697 + t1780 * t1681)
+                + k(0.26) * t1781;
+            let t1789 = t1788
+                - (t1787 - (t1375 * t1702 - (t1387 * t1701 - t1386 * t1700)));
+            let t1790 = t1705 * t1777 + (t1698 * t1776 - t1684 * t1775) - k(0.5) * t1777;
+            let t1791 = t1784 * t1705 - (t1782 * t1698 + t1780 * t1684)
+                - k(0.26) * t1783;
+            let t1792 = t1791
+                - (t1790 - (t1375 * t1709 - (t1387 * t1708 - t1386 * t1707)));
+            let t1793 = t1771 * (t1763 * (t1752 * t1754 - t1758 * t1762))
+                + t1770 * (t1763 * (t1757 * t1762 + t1743 * t1754));
+            let t1794 = t1793 + t1767 * (t1759 * t1763);
+            let t1795 = t1794
+                * (k(0.9428090415820634) * t1792
+                    + k(0.23570226039551584) * (t1789 + t1786))
+                - t1773
+                    * (k(0.9428090415820634) * t1742
+                        + k(0.23570226039551584) * (t1739 + t1736));
+            let t1796 = t1372 * t1774 + t1377 * t1727;
+            let t1797 = t1368 * t1774 + t1379 * t1727;
+            let t1798 = t1374 * t1774 - t1381 * t1727;
+            let t1799 = t1684 * t1798 + (t1681 * t1797 + t1678 * t1796) - k(0.5) * t1796;
             (
-                t1649,
-                t1650,
-                t1651,
+                t1605,
+                t1613,
+                t1619,
+                t1628,
+                t1634,
                 t1652,
-                t1656,
-                t1663,
-                t1664,
-                t1665,
-                t1666,
-                t1670,
-                t1678,
-                t1679,
+                t1676,
                 t1680,
-                t1685,
-                t1703,
-                t1727,
+                t1681,
+                t1683,
+                t1684,
+                t1686,
+                t1687,
+                t1688,
+                t1689,
+                t1690,
+                t1691,
+                t1697,
+                t1698,
+                t1700,
+                t1701,
+                t1702,
+                t1705,
+                t1707,
+                t1708,
+                t1709,
+                t1711,
+                t1717,
+                t1718,
+                t1719,
+                t1720,
+                t1721,
+                t1722,
+                t1728,
                 t1729,
-                t1731,
+                t1730,
                 t1732,
+                t1733,
                 t1734,
                 t1735,
-                t1737,
                 t1738,
-                t1739,
-                t1740,
                 t1741,
-                t1742,
                 t1748,
-                t1749,
-                t1751,
-                t1752,
-                t1753,
-                t1756,
+                t1750,
+                t1754,
+                t1757,
                 t1758,
-                t1759,
                 t1760,
-                t1762,
-                t1768,
-                t1769,
+                t1761,
+                t1763,
+                t1767,
                 t1770,
                 t1771,
-                t1772,
                 t1773,
-                t1774,
                 t1775,
                 t1776,
                 t1777,
-                t1778,
-                t1779,
                 t1780,
-                t1781,
-                t1783,
+                t1782,
                 t1784,
-                t1785,
-                t1786,
-                t1787,
-                t1789,
-                t1790,
-                t1792,
-                t1793,
                 t1794,
                 t1795,
                 t1796,
@@ -14322,548 +14404,576 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             )
         };
         let (
+            t1806,
+            t1808,
+            t1811,
+            t1813,
+            t1815,
+            t1822,
             t1824,
-            t1845,
-            t1857,
-            t1859,
-            t1862,
+            t1826,
+            t1827,
+            t1828,
+            t1829,
+            t1830,
+            t1831,
+            t1832,
+            t1833,
+            t1835,
+            t1836,
+            t1837,
+            t1838,
+            t1840,
+            t1841,
             t1864,
-            t1866,
-            t1873,
+            t1865,
+            t1867,
+            t1868,
+            t1871,
+            t1872,
+            t1874,
             t1875,
-            t1877,
-            t1878,
-            t1879,
-            t1880,
-            t1881,
-            t1882,
-            t1883,
-            t1884,
-            t1885,
-            t1887,
-            t1888,
+            t1876,
             t1889,
             t1890,
-            t1891,
+            t1892,
             t1893,
-            t1894,
             t1895,
+            t1896,
             t1897,
+            t1898,
             t1899,
             t1901,
+            t1902,
             t1904,
             t1905,
-            t1906,
-            t1909,
-            t1910,
-            t1911,
-            t1915,
             t1916,
             t1917,
-            t1918,
-            t1919,
-            t1921,
-            t1922,
-            t1923,
             t1924,
             t1925,
+            t1926,
             t1927,
+            t1928,
             t1929,
-            t1930,
-            t1931,
             t1932,
-            t1933,
             t1935,
-            t1937,
             t1938,
-            t1939,
-            t1940,
-            t1941,
-            t1943,
-            t1945,
-            t1946,
-            t1948,
+            t1942,
+            t1947,
             t1949,
-            t1952,
+            t1951,
             t1953,
-            t1955,
+            t1954,
             t1956,
             t1957,
-            t1970,
+            t1960,
+            t1961,
+            t1963,
+            t1964,
+            t1966,
+            t1967,
             t1971,
+            t1972,
             t1973,
-            t1974,
-            t1976,
-            t1977,
-            t1978,
-            t1979,
-            t1980,
-            t1982,
-            t1983,
-            t1985,
             t1986,
             t1987,
             t1988,
-            t1997,
+            t1989,
+            t1990,
+            t1992,
+            t1993,
+            t1994,
+            t1995,
+            t1996,
             t1998,
             t1999,
         ) = {
-            let t1800 = k(0.4714045207910317) * t1401;
-            let t1801 = k(0.6666666666666666) * (t1798 - t1796)
-                + k(0.3333333333333333) * (t1800 + k(1.8856180831641267) * t1425);
-            let t1802 = t1666 - t1652;
-            let t1803 = k(0.3333333333333333) * t1802;
-            let t1804 = t1803 * t1801 + t1799 * t1794;
-            let t1805 = k(0.7071067811865476) * (t1451 - t1450 + (t1467 + t1466));
-            let t1806 = t1795 - k(1.8856180831641267) * t1412;
-            let t1807 = t1797 + k(1.8856180831641267) * t1416;
-            let t1808 = k(0.6666666666666666) * (t1807 - t1806)
-                + k(0.3333333333333333) * (t1800 - k(1.8856180831641267) * t1418);
-            let t1809 = k(0.7071067811865476) * (t1807 + t1806);
-            let t1810 = t1809 * t1794 + t1803 * t1808;
-            let t1811 = k(0.7071067811865476)
-                * (t1451 - k(0.6666666666666666) * t1421
-                    + (t1467 + k(0.6666666666666666) * t1423));
-            let t1812 = t1799 * t1808 - t1809 * t1801;
-            let t1813 = k(0.9428090415820634) * t1802;
-            let t1814 = k(1.0) / (t1813 * t1812 - (t1811 * t1810 - t1805 * t1804));
-            let t1815 = t1649 - t1650;
-            let t1816 = t1663 - t1664;
-            let t1817 = k(0.3333333333333333) * t1665 + k(0.6666666666666666) * t1816
-                + (k(0.3333333333333333) * t1651 + k(0.6666666666666666) * t1815);
-            let t1818 = k(0.7071067811865476) * t1817;
-            let t1819 = k(0.9428090415820634) * t1651 - k(0.23570226039551584) * t1815;
-            let t1820 = k(0.9428090415820634) * t1665 - k(0.23570226039551584) * t1816;
-            let t1821 = k(0.7071067811865476) * (t1820 + t1819);
-            let t1822 = k(0.3333333333333333)
-                * (k(0.9428090415820634) * t1680
-                    - k(0.23570226039551584) * (t1678 - t1679))
-                - k(0.6666666666666666) * (t1820 - t1819);
-            let t1823 = t1822 * (t1814 * (t1799 * t1813 - t1803 * t1811))
-                - t1821 * (t1814 * (t1794 * t1811 + t1801 * t1813));
-            let t1824 = t1823 - t1818 * (t1804 * t1814);
-            let t1825 = t1426 * t1776 + (t1424 * t1775 - t1422 * t1774);
-            let t1826 = t1410 * t1825 - t1422 * t1777;
-            let t1827 = t1406 * t1825 + t1424 * t1777;
-            let t1828 = t1402 * t1825 - t1426 * t1777;
-            let t1829 = t1735 * t1828 + (t1732 * t1827 - t1729 * t1826) + k(0.5) * t1826;
-            let t1830 = t1421 + t1409;
-            let t1831 = k(0.2) * t1830;
-            let t1832 = t1423 - t1405;
-            let t1833 = k(0.2) * t1832;
-            let t1834 = t1425 + t1401;
-            let t1835 = k(0.2) * t1834;
-            let t1836 = t1835 * t1735 - (t1833 * t1732 + t1831 * t1729)
-                + k(0.26) * t1830;
-            let t1837 = t1836
-                - (t1829 - (t1420 * t1741 + (t1432 * t1739 + t1431 * t1737)));
-            let t1838 = t1749 * t1828 + (t1748 * t1827 - t1732 * t1826) - k(0.5) * t1827;
-            let t1839 = t1835 * t1749 - (t1833 * t1748 + t1831 * t1732)
-                + k(0.26) * t1832;
-            let t1840 = t1839
-                - (t1838 - (t1420 * t1753 - (t1432 * t1752 - t1431 * t1751)));
-            let t1841 = t1756 * t1828 + (t1749 * t1827 - t1735 * t1826) - k(0.5) * t1828;
-            let t1842 = t1835 * t1756 - (t1833 * t1749 + t1831 * t1735)
-                - k(0.26) * t1834;
-            let t1843 = t1842
-                - (t1841 - (t1420 * t1760 - (t1432 * t1759 - t1431 * t1758)));
-            let t1844 = t1822 * (t1814 * (t1803 * t1805 - t1809 * t1813))
-                + t1821 * (t1814 * (t1808 * t1813 + t1794 * t1805));
-            let t1845 = t1844 + t1818 * (t1810 * t1814);
-            let t1846 = t1845
-                * (k(0.9428090415820634) * t1843
-                    + k(0.23570226039551584) * (t1840 + t1837))
-                - t1824
-                    * (k(0.9428090415820634) * t1793
-                        + k(0.23570226039551584) * (t1790 + t1787));
-            let t1847 = t1417 * t1825 + t1422 * t1778;
-            let t1848 = t1413 * t1825 + t1424 * t1778;
-            let t1849 = t1419 * t1825 - t1426 * t1778;
-            let t1850 = t1735 * t1849 + (t1732 * t1848 + t1729 * t1847) - k(0.5) * t1847;
-            let t1851 = t1786
-                - (t1850 + (t1411 * t1741 + (t1436 * t1739 + t1435 * t1737)));
-            let t1852 = t1749 * t1849 + (t1748 * t1848 + t1732 * t1847) - k(0.5) * t1848;
-            let t1853 = t1789
-                - (t1852 + (t1411 * t1753 - (t1436 * t1752 - t1435 * t1751)));
-            let t1854 = t1756 * t1849 + (t1749 * t1848 + t1735 * t1847) - k(0.5) * t1849;
-            let t1855 = t1792
-                - (t1854 + (t1411 * t1760 - (t1436 * t1759 - t1435 * t1758)));
-            let t1856 = t1822 * (t1814 * (t1809 * t1811 - t1799 * t1805))
-                + t1821 * (t1814 * (t1801 * t1805 - t1808 * t1811));
-            let t1857 = t1856 - t1818 * (t1812 * t1814);
-            let t1858 = t1857
-                * (k(0.9428090415820634) * t1855
-                    + k(0.23570226039551584) * (t1853 + t1851)) - t1846
-                - (t1773 * t1772 - (t1771 * t1770 + t1769 * t1768));
-            let t1859 = k(1.0)
-                / (k(0.9428090415820634) * t1773
-                    + k(0.23570226039551584) * (t1771 + t1769));
-            let t1860 = t1859 * (t1858 - t1762);
-            let t1861 = k(0.23570226039551584) * t1860;
-            let t1862 = t1783 * t1857 + (t1831 * t1845 + t1783 * t1824)
-                - (t1768 - t1861);
-            let t1863 = t1727
-                + (t1857 * t1847 + (t1845 * t1826 - t1824 * t1779) - t1862);
-            let t1864 = t1784 * t1857 + (t1833 * t1845 + t1784 * t1824)
-                - (t1770 - t1861);
-            let t1865 = t1731
-                - (t1857 * t1848 - (t1845 * t1827 - t1824 * t1780) - t1864);
-            let t1866 = t1785 * t1857 - (t1835 * t1845 - t1785 * t1824)
-                + (t1772 + k(0.9428090415820634) * t1860);
-            let t1867 = t1734
-                - (t1857 * t1849 - (t1845 * t1828 - t1824 * t1781) - t1866);
-            let t1868 = t1435 * t1857 + (t1431 * t1845 + t1428 * t1824) + t1738;
-            let t1869 = t1436 * t1857 + (t1432 * t1845 + t1429 * t1824) - t1740;
-            let t1870 = t1411 * t1857 + (t1420 * t1845 + t1427 * t1824) + t1742;
-            let t1871 = t1574 * t1870 - (t1570 * t1869 - t1562 * t1868)
-                + (t1548 * t1867 + (t1538 * t1865 - t1528 * t1863));
-            let t1872 = t1576 * (t1518 + t1871);
-            let t1873 = t1869 - k(0.3333333333333333) * t1872;
-            let t1874 = k(0.6666666666666666) * t1872;
-            let t1875 = t1868 + t1874;
-            let t1876 = t1496 * t1875;
-            let t1877 = t1870 - t1874;
-            let t1878 = t1496 * t1877 + (t1876 + t1507 * t1873)
-                - (t1863 + t1453 * t1872);
-            let t1879 = t1386 + (t1378 * t1877 + (t1350 * t1873 + t1355 * t1875));
-            let t1880 = k(0.2) * t1326;
-            let t1881 = t1388 + (t1379 * t1877 + (t1362 * t1873 + t1364 * t1875));
-            let t1882 = t1397 + (t1377 * t1877 + (t1372 * t1873 + t1371 * t1875));
-            let t1883 = k(0.1) * t1326;
-            let t1884 = t1883 * t1882 + (t1390 * t1881 + t1880 * t1879)
-                - (t1339 - (t1514 * t1877 + (t1502 * t1873 + t1876) + t1878));
-            let t1885 = k(1.7888543819998317) * t1326 - k(0.8944271909999159) * t1321;
-            let t1886 = t1497 * t1875;
-            let t1887 = t1497 * t1877 + (t1886 + t1509 * t1873)
-                + (t1865 + t1469 * t1872);
-            let t1888 = k(0.2) * t1356;
-            let t1889 = k(0.1) * t1356;
-            let t1890 = t1889 * t1882 - (t1462 * t1881 - t1888 * t1879)
-                + (t1459 + (t1515 * t1877 - (t1503 * t1873 - t1886) + t1887));
-            let t1891 = k(1.7888543819998317) * t1356 - k(0.8944271909999159) * t1340;
-            let t1892 = t1495 * t1875;
-            let t1893 = t1495 * t1877 + (t1892 - t1511 * t1873)
-                + (t1867 + t1486 * t1872);
-            let t1894 = t1492 * t1882 - (t1478 * t1881 - t1487 * t1879)
-                + (t1475 + (t1516 * t1877 - (t1504 * t1873 - t1892) + t1893));
-            let t1895 = k(1.7888543819998317) * t1360 + k(0.8944271909999159) * t1344;
-            let t1896 = t1487 * t1895;
-            let t1897 = puck_rz - t652 - (lid_rz + (k(0.4) * t1344 + k(0.2) * t1369));
-            let t1898 = t1888 * t1891;
-            let t1899 = puck_ry - t651 - (lid_ry + (k(0.4) * t1340 - k(0.2) * t1367));
-            let t1900 = t1880 * t1885;
-            let t1901 = puck_rx + t650 - (lid_rx - (k(0.4) * t1321 + k(0.2) * t1331));
-            let t1902 = k(1.7888543819998317) * t1331 * t1901 - t1900
-                + (k(1.7888543819998317) * t1367 * t1899 - t1898);
-            let t1903 = t1902 - (k(1.7888543819998317) * t1369 * t1897 + t1896);
-            let t1904 = t1477 - k(0.4) * t1369;
-            let t1905 = t1461 + k(0.4) * t1367;
-            let t1906 = t1389 - k(0.4) * t1331;
-            let t1907 = t1901 * (k(0.8944271909999159) * t1331) + t1885 * t1906
-                + (t1899 * (k(0.8944271909999159) * t1367) + t1891 * t1905);
-            let t1908 = t1907
-                - (t1897 * (k(0.8944271909999159) * t1369) + t1895 * t1904);
-            let t1909 = k(0.4) * t1360;
-            let t1910 = k(0.4) * t1356;
-            let t1911 = k(0.4) * t1326;
-            let t1912 = t1901
-                * (k(0.8944271909999159) * t1326 + k(1.7888543819998317) * t1321)
-                - t1885 * t1911
-                - (t1899
-                    * (k(0.8944271909999159) * t1356 + k(1.7888543819998317) * t1340)
-                    + t1891 * t1910);
-            let t1913 = t1912
-                + (t1897
-                    * (k(0.8944271909999159) * t1360 - k(1.7888543819998317) * t1344)
-                    - t1895 * t1909);
-            let t1914 = t1913 * t1882 + (t1908 * t1881 - t1903 * t1879)
-                - (t1895 * t1894 + (t1891 * t1890 + t1885 * t1884));
-            let t1915 = k(0.2) * t492;
-            let t1916 = k(0.2) * t485;
-            let t1917 = k(0.2) * t476;
-            let t1918 = t1885 * t1917 - t1891 * t1916 - t1895 * t1915;
-            let t1919 = t593 * t1885 + t597 * t1891 + t601 * t1895;
-            let t1920 = t1919 * t752 + t1918 * t751
-                + (t1895 * t767 + (t1891 * t764 - t1885 * t761));
-            let t1921 = t1332 * t1334 - (t1327 * t1393 + t1322 * t1323);
-            let t1922 = t1332 * lid_wx + t1322 * lid_wz;
-            let t1923 = t1332 * lid_wy - t1327 * lid_wz;
-            let t1924 = t1327 * lid_wx + t1322 * lid_wy;
-            let t1925 = lid_sx - (k(0.2) * t1923 - k(0.1) * t1924)
-                - (puck_sx + k(0.1) * (t477 * puck_wy - t470 * puck_wz));
-            let t1926 = t1925
-                * (k(0.4472135954999579) * t1923 - k(0.8944271909999159) * t1922);
-            let t1927 = k(0.1) * t711 + (t1338 + k(0.2) * t1333);
-            let t1928 = t1885 * t1927 - t1926
-                - (t1926
-                    + t1901
-                        * (k(0.8944271909999159) * t1921
-                            + k(0.4472135954999579) * t1333));
-            let t1929 = t1368 * t1334 + (t1357 * t1393 + t1341 * t1323);
-            let t1930 = t1368 * lid_wx - t1341 * lid_wz;
-            let t1931 = t1368 * lid_wy + t1357 * lid_wz;
-            let t1932 = t1357 * lid_wx + t1341 * lid_wy;
-            let t1933 = lid_sy - (k(0.2) * t1931 + k(0.1) * t1932)
-                - (puck_sy + k(0.1) * (t486 * puck_wy + t482 * puck_wz));
-            let t1934 = t1933
-                * (k(0.4472135954999579) * t1931 - k(0.8944271909999159) * t1930);
-            let t1935 = k(0.1) * t717 + (t1458 + k(0.2) * t1456);
-            let t1936 = t1891 * t1935 + t1934
-                + (t1934
-                    + t1899
-                        * (k(0.8944271909999159) * t1929
-                            + k(0.4472135954999579) * t1456));
-            let t1937 = t1370 * t1334 + (t1361 * t1393 - t1345 * t1323);
-            let t1938 = t1370 * lid_wx + t1345 * lid_wz;
-            let t1939 = t1370 * lid_wy + t1361 * lid_wz;
-            let t1940 = t1361 * lid_wx - t1345 * lid_wy;
-            let t1941 = lid_sz + (k(0.2) * t1939 + k(0.1) * t1940)
-                - (puck_sz - k(0.1) * (t493 * puck_wy + t491 * puck_wz));
-            let t1942 = t1941
-                * (k(0.4472135954999579) * t1939 - k(0.8944271909999159) * t1938);
-            let t1943 = k(0.1) * t713 + (t1474 + k(0.2) * t1472);
-            let t1944 = t1895 * t1943 - t1942
-                - (t1942
-                    + t1897
-                        * (k(0.8944271909999159) * t1937
-                            + k(0.4472135954999579) * t1472));
-            let t1945 = t1919 * t893 - t1918 * t892
-                - (t1895 * t907 - (t1891 * t904 + t1885 * t901));
-            let t1946 = t922 * t1945;
-            let t1947 = t1919 * t1016 - t1918 * t1015
-                - (t1895 * t1030 - (t1891 * t1027 + t1885 * t1024));
-            let t1948 = t949 * t1946 - t1947;
-            let t1949 = t1045 * t1948;
-            let t1950 = t1949 * t951
-                - (t1946 * t828 - (t1944 + (t1936 - t1928) - (t1920 - t1914)));
-            let t1951 = t1919 * t1159 - t1918 * t1158
-                - (t1895 * t1173 - (t1891 * t1170 + t1885 * t1167));
-            let t1952 = t1100 * t1949 - (t1097 * t1946 - t1951);
-            let t1953 = t1185 * t1952;
-            let t1954 = t1919 * t1269 - t1918 * t1268
-                - (t1895 * t1283 - (t1891 * t1280 + t1885 * t1277));
-            let t1955 = t1210 * t1953 - (t1206 * t1949 - (t1203 * t1946 - t1954));
-            let t1956 = t1295 * t1955;
-            let t1957 = t1956 * t1212 - (t1953 * t1102 - t1950);
-            let t1958 = t1903 + (t1896 + (t1900 + t1898));
-            let t1959 = t1908 + (t1478 * t1895 + (t1462 * t1891 - t1390 * t1885));
-            let t1960 = t1913 - (t1492 * t1895 + (t1889 * t1891 + t1883 * t1885));
-            let t1961 = t1495 * t1895 + (t1497 * t1891 + t1496 * t1885);
-            let t1962 = t1961
-                + (t1961 - (t1371 * t1960 + (t1364 * t1959 - t1355 * t1958)));
-            let t1963 = t1504 * t1895 + (t1503 * t1891 - t1502 * t1885)
-                + (t1372 * t1960 + (t1362 * t1959 - t1350 * t1958));
-            let t1964 = k(0.3333333333333333)
-                * (t1511 * t1895 - (t1509 * t1891 + t1507 * t1885) + t1963);
-            let t1965 = t1516 * t1895 + (t1515 * t1891 + t1514 * t1885)
-                - (t1377 * t1960 + (t1379 * t1959 - t1378 * t1958));
-            let t1966 = k(0.6666666666666666) * (t1965 + t1961)
-                - (t1964 + k(0.6666666666666666) * t1962)
-                - (t1895 * t1486 + (t1891 * t1469 - t1885 * t1453));
-            let t1967 = t1966 * t1576;
-            let t1968 = k(0.9428090415820634) * (t1895 - t1548 * t1967)
+            let t1800 = t1735
+                - (t1799 + (t1366 * t1690 + (t1391 * t1688 + t1390 * t1686)));
+            let t1801 = t1698 * t1798 + (t1697 * t1797 + t1681 * t1796) - k(0.5) * t1797;
+            let t1802 = t1738
+                - (t1801 + (t1366 * t1702 - (t1391 * t1701 - t1390 * t1700)));
+            let t1803 = t1705 * t1798 + (t1698 * t1797 + t1684 * t1796) - k(0.5) * t1798;
+            let t1804 = t1741
+                - (t1803 + (t1366 * t1709 - (t1391 * t1708 - t1390 * t1707)));
+            let t1805 = t1763 * (t1758 * t1760 - t1748 * t1754) * t1771
+                + t1763 * (t1750 * t1754 - t1757 * t1760) * t1770;
+            let t1806 = t1805 - t1761 * t1763 * t1767;
+            let t1807 = t1806
+                * (k(0.9428090415820634) * t1804
+                    + k(0.23570226039551584) * (t1802 + t1800)) - t1795
+                - (t1722 * t1721 - (t1720 * t1719 + t1718 * t1717));
+            let t1808 = k(1.0)
+                / (k(0.9428090415820634) * t1722
+                    + k(0.23570226039551584) * (t1720 + t1718));
+            let t1809 = t1808 * (t1807 - t1711);
+            let t1810 = k(0.23570226039551584) * t1809;
+            let t1811 = t1732 * t1806 + (t1780 * t1794 + t1732 * t1773)
+                - (t1717 - t1810);
+            let t1812 = t1676
+                + (t1806 * t1796 + (t1794 * t1775 - t1773 * t1728) - t1811);
+            let t1813 = t1733 * t1806 + (t1782 * t1794 + t1733 * t1773)
+                - (t1719 - t1810);
+            let t1814 = t1680
+                - (t1806 * t1797 - (t1794 * t1776 - t1773 * t1729) - t1813);
+            let t1815 = t1734 * t1806 - (t1784 * t1794 - t1734 * t1773)
+                + (t1721 + k(0.9428090415820634) * t1809);
+            let t1816 = t1683
+                - (t1806 * t1798 - (t1794 * t1777 - t1773 * t1730) - t1815);
+            let t1817 = t1390 * t1806 + (t1386 * t1794 + t1383 * t1773) + t1687;
+            let t1818 = t1391 * t1806 + (t1387 * t1794 + t1384 * t1773) - t1689;
+            let t1819 = t1366 * t1806 + (t1375 * t1794 + t1382 * t1773) + t1691;
+            let t1820 = t1523 * t1819 - (t1519 * t1818 - t1511 * t1817)
+                + (t1497 * t1816 + (t1487 * t1814 - t1477 * t1812));
+            let t1821 = t1525 * (t1467 + t1820);
+            let t1822 = t1818 - k(0.3333333333333333) * t1821;
+            let t1823 = k(0.6666666666666666) * t1821;
+            let t1824 = t1817 + t1823;
+            let t1825 = t1445 * t1824;
+            let t1826 = t1819 - t1823;
+            let t1827 = t1445 * t1826 + (t1825 + t1456 * t1822)
+                - (t1812 + t1408 * t1821);
+            let t1828 = t1342 + (t1334 * t1826 + (t1316 * t1822 + t1321 * t1824));
+            let t1829 = k(0.2) * t1223;
+            let t1830 = t1344 + (t1335 * t1826 + (t1322 * t1822 + t1324 * t1824));
+            let t1831 = t1352 + (t1333 * t1826 + (t1328 * t1822 + t1327 * t1824));
+            let t1832 = k(0.1) * t1223;
+            let t1833 = t1832 * t1831 + (t1346 * t1830 + t1829 * t1828)
+                - (t1309 - (t1463 * t1826 + (t1451 * t1822 + t1825) + t1827));
+            let t1834 = t1446 * t1824;
+            let t1835 = t1446 * t1826 + (t1834 + t1458 * t1822)
+                + (t1814 + t1421 * t1821);
+            let t1836 = k(0.2) * t1250;
+            let t1837 = k(0.1) * t1250;
+            let t1838 = t1837 * t1831 - (t1414 * t1830 - t1836 * t1828)
+                + (t1411 + (t1464 * t1826 - (t1452 * t1822 - t1834) + t1835));
+            let t1839 = t1444 * t1824;
+            let t1840 = t1444 * t1826 + (t1839 - t1460 * t1822)
+                + (t1816 + t1435 * t1821);
+            let t1841 = t1441 * t1831 - (t1427 * t1830 - t1436 * t1828)
+                + (t1424 + (t1465 * t1826 - (t1453 * t1822 - t1839) + t1840));
+            let t1842 = t1436 * t1286;
+            let t1843 = t1836 * t1267;
+            let t1844 = t1829 * t1246;
+            let t1845 = k(1.7888543819998317) * t1228 * t1235 - t1844
+                + (k(1.7888543819998317) * t1254 * t1258 - t1843);
+            let t1846 = t1845 - (k(1.7888543819998317) * t1273 * t1277 + t1842);
+            let t1847 = t1426 - k(0.4) * t1273;
+            let t1848 = t1413 + k(0.4) * t1254;
+            let t1849 = t1345 - k(0.4) * t1228;
+            let t1850 = t1235 * (k(0.8944271909999159) * t1228) + t1246 * t1849
+                + (t1258 * (k(0.8944271909999159) * t1254) + t1267 * t1848);
+            let t1851 = t1850
+                - (t1277 * (k(0.8944271909999159) * t1273) + t1286 * t1847);
+            let t1852 = k(0.4) * t1271;
+            let t1853 = k(0.4) * t1250;
+            let t1854 = k(0.4) * t1223;
+            let t1855 = t1235
+                * (k(0.8944271909999159) * t1223 + k(1.7888543819998317) * t1218)
+                - t1246 * t1854
+                - (t1258
+                    * (k(0.8944271909999159) * t1250 + k(1.7888543819998317) * t1248)
+                    + t1267 * t1853);
+            let t1856 = t1855
+                + (t1277
+                    * (k(0.8944271909999159) * t1271 - k(1.7888543819998317) * t1269)
+                    - t1286 * t1852);
+            let t1857 = t1856 * t1831 + (t1851 * t1830 - t1846 * t1828)
+                - (t1286 * t1841 + (t1267 * t1838 + t1246 * t1833));
+            let t1858 = k(0.2) * t506;
+            let t1859 = k(0.2) * t499;
+            let t1860 = k(0.2) * t490;
+            let t1861 = t1246 * t1860 - t1267 * t1859 - t1286 * t1858;
+            let t1862 = t614 * t1246 + t618 * t1267 + t622 * t1286;
+            let t1863 = t1862 * t733 - t1861 * t732
+                - (t1286 * t748 - (t1267 * t745 + t1246 * t742));
+            let t1864 = t1862 * t836 - t1861 * t835
+                - (t1286 * t850 - (t1267 * t847 + t1246 * t844));
+            let t1865 = t861 * t1864;
+            let t1866 = t1862 * t952 - t1861 * t951
+                - (t1286 * t966 - (t1267 * t963 + t1246 * t960));
+            let t1867 = t888 * t1865 - t1866;
+            let t1868 = t977 * t1867;
+            let t1869 = t1868 * t890
+                - (t1865 * t774 + (t1863 - t1857 - (t1287 + (t1268 - t1247))));
+            let t1870 = t1862 * t1088 - t1861 * t1087
+                - (t1286 * t1102 - (t1267 * t1099 + t1246 * t1096));
+            let t1871 = t1032 * t1868 - (t1029 * t1865 - t1870);
+            let t1872 = t1110 * t1871;
+            let t1873 = t1862 * t1191 - t1861 * t1190
+                - (t1286 * t1205 - (t1267 * t1202 + t1246 * t1199));
+            let t1874 = t1135 * t1872 - (t1131 * t1868 - (t1128 * t1865 - t1873));
+            let t1875 = t1213 * t1874;
+            let t1876 = t1875 * t1137 - (t1872 * t1034 - t1869);
+            let t1877 = t1846 + (t1842 + (t1844 + t1843));
+            let t1878 = t1851 + (t1427 * t1286 + (t1414 * t1267 - t1346 * t1246));
+            let t1879 = t1856 - (t1441 * t1286 + (t1837 * t1267 + t1832 * t1246));
+            let t1880 = t1444 * t1286 + (t1446 * t1267 + t1445 * t1246);
+            let t1881 = t1880
+                + (t1880 - (t1327 * t1879 + (t1324 * t1878 - t1321 * t1877)));
+            let t1882 = t1453 * t1286 + (t1452 * t1267 - t1451 * t1246)
+                + (t1328 * t1879 + (t1322 * t1878 - t1316 * t1877));
+            let t1883 = k(0.3333333333333333)
+                * (t1460 * t1286 - (t1458 * t1267 + t1456 * t1246) + t1882);
+            let t1884 = t1465 * t1286 + (t1464 * t1267 + t1463 * t1246)
+                - (t1333 * t1879 + (t1335 * t1878 - t1877 * t1334));
+            let t1885 = k(0.6666666666666666) * (t1884 + t1880)
+                - (t1883 + k(0.6666666666666666) * t1881)
+                - (t1286 * t1435 + (t1267 * t1421 - t1246 * t1408));
+            let t1886 = t1885 * t1525;
+            let t1887 = k(0.9428090415820634) * (t1286 - t1497 * t1886)
                 + k(0.23570226039551584)
-                    * (t1891 - t1538 * t1967 + (t1885 - t1528 * t1967));
-            let t1969 = t1968 * t1859;
-            let t1970 = k(0.23570226039551584) * t1969;
-            let t1971 = k(0.9428090415820634) * t1969;
-            let t1972 = t1576
-                * (t1966 - (t1548 * t1971 + (t1538 * t1970 + t1528 * t1970)));
-            let t1973 = k(0.3333333333333333) * t1972;
-            let t1974 = k(0.6666666666666666) * t1972;
-            let t1975 = t1496 * t1974;
-            let t1976 = t1975 - (t1975 - t1507 * t1973) + (t1970 + t1453 * t1972);
-            let t1977 = t1378 * t1974 + (t1350 * t1973 - t1355 * t1974);
-            let t1978 = t1379 * t1974 + (t1362 * t1973 - t1364 * t1974);
-            let t1979 = t1377 * t1974 + (t1372 * t1973 - t1371 * t1974);
-            let t1980 = t1883 * t1979 + (t1390 * t1978 + t1880 * t1977)
-                + (t1514 * t1974 + (t1502 * t1973 - t1975) + t1976);
-            let t1981 = t1497 * t1974;
-            let t1982 = t1981 - (t1981 - t1509 * t1973) + (t1970 - t1469 * t1972);
-            let t1983 = t1889 * t1979 - (t1462 * t1978 - t1888 * t1977)
-                + (t1515 * t1974 - (t1503 * t1973 + t1981) + t1982);
-            let t1984 = t1495 * t1974;
-            let t1985 = t1984 - (t1984 + t1511 * t1973) + (t1971 - t1486 * t1972);
-            let t1986 = t1492 * t1979 - (t1478 * t1978 - t1487 * t1977)
-                + (t1516 * t1974 - (t1504 * t1973 + t1984) + t1985);
-            let t1987 = t1913 * t1979 + (t1908 * t1978 - t1903 * t1977)
-                - (t1895 * t1986 + (t1891 * t1983 + t1885 * t1980));
-            let t1988 = k(0.19611613513818404) * t1895 - k(0.9805806756909201) * t1885;
-            let t1989 = t517 * t1988;
-            let t1990 = k(0.9813067629253163) * (t1891 + t529 * t1989)
-                + k(0.03774256780481986) * (t1885 + t514 * t1989);
-            let t1991 = k(0.1887128390240993) * (t1895 - t516 * t1989) + t1990;
-            let t1992 = t641 * t1991;
-            let t1993 = t661 * t1989
-                - (t1918 + (t652 * t1895 - (t651 * t1891 + t650 * t1885)));
-            let t1994 = t668 * t1992 + t1993 + (t649 * t1992 + (t1919 + t637 * t1989));
-            let t1995 = k(0.9622504486493763) * (t683 * t1992 - (t1919 - t677 * t1989))
-                - k(0.19245008972987526) * t1994;
-            let t1996 = t747 * t1995;
-            let t1997 = k(0.19245008972987526) * t1996;
-            let t1998 = k(0.9622504486493763) * t1996;
-            let t1999 = t641 * (t1991 - (t683 * t1998 - (t668 * t1997 + t649 * t1997)));
+                    * (t1267 - t1487 * t1886 + (t1246 - t1477 * t1886));
+            let t1888 = t1887 * t1808;
+            let t1889 = k(0.23570226039551584) * t1888;
+            let t1890 = k(0.9428090415820634) * t1888;
+            let t1891 = t1525
+                * (t1885 - (t1497 * t1890 + (t1487 * t1889 + t1477 * t1889)));
+            let t1892 = k(0.3333333333333333) * t1891;
+            let t1893 = k(0.6666666666666666) * t1891;
+            let t1894 = t1445 * t1893;
+            let t1895 = t1894 - (t1894 - t1456 * t1892) + (t1889 + t1408 * t1891);
+            let t1896 = t1334 * t1893 + (t1316 * t1892 - t1321 * t1893);
+            let t1897 = t1335 * t1893 + (t1322 * t1892 - t1324 * t1893);
+            let t1898 = t1333 * t1893 + (t1328 * t1892 - t1327 * t1893);
+            let t1899 = t1832 * t1898 + (t1346 * t1897 + t1829 * t1896)
+                + (t1463 * t1893 + (t1451 * t1892 - t1894) + t1895);
+            let t1900 = t1446 * t1893;
+            let t1901 = t1900 - (t1900 - t1458 * t1892) + (t1889 - t1421 * t1891);
+            let t1902 = t1837 * t1898 - (t1414 * t1897 - t1836 * t1896)
+                + (t1464 * t1893 - (t1452 * t1892 + t1900) + t1901);
+            let t1903 = t1444 * t1893;
+            let t1904 = t1903 - (t1903 + t1460 * t1892) + (t1890 - t1435 * t1891);
+            let t1905 = t1441 * t1898 - (t1427 * t1897 - t1436 * t1896)
+                + (t1465 * t1893 - (t1453 * t1892 + t1903) + t1904);
+            let t1906 = t1856 * t1898 + (t1851 * t1897 - t1846 * t1896)
+                - (t1286 * t1905 + (t1267 * t1902 + t1246 * t1899));
+            let t1907 = k(0.19611613513818404) * t1286 - k(0.9805806756909201) * t1246;
+            let t1908 = t531 * t1907;
+            let t1909 = k(0.9813067629253163) * (t1267 + t543 * t1908)
+                + k(0.03774256780481986) * (t1246 + t528 * t1908);
+            let t1910 = k(0.1887128390240993) * (t1286 - t530 * t1908) + t1909;
+            let t1911 = t642 * t1910;
+            let t1912 = t662 * t1908
+                - (t1861 + (t654 * t1286 - (t653 * t1267 + t652 * t1246)));
+            let t1913 = t669 * t1911 + t1912 + (t650 * t1911 + (t1862 + t638 * t1908));
+            let t1914 = k(0.9622504486493763) * (t684 * t1911 - (t1862 - t678 * t1908))
+                - k(0.19245008972987526) * t1913;
+            let t1915 = t728 * t1914;
+            let t1916 = k(0.19245008972987526) * t1915;
+            let t1917 = k(0.9622504486493763) * t1915;
+            let t1918 = t642 * (t1910 - (t684 * t1917 - (t669 * t1916 + t650 * t1916)));
+            let t1919 = k(0.03774256780481986) * t1918;
+            let t1920 = k(0.9813067629253163) * t1918;
+            let t1921 = k(0.1887128390240993) * t1918;
+            let t1922 = t678 * t1917 - (t662 * t1916 + t638 * t1916)
+                + (t530 * t1921 - (t543 * t1920 + t528 * t1919));
+            let t1923 = t531 * (t1907 - t1922);
+            let t1924 = t652 * t1916;
+            let t1925 = t1924 + t614 * t1916 + (t1919 - k(0.9805806756909201) * t1923);
+            let t1926 = t653 * t1916;
+            let t1927 = t1920 + (t1926 + t618 * t1916);
+            let t1928 = t654 * t1916;
+            let t1929 = t1928 - t622 * t1916 - (t1921 + k(0.19611613513818404) * t1923);
+            let t1930 = t1862 * t1917 - t1861 * t1916
+                - (t1286 * t1929 - (t1267 * t1927 + t1246 * t1925));
+            let t1931 = t1871 * t1872
+                - (t1867 * t1868 - (t1864 * t1865 - (t1930 - t1906)));
+            let t1932 = k(1.0) / (t1874 * t1875 - t1931);
+            let t1933 = t1239
+                * (k(0.5962847939999439) * t1237 + k(0.29814239699997197) * t1236
+                    + k(0.7453559924999299) * t1238);
+            let t1934 = t1933
+                - t1235
+                    * (k(0.7453559924999299) * t1242
+                        + (k(0.29814239699997197) * t1234
+                            - k(0.5962847939999439) * t1230));
+            let t1935 = k(1.4907119849998598) * t1228
+                - (k(0.5962847939999439) * t1223 + k(1.1925695879998879) * t1218);
+            let t1936 = t1262
+                * (k(0.5962847939999439) * t1260 + k(0.29814239699997197) * t1259
+                    - k(0.7453559924999299) * t1261);
+            let t1937 = t1936
+                - t1258
+                    * (k(0.7453559924999299) * t1264
+                        + (k(0.29814239699997197) * t1257
+                            - k(0.5962847939999439) * t1256));
+            let t1938 = k(1.4907119849998598) * t1254
+                + (k(0.5962847939999439) * t1250 + k(1.1925695879998879) * t1248);
+            let t1939 = t1938 * t1266 - t1936 - t1937 + (t1935 * t1245 - t1933 - t1934);
+            let t1940 = t1281
+                * (k(0.5962847939999439) * t1279 + k(0.29814239699997197) * t1278
+                    - k(0.7453559924999299) * t1280);
+            let t1941 = t1940
+                - t1277
+                    * (k(0.7453559924999299) * t1283
+                        + (k(0.29814239699997197) * t1276
+                            - k(0.5962847939999439) * t1275));
+            let t1942 = k(1.4907119849998598) * t1273
+                + (k(0.5962847939999439) * t1271 - k(1.1925695879998879) * t1269);
+            let t1943 = t1436 * t1942;
+            let t1944 = t1836 * t1938;
+            let t1945 = t1829 * t1935;
+            let t1946 = t1235
+                * (k(0.5962847939999439) * t1228 + k(1.4907119849998598) * t1223) + t1945
+                + (t1258
+                    * (k(0.5962847939999439) * t1254 - k(1.4907119849998598) * t1250)
+                    - t1944);
+            let t1947 = t1946
+                - (t1277
+                    * (k(0.5962847939999439) * t1273 - k(1.4907119849998598) * t1271)
+                    + t1943);
+            let t1948 = t1235
+                * (k(1.1925695879998879) * t1228 + k(1.4907119849998598) * t1218)
+                + t1849 * t1935
+                + (t1258
+                    * (k(1.1925695879998879) * t1254 - k(1.4907119849998598) * t1248)
+                    - t1848 * t1938);
+            let t1949 = t1948
+                - (t1277
+                    * (k(1.1925695879998879) * t1273 + k(1.4907119849998598) * t1269)
+                    - t1847 * t1942);
+            let t1950 = t1235
+                * (k(1.1925695879998879) * t1223 - k(0.5962847939999439) * t1218)
+                - t1854 * t1935
+                - (t1258
+                    * (k(1.1925695879998879) * t1250 - k(0.5962847939999439) * t1248)
+                    - t1853 * t1938);
+            let t1951 = t1950
+                + (t1277
+                    * (k(1.1925695879998879) * t1271 + k(0.5962847939999439) * t1269)
+                    + t1852 * t1942);
+            let t1952 = t1951 * t1831 + (t1949 * t1830 + t1947 * t1828)
+                + (t1942 * t1841 + (t1938 * t1838 - t1935 * t1833));
+            let t1953 = t1860 * t1935 + t1859 * t1938 + t1858 * t1942;
+            let t1954 = t614 * t1935 - t618 * t1938 - t622 * t1942;
+            let t1955 = t1954 * t733 - t1953 * t732
+                + (t1942 * t748 - (t1938 * t745 - t1935 * t742));
+            let t1956 = t1954 * t836 - t1953 * t835
+                + (t1942 * t850 - (t1938 * t847 - t1935 * t844));
+            let t1957 = t861 * t1956;
+            let t1958 = t1957 * t774
+                + (t1955 - t1952 + (t1942 * t1285 + t1940 + t1941 + t1939));
+            let t1959 = t1954 * t952 - t1953 * t951
+                + (t1942 * t966 - (t1938 * t963 - t1935 * t960));
+            let t1960 = t888 * t1957 - t1959;
+            let t1961 = t977 * t1960;
+            let t1962 = t1954 * t1088 - t1953 * t1087
+                + (t1942 * t1102 - (t1938 * t1099 - t1935 * t1096));
+            let t1963 = t1032 * t1961 - (t1029 * t1957 - t1962);
+            let t1964 = t1110 * t1963;
+            let t1965 = t1954 * t1191 - t1953 * t1190
+                + (t1942 * t1205 - (t1938 * t1202 - t1935 * t1199));
+            let t1966 = t1135 * t1964 - (t1131 * t1961 - (t1128 * t1957 - t1965));
+            let t1967 = t1213 * t1966;
+            let t1968 = t1951 * t1898 + (t1949 * t1897 + t1947 * t1896)
+                + (t1942 * t1905 + (t1938 * t1902 - t1935 * t1899));
+            let t1969 = t1954 * t1917 - t1953 * t1916
+                + (t1942 * t1929 - (t1938 * t1927 - t1935 * t1925));
+            let t1970 = t1871 * t1964
+                - (t1867 * t1961 - (t1864 * t1957 - (t1969 - t1968)));
+            let t1971 = t1874 * t1967 - t1970;
+            let t1972 = t1932 * t1971;
+            let t1973 = t1972 * t1876
+                - (t1967 * t1137 - (t1964 * t1034 - (t1961 * t890 - t1958)));
+            let t1974 = t1947 + (t1943 - (t1945 - t1944));
+            let t1975 = t1949 - (t1427 * t1942 + (t1414 * t1938 + t1346 * t1935));
+            let t1976 = t1951 + (t1441 * t1942 + (t1837 * t1938 - t1832 * t1935));
+            let t1977 = t1444 * t1942 + (t1446 * t1938 - t1445 * t1935);
+            let t1978 = t1977
+                + (t1977 + (t1327 * t1976 + (t1324 * t1975 + t1321 * t1974)));
+            let t1979 = t1453 * t1942 + (t1452 * t1938 + t1451 * t1935)
+                - (t1328 * t1976 + (t1322 * t1975 + t1316 * t1974));
+            let t1980 = k(0.3333333333333333)
+                * (t1460 * t1942 - (t1458 * t1938 - t1456 * t1935) + t1979);
+            let t1981 = t1465 * t1942 + (t1464 * t1938 - t1463 * t1935)
+                + (t1333 * t1976 + (t1335 * t1975 + t1334 * t1974));
+            let t1982 = k(0.6666666666666666) * (t1981 + t1977)
+                - (t1980 + k(0.6666666666666666) * t1978)
+                - (t1942 * t1435 + (t1938 * t1421 + t1935 * t1408));
+            let t1983 = t1525 * t1982;
+            let t1984 = k(0.9428090415820634) * (t1942 - t1497 * t1983)
+                + k(0.23570226039551584)
+                    * (t1938 - t1487 * t1983 - (t1935 + t1477 * t1983));
+            let t1985 = t1808 * t1984;
+            let t1986 = k(0.23570226039551584) * t1985;
+            let t1987 = k(0.9428090415820634) * t1985;
+            let t1988 = t1525
+                * (t1982 - (t1497 * t1987 + (t1487 * t1986 + t1477 * t1986)));
+            let t1989 = k(0.3333333333333333) * t1988;
+            let t1990 = k(0.6666666666666666) * t1988;
+            let t1991 = t1445 * t1990;
+            let t1992 = t1991 - (t1991 - t1456 * t1989) + (t1986 + t1408 * t1988);
+            let t1993 = t1334 * t1990 + (t1316 * t1989 - t1321 * t1990);
+            let t1994 = t1335 * t1990 + (t1322 * t1989 - t1324 * t1990);
+            let t1995 = t1333 * t1990 + (t1328 * t1989 - t1327 * t1990);
+            let t1996 = t1832 * t1995 + (t1346 * t1994 + t1829 * t1993)
+                + (t1463 * t1990 + (t1451 * t1989 - t1991) + t1992);
+            let t1997 = t1446 * t1990;
+            let t1998 = t1997 - (t1997 - t1458 * t1989) + (t1986 - t1421 * t1988);
+            let t1999 = t1837 * t1995 - (t1414 * t1994 - t1836 * t1993)
+                + (t1464 * t1990 - (t1452 * t1989 + t1997) + t1998);
             (
+                t1806,
+                t1808,
+                t1811,
+                t1813,
+                t1815,
+                t1822,
                 t1824,
-                t1845,
-                t1857,
-                t1859,
-                t1862,
+                t1826,
+                t1827,
+                t1828,
+                t1829,
+                t1830,
+                t1831,
+                t1832,
+                t1833,
+                t1835,
+                t1836,
+                t1837,
+                t1838,
+                t1840,
+                t1841,
                 t1864,
-                t1866,
-                t1873,
+                t1865,
+                t1867,
+                t1868,
+                t1871,
+                t1872,
+                t1874,
                 t1875,
-                t1877,
-                t1878,
-                t1879,
-                t1880,
-                t1881,
-                t1882,
-                t1883,
-                t1884,
-                t1885,
-                t1887,
-                t1888,
+                t1876,
                 t1889,
                 t1890,
-                t1891,
+                t1892,
                 t1893,
-                t1894,
                 t1895,
+                t1896,
                 t1897,
+                t1898,
                 t1899,
                 t1901,
+                t1902,
                 t1904,
                 t1905,
-                t1906,
-                t1909,
-                t1910,
-                t1911,
-                t1915,
                 t1916,
                 t1917,
-                t1918,
-                t1919,
-                t1921,
-                t1922,
-                t1923,
                 t1924,
                 t1925,
+                t1926,
                 t1927,
+                t1928,
                 t1929,
-                t1930,
-                t1931,
                 t1932,
-                t1933,
                 t1935,
-                t1937,
                 t1938,
-                t1939,
-                t1940,
-                t1941,
-                t1943,
-                t1945,
-                t1946,
-                t1948,
+                t1942,
+                t1947,
                 t1949,
-                t1952,
+                t1951,
                 t1953,
-                t1955,
+                t1954,
                 t1956,
                 t1957,
-                t1970,
+                t1960,
+                t1961,
+                t1963,
+                t1964,
+                t1966,
+                t1967,
                 t1971,
+                t1972,
                 t1973,
-                t1974,
-                t1976,
-                t1977,
-                t1978,
-                t1979,
-                t1980,
-                t1982,
-                t1983,
-                t1985,
                 t1986,
                 t1987,
                 t1988,
-                t1997,
+                t1989,
+                t1990,
+                t1992,
+                t1993,
+                t1994,
+                t1995,
+                t1996,
                 t1998,
                 t1999,
             )
         };
         let (
-            t2005,
-            t2006,
-            t2007,
-            t2008,
-            t2009,
-            t2010,
+            t2001,
+            t2002,
             t2013,
+            t2014,
+            t2022,
+            t2024,
+            t2026,
+            t2029,
+            t2030,
+            t2031,
+            t2032,
+            t2036,
             t2037,
             t2038,
-            t2041,
-            t2042,
+            t2043,
             t2044,
             t2045,
-            t2047,
-            t2048,
-            t2052,
-            t2053,
-            t2054,
-            t2067,
-            t2068,
+            t2069,
             t2070,
-            t2071,
+            t2072,
             t2073,
-            t2074,
             t2075,
             t2076,
-            t2077,
             t2079,
             t2080,
             t2082,
             t2083,
+            t2085,
+            t2086,
+            t2087,
+            t2091,
+            t2092,
             t2094,
-            t2095,
+            t2096,
+            t2098,
+            t2101,
             t2102,
-            t2103,
-            t2104,
             t2105,
-            t2106,
-            t2107,
-            t2110,
-            t2133,
-            t2134,
-            t2135,
+            t2120,
+            t2123,
+            t2124,
+            t2128,
+            t2130,
+            t2136,
+            t2137,
             t2138,
-            t2139,
             t2140,
+            t2141,
+            t2143,
             t2144,
-            t2145,
-            t2146,
+            t2147,
+            t2148,
             t2150,
             t2151,
+            t2152,
             t2153,
             t2154,
-            t2156,
             t2157,
-            t2160,
+            t2158,
+            t2159,
             t2161,
+            t2162,
             t2163,
             t2164,
-            t2166,
-            t2167,
+            t2165,
             t2168,
-            t2172,
+            t2169,
+            t2170,
             t2173,
             t2174,
-            t2175,
             t2176,
             t2177,
             t2178,
-            t2179,
-            t2182,
-            t2183,
+            t2185,
             t2186,
             t2187,
             t2188,
@@ -14871,401 +14981,372 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t2190,
             t2193,
             t2194,
+            t2195,
+            t2196,
+            t2197,
             t2198,
             t2199,
         ) = {
-            let t2000 = k(0.03774256780481986) * t1999;
-            let t2001 = k(0.9813067629253163) * t1999;
-            let t2002 = k(0.1887128390240993) * t1999;
-            let t2003 = t677 * t1998 - (t661 * t1997 + t637 * t1997)
-                + (t516 * t2002 - (t529 * t2001 + t514 * t2000));
-            let t2004 = t517 * (t1988 - t2003);
-            let t2005 = t650 * t1997;
-            let t2006 = t2005 + t593 * t1997 + (t2000 - k(0.9805806756909201) * t2004);
-            let t2007 = t651 * t1997;
-            let t2008 = t2001 + (t2007 + t597 * t1997);
-            let t2009 = t652 * t1997;
-            let t2010 = t2009 - t601 * t1997 - (t2002 + k(0.19611613513818404) * t2004);
-            let t2011 = t1919 * t1998 - t1918 * t1997
-                - (t1895 * t2010 - (t1891 * t2008 + t1885 * t2006));
-            let t2012 = t1952 * t1953
-                - (t1948 * t1949 - (t1945 * t1946 + (t2011 - t1987)));
-            let t2013 = k(1.0) / (t1955 * t1956 - t2012);
-            let t2014 = k(1.4907119849998598) * t1331
-                - (k(0.5962847939999439) * t1326 + k(1.1925695879998879) * t1321);
-            let t2015 = k(1.4907119849998598) * t1367
-                + (k(0.5962847939999439) * t1356 + k(1.1925695879998879) * t1340);
-            let t2016 = k(1.4907119849998598) * t1369
-                + (k(0.5962847939999439) * t1360 - k(1.1925695879998879) * t1344);
-            let t2017 = t1487 * t2016;
-            let t2018 = t1888 * t2015;
-            let t2019 = t1880 * t2014;
-            let t2020 = t1901
-                * (k(0.5962847939999439) * t1331 + k(1.4907119849998598) * t1326) + t2019
-                + (t1899
-                    * (k(0.5962847939999439) * t1367 - k(1.4907119849998598) * t1356)
-                    - t2018);
-            let t2021 = t2020
-                - (t1897
-                    * (k(0.5962847939999439) * t1369 - k(1.4907119849998598) * t1360)
-                    + t2017);
-            let t2022 = t1901
-                * (k(1.1925695879998879) * t1331 + k(1.4907119849998598) * t1321)
-                + t1906 * t2014
-                + (t1899
-                    * (k(1.1925695879998879) * t1367 - k(1.4907119849998598) * t1340)
-                    - t1905 * t2015);
-            let t2023 = t2022
-                - (t1897
-                    * (k(1.1925695879998879) * t1369 + k(1.4907119849998598) * t1344)
-                    - t1904 * t2016);
-            let t2024 = t1901
-                * (k(1.1925695879998879) * t1326 - k(0.5962847939999439) * t1321)
-                - t1911 * t2014
-                - (t1899
-                    * (k(1.1925695879998879) * t1356 - k(0.5962847939999439) * t1340)
-                    - t1910 * t2015);
-            let t2025 = t2024
-                + (t1897
-                    * (k(1.1925695879998879) * t1360 + k(0.5962847939999439) * t1344)
-                    + t1909 * t2016);
-            let t2026 = t2025 * t1882 + (t2023 * t1881 + t2021 * t1879)
-                + (t2016 * t1894 + (t2015 * t1890 - t2014 * t1884));
-            let t2027 = t1917 * t2014 + t1916 * t2015 + t1915 * t2016;
-            let t2028 = t593 * t2014 - t597 * t2015 - t601 * t2016;
-            let t2029 = t2028 * t752 + t2027 * t751
-                - (t2016 * t767 + (t2015 * t764 + t2014 * t761));
-            let t2030 = t1925
-                * (k(0.5962847939999439) * t1923 + k(0.29814239699997197) * t1922
-                    + k(0.7453559924999299) * t1924);
-            let t2031 = t2030
-                - t1901
-                    * (k(0.7453559924999299) * t1337
-                        + (k(0.29814239699997197) * t1921
-                            - k(0.5962847939999439) * t1333));
-            let t2032 = t1933
-                * (k(0.5962847939999439) * t1931 + k(0.29814239699997197) * t1930
-                    - k(0.7453559924999299) * t1932);
-            let t2033 = t2032
-                - t1899
-                    * (k(0.7453559924999299) * t1457
-                        + (k(0.29814239699997197) * t1929
-                            - k(0.5962847939999439) * t1456));
-            let t2034 = t2015 * t1935 - t2032 - t2033 + (t2014 * t1927 - t2030 - t2031);
-            let t2035 = t1941
-                * (k(0.5962847939999439) * t1939 + k(0.29814239699997197) * t1938
-                    - k(0.7453559924999299) * t1940);
-            let t2036 = t2035
-                - t1897
-                    * (k(0.7453559924999299) * t1473
-                        + (k(0.29814239699997197) * t1937
-                            - k(0.5962847939999439) * t1472));
-            let t2037 = t2028 * t893 - t2027 * t892
-                + (t2016 * t907 - (t2015 * t904 - t2014 * t901));
-            let t2038 = t922 * t2037;
-            let t2039 = t2038 * t828
-                + (t2016 * t1943 + t2035 + t2036 + t2034 + (t2029 - t2026));
-            let t2040 = t2028 * t1016 - t2027 * t1015
-                + (t2016 * t1030 - (t2015 * t1027 - t2014 * t1024));
-            let t2041 = t949 * t2038 - t2040;
-            let t2042 = t1045 * t2041;
-            let t2043 = t2028 * t1159 - t2027 * t1158
-                + (t2016 * t1173 - (t2015 * t1170 - t2014 * t1167));
-            let t2044 = t1100 * t2042 - (t1097 * t2038 - t2043);
-            let t2045 = t1185 * t2044;
-            let t2046 = t2028 * t1269 - t2027 * t1268
-                + (t2016 * t1283 - (t2015 * t1280 - t2014 * t1277));
-            let t2047 = t1210 * t2045 - (t1206 * t2042 - (t1203 * t2038 - t2046));
-            let t2048 = t1295 * t2047;
-            let t2049 = t2025 * t1979 + (t2023 * t1978 + t2021 * t1977)
-                + (t2016 * t1986 + (t2015 * t1983 - t2014 * t1980));
-            let t2050 = t2028 * t1998 - t2027 * t1997
-                + (t2016 * t2010 - (t2015 * t2008 - t2014 * t2006));
-            let t2051 = t1952 * t2045
-                - (t1948 * t2042 - (t1945 * t2038 + (t2050 - t2049)));
-            let t2052 = t1955 * t2048 - t2051;
-            let t2053 = t2013 * t2052;
-            let t2054 = t2053 * t1957
-                - (t2048 * t1212 - (t2045 * t1102 - (t2042 * t951 - t2039)));
-            let t2055 = t2021 + (t2017 - (t2019 - t2018));
-            let t2056 = t2023 - (t1478 * t2016 + (t1462 * t2015 + t1390 * t2014));
-            let t2057 = t2025 + (t1492 * t2016 + (t1889 * t2015 - t1883 * t2014));
-            let t2058 = t1495 * t2016 + (t1497 * t2015 - t1496 * t2014);
-            let t2059 = t2058
-                + (t2058 + (t1371 * t2057 + (t1364 * t2056 + t1355 * t2055)));
-            let t2060 = t1504 * t2016 + (t1503 * t2015 + t1502 * t2014)
-                - (t1372 * t2057 + (t1362 * t2056 + t1350 * t2055));
-            let t2061 = k(0.3333333333333333)
-                * (t1511 * t2016 - (t1509 * t2015 - t1507 * t2014) + t2060);
-            let t2062 = t1516 * t2016 + (t1515 * t2015 - t1514 * t2014)
-                + (t1377 * t2057 + (t1379 * t2056 + t1378 * t2055));
-            let t2063 = k(0.6666666666666666) * (t2062 + t2058)
-                - (t2061 + k(0.6666666666666666) * t2059)
-                - (t2016 * t1486 + (t2015 * t1469 + t2014 * t1453));
-            let t2064 = t1576 * t2063;
-            let t2065 = k(0.9428090415820634) * (t2016 - t1548 * t2064)
-                + k(0.23570226039551584)
-                    * (t2015 - t1538 * t2064 - (t2014 + t1528 * t2064));
-            let t2066 = t1859 * t2065;
-            let t2067 = k(0.23570226039551584) * t2066;
-            let t2068 = k(0.9428090415820634) * t2066;
-            let t2069 = t1576
-                * (t2063 - (t1548 * t2068 + (t1538 * t2067 + t1528 * t2067)));
-            let t2070 = k(0.3333333333333333) * t2069;
-            let t2071 = k(0.6666666666666666) * t2069;
-            let t2072 = t1496 * t2071;
-            let t2073 = t2072 - (t2072 - t1507 * t2070) + (t2067 + t1453 * t2069);
-            let t2074 = t1378 * t2071 + (t1350 * t2070 - t1355 * t2071);
-            let t2075 = t1379 * t2071 + (t1362 * t2070 - t1364 * t2071);
-            let t2076 = t1377 * t2071 + (t1372 * t2070 - t1371 * t2071);
-            let t2077 = t1883 * t2076 + (t1390 * t2075 + t1880 * t2074)
-                + (t1514 * t2071 + (t1502 * t2070 - t2072) + t2073);
-            let t2078 = t1497 * t2071;
-            let t2079 = t2078 - (t2078 - t1509 * t2070) + (t2067 - t1469 * t2069);
-            let t2080 = t1889 * t2076 - (t1462 * t2075 - t1888 * t2074)
-                + (t1515 * t2071 - (t1503 * t2070 + t2078) + t2079);
-            let t2081 = t1495 * t2071;
-            let t2082 = t2081 - (t2081 + t1511 * t2070) + (t2068 - t1486 * t2069);
-            let t2083 = t1492 * t2076 - (t1478 * t2075 - t1487 * t2074)
-                + (t1516 * t2071 - (t1504 * t2070 + t2081) + t2082);
-            let t2084 = t2025 * t2076 + (t2023 * t2075 + t2021 * t2074)
-                + (t2016 * t2083 + (t2015 * t2080 - t2014 * t2077));
-            let t2085 = k(0.19611613513818404) * t2016 + k(0.9805806756909201) * t2014;
-            let t2086 = t517 * t2085;
-            let t2087 = k(0.9813067629253163) * (t2015 + t529 * t2086)
-                - k(0.03774256780481986) * (t2014 - t514 * t2086);
-            let t2088 = k(0.1887128390240993) * (t2016 - t516 * t2086) + t2087;
-            let t2089 = t641 * t2088;
-            let t2090 = t661 * t2086
-                + (t2027 - (t652 * t2016 - (t651 * t2015 - t650 * t2014)));
-            let t2091 = t668 * t2089 + t2090 + (t649 * t2089 - (t2028 - t637 * t2086));
-            let t2092 = k(0.9622504486493763) * (t683 * t2089 + (t2028 + t677 * t2086))
-                - k(0.19245008972987526) * t2091;
-            let t2093 = t747 * t2092;
-            let t2094 = k(0.19245008972987526) * t2093;
-            let t2095 = k(0.9622504486493763) * t2093;
-            let t2096 = t641 * (t2088 - (t683 * t2095 - (t668 * t2094 + t649 * t2094)));
-            let t2097 = k(0.03774256780481986) * t2096;
-            let t2098 = k(0.9813067629253163) * t2096;
-            let t2099 = k(0.1887128390240993) * t2096;
-            let t2100 = t677 * t2095 - (t661 * t2094 + t637 * t2094)
-                + (t516 * t2099 - (t529 * t2098 + t514 * t2097));
-            let t2101 = t517 * (t2085 - t2100);
-            let t2102 = t650 * t2094;
-            let t2103 = t2102 + t593 * t2094 + (t2097 - k(0.9805806756909201) * t2101);
-            let t2104 = t651 * t2094;
-            let t2105 = t2098 + (t2104 + t597 * t2094);
-            let t2106 = t652 * t2094;
-            let t2107 = t2106 - t601 * t2094 - (t2099 + k(0.19611613513818404) * t2101);
-            let t2108 = t2028 * t2095 - t2027 * t2094
-                + (t2016 * t2107 - (t2015 * t2105 - t2014 * t2103));
-            let t2109 = t2044 * t2045
-                - (t2041 * t2042 - (t2037 * t2038 - (t2108 - t2084)));
-            let t2110 = k(1.0) / (t2052 * t2053 - (t2047 * t2048 - t2109));
-            let t2111 = carrier_rx + (k(0.8) * t104 + (k(0.4) * t91 - k(0.2) * t176))
-                - (slide_rx - t1783);
-            let t2112 = k(1.0) / self.rod_length;
-            let t2113 = t2112 * (k(2.0) * t2111);
-            let t2114 = k(0.5) * t2113;
-            let t2115 = carrier_ry + (k(0.8) * t100 - (k(0.4) * t87 - k(0.2) * t201))
-                - (slide_ry + t1784);
-            let t2116 = t2112 * (k(2.0) * t2115);
-            let t2117 = k(0.5) * t2116;
-            let t2118 = carrier_rz - (k(0.8) * t106 - (k(0.4) * t95 + k(0.2) * t217))
-                - (slide_rz - t1785);
-            let t2119 = t2112 * (k(2.0) * t2118);
-            let t2120 = k(0.5) * t2119;
-            let t2121 = t2111 * (t298 - k(0.8) * t91) + t2115 * (t312 + k(0.8) * t87);
-            let t2122 = k(0.5)
-                * (t2112 * (k(2.0) * (t2121 - t2118 * (t326 + k(0.8) * t95))));
-            let t2123 = t2111 * (t275 + k(0.8) * t176) + t2115 * (t276 - k(0.8) * t201);
-            let t2124 = k(0.5)
-                * (t2112 * (k(2.0) * (t2123 - t2118 * (t278 + k(0.8) * t217))));
-            let t2125 = t2111 * (k(0.4) * t176 + k(0.2) * t91)
-                - t2115 * (k(0.4) * t201 + k(0.2) * t87);
-            let t2126 = t2112
-                * (k(2.0) * (t2125 - t2118 * (k(0.4) * t217 - k(0.2) * t95)));
-            let t2127 = k(0.5) * t2126;
-            let t2128 = t2127 * t413 - (t2124 * t412 + t2122 * t410)
-                + (t2120 * t421 - (t2117 * t418 + t2114 * t415));
-            let t2129 = t2111 * (k(0.2) * t1409) + t2115 * (k(0.2) * t1405)
-                - t2118 * (k(0.2) * t1401);
-            let t2130 = t2111 * (k(0.2) * t1421) - t2115 * (k(0.2) * t1423)
-                - t2118 * (k(0.2) * t1425);
-            let t2131 = k(0.5) * (t2112 * (k(2.0) * t2130)) * t1857
-                - k(0.5) * (t2112 * (k(2.0) * t2129)) * t1824;
-            let t2132 = t2131 - (t2120 * t1866 - (t2117 * t1864 - t2114 * t1862))
-                - t2128;
-            let t2133 = t92 * carrier_wx + t177 * carrier_wy;
-            let t2134 = t105 * carrier_wx + t177 * carrier_wz;
-            let t2135 = t105 * carrier_wy - t92 * carrier_wz;
-            let t2136 = slide_sx - k(0.1) * t1656
-                - (carrier_sx - (k(0.1) * t2135 - k(0.2) * t2134 + k(0.4) * t2133));
-            let t2137 = k(0.4) * t182 - (k(0.2) * t188 + k(0.1) * t186) - k(0.1) * t1650;
-            let t2138 = t88 * carrier_wx + t202 * carrier_wy;
-            let t2139 = t101 * carrier_wx - t202 * carrier_wz;
-            let t2140 = t101 * carrier_wy + t88 * carrier_wz;
-            let t2141 = slide_sy - k(0.1) * t1670
-                - (carrier_sy - (k(0.1) * t2140 - k(0.2) * t2139 - k(0.4) * t2138));
-            let t2142 = k(0.4) * t203 - (k(0.2) * t205 + k(0.1) * t204) - k(0.1) * t1664;
-            let t2143 = t2115 * t2142 - t2141 * t2141 + (t2111 * t2137 - t2136 * t2136);
-            let t2144 = t96 * carrier_wx - t218 * carrier_wy;
-            let t2145 = t107 * carrier_wx + t218 * carrier_wz;
-            let t2146 = t107 * carrier_wy + t96 * carrier_wz;
-            let t2147 = slide_sz + k(0.1) * t1685
-                - (carrier_sz + (k(0.1) * t2146 - k(0.2) * t2145 - k(0.4) * t2144));
-            let t2148 = k(0.4) * t219 - (k(0.2) * t221 + k(0.1) * t220) - k(0.1) * t1679;
-            let t2149 = k(0.5)
-                * (t2112 * (k(2.0) * (t2118 * t2148 + t2147 * t2147 - t2143)));
-            let t2150 = t2127 * t849 - (t2124 * t849 - t2122 * t848)
-                - (t2120 * t857 + (t2117 * t854 - t2114 * t851));
-            let t2151 = t922 * t2150;
-            let t2152 = t2127 * t972 - (t2124 * t972 - t2122 * t971)
-                - (t2120 * t980 + (t2117 * t977 - t2114 * t974));
-            let t2153 = t949 * t2151 - t2152;
-            let t2154 = t1045 * t2153;
-            let t2155 = t2127 * t1121 - (t2124 * t1121 - t2122 * t1120)
-                - (t2120 * t1129 + (t2117 * t1126 - t2114 * t1123));
-            let t2156 = t1100 * t2154 - (t1097 * t2151 - t2155);
-            let t2157 = t1185 * t2156;
-            let t2158 = t2157 * t1102
-                - (t2154 * t951 - (t2151 * t828 + (t2149 + t2132)));
-            let t2159 = t2127 * t1231 - (t2124 * t1231 - t2122 * t1230)
-                - (t2120 * t1239 + (t2117 * t1236 - t2114 * t1233));
-            let t2160 = t1210 * t2157 - (t1206 * t2154 - (t1203 * t2151 + t2159));
-            let t2161 = t1295 * t2160;
-            let t2162 = t1945 * t2151
-                - (t2120 * t1971 - (t2117 * t1970 - t2114 * t1970));
-            let t2163 = t1955 * t2161 - (t1952 * t2157 - (t1948 * t2154 - t2162));
-            let t2164 = t2013 * t2163;
-            let t2165 = t2037 * t2151
-                + (t2120 * t2068 - (t2117 * t2067 - t2114 * t2067));
-            let t2166 = t2052 * t2164
-                - (t2047 * t2161 - (t2044 * t2157 - (t2041 * t2154 - t2165)));
-            let t2167 = t2110 * t2166;
-            let t2168 = t2167 * t2054 - (t2164 * t1957 - (t2161 * t1212 - t2158));
-            let t2169 = t278 * t2120 - (t276 * t2117 + t275 * t2114);
-            let t2170 = k(0.6666666666666666)
-                * (t2127 - (t289 * t2120 + (t293 * t2117 - t291 * t2114)));
-            let t2171 = t408
-                * (t2170
-                    - (k(0.6666666666666666) * (t2124 - t2169)
-                        - k(0.3333333333333333) * (t2122 - t2169)));
-            let t2172 = k(0.3333333333333333) * t2171;
-            let t2173 = k(0.6666666666666666) * t2171;
-            let t2174 = t291 * t2173;
-            let t2175 = t2174 - (t275 * t2173 - t275 * t2172);
-            let t2176 = t293 * t2173;
-            let t2177 = t2176 + (t276 * t2173 - t276 * t2172);
-            let t2178 = t289 * t2173;
-            let t2179 = t2178 - (t278 * t2173 - t278 * t2172);
-            let t2180 = t2127 * t2173 - (t2124 * t2173 - t2122 * t2172)
-                - (t2120 * t2179 + (t2117 * t2177 - t2114 * t2175));
-            let t2181 = t1859
-                * (k(0.4714045207910317) * t2119
-                    + k(0.11785113019775792) * (t2113 - t2116));
-            let t2182 = k(0.23570226039551584) * t2181;
-            let t2183 = k(0.9428090415820634) * t2181;
-            let t2184 = t2150 * t2151
-                + (t2120 * t2183 - (t2117 * t2182 - t2114 * t2182) - t2180);
-            let t2185 = t2163 * t2164
-                - (t2160 * t2161 - (t2156 * t2157 - (t2153 * t2154 - t2184)));
-            let t2186 = k(1.0) / (t2166 * t2167 - t2185);
-            let t2187 = k(0.5) * t1062;
-            let t2188 = k(0.45226701686664544) * t1061
-                + (k(0.45226701686664544) * t1060 - k(0.30151134457776363) * t1190);
-            let t2189 = k(1.0) / (t2188 * t2188 + t2187 * t2187);
-            let t2190 = (k(0.5) * (t1061 + t1060) * t2188
-                + k(0.45226701686664544) * t1062 * t2187) * t2189;
-            let t2191 = k(0.45226701686664544) * t1190;
-            let t2192 = t2188 * (k(0.5) * t1190);
-            let t2193 = t2189
-                * (t2192 - t2187 * (k(0.30151134457776363) * t1061 + t2191));
-            let t2194 = t2189
-                * (t2192 + t2187 * (t2191 + k(0.30151134457776363) * t1060));
-            let t2195 = t1052 + t1051;
-            let t2196 = t1048 + t1047;
-            let t2197 = t2187
-                * (k(0.30151134457776363) * (t1057 + t1056)
-                    - k(0.45226701686664544) * t2196 - k(0.45226701686664544) * t2195);
-            let t2198 = t2189 * (t2188 * (k(0.5) * (t2196 - t2195)) - t2197);
-            let t2199 = t2188 * (k(0.5) * (t1050 - t1046))
-                + t2187
-                    * (t1192 - k(0.45226701686664544) * t1046
-                        - k(0.45226701686664544) * t1050);
+            let t2000 = t1444 * t1990;
+            let t2001 = t2000 - (t2000 + t1460 * t1989) + (t1987 - t1435 * t1988);
+            let t2002 = t1441 * t1995 - (t1427 * t1994 - t1436 * t1993)
+                + (t1465 * t1990 - (t1453 * t1989 + t2000) + t2001);
+            let t2003 = t1951 * t1995 + (t1949 * t1994 + t1947 * t1993)
+                + (t1942 * t2002 + (t1938 * t1999 - t1935 * t1996));
+            let t2004 = k(0.19611613513818404) * t1942 + k(0.9805806756909201) * t1935;
+            let t2005 = t531 * t2004;
+            let t2006 = k(0.9813067629253163) * (t1938 + t543 * t2005)
+                - k(0.03774256780481986) * (t1935 - t528 * t2005);
+            let t2007 = k(0.1887128390240993) * (t1942 - t530 * t2005) + t2006;
+            let t2008 = t642 * t2007;
+            let t2009 = t662 * t2005
+                + (t1953 - (t654 * t1942 - (t653 * t1938 - t652 * t1935)));
+            let t2010 = t669 * t2008 + t2009 + (t650 * t2008 - (t1954 - t638 * t2005));
+            let t2011 = k(0.9622504486493763) * (t684 * t2008 + (t1954 + t678 * t2005))
+                - k(0.19245008972987526) * t2010;
+            let t2012 = t728 * t2011;
+            let t2013 = k(0.19245008972987526) * t2012;
+            let t2014 = k(0.9622504486493763) * t2012;
+            let t2015 = t642 * (t2007 - (t684 * t2014 - (t669 * t2013 + t650 * t2013)));
+            let t2016 = k(0.03774256780481986) * t2015;
+            let t2017 = k(0.9813067629253163) * t2015;
+            let t2018 = k(0.1887128390240993) * t2015;
+            let t2019 = t678 * t2014 - (t662 * t2013 + t638 * t2013)
+                + (t530 * t2018 - (t543 * t2017 + t528 * t2016));
+            let t2020 = t531 * (t2004 - t2019);
+            let t2021 = t652 * t2013;
+            let t2022 = t2021 + t614 * t2013 + (t2016 - k(0.9805806756909201) * t2020);
+            let t2023 = t653 * t2013;
+            let t2024 = t2017 + (t2023 + t618 * t2013);
+            let t2025 = t654 * t2013;
+            let t2026 = t2025 - t622 * t2013 - (t2018 + k(0.19611613513818404) * t2020);
+            let t2027 = t1954 * t2014 - t1953 * t2013
+                + (t1942 * t2026 - (t1938 * t2024 - t1935 * t2022));
+            let t2028 = t1963 * t1964
+                - (t1960 * t1961 - (t1956 * t1957 + (t2027 - t2003)));
+            let t2029 = k(1.0) / (t1971 * t1972 - (t1966 * t1967 - t2028));
+            let t2030 = t132 * carrier_wx + t160 * carrier_wy;
+            let t2031 = t145 * carrier_wx + t160 * carrier_wz;
+            let t2032 = t145 * carrier_wy - t132 * carrier_wz;
+            let t2033 = slide_sx - k(0.1) * t1605
+                - (carrier_sx - (k(0.1) * t2032 - k(0.2) * t2031 + k(0.4) * t2030));
+            let t2034 = k(0.4) * t229 - (k(0.2) * t235 + k(0.1) * t233) - k(0.1) * t1599;
+            let t2035 = carrier_rx + (k(0.8) * t144 + (k(0.4) * t131 - k(0.2) * t159))
+                - (slide_rx - t1732);
+            let t2036 = t128 * carrier_wx + t162 * carrier_wy;
+            let t2037 = t141 * carrier_wx - t162 * carrier_wz;
+            let t2038 = t141 * carrier_wy + t128 * carrier_wz;
+            let t2039 = slide_sy - k(0.1) * t1619
+                - (carrier_sy - (k(0.1) * t2038 - k(0.2) * t2037 - k(0.4) * t2036));
+            let t2040 = k(0.4) * t245 - (k(0.2) * t247 + k(0.1) * t246) - k(0.1) * t1613;
+            let t2041 = carrier_ry + (k(0.8) * t140 - (k(0.4) * t127 - k(0.2) * t161))
+                - (slide_ry + t1733);
+            let t2042 = t2041 * t2040 - t2039 * t2039 + (t2035 * t2034 - t2033 * t2033);
+            let t2043 = t136 * carrier_wx - t164 * carrier_wy;
+            let t2044 = t147 * carrier_wx + t164 * carrier_wz;
+            let t2045 = t147 * carrier_wy + t136 * carrier_wz;
+            let t2046 = slide_sz + k(0.1) * t1634
+                - (carrier_sz + (k(0.1) * t2045 - k(0.2) * t2044 - k(0.4) * t2043));
+            let t2047 = k(0.4) * t257 - (k(0.2) * t259 + k(0.1) * t258) - k(0.1) * t1628;
+            let t2048 = carrier_rz - (k(0.8) * t146 - (k(0.4) * t135 + k(0.2) * t163))
+                - (slide_rz - t1734);
+            let t2049 = k(1.0) / self.rod_length;
+            let t2050 = k(0.5)
+                * (t2049 * (k(2.0) * (t2048 * t2047 + t2046 * t2046 - t2042)));
+            let t2051 = t2049 * (k(2.0) * t2035);
+            let t2052 = k(0.5) * t2051;
+            let t2053 = t2049 * (k(2.0) * t2041);
+            let t2054 = k(0.5) * t2053;
+            let t2055 = t2049 * (k(2.0) * t2048);
+            let t2056 = k(0.5) * t2055;
+            let t2057 = t2035 * (t335 - k(0.8) * t131) + t2041 * (t349 + k(0.8) * t127);
+            let t2058 = k(0.5)
+                * (t2049 * (k(2.0) * (t2057 - t2048 * (t363 + k(0.8) * t135))));
+            let t2059 = t2035 * (t312 + k(0.8) * t159) + t2041 * (t313 - k(0.8) * t161);
+            let t2060 = k(0.5)
+                * (t2049 * (k(2.0) * (t2059 - t2048 * (t315 + k(0.8) * t163))));
+            let t2061 = t2035 * (k(0.4) * t159 + k(0.2) * t131)
+                - t2041 * (k(0.4) * t161 + k(0.2) * t127);
+            let t2062 = t2049
+                * (k(2.0) * (t2061 - t2048 * (k(0.4) * t163 - k(0.2) * t135)));
+            let t2063 = k(0.5) * t2062;
+            let t2064 = t2063 * t434 - (t2060 * t433 - t2058 * t431)
+                - (t2056 * t442 - (t2054 * t439 + t2052 * t436));
+            let t2065 = t2035 * (k(0.2) * t1364) + t2041 * (k(0.2) * t1360)
+                - t2048 * (k(0.2) * t1356);
+            let t2066 = t2035 * (k(0.2) * t1376) - t2041 * (k(0.2) * t1378)
+                - t2048 * (k(0.2) * t1380);
+            let t2067 = k(0.5) * (t2049 * (k(2.0) * t2066)) * t1806
+                - k(0.5) * (t2049 * (k(2.0) * t2065)) * t1773;
+            let t2068 = t2067 - (t2056 * t1815 - (t2054 * t1813 - t2052 * t1811))
+                + t2064;
+            let t2069 = t2063 * t793 - (t2060 * t793 - t2058 * t792)
+                - (t2056 * t801 + (t2054 * t798 - t2052 * t795));
+            let t2070 = t861 * t2069;
+            let t2071 = t2063 * t909 - (t2060 * t909 - t2058 * t908)
+                - (t2056 * t917 + (t2054 * t914 - t2052 * t911));
+            let t2072 = t888 * t2070 - t2071;
+            let t2073 = t977 * t2072;
+            let t2074 = t2063 * t1051 - (t2060 * t1051 - t2058 * t1050)
+                - (t2056 * t1059 + (t2054 * t1056 - t2052 * t1053));
+            let t2075 = t1032 * t2073 - (t1029 * t2070 - t2074);
+            let t2076 = t1110 * t2075;
+            let t2077 = t2076 * t1034
+                - (t2073 * t890 - (t2070 * t774 + (t2068 + t2050)));
+            let t2078 = t2063 * t1154 - (t2060 * t1154 - t2058 * t1153)
+                - (t2056 * t1162 + (t2054 * t1159 - t2052 * t1156));
+            let t2079 = t1135 * t2076 - (t1131 * t2073 - (t1128 * t2070 + t2078));
+            let t2080 = t1213 * t2079;
+            let t2081 = t1864 * t2070
+                + (t2056 * t1890 - (t2054 * t1889 - t2052 * t1889));
+            let t2082 = t1874 * t2080 - (t1871 * t2076 - (t1867 * t2073 - t2081));
+            let t2083 = t1932 * t2082;
+            let t2084 = t1956 * t2070
+                - (t2056 * t1987 - (t2054 * t1986 - t2052 * t1986));
+            let t2085 = t1971 * t2083
+                - (t1966 * t2080 - (t1963 * t2076 - (t1960 * t2073 - t2084)));
+            let t2086 = t2029 * t2085;
+            let t2087 = t2086 * t1973 - (t2083 * t1876 - (t2080 * t1137 - t2077));
+            let t2088 = t315 * t2056 - (t313 * t2054 + t312 * t2052);
+            let t2089 = k(0.6666666666666666)
+                * (t2063 - (t326 * t2056 + (t330 * t2054 - t328 * t2052)));
+            let t2090 = t429
+                * (t2089
+                    - (k(0.6666666666666666) * (t2060 - t2088)
+                        - k(0.3333333333333333) * (t2058 - t2088)));
+            let t2091 = k(0.3333333333333333) * t2090;
+            let t2092 = k(0.6666666666666666) * t2090;
+            let t2093 = t328 * t2092;
+            let t2094 = t2093 - (t312 * t2092 - t312 * t2091);
+            let t2095 = t330 * t2092;
+            let t2096 = t2095 + (t313 * t2092 - t313 * t2091);
+            let t2097 = t326 * t2092;
+            let t2098 = t2097 - (t315 * t2092 - t315 * t2091);
+            let t2099 = t2063 * t2092 - (t2060 * t2092 - t2058 * t2091)
+                - (t2056 * t2098 + (t2054 * t2096 - t2052 * t2094));
+            let t2100 = t1808
+                * (k(0.4714045207910317) * t2055
+                    + k(0.11785113019775792) * (t2051 - t2053));
+            let t2101 = k(0.23570226039551584) * t2100;
+            let t2102 = k(0.9428090415820634) * t2100;
+            let t2103 = t2069 * t2070
+                - (t2056 * t2102 - (t2054 * t2101 - t2052 * t2101) - t2099);
+            let t2104 = t2082 * t2083
+                - (t2079 * t2080 - (t2075 * t2076 - (t2072 * t2073 - t2103)));
+            let t2105 = k(1.0) / (t2085 * t2086 - t2104);
+            let t2106 = t996 + (shaft_wx * t988 - shaft_wy * t982)
+                + (t992 - (shaft_wx * t987 - shaft_wy * t981));
+            let t2107 = t1006 - (shaft_wx * t985 + shaft_wz * t982)
+                + (t1003 + (shaft_wx * t984 + shaft_wz * t981));
+            let t2108 = t995 + (shaft_wy * t985 + shaft_wz * t988)
+                + (t991 - (shaft_wy * t984 + shaft_wz * t987));
+            let t2109 = k(0.30151134457776363) * t2108 - k(0.45226701686664544) * t2107
+                - k(0.45226701686664544) * t2106;
+            let t2110 = k(0.5) * t1017;
+            let t2111 = k(0.5) * (t2107 - t2106);
+            let t2112 = k(0.45226701686664544) * t1016
+                + (k(0.45226701686664544) * t1015 - k(0.30151134457776363) * t1122);
+            let t2113 = k(1.0) / (t2112 * t2112 + t2110 * t2110);
+            let t2114 = t2113 * t2113 * (k(2.0) * (t2110 * t2111 + t2112 * t2109))
+                * (t2112 * t2111 - t2110 * t2109);
+            let t2115 = t998 - t994;
+            let t2116 = t1008 - t1005;
+            let t2117 = t2111 * t2109;
+            let t2118 = t2110
+                * (k(0.45226701686664544) * t2116
+                    + (k(0.45226701686664544) * t2115
+                        - k(0.30151134457776363) * (t1116 - t1114)));
+            let t2119 = t2113
+                * (t2118 - t2117 + (t2117 - t2112 * (k(0.5) * (t2116 - t2115))));
+            let t2120 = (k(0.5) * (t1016 + t1015) * t2112
+                + k(0.45226701686664544) * t1017 * t2110) * t2113;
+            let t2121 = k(0.45226701686664544) * t1122;
+            let t2122 = t2112 * (k(0.5) * t1122);
+            let t2123 = t2113
+                * (t2122 - t2110 * (k(0.30151134457776363) * t1016 + t2121));
+            let t2124 = t2113
+                * (t2122 + t2110 * (t2121 + k(0.30151134457776363) * t1015));
+            let t2125 = t985 + t984;
+            let t2126 = t988 + t987;
+            let t2127 = t2110
+                * (k(0.30151134457776363) * (t982 + t981)
+                    - k(0.45226701686664544) * t2126 - k(0.45226701686664544) * t2125);
+            let t2128 = t2113 * (t2112 * (k(0.5) * (t2126 - t2125)) - t2127);
+            let t2129 = t2112 * (k(0.5) * (t980 - t979))
+                + t2110
+                    * (t1124 - k(0.45226701686664544) * t979
+                        - k(0.45226701686664544) * t980);
+            let t2130 = t2113 * t2129;
+            let t2131 = t2130 * t754 + (t2130 * t753 + t2128 * t752)
+                - (t2124 * t451 + (t2123 * t450 - t2120 * t455));
+            let t2132 = k(0.8944271909999159) * t1392 * t1393
+                + (k(0.29814239699997197) * t1392 + k(0.7453559924999299) * t1388)
+                    * t1389;
+            let t2133 = t1393 * (k(0.4472135954999579) * t1392)
+                - t1389
+                    * (k(0.5962847939999439) * t1392 - k(0.7453559924999299) * t1385);
+            let t2134 = self.gear_ratio * (t1395 * t2133) * t1794
+                - self.gear_ratio * (t2132 * t1395) * t1773;
+            let t2135 = t1393
+                * (k(0.4472135954999579) * t1388 - k(0.8944271909999159) * t1385)
+                - t1389
+                    * (k(0.5962847939999439) * t1388 + k(0.29814239699997197) * t1385);
+            let t2136 = self.gear_ratio * t1396;
+            let t2137 = self.gear_ratio * t1399;
+            let t2138 = self.gear_ratio * t1403;
+            let t2139 = t2138 * t1826 - (t2137 * t1822 - t2136 * t1824)
+                + (self.gear_ratio * (t1395 * t2135) * t1806 - t2134 + t2131);
+            let t2140 = t2130 * t856 - (t2130 * t855 + t2128 * t854)
+                - (t2124 * t810 + (t2123 * t809 - t2120 * t814));
+            let t2141 = t861 * t2140;
+            let t2142 = t2130 * t972 - (t2130 * t971 + t2128 * t970)
+                - (t2124 * t926 + (t2123 * t925 - t2120 * t930));
+            let t2143 = t888 * t2141 - t2142;
+            let t2144 = t977 * t2143;
+            let t2145 = t2144 * t890
+                - (t2141 * t774 - (t2139 + (self.gear_ratio * t1652 + (t2119 - t2114))));
+            let t2146 = t2130 * t1108 + (t2130 * t1107 + t2128 * t1106)
+                - (t2124 * t1069 + (t2123 * t1068 - t2120 * t1067));
+            let t2147 = t1032 * t2144 - (t1029 * t2141 - t2146);
+            let t2148 = t1110 * t2147;
+            let t2149 = t2130 * t1211 + (t2130 * t1210 - t2128 * t1209)
+                + (t2124 * t1172 + (t2123 * t1171 - t2120 * t1170));
+            let t2150 = t1135 * t2148 - (t1131 * t2144 - (t1128 * t2141 - t2149));
+            let t2151 = t1213 * t2150;
+            let t2152 = t1925 + (t670 * t1917 + (t1924 + t615 * t1916));
+            let t2153 = t1927 + (t671 * t1917 + (t1926 - t619 * t1916));
+            let t2154 = t1929 + (t672 * t1917 + (t1928 + t623 * t1916));
+            let t2155 = t522 * t2154 - (t534 * t2153 - t514 * t2152);
+            let t2156 = k(2.1052631578947367) * t2155
+                - (t521 * t2154 - (t533 * t2153 - t512 * t2152));
+            let t2157 = k(50.0) * t2156;
+            let t2158 = k(263.1578947368421) * t2155;
+            let t2159 = k(40.0) * (t525 * t2154 - (t537 * t2153 + t519 * t2152));
+            let t2160 = t2138 * t1893 - (t2137 * t1892 + t2136 * t1893)
+                + (t2130 * t2159 - (t2130 * t2158 + t2128 * t2157));
+            let t2161 = t1874 * t2151
+                - (t1871 * t2148 - (t1867 * t2144 - (t1864 * t2141 + t2160)));
+            let t2162 = t1932 * t2161;
+            let t2163 = t2022 + (t670 * t2014 + (t2021 + t615 * t2013));
+            let t2164 = t2024 + (t671 * t2014 + (t2023 - t619 * t2013));
+            let t2165 = t2026 + (t672 * t2014 + (t2025 + t623 * t2013));
+            let t2166 = t522 * t2165 - (t534 * t2164 - t514 * t2163);
+            let t2167 = k(2.1052631578947367) * t2166
+                - (t521 * t2165 - (t533 * t2164 - t512 * t2163));
+            let t2168 = k(50.0) * t2167;
+            let t2169 = k(263.1578947368421) * t2166;
+            let t2170 = k(40.0) * (t525 * t2165 - (t537 * t2164 + t519 * t2163));
+            let t2171 = t2138 * t1990 - (t2137 * t1989 + t2136 * t1990)
+                + (t2130 * t2170 - (t2130 * t2169 + t2128 * t2168));
+            let t2172 = t1966 * t2151
+                - (t1963 * t2148 - (t1960 * t2144 - (t1956 * t2141 - t2171)));
+            let t2173 = t1971 * t2162 - t2172;
+            let t2174 = t2029 * t2173;
+            let t2175 = t2174 * t1973
+                - (t2162 * t1876 - (t2151 * t1137 - (t2148 * t1034 - t2145)));
+            let t2176 = t2094 + (t2093 - (t318 * t2092 + t299 * t2091));
+            let t2177 = t2096 + (t2095 - (t320 * t2092 + t305 * t2091));
+            let t2178 = t2098 + (t2097 - (t322 * t2092 - t310 * t2091));
+            let t2179 = t148 * t2092 - (t138 * t2092 + t270 * t2091);
+            let t2180 = t149 * t2092 - (t137 * t2092 + t271 * t2091);
+            let t2181 = t283 * t2180 + t224 * t2179
+                + (t266 * t2178 - (t254 * t2177 + t242 * t2176));
+            let t2182 = t222 * t2181;
+            let t2183 = t217 * t2180 - (t216 * t2179 + t215 * t2182)
+                - (t264 * t2178 - (t252 * t2177 + t240 * t2176));
+            let t2184 = t218 * t2183;
+            let t2185 = t2182 + t189 * t2184;
+            let t2186 = t2179 + t206 * t2184;
+            let t2187 = t2180 - t213 * t2184;
+            let t2188 = t1525 * (t1497 * t2102 + (t1487 * t2101 + t1477 * t2101));
+            let t2189 = k(0.6666666666666666) * t2188;
+            let t2190 = k(0.3333333333333333) * t2188;
+            let t2191 = t2138 * t2189 - (t2137 * t2190 + t2136 * t2189)
+                - (t2124 * t2187 + (t2123 * t2186 + t2120 * t2185));
+            let t2192 = t2079 * t2151
+                - (t2075 * t2148 - (t2072 * t2144 - (t2069 * t2141 + t2191)));
+            let t2193 = t2085 * t2174 - (t2082 * t2162 - t2192);
+            let t2194 = t2105 * t2193;
+            let t2195 = t2194 * t2087 - t2175;
+            let t2196 = t213 * t2124 - (t206 * t2123 + t2120 * t189);
+            let t2197 = t218 * t2196;
+            let t2198 = t2120 + t215 * t2197;
+            let t2199 = t222 * t2198;
             (
-                t2005,
-                t2006,
-                t2007,
-                t2008,
-                t2009,
-                t2010,
+                t2001,
+                t2002,
                 t2013,
+                t2014,
+                t2022,
+                t2024,
+                t2026,
+                t2029,
+                t2030,
+                t2031,
+                t2032,
+                t2036,
                 t2037,
                 t2038,
-                t2041,
-                t2042,
+                t2043,
                 t2044,
                 t2045,
-                t2047,
-                t2048,
-                t2052,
-                t2053,
-                t2054,
-                t2067,
-                t2068,
+                t2069,
                 t2070,
-                t2071,
+                t2072,
                 t2073,
-                t2074,
                 t2075,
                 t2076,
-                t2077,
                 t2079,
                 t2080,
                 t2082,
                 t2083,
+                t2085,
+                t2086,
+                t2087,
+                t2091,
+                t2092,
                 t2094,
-                t2095,
+                t2096,
+                t2098,
+                t2101,
                 t2102,
-                t2103,
-                t2104,
                 t2105,
-                t2106,
-                t2107,
-                t2110,
-                t2133,
-                t2134,
-                t2135,
+                t2120,
+                t2123,
+                t2124,
+                t2128,
+                t2130,
+                t2136,
+                t2137,
                 t2138,
-                t2139,
                 t2140,
+                t2141,
+                t2143,
                 t2144,
-                t2145,
-                t2146,
+                t2147,
+                t2148,
                 t2150,
                 t2151,
+                t2152,
                 t2153,
                 t2154,
-                t2156,
                 t2157,
-                t2160,
+                t2158,
+                t2159,
                 t2161,
+                t2162,
                 t2163,
                 t2164,
-                t2166,
-                t2167,
+                t2165,
                 t2168,
-                t2172,
+                t2169,
+                t2170,
                 t2173,
                 t2174,
-                t2175,
                 t2176,
                 t2177,
                 t2178,
-                t2179,
-                t2182,
-                t2183,
+                t2185,
                 t2186,
                 t2187,
                 t2188,
@@ -15273,890 +15354,667 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 t2190,
                 t2193,
                 t2194,
+                t2195,
+                t2196,
+                t2197,
                 t2198,
                 t2199,
             )
         };
         let (
+            t2211,
+            t2214,
+            t2217,
+            t2220,
             t2221,
-            t2222,
-            t2224,
-            t2225,
             t2228,
             t2229,
-            t2231,
-            t2232,
-            t2233,
-            t2234,
-            t2235,
-            t2239,
-            t2241,
-            t2244,
-            t2246,
-            t2247,
+            t2230,
             t2248,
             t2249,
-            t2250,
-            t2254,
-            t2256,
-            t2259,
-            t2262,
+            t2257,
+            t2258,
+            t2260,
+            t2261,
             t2263,
-            t2265,
-            t2266,
+            t2264,
             t2267,
+            t2268,
+            t2269,
             t2275,
             t2276,
             t2277,
             t2278,
             t2279,
-            t2280,
-            t2283,
-            t2284,
-            t2285,
-            t2303,
-            t2304,
-            t2306,
-            t2307,
-            t2309,
-            t2310,
-            t2312,
-            t2313,
-            t2321,
-            t2322,
-            t2323,
-            t2341,
-            t2342,
+            t2344,
+            t2348,
+            t2349,
             t2350,
             t2351,
             t2353,
-            t2354,
-            t2356,
+            t2355,
             t2357,
-            t2361,
+            t2359,
+            t2362,
             t2363,
+            t2365,
             t2366,
+            t2368,
+            t2369,
+            t2371,
             t2372,
-            t2373,
-            t2374,
-            t2375,
-            t2376,
-            t2379,
-            t2383,
-            t2384,
-            t2385,
-            t2388,
+            t2380,
+            t2381,
+            t2386,
             t2390,
+            t2392,
             t2393,
+            t2394,
+            t2395,
             t2398,
             t2399,
         ) = {
-            let t2200 = t2189 * t2199;
-            let t2201 = t2200 * t786 + (t2200 * t778 + t2198 * t780)
-                - (t2194 * t431 + (t2193 * t430 - t2190 * t441));
-            let t2202 = k(0.8944271909999159) * t1437 * t1438
-                + (k(0.29814239699997197) * t1437 + k(0.7453559924999299) * t1433)
-                    * t1434;
-            let t2203 = t1438 * (k(0.4472135954999579) * t1437)
-                - t1434
-                    * (k(0.5962847939999439) * t1437 - k(0.7453559924999299) * t1430);
-            let t2204 = self.gear_ratio * (t1440 * t2203) * t1845
-                - self.gear_ratio * (t2202 * t1440) * t1824;
-            let t2205 = t1438
-                * (k(0.4472135954999579) * t1433 - k(0.8944271909999159) * t1430)
-                - t1434
-                    * (k(0.5962847939999439) * t1433 + k(0.29814239699997197) * t1430);
-            let t2206 = self.gear_ratio * t1441;
-            let t2207 = self.gear_ratio * t1444;
-            let t2208 = self.gear_ratio * t1448;
-            let t2209 = t2208 * t1877 - (t2207 * t1873 - t2206 * t1875)
-                + (self.gear_ratio * (t1440 * t2205) * t1857 - t2204 + t2201);
-            let t2210 = t1083 + (shaft_wx * t1048 - shaft_wy * t1057)
-                + (t1079 - (shaft_wx * t1047 - shaft_wy * t1056));
-            let t2211 = t1093 - (shaft_wx * t1052 + shaft_wz * t1057)
-                + (t1090 + (shaft_wx * t1051 + shaft_wz * t1056));
-            let t2212 = t1082 + (shaft_wy * t1052 + shaft_wz * t1048)
-                + (t1078 - (shaft_wy * t1051 + shaft_wz * t1047));
-            let t2213 = k(0.30151134457776363) * t2212 - k(0.45226701686664544) * t2211
-                - k(0.45226701686664544) * t2210;
-            let t2214 = k(0.5) * (t2211 - t2210);
-            let t2215 = t2189 * t2189 * (k(2.0) * (t2187 * t2214 + t2188 * t2213))
-                * (t2188 * t2214 - t2187 * t2213);
-            let t2216 = t1085 - t1081;
-            let t2217 = t1095 - t1092;
-            let t2218 = t2214 * t2213;
-            let t2219 = t2187
-                * (k(0.45226701686664544) * t2217
-                    + (k(0.45226701686664544) * t2216
-                        - k(0.30151134457776363) * (t1201 - t1199)));
-            let t2220 = t2189
-                * (t2219 - t2218 + (t2218 - t2188 * (k(0.5) * (t2217 - t2216))));
-            let t2221 = t2200 * t917 + (t2200 * t912 + t2198 * t914)
-                + (t2194 * t867 + (t2193 * t866 - t2190 * t871));
-            let t2222 = t922 * t2221;
-            let t2223 = t2200 * t1040 + (t2200 * t1035 + t2198 * t1037)
-                + (t2194 * t990 + (t2193 * t989 - t2190 * t994));
-            let t2224 = t949 * t2222 - t2223;
-            let t2225 = t1045 * t2224;
-            let t2226 = t2225 * t951
-                - (t2222 * t828 + (self.gear_ratio * t1703 + (t2220 - t2215) + t2209));
-            let t2227 = t2200 * t1183 + (t2200 * t1178 + t2198 * t1180)
-                + (t2194 * t1140 + (t2193 * t1139 - t2190 * t1138));
-            let t2228 = t1100 * t2225 - (t1097 * t2222 - t2227);
-            let t2229 = t1185 * t2228;
-            let t2230 = t2200 * t1293 + (t2200 * t1288 + t2198 * t1290)
-                - (t2194 * t1250 + (t2193 * t1249 - t2190 * t1248));
-            let t2231 = t1210 * t2229 - (t1206 * t2225 - (t1203 * t2222 - t2230));
-            let t2232 = t1295 * t2231;
-            let t2233 = t2006 + (t669 * t1998 + (t2005 + t594 * t1997));
-            let t2234 = t2008 + (t670 * t1998 + (t2007 - t598 * t1997));
-            let t2235 = t2010 + (t671 * t1998 + (t2009 + t602 * t1997));
-            let t2236 = t771 * t1998 - (t770 * t1997 + t769 * t1997);
-            let t2237 = t775 * t1998 - (t774 * t1997 + t773 * t1997);
-            let t2238 = k(0.0038) * t2237
-                + (t508 * t2235 - (t520 * t2234 - t500 * t2233));
-            let t2239 = t2237 - k(263.1578947368421) * t2238;
-            let t2240 = k(0.008) * t2239 - k(0.02) * t2236
-                + (t507 * t2235 - (t519 * t2234 - t498 * t2233));
-            let t2241 = t2236 + k(50.0) * t2240;
-            let t2242 = t783 * t1998 - (t782 * t1997 + t781 * t1997);
-            let t2243 = k(0.025) * t2242
-                - (t511 * t2235 - (t523 * t2234 + t505 * t2233));
-            let t2244 = t2242 - k(40.0) * t2243;
-            let t2245 = t2208 * t1974 - (t2207 * t1973 + t2206 * t1974)
-                + (t2200 * t2244 + (t2200 * t2239 + t2198 * t2241));
-            let t2246 = t1955 * t2232
-                - (t1952 * t2229 - (t1948 * t2225 - (t1945 * t2222 + t2245)));
-            let t2247 = t2013 * t2246;
-            let t2248 = t2103 + (t669 * t2095 + (t2102 + t594 * t2094));
-            let t2249 = t2105 + (t670 * t2095 + (t2104 - t598 * t2094));
-            let t2250 = t2107 + (t671 * t2095 + (t2106 + t602 * t2094));
-            let t2251 = t771 * t2095 - (t770 * t2094 + t769 * t2094);
-            let t2252 = t775 * t2095 - (t774 * t2094 + t773 * t2094);
-            let t2253 = k(0.0038) * t2252
-                + (t508 * t2250 - (t520 * t2249 - t500 * t2248));
-            let t2254 = t2252 - k(263.1578947368421) * t2253;
-            let t2255 = k(0.008) * t2254 - k(0.02) * t2251
-                + (t507 * t2250 - (t519 * t2249 - t498 * t2248));
-            let t2256 = t2251 + k(50.0) * t2255;
-            let t2257 = t783 * t2095 - (t782 * t2094 + t781 * t2094);
-            let t2258 = k(0.025) * t2257
-                - (t511 * t2250 - (t523 * t2249 + t505 * t2248));
-            let t2259 = t2257 - k(40.0) * t2258;
-            let t2260 = t2208 * t2071 - (t2207 * t2070 + t2206 * t2071)
-                + (t2200 * t2259 + (t2200 * t2254 + t2198 * t2256));
-            let t2261 = t2047 * t2232
-                - (t2044 * t2229 - (t2041 * t2225 - (t2037 * t2222 - t2260)));
-            let t2262 = t2052 * t2247 - t2261;
-            let t2263 = t2110 * t2262;
-            let t2264 = t2263 * t2054
-                - (t2247 * t1957 - (t2232 * t1212 - (t2229 * t1102 - t2226)));
-            let t2265 = t2175 + (t2174 - (t281 * t2173 + t262 * t2172));
-            let t2266 = t2177 + (t2176 - (t283 * t2173 + t268 * t2172));
-            let t2267 = t2179 + (t2178 - (t285 * t2173 - t273 * t2172));
-            let t2268 = t128 * t2173 - (t127 * t2173 + t227 * t2172);
-            let t2269 = t108 * t2173 - (t98 * t2173 + t233 * t2172);
-            let t2270 = t109 * t2173 - (t97 * t2173 + t234 * t2172);
-            let t2271 = t246 * t2270 + (t228 * t2269 + t165 * t2268)
-                + (t214 * t2267 - (t198 * t2266 + t172 * t2265));
-            let t2272 = t2268 - t166 * t2271;
-            let t2273 = t160 * t2270 - (t159 * t2269 - t158 * t2272)
-                - (t212 * t2267 - (t196 * t2266 + t170 * t2265));
-            let t2274 = t161 * t2273;
-            let t2275 = t2272 - t129 * t2274;
-            let t2276 = t2269 + t148 * t2274;
-            let t2277 = t2270 - t156 * t2274;
-            let t2278 = t1576 * (t1548 * t2183 + (t1538 * t2182 + t1528 * t2182));
-            let t2279 = k(0.6666666666666666) * t2278;
-            let t2280 = k(0.3333333333333333) * t2278;
-            let t2281 = t2208 * t2279 - (t2207 * t2280 + t2206 * t2279)
-                - (t2194 * t2277 + (t2193 * t2276 - t2190 * t2275));
-            let t2282 = t2160 * t2232
-                - (t2156 * t2229 - (t2153 * t2225 - (t2150 * t2222 + t2281)));
-            let t2283 = t2166 * t2263 - (t2163 * t2247 - t2282);
-            let t2284 = t2186 * t2283;
-            let t2285 = t2284 * t2168 - t2264;
-            let t2286 = t156 * t2194 - (t148 * t2193 + t2190 * t129);
-            let t2287 = t161 * t2286;
-            let t2288 = t2190 + t158 * t2287;
-            let t2289 = t166 * t2288;
-            let t2290 = t2288 - t165 * t2289;
-            let t2291 = t228 * t2289 + (t2193 + t159 * t2287);
-            let t2292 = t246 * t2289 + (t2194 - t160 * t2287);
-            let t2293 = t172 * t2289 + t170 * t2287;
-            let t2294 = t198 * t2289 + t196 * t2287;
-            let t2295 = t214 * t2289 + t212 * t2287;
-            let t2296 = t273 * t2295 + (t268 * t2294 + t262 * t2293)
-                - (t234 * t2292 + (t233 * t2291 - t227 * t2290));
-            let t2297 = t278 * t2295 + (t276 * t2294 - t275 * t2293);
-            let t2298 = t285 * t2295 - (t283 * t2294 + t281 * t2293)
-                + (t97 * t2292 + (t98 * t2291 - t127 * t2290));
-            let t2299 = t289 * t2295 - (t293 * t2294 + t291 * t2293);
-            let t2300 = t2299 + (t2299 + (t109 * t2292 + (t108 * t2291 - t128 * t2290)));
-            let t2301 = k(0.6666666666666666) * t2300
-                - (k(0.6666666666666666) * (t2297 + t2298)
-                    - k(0.3333333333333333) * (t2297 + t2296));
-            let t2302 = t408 * t2301;
-            let t2303 = k(0.3333333333333333) * t2302;
-            let t2304 = k(0.6666666666666666) * t2302;
-            let t2305 = t291 * t2304;
-            let t2306 = t2305 - (t275 * t2304 - t275 * t2303);
-            let t2307 = t281 * t2304 + t262 * t2303 - t2305 - t2306;
-            let t2308 = t293 * t2304;
-            let t2309 = t2308 + (t276 * t2304 - t276 * t2303);
-            let t2310 = t283 * t2304 + t268 * t2303 - t2308 - t2309;
-            let t2311 = t289 * t2304;
-            let t2312 = t2311 - (t278 * t2304 - t278 * t2303);
-            let t2313 = t285 * t2304 - t273 * t2303 - t2311 - t2312;
-            let t2314 = t128 * t2304 - (t127 * t2304 + t227 * t2303);
-            let t2315 = t108 * t2304 - (t98 * t2304 + t233 * t2303);
-            let t2316 = t109 * t2304 - (t97 * t2304 + t234 * t2303);
-            let t2317 = t246 * t2316 + (t228 * t2315 + t165 * t2314)
-                - (t214 * t2313 - (t198 * t2310 + t172 * t2307));
-            let t2318 = t2314 + t166 * (t2288 - t2317);
-            let t2319 = t160 * t2316 - (t159 * t2315 - t158 * t2318)
-                + (t212 * t2313 - (t196 * t2310 + t170 * t2307));
-            let t2320 = t161 * (t2286 + t2319);
-            let t2321 = t2318 - t129 * t2320;
-            let t2322 = t2315 + t148 * t2320;
-            let t2323 = t2316 - t156 * t2320;
-            let t2324 = k(50.0) * t2198;
-            let t2325 = t2200 + k(0.4) * t2198;
-            let t2326 = k(263.1578947368421) * t2325;
-            let t2327 = k(40.0) * t2200;
-            let t2328 = t505 * t2327 + (t500 * t2326 - t498 * t2324);
-            let t2329 = t523 * t2327 - (t520 * t2326 - t519 * t2324);
-            let t2330 = t511 * t2327 - (t508 * t2326 - t507 * t2324);
-            let t2331 = t601 * t2330 + (t597 * t2329 + t593 * t2328)
-                - (t602 * t2330 + (t598 * t2329 - t594 * t2328));
-            let t2332 = k(0.19611613513818404) * t2330 - k(0.9805806756909201) * t2328;
-            let t2333 = t517 * t2332;
-            let t2334 = k(0.9813067629253163) * (t529 * t2333 + t2329)
-                + k(0.03774256780481986) * (t2328 + t514 * t2333);
-            let t2335 = k(0.1887128390240993) * (t2330 - t516 * t2333) + t2334;
-            let t2336 = t641 * t2335;
-            let t2337 = t661 * t2333
-                - k(2.0) * (t652 * t2330 - (t651 * t2329 + t650 * t2328));
-            let t2338 = t668 * t2336 + t2337 + (t649 * t2336 + (t637 * t2333 + t2331));
-            let t2339 = t677 * t2333 + (t671 * t2330 - (t670 * t2329 + t669 * t2328));
-            let t2340 = t747
-                * (k(0.9622504486493763) * (t683 * t2336 + t2339)
-                    - k(0.19245008972987526) * t2338);
-            let t2341 = k(0.19245008972987526) * t2340;
-            let t2342 = k(0.9622504486493763) * t2340;
-            let t2343 = t641 * (t2335 - (t683 * t2342 - (t668 * t2341 + t649 * t2341)));
-            let t2344 = k(0.03774256780481986) * t2343;
-            let t2345 = k(0.9813067629253163) * t2343;
-            let t2346 = k(0.1887128390240993) * t2343;
-            let t2347 = t677 * t2342 - (t661 * t2341 + t637 * t2341)
-                + (t516 * t2346 - (t529 * t2345 + t514 * t2344));
-            let t2348 = t517 * (t2332 - t2347);
-            let t2349 = t650 * t2341;
-            let t2350 = t2349 + t593 * t2341 + (t2344 - k(0.9805806756909201) * t2348);
-            let t2351 = t669 * t2342 + (t594 * t2341 + t2349) + t2350;
-            let t2352 = t651 * t2341;
-            let t2353 = t2345 + (t2352 + t597 * t2341);
-            let t2354 = t670 * t2342 - (t598 * t2341 - t2352) + t2353;
-            let t2355 = t652 * t2341;
-            let t2356 = t2355 - t601 * t2341 - (t2346 + k(0.19611613513818404) * t2348);
-            let t2357 = t671 * t2342 + (t602 * t2341 + t2355) + t2356;
-            let t2358 = t771 * t2342 - (t770 * t2341 + t769 * t2341);
-            let t2359 = t775 * t2342 - (t774 * t2341 + t773 * t2341);
-            let t2360 = k(0.0038) * t2359
-                + (t508 * t2357 - (t520 * t2354 - t500 * t2351));
-            let t2361 = t2359 - k(263.1578947368421) * (t2325 + t2360);
-            let t2362 = k(0.008) * t2361 - k(0.02) * t2358
-                + (t507 * t2357 - (t519 * t2354 - t498 * t2351));
-            let t2363 = t2358 - k(50.0) * (t2198 - t2362);
-            let t2364 = t783 * t2342 - (t782 * t2341 + t781 * t2341);
-            let t2365 = k(0.025) * t2364
-                - (t511 * t2357 - (t523 * t2354 + t505 * t2351));
-            let t2366 = t2364 - k(40.0) * (t2200 + t2365);
-            let t2367 = t2200 * t2366 + (t2200 * t2361 + t2198 * t2363)
-                + (t2194 * t2323 + (t2193 * t2322 - t2190 * t2321));
-            let t2368 = k(0.6666666666666666) * t2208
-                - (k(0.3333333333333333) * t2207 + k(0.6666666666666666) * t2206);
-            let t2369 = t1576 * t2368;
-            let t2370 = k(0.9428090415820634) * (t1548 * t2369)
-                + k(0.23570226039551584) * (t1538 * t2369 + t1528 * t2369);
-            let t2371 = t1859 * t2370;
-            let t2372 = k(0.23570226039551584) * t2371;
-            let t2373 = k(0.9428090415820634) * t2371;
-            let t2374 = t1576
-                * (t2368 + (t1548 * t2373 + (t1538 * t2372 + t1528 * t2372)));
-            let t2375 = k(0.6666666666666666) * t2374;
-            let t2376 = k(0.3333333333333333) * t2374;
-            let t2377 = t2221 * t2222
-                + (t2208 * t2375 - (t2207 * t2376 + t2206 * t2375) - t2367);
-            let t2378 = t2246 * t2247
-                - (t2231 * t2232 - (t2228 * t2229 - (t2224 * t2225 - t2377)));
-            let t2379 = k(1.0) / (t2283 * t2284 - (t2262 * t2263 - t2378));
-            let t2380 = k(1.3333333333333333) * t104 - (t346 - t345);
-            let t2381 = k(1.3333333333333333) * t100 - (t343 - t342);
-            let t2382 = t340 + t339 + k(1.3333333333333333) * t106;
-            let t2383 = k(0.6666666666666666) * t2382
-                + (k(0.3333333333333333) * t2381 + k(0.6666666666666666) * t2380);
-            let t2384 = k(0.3333333333333333) * t2382
-                + k(0.6666666666666666) * (t2381 - t2380);
-            let t2385 = k(1.0) / (t2384 * t2384 + t2383 * t2383);
-            let t2386 = k(1.3333333333333333) * t95;
-            let t2387 = t349 - t2386;
-            let t2388 = k(1.3333333333333333) * t87;
-            let t2389 = t351 - t2388;
-            let t2390 = k(1.3333333333333333) * t91;
-            let t2391 = t353 + t2390;
-            let t2392 = (k(0.6666666666666666) * t2391 + k(0.3333333333333333) * t2389
-                + k(0.6666666666666666) * t2387) * t2384
-                + (k(0.6666666666666666) * (t2391 - t2389)
-                    - k(0.3333333333333333) * t2387) * t2383;
-            let t2393 = t2392 * t2385;
-            let t2394 = t217 - t106;
-            let t2395 = t201 + t100;
-            let t2396 = t176 - t104;
-            let t2397 = t2384
-                * (k(0.8888888888888888) * t2396 - k(0.4444444444444444) * t2395
-                    + k(0.8888888888888888) * t2394)
-                + t2383
-                    * (k(0.8888888888888888) * (t2396 + t2395)
-                        - k(0.4444444444444444) * t2394);
-            let t2398 = t2385 * t2397;
-            let t2399 = t2386 - k(0.6666666666666666) * t217;
+            let t2200 = t224 * t2199 + (t2123 + t216 * t2197);
+            let t2201 = t283 * t2199 + (t2124 - t217 * t2197);
+            let t2202 = t242 * t2199 + t240 * t2197;
+            let t2203 = t254 * t2199 + t252 * t2197;
+            let t2204 = t266 * t2199 + t264 * t2197;
+            let t2205 = t310 * t2204 + (t305 * t2203 + t299 * t2202)
+                - (t271 * t2201 + t270 * t2200);
+            let t2206 = t315 * t2204 + (t313 * t2203 - t312 * t2202);
+            let t2207 = t322 * t2204 - (t320 * t2203 + t318 * t2202)
+                + (t137 * t2201 + t138 * t2200);
+            let t2208 = t326 * t2204 - (t330 * t2203 + t328 * t2202);
+            let t2209 = k(0.6666666666666666)
+                * (t2208 + (t2208 + (t149 * t2201 + t148 * t2200)))
+                - (k(0.6666666666666666) * (t2206 + t2207)
+                    - k(0.3333333333333333) * (t2206 + t2205));
+            let t2210 = t429 * t2209;
+            let t2211 = k(0.3333333333333333) * t2210;
+            let t2212 = k(0.6666666666666666) * t2210;
+            let t2213 = t328 * t2212;
+            let t2214 = t2213 - (t312 * t2212 - t312 * t2211);
+            let t2215 = t318 * t2212 + t299 * t2211 - t2213 - t2214;
+            let t2216 = t330 * t2212;
+            let t2217 = t2216 + (t313 * t2212 - t313 * t2211);
+            let t2218 = t320 * t2212 + t305 * t2211 - t2216 - t2217;
+            let t2219 = t326 * t2212;
+            let t2220 = t2219 - (t315 * t2212 - t315 * t2211);
+            let t2221 = t322 * t2212 - t310 * t2211 - t2219 - t2220;
+            let t2222 = t148 * t2212 - (t138 * t2212 + t270 * t2211);
+            let t2223 = t149 * t2212 - (t137 * t2212 + t271 * t2211);
+            let t2224 = t283 * t2223 + t224 * t2222
+                - (t266 * t2221 - (t254 * t2218 + t242 * t2215));
+            let t2225 = t222 * (t2198 - t2224);
+            let t2226 = t217 * t2223 - (t216 * t2222 - t215 * t2225)
+                + (t264 * t2221 - (t252 * t2218 + t240 * t2215));
+            let t2227 = t218 * (t2196 + t2226);
+            let t2228 = t2225 - t189 * t2227;
+            let t2229 = t2222 + t206 * t2227;
+            let t2230 = t2223 - t213 * t2227;
+            let t2231 = k(50.0) * t2128;
+            let t2232 = t2130 + k(0.4) * t2128;
+            let t2233 = k(263.1578947368421) * t2232;
+            let t2234 = k(40.0) * t2130;
+            let t2235 = t519 * t2234 + (t514 * t2233 - t512 * t2231);
+            let t2236 = t537 * t2234 - (t534 * t2233 - t533 * t2231);
+            let t2237 = t525 * t2234 - (t522 * t2233 - t521 * t2231);
+            let t2238 = t622 * t2237 + (t618 * t2236 + t614 * t2235)
+                - (t623 * t2237 + (t619 * t2236 - t615 * t2235));
+            let t2239 = k(0.19611613513818404) * t2237 - k(0.9805806756909201) * t2235;
+            let t2240 = t531 * t2239;
+            let t2241 = k(0.9813067629253163) * (t543 * t2240 + t2236)
+                + k(0.03774256780481986) * (t2235 + t528 * t2240);
+            let t2242 = k(0.1887128390240993) * (t2237 - t530 * t2240) + t2241;
+            let t2243 = t642 * t2242;
+            let t2244 = t662 * t2240
+                - k(2.0) * (t654 * t2237 - (t653 * t2236 + t652 * t2235));
+            let t2245 = t669 * t2243 + t2244 + (t650 * t2243 + (t638 * t2240 + t2238));
+            let t2246 = t678 * t2240 + (t672 * t2237 - (t671 * t2236 + t670 * t2235));
+            let t2247 = t728
+                * (k(0.9622504486493763) * (t684 * t2243 + t2246)
+                    - k(0.19245008972987526) * t2245);
+            let t2248 = k(0.19245008972987526) * t2247;
+            let t2249 = k(0.9622504486493763) * t2247;
+            let t2250 = t642 * (t2242 - (t684 * t2249 - (t669 * t2248 + t650 * t2248)));
+            let t2251 = k(0.03774256780481986) * t2250;
+            let t2252 = k(0.9813067629253163) * t2250;
+            let t2253 = k(0.1887128390240993) * t2250;
+            let t2254 = t678 * t2249 - (t662 * t2248 + t638 * t2248)
+                + (t530 * t2253 - (t543 * t2252 + t528 * t2251));
+            let t2255 = t531 * (t2239 - t2254);
+            let t2256 = t652 * t2248;
+            let t2257 = t2256 + t614 * t2248 + (t2251 - k(0.9805806756909201) * t2255);
+            let t2258 = t670 * t2249 + (t615 * t2248 + t2256) + t2257;
+            let t2259 = t653 * t2248;
+            let t2260 = t2252 + (t2259 + t618 * t2248);
+            let t2261 = t671 * t2249 - (t619 * t2248 - t2259) + t2260;
+            let t2262 = t654 * t2248;
+            let t2263 = t2262 - t622 * t2248 - (t2253 + k(0.19611613513818404) * t2255);
+            let t2264 = t672 * t2249 + (t623 * t2248 + t2262) + t2263;
+            let t2265 = t2232 + (t522 * t2264 - (t534 * t2261 - t514 * t2258));
+            let t2266 = k(2.1052631578947367) * t2265
+                - (t521 * t2264 - (t533 * t2261 - t512 * t2258));
+            let t2267 = k(50.0) * (t2128 + t2266);
+            let t2268 = k(263.1578947368421) * t2265;
+            let t2269 = k(40.0)
+                * (t2130 - (t525 * t2264 - (t537 * t2261 + t519 * t2258)));
+            let t2270 = t2130 * t2269 + (t2130 * t2268 + t2128 * t2267)
+                - (t2124 * t2230 + (t2123 * t2229 - t2120 * t2228));
+            let t2271 = k(0.6666666666666666) * t2138
+                - (k(0.3333333333333333) * t2137 + k(0.6666666666666666) * t2136);
+            let t2272 = t1525 * t2271;
+            let t2273 = k(0.9428090415820634) * (t1497 * t2272)
+                + k(0.23570226039551584) * (t1487 * t2272 + t1477 * t2272);
+            let t2274 = t1808 * t2273;
+            let t2275 = k(0.23570226039551584) * t2274;
+            let t2276 = k(0.9428090415820634) * t2274;
+            let t2277 = t1525
+                * (t2271 + (t1497 * t2276 + (t1487 * t2275 + t1477 * t2275)));
+            let t2278 = k(0.6666666666666666) * t2277;
+            let t2279 = k(0.3333333333333333) * t2277;
+            let t2280 = t2140 * t2141
+                - (t2138 * t2278 - (t2137 * t2279 + t2136 * t2278) + t2270);
+            let t2281 = t2161 * t2162
+                - (t2150 * t2151 - (t2147 * t2148 - (t2143 * t2144 - t2280)));
+            let t2282 = k(1.0) / (t2193 * t2194 - (t2173 * t2174 - t2281));
+            let t2283 = k(0.6666666666666666) * t2045 - k(0.3333333333333333) * t2044
+                + k(0.6666666666666666) * t2043;
+            let t2284 = k(0.6666666666666666) * t2038 - k(0.3333333333333333) * t2037
+                + k(0.6666666666666666) * t2036;
+            let t2285 = k(0.6666666666666666) * t2032 - k(0.3333333333333333) * t2031
+                - k(0.6666666666666666) * t2030;
+            let t2286 = k(0.6666666666666666) * (t2285 - t2284)
+                - k(0.3333333333333333) * t2283;
+            let t2287 = k(1.3333333333333333) * t144
+                - (t380 - k(1.3333333333333333) * t159);
+            let t2288 = t376 - (t384 - k(0.6666666666666666) * t127);
+            let t2289 = t385 + k(0.6666666666666666) * t135 + t377;
+            let t2290 = k(0.6666666666666666) * t2289
+                + (k(0.3333333333333333) * t2288 + k(0.6666666666666666) * t2287);
+            let t2291 = k(0.6666666666666666) * t2285 + k(0.3333333333333333) * t2284
+                + k(0.6666666666666666) * t2283;
+            let t2292 = k(0.3333333333333333) * t2289
+                + k(0.6666666666666666) * (t2288 - t2287);
+            let t2293 = k(1.0) / (t2292 * t2292 + t2290 * t2290);
+            let t2294 = t2293 * t2293 * (k(2.0) * (t2290 * t2291 - t2292 * t2286))
+                * (t2292 * t2291 + t2290 * t2286);
+            let t2295 = k(0.3333333333333333) * t235 + k(0.6666666666666666) * t233
+                + k(0.6666666666666666) * t229;
+            let t2296 = k(0.3333333333333333) * t247 + k(0.6666666666666666) * t246
+                + k(0.6666666666666666) * t245;
+            let t2297 = k(0.3333333333333333) * t259 + k(0.6666666666666666) * t258
+                + k(0.6666666666666666) * t257;
+            let t2298 = t2291 * t2286;
+            let t2299 = t2298
+                + t2292
+                    * (k(0.6666666666666666) * t2297
+                        + (k(0.3333333333333333) * t2296
+                            + k(0.6666666666666666) * t2295));
+            let t2300 = t2290
+                * (k(0.3333333333333333) * t2297
+                    + k(0.6666666666666666) * (t2296 - t2295)) + t2298 - t2299;
+            let t2301 = k(0.6666666666666666) * t146 - t381;
+            let t2302 = k(0.6666666666666666) * t140 - t379;
+            let t2303 = k(1.3333333333333333) * t131;
+            let t2304 = t375 + t2303;
+            let t2305 = (k(0.6666666666666666) * t2304 + k(0.3333333333333333) * t2302
+                + k(0.6666666666666666) * t2301) * t2292
+                + (k(0.6666666666666666) * (t2304 - t2302)
+                    - k(0.3333333333333333) * t2301) * t2290;
+            let t2306 = t2305 * t2293;
+            let t2307 = t163 - t146;
+            let t2308 = t161 + t140;
+            let t2309 = t159 - t144;
+            let t2310 = t2292
+                * (k(0.8888888888888888) * t2309 - k(0.4444444444444444) * t2308
+                    + k(0.8888888888888888) * t2307)
+                + t2290
+                    * (k(0.8888888888888888) * (t2309 + t2308)
+                        - k(0.4444444444444444) * t2307);
+            let t2311 = t2293 * t2310;
+            let t2312 = t381 - k(0.6666666666666666) * t163;
+            let t2313 = t379 + k(0.6666666666666666) * t161;
+            let t2314 = t2303 + t383;
+            let t2315 = t2292
+                * (k(0.6666666666666666) * t2314 - k(0.3333333333333333) * t2313
+                    - k(0.6666666666666666) * t2312)
+                + t2290
+                    * (k(0.6666666666666666) * (t2314 + t2313)
+                        + k(0.3333333333333333) * t2312);
+            let t2316 = t2293 * t2315;
+            let t2317 = t2316 * t434 + (t2311 * t433 + t2306 * t431)
+                + (k(8.882643960980422) * (k(9.42477796076938) * t).sin()
+                    - (t2293 * t2300 - t2294));
+            let t2318 = t2316 * t793 + (t2311 * t793 + t2306 * t792);
+            let t2319 = t861 * t2318;
+            let t2320 = t888 * t2319 - (t2316 * t909 + (t2311 * t909 + t2306 * t908));
+            let t2321 = t977 * t2320;
+            let t2322 = t1029 * t2319
+                - (t2316 * t1051 + (t2311 * t1051 + t2306 * t1050));
+            let t2323 = t1032 * t2321 - t2322;
+            let t2324 = t1110 * t2323;
+            let t2325 = t1128 * t2319
+                + (t2316 * t1154 + (t2311 * t1154 + t2306 * t1153));
+            let t2326 = t1135 * t2324 - (t1131 * t2321 - t2325);
+            let t2327 = t1213 * t2326;
+            let t2328 = t2327 * t1137
+                - (t2324 * t1034 - (t2321 * t890 - (t2319 * t774 + t2317)));
+            let t2329 = t1874 * t2327
+                - (t1871 * t2324 - (t1867 * t2321 - t1864 * t2319));
+            let t2330 = t1932 * t2329;
+            let t2331 = t1966 * t2327
+                - (t1963 * t2324 - (t1960 * t2321 - t1956 * t2319));
+            let t2332 = t1971 * t2330 - t2331;
+            let t2333 = t2029 * t2332;
+            let t2334 = t2069 * t2319
+                + (t2316 * t2092 + (t2311 * t2092 + t2306 * t2091));
+            let t2335 = t2082 * t2330
+                - (t2079 * t2327 - (t2075 * t2324 - (t2072 * t2321 - t2334)));
+            let t2336 = t2085 * t2333 - t2335;
+            let t2337 = t2105 * t2336;
+            let t2338 = t2140 * t2319
+                - (t2316 * t2212 + (t2311 * t2212 + t2306 * t2211));
+            let t2339 = t2161 * t2330
+                - (t2150 * t2327 - (t2147 * t2324 - (t2143 * t2321 - t2338)));
+            let t2340 = t2193 * t2337 - (t2173 * t2333 - t2339);
+            let t2341 = t2282 * t2340;
+            let t2342 = t2341 * t2195
+                - (t2337 * t2087 - (t2333 * t1973 - (t2330 * t1876 - t2328)));
+            let t2343 = t429
+                * (k(0.6666666666666666) * t2316
+                    + (k(0.6666666666666666) * t2311 + k(0.3333333333333333) * t2306));
+            let t2344 = k(0.3333333333333333) * t2343;
+            let t2345 = k(0.6666666666666666) * t2343;
+            let t2346 = t2318 * t2319
+                + (t2316 * t2345 + (t2311 * t2345 + t2306 * t2344));
+            let t2347 = t2329 * t2330
+                - (t2326 * t2327 - (t2323 * t2324 - (t2320 * t2321 - t2346)));
+            let t2348 = t2342
+                / (t2340 * t2341 - (t2336 * t2337 - (t2332 * t2333 - t2347)));
+            let t2349 = t2341 * t2348 - t2282 * t2195;
+            let t2350 = t2337 * t2348 - (t2194 * t2349 + t2105 * t2087);
+            let t2351 = t2333 * t2348
+                - (t2174 * t2349 + (t2086 * t2350 + t2029 * t1973));
+            let t2352 = t2162 * t2349
+                + (t2083 * t2350 + (t1972 * t2351 + t1932 * t1876));
+            let t2353 = t2330 * t2348 - t2352;
+            let t2354 = t2080 * t2350
+                + (t1967 * t2351 + (t1875 * t2353 + t1213 * t1137));
+            let t2355 = t2327 * t2348 - (t2151 * t2349 + t2354);
+            let t2356 = t1964 * t2351
+                + (t1872 * t2353 + (t1136 * t2355 + t1110 * t1034));
+            let t2357 = t2324 * t2348 - (t2148 * t2349 + (t2076 * t2350 + t2356));
+            let t2358 = t1868 * t2353 + (t1132 * t2355 + (t1033 * t2357 + t977 * t890));
+            let t2359 = t2321 * t2348
+                - (t2144 * t2349 + (t2073 * t2350 + (t1961 * t2351 + t2358)));
+            let t2360 = t1129 * t2355 + (t1030 * t2357 + (t889 * t2359 + t861 * t774));
+            let t2361 = t2141 * t2349
+                + (t2070 * t2350 + (t1957 * t2351 + (t1865 * t2353 + t2360)));
+            let t2362 = t2319 * t2348 - t2361;
+            let t2363 = t1156 * t2355
+                - (t1053 * t2357 + (t911 * t2359 - (t436 - t795 * t2362)));
+            let t2364 = t328 * t2345;
+            let t2365 = t2364 - (t312 * t2345 - t312 * t2344);
+            let t2366 = t1159 * t2355
+                - (t1056 * t2357 + (t914 * t2359 + (t439 + t798 * t2362)));
+            let t2367 = t330 * t2345;
+            let t2368 = t2367 + (t313 * t2345 - t313 * t2344);
+            let t2369 = t1162 * t2355
+                - (t1059 * t2357 + (t917 * t2359 - (t442 - t801 * t2362)));
+            let t2370 = t326 * t2345;
+            let t2371 = t2370 - (t315 * t2345 - t315 * t2344);
+            let t2372 = t1153 * t2355
+                - (t1050 * t2357 + (t908 * t2359 - (t431 - t792 * t2362)));
+            let t2373 = t793 * t2362;
+            let t2374 = t909 * t2359;
+            let t2375 = t1051 * t2357;
+            let t2376 = t1154 * t2355;
+            let t2377 = t2092 * t2350;
+            let t2378 = t2212 * t2349;
+            let t2379 = t2345 * t2348;
+            let t2380 = t2379
+                + (t2378 - (t2377 + (t2376 - (t2375 + (t2374 - (t433 - t2373))))));
+            let t2381 = t2379
+                + (t2378 - (t2377 + (t2376 - (t2375 + (t2374 - (t434 - t2373))))));
+            let t2382 = t2357 * (t1054 - (t209 * t1069 + t197 * t1068))
+                + (t927 * t2359 + (t452 + t811 * t2362));
+            let t2383 = t2350 * (t2176 + (t209 * t2187 + t197 * t2186))
+                - (t2355 * (t1157 - (t209 * t1172 + t197 * t1171)) - t2382);
+            let t2384 = t2365 + (t2364 - (t318 * t2345 + t299 * t2344));
+            let t2385 = t2368 + (t2367 - (t320 * t2345 + t305 * t2344));
+            let t2386 = t2371 + (t2370 - (t322 * t2345 - t310 * t2344));
+            let t2387 = t148 * t2345 - (t138 * t2345 + t270 * t2344);
+            let t2388 = t149 * t2345 - (t137 * t2345 + t271 * t2344);
+            let t2389 = t283 * t2388 + t224 * t2387
+                + (t266 * t2386 - (t254 * t2385 + t242 * t2384));
+            let t2390 = t222 * t2389;
+            let t2391 = t217 * t2388 - (t216 * t2387 + t215 * t2390)
+                - (t264 * t2386 - (t252 * t2385 + t240 * t2384));
+            let t2392 = t218 * t2391;
+            let t2393 = t2387 + t206 * t2392;
+            let t2394 = t2388 - t213 * t2392;
+            let t2395 = t2348 * (t2384 + (t209 * t2394 + t197 * t2393))
+                - (t2349 * (t2215 - (t209 * t2230 + t197 * t2229)) + t2383);
+            let t2396 = t2357 * (t1057 - (t210 * t1069 - t201 * t1068))
+                + (t928 * t2359 - (t453 - t812 * t2362));
+            let t2397 = t2350 * (t2177 + (t210 * t2187 - t201 * t2186))
+                - (t2355 * (t1160 - (t210 * t1172 - t201 * t1171)) - t2396);
+            let t2398 = t2348 * (t2385 + (t210 * t2394 - t201 * t2393))
+                - (t2349 * (t2218 - (t210 * t2230 - t201 * t2229)) + t2397);
+            let t2399 = t2357 * (t1060 + (t211 * t1069 - t204 * t1068))
+                + (t929 * t2359 + (t454 + t813 * t2362));
             (
+                t2211,
+                t2214,
+                t2217,
+                t2220,
                 t2221,
-                t2222,
-                t2224,
-                t2225,
                 t2228,
                 t2229,
-                t2231,
-                t2232,
-                t2233,
-                t2234,
-                t2235,
-                t2239,
-                t2241,
-                t2244,
-                t2246,
-                t2247,
+                t2230,
                 t2248,
                 t2249,
-                t2250,
-                t2254,
-                t2256,
-                t2259,
-                t2262,
+                t2257,
+                t2258,
+                t2260,
+                t2261,
                 t2263,
-                t2265,
-                t2266,
+                t2264,
                 t2267,
+                t2268,
+                t2269,
                 t2275,
                 t2276,
                 t2277,
                 t2278,
                 t2279,
-                t2280,
-                t2283,
-                t2284,
-                t2285,
-                t2303,
-                t2304,
-                t2306,
-                t2307,
-                t2309,
-                t2310,
-                t2312,
-                t2313,
-                t2321,
-                t2322,
-                t2323,
-                t2341,
-                t2342,
+                t2344,
+                t2348,
+                t2349,
                 t2350,
                 t2351,
                 t2353,
-                t2354,
-                t2356,
+                t2355,
                 t2357,
-                t2361,
+                t2359,
+                t2362,
                 t2363,
+                t2365,
                 t2366,
+                t2368,
+                t2369,
+                t2371,
                 t2372,
-                t2373,
-                t2374,
-                t2375,
-                t2376,
-                t2379,
-                t2383,
-                t2384,
-                t2385,
-                t2388,
+                t2380,
+                t2381,
+                t2386,
                 t2390,
+                t2392,
                 t2393,
+                t2394,
+                t2395,
                 t2398,
                 t2399,
             )
         };
         let (
-            t2443,
+            t2401,
+            t2403,
+            t2404,
+            t2405,
+            t2409,
+            t2410,
+            t2411,
+            t2415,
+            t2416,
+            t2417,
+            t2421,
+            t2422,
+            t2423,
+            t2424,
+            t2425,
+            t2426,
+            t2427,
+            t2428,
+            t2429,
+            t2430,
+            t2431,
+            t2436,
+            t2441,
+            t2446,
             t2447,
             t2448,
             t2449,
             t2450,
-            t2452,
-            t2454,
-            t2456,
-            t2458,
-            t2461,
-            t2462,
-            t2464,
-            t2465,
+            t2451,
+            t2460,
+            t2463,
+            t2466,
             t2467,
             t2468,
+            t2469,
             t2470,
             t2471,
-            t2479,
+            t2472,
             t2480,
-            t2493,
-            t2494,
-            t2495,
-            t2498,
-            t2501,
-            t2503,
-            t2504,
-            t2505,
-            t2509,
-            t2510,
-            t2511,
-            t2515,
-            t2516,
-            t2517,
-            t2521,
-            t2522,
-            t2523,
-            t2524,
-            t2525,
-            t2526,
-            t2527,
-            t2528,
-            t2529,
-            t2530,
-            t2531,
-            t2536,
-            t2541,
-            t2546,
-            t2547,
-            t2548,
-            t2549,
-            t2550,
-            t2551,
-            t2560,
-            t2563,
-            t2566,
-            t2567,
-            t2568,
-            t2569,
-            t2570,
-            t2571,
-            t2572,
-            t2580,
-            t2581,
-            t2582,
+            t2481,
+            t2482,
         ) = {
-            let t2400 = t2388 + k(0.6666666666666666) * t201;
-            let t2401 = t2390 + k(0.6666666666666666) * t176;
-            let t2402 = t2384
-                * (k(0.6666666666666666) * t2401 - k(0.3333333333333333) * t2400
-                    - k(0.6666666666666666) * t2399)
-                + t2383
-                    * (k(0.6666666666666666) * (t2401 + t2400)
-                        + k(0.3333333333333333) * t2399);
-            let t2403 = t2385 * t2402;
-            let t2404 = k(0.6666666666666666) * t2146 - k(0.3333333333333333) * t2145
-                + k(0.6666666666666666) * t2144;
-            let t2405 = k(0.6666666666666666) * t2140 - k(0.3333333333333333) * t2139
-                + k(0.6666666666666666) * t2138;
-            let t2406 = k(0.6666666666666666) * t2135 - k(0.3333333333333333) * t2134
-                - k(0.6666666666666666) * t2133;
-            let t2407 = k(0.6666666666666666) * (t2406 - t2405)
-                - k(0.3333333333333333) * t2404;
-            let t2408 = k(0.6666666666666666) * t2406 + k(0.3333333333333333) * t2405
-                + k(0.6666666666666666) * t2404;
-            let t2409 = t2385 * t2385 * (k(2.0) * (t2383 * t2408 - t2384 * t2407))
-                * (t2384 * t2408 + t2383 * t2407);
-            let t2410 = t364
-                + (k(0.3333333333333333) * t188 + k(0.6666666666666666) * t186);
-            let t2411 = t366
-                + (k(0.3333333333333333) * t205 + k(0.6666666666666666) * t204);
-            let t2412 = t368
-                + (k(0.3333333333333333) * t221 + k(0.6666666666666666) * t220);
-            let t2413 = t2408 * t2407;
-            let t2414 = t2413
-                + t2384
-                    * (k(0.6666666666666666) * t2412
-                        + (k(0.3333333333333333) * t2411
-                            + k(0.6666666666666666) * t2410));
-            let t2415 = t2383
-                * (k(0.3333333333333333) * t2412
-                    + k(0.6666666666666666) * (t2411 - t2410)) + t2413 - t2414;
-            let t2416 = k(8.882643960980422) * (k(9.42477796076938) * t).sin()
-                - (t2385 * t2415 - t2409)
-                - (t2403 * t413 + (t2398 * t412 - t2393 * t410));
-            let t2417 = t2403 * t849 + (t2398 * t849 + t2393 * t848);
-            let t2418 = t922 * t2417;
-            let t2419 = t949 * t2418 - (t2403 * t972 + (t2398 * t972 + t2393 * t971));
-            let t2420 = t1045 * t2419;
-            let t2421 = t1097 * t2418
-                - (t2403 * t1121 + (t2398 * t1121 + t2393 * t1120));
-            let t2422 = t1100 * t2420 - t2421;
-            let t2423 = t1185 * t2422;
-            let t2424 = t1203 * t2418
-                + (t2403 * t1231 + (t2398 * t1231 + t2393 * t1230));
-            let t2425 = t1210 * t2423 - (t1206 * t2420 - t2424);
-            let t2426 = t1295 * t2425;
-            let t2427 = t2426 * t1212
-                - (t2423 * t1102 - (t2420 * t951 - (t2418 * t828 + t2416)));
-            let t2428 = t1955 * t2426
-                - (t1952 * t2423 - (t1948 * t2420 - t1945 * t2418));
-            let t2429 = t2013 * t2428;
-            let t2430 = t2047 * t2426
-                - (t2044 * t2423 - (t2041 * t2420 - t2037 * t2418));
-            let t2431 = t2052 * t2429 - t2430;
-            let t2432 = t2110 * t2431;
-            let t2433 = t2150 * t2418
-                - (t2403 * t2173 + (t2398 * t2173 + t2393 * t2172));
-            let t2434 = t2163 * t2429
-                - (t2160 * t2426 - (t2156 * t2423 - (t2153 * t2420 - t2433)));
-            let t2435 = t2166 * t2432 - t2434;
-            let t2436 = t2186 * t2435;
-            let t2437 = t2221 * t2418
-                - (t2403 * t2304 + (t2398 * t2304 + t2393 * t2303));
-            let t2438 = t2246 * t2429
-                - (t2231 * t2426 - (t2228 * t2423 - (t2224 * t2420 - t2437)));
-            let t2439 = t2283 * t2436 - (t2262 * t2432 - t2438);
-            let t2440 = t2379 * t2439;
-            let t2441 = t2440 * t2285
-                - (t2436 * t2168 - (t2432 * t2054 - (t2429 * t1957 - t2427)));
-            let t2442 = t408
-                * (k(0.6666666666666666) * t2403
-                    + (k(0.6666666666666666) * t2398 + k(0.3333333333333333) * t2393));
-            let t2443 = k(0.3333333333333333) * t2442;
-            let t2444 = k(0.6666666666666666) * t2442;
-            let t2445 = t2417 * t2418
-                - (t2403 * t2444 + (t2398 * t2444 + t2393 * t2443));
-            let t2446 = t2428 * t2429
-                - (t2425 * t2426 - (t2422 * t2423 - (t2419 * t2420 - t2445)));
-            let t2447 = t2441
-                / (t2439 * t2440 - (t2435 * t2436 - (t2431 * t2432 - t2446)));
-            let t2448 = t2440 * t2447 - t2379 * t2285;
-            let t2449 = t2436 * t2447 - (t2284 * t2448 + t2186 * t2168);
-            let t2450 = t2432 * t2447
-                - (t2263 * t2448 + (t2167 * t2449 + t2110 * t2054));
-            let t2451 = t2247 * t2448
-                + (t2164 * t2449 + (t2053 * t2450 + t2013 * t1957));
-            let t2452 = t2429 * t2447 - t2451;
-            let t2453 = t2161 * t2449
-                + (t2048 * t2450 + (t1956 * t2452 + t1295 * t1212));
-            let t2454 = t2426 * t2447 - (t2232 * t2448 + t2453);
-            let t2455 = t2045 * t2450
-                + (t1953 * t2452 + (t1211 * t2454 + t1185 * t1102));
-            let t2456 = t2423 * t2447 - (t2229 * t2448 + (t2157 * t2449 + t2455));
-            let t2457 = t1949 * t2452 + (t1207 * t2454 + (t1101 * t2456 + t1045 * t951));
-            let t2458 = t2420 * t2447
-                - (t2225 * t2448 + (t2154 * t2449 + (t2042 * t2450 + t2457)));
-            let t2459 = t1204 * t2454 + (t1098 * t2456 + (t950 * t2458 + t922 * t828));
-            let t2460 = t2222 * t2448
-                + (t2151 * t2449 + (t2038 * t2450 + (t1946 * t2452 + t2459)));
-            let t2461 = t2418 * t2447 - t2460;
-            let t2462 = t1233 * t2454
-                - (t1123 * t2456 + (t974 * t2458 - (t415 - t851 * t2461)));
-            let t2463 = t291 * t2444;
-            let t2464 = t2463 - (t275 * t2444 - t275 * t2443);
-            let t2465 = t1236 * t2454
-                - (t1126 * t2456 + (t977 * t2458 + (t418 + t854 * t2461)));
-            let t2466 = t293 * t2444;
-            let t2467 = t2466 + (t276 * t2444 - t276 * t2443);
-            let t2468 = t1239 * t2454
-                - (t1129 * t2456 + (t980 * t2458 - (t421 - t857 * t2461)));
-            let t2469 = t289 * t2444;
-            let t2470 = t2469 - (t278 * t2444 - t278 * t2443);
-            let t2471 = t1230 * t2454
-                - (t1120 * t2456 + (t971 * t2458 - (t410 - t848 * t2461)));
-            let t2472 = t849 * t2461;
-            let t2473 = t972 * t2458;
-            let t2474 = t1121 * t2456;
-            let t2475 = t1231 * t2454;
-            let t2476 = t2173 * t2449;
-            let t2477 = t2304 * t2448;
-            let t2478 = t2444 * t2447;
-            let t2479 = t2478
-                - (t2477 + (t2476 - (t2475 - (t2474 + (t2473 + (t412 + t2472))))));
-            let t2480 = t2478
-                - (t2477 + (t2476 - (t2475 - (t2474 + (t2473 + (t413 + t2472))))));
-            let t2481 = t2456 * (t1124 - (t149 * t1140 + t133 * t1139))
-                + (t991 * t2458 + (t432 + t868 * t2461));
-            let t2482 = t2449 * (t2265 + (t149 * t2277 + t133 * t2276))
-                + (t2454 * (t1234 - (t149 * t1250 + t133 * t1249)) - t2481);
-            let t2483 = t2464 + (t2463 - (t281 * t2444 + t262 * t2443));
-            let t2484 = t2467 + (t2466 - (t283 * t2444 + t268 * t2443));
-            let t2485 = t2470 + (t2469 - (t285 * t2444 - t273 * t2443));
-            let t2486 = t128 * t2444 - (t127 * t2444 + t227 * t2443);
-            let t2487 = t108 * t2444 - (t98 * t2444 + t233 * t2443);
-            let t2488 = t109 * t2444 - (t97 * t2444 + t234 * t2443);
-            let t2489 = t246 * t2488 + (t228 * t2487 + t165 * t2486)
-                + (t214 * t2485 - (t198 * t2484 + t172 * t2483));
-            let t2490 = t2486 - t166 * t2489;
-            let t2491 = t160 * t2488 - (t159 * t2487 - t158 * t2490)
-                - (t212 * t2485 - (t196 * t2484 + t170 * t2483));
-            let t2492 = t161 * t2491;
-            let t2493 = t2487 + t148 * t2492;
-            let t2494 = t2488 - t156 * t2492;
-            let t2495 = t2447 * (t2483 + (t149 * t2494 + t133 * t2493))
-                + (t2448 * (t2307 - (t149 * t2323 + t133 * t2322)) - t2482);
-            let t2496 = t2456 * (t1127 - (t150 * t1140 - t137 * t1139))
-                + (t992 * t2458 - (t435 - t869 * t2461));
-            let t2497 = t2449 * (t2266 + (t150 * t2277 - t137 * t2276))
-                + (t2454 * (t1237 - (t150 * t1250 - t137 * t1249)) - t2496);
-            let t2498 = t2447 * (t2484 + (t150 * t2494 - t137 * t2493))
-                + (t2448 * (t2310 - (t150 * t2323 - t137 * t2322)) - t2497);
-            let t2499 = t2456 * (t1130 + (t151 * t1140 - t140 * t1139))
-                + (t993 * t2458 + (t438 + t870 * t2461));
-            let t2500 = t2449 * (t2267 - (t151 * t2277 - t140 * t2276))
-                + (t2454 * (t1240 + (t151 * t1250 - t140 * t1249)) - t2499);
-            let t2501 = t2447 * (t2485 - (t151 * t2494 - t140 * t2493))
-                + (t2448 * (t2313 + (t151 * t2323 - t140 * t2322)) - t2500);
-            let t2502 = t1248 * t2454
-                - (t1138 * t2456 + (t994 * t2458 + (t441 + t871 * t2461)));
-            let t2503 = t2447 * (t2490 - t129 * t2492)
-                - (t2321 * t2448 + (t2275 * t2449 - t2502));
-            let t2504 = t1249 * t2454
-                - (t1139 * t2456 + (t989 * t2458 + (t430 + t866 * t2461)));
-            let t2505 = t1250 * t2454
-                - (t1140 * t2456 + (t990 * t2458 + (t431 + t867 * t2461)));
-            let t2506 = t2456 * (t1168 + (t503 * t1183 + (t556 * t1178 - t544 * t1180)));
-            let t2507 = t2454 * (t1278 + (t503 * t1293 + (t556 * t1288 - t544 * t1290)));
-            let t2508 = t2452 * (t2233 + (t503 * t2244 + (t556 * t2239 - t544 * t2241)));
-            let t2509 = t2508
-                - (t2507 + (t2506 + (t1041 * t2458 - (t787 - t918 * t2461))));
-            let t2510 = t2450 * (t2248 + (t503 * t2259 + (t556 * t2254 - t544 * t2256)));
-            let t2511 = t2448 * (t2351 + (t503 * t2366 + (t556 * t2361 - t544 * t2363)));
-            let t2512 = t2456 * (t1171 + (t522 * t1183 - (t557 * t1178 - t546 * t1180)));
-            let t2513 = t2454 * (t1281 + (t522 * t1293 - (t557 * t1288 - t546 * t1290)));
-            let t2514 = t2452 * (t2234 + (t522 * t2244 - (t557 * t2239 - t546 * t2241)));
-            let t2515 = t2514
-                - (t2513 + (t2512 + (t1042 * t2458 + (t788 + t919 * t2461))));
-            let t2516 = t2450 * (t2249 + (t522 * t2259 - (t557 * t2254 - t546 * t2256)));
-            let t2517 = t2448 * (t2354 + (t522 * t2366 - (t557 * t2361 - t546 * t2363)));
-            let t2518 = t2456 * (t1174 - (t510 * t1183 - (t558 * t1178 - t548 * t1180)));
-            let t2519 = t2454 * (t1284 - (t510 * t1293 - (t558 * t1288 - t548 * t1290)));
-            let t2520 = t2452 * (t2235 - (t510 * t2244 - (t558 * t2239 - t548 * t2241)));
-            let t2521 = t2520
-                - (t2519 + (t2518 + (t1043 * t2458 - (t789 - t920 * t2461))));
-            let t2522 = t2450 * (t2250 - (t510 * t2259 - (t558 * t2254 - t548 * t2256)));
-            let t2523 = t2448 * (t2357 - (t510 * t2366 - (t558 * t2361 - t548 * t2363)));
-            let t2524 = t1290 * t2454
-                + (t1180 * t2456 + (t1037 * t2458 - (t780 - t914 * t2461)));
-            let t2525 = t1288 * t2454
-                + (t1178 * t2456 + (t1035 * t2458 - (t778 - t912 * t2461)));
-            let t2526 = t1293 * t2454
-                + (t1183 * t2456 + (t1040 * t2458 - (t786 - t917 * t2461)));
-            let t2527 = t1970 * t2452;
-            let t2528 = t2067 * t2450;
-            let t2529 = t2182 * t2449;
-            let t2530 = t2372 * t2448;
-            let t2531 = t2373 * t2448
-                + (t2183 * t2449 + (t2068 * t2450 - (t1866 + t1971 * t2452)));
-            let t2532 = t1496 * t2279;
-            let t2533 = t2532 + (t1507 * t2280 - t2532) - (t2182 - t1453 * t2278);
-            let t2534 = t1496 * t2375;
-            let t2535 = t2534 + (t1507 * t2376 - t2534) - (t2372 - t1453 * t2374);
-            let t2536 = t2448 * t2535
-                + (t2449 * t2533 - (t2073 * t2450 - (t1878 + t1976 * t2452)));
-            let t2537 = t1497 * t2279;
-            let t2538 = t2537 + (t1509 * t2280 - t2537) - (t2182 + t1469 * t2278);
-            let t2539 = t1497 * t2375;
-            let t2540 = t2539 + (t1509 * t2376 - t2539) - (t2372 + t1469 * t2374);
-            let t2541 = t2448 * t2540
-                + (t2449 * t2538 - (t2079 * t2450 - (t1887 + t1982 * t2452)));
-            let t2542 = t1495 * t2279;
-            let t2543 = t2542 - (t1511 * t2280 + t2542) - (t2183 + t1486 * t2278);
-            let t2544 = t1495 * t2375;
-            let t2545 = t2544 - (t1511 * t2376 + t2544) - (t2373 + t1486 * t2374);
-            let t2546 = t2448 * t2545
-                + (t2449 * t2543 - (t2082 * t2450 - (t1893 + t1985 * t2452)));
-            let t2547 = t1974 * t2452;
-            let t2548 = t2071 * t2450;
-            let t2549 = t2279 * t2449;
-            let t2550 = t2375 * t2448;
-            let t2551 = t2376 * t2448
-                + (t2280 * t2449 - (t2070 * t2450 - (t1873 + t1973 * t2452)));
-            let t2552 = t1378 * t2279 + (t1350 * t2280 - t1355 * t2279);
-            let t2553 = t1379 * t2279 + (t1362 * t2280 - t1364 * t2279);
-            let t2554 = t1377 * t2279 + (t1372 * t2280 - t1371 * t2279);
-            let t2555 = t1883 * t2554 + (t1390 * t2553 + t1880 * t2552)
-                + (t2533 + (t1514 * t2279 - (t2532 - t1502 * t2280)));
-            let t2556 = t1378 * t2375 + (t1350 * t2376 - t1355 * t2375);
-            let t2557 = t1379 * t2375 + (t1362 * t2376 - t1364 * t2375);
-            let t2558 = t1377 * t2375 + (t1372 * t2376 - t1371 * t2375);
-            let t2559 = t1883 * t2558 + (t1390 * t2557 + t1880 * t2556)
-                + (t2535 + (t1514 * t2375 - (t2534 - t1502 * t2376)));
-            let t2560 = t2448 * t2559
-                + (t2449 * t2555 - (t2077 * t2450 - (t1884 + t1980 * t2452)));
-            let t2561 = t1889 * t2554 - (t1462 * t2553 - t1888 * t2552)
-                + (t2538 + (t1515 * t2279 - (t2537 + t1503 * t2280)));
-            let t2562 = t1889 * t2558 - (t1462 * t2557 - t1888 * t2556)
-                + (t2540 + (t1515 * t2375 - (t2539 + t1503 * t2376)));
-            let t2563 = t2448 * t2562
-                + (t2449 * t2561 - (t2080 * t2450 - (t1890 + t1983 * t2452)));
-            let t2564 = t1492 * t2554 - (t1478 * t2553 - t1487 * t2552)
-                + (t2543 + (t1516 * t2279 - (t2542 + t1504 * t2280)));
-            let t2565 = t1492 * t2558 - (t1478 * t2557 - t1487 * t2556)
-                + (t2545 + (t1516 * t2375 - (t2544 + t1504 * t2376)));
-            let t2566 = t2448 * t2565
-                + (t2449 * t2564 - (t2083 * t2450 - (t1894 + t1986 * t2452)));
-            let t2567 = t2448 * t2556
-                + (t2449 * t2552 - (t2074 * t2450 - (t1879 + t1977 * t2452)));
-            let t2568 = t2448 * t2557
-                + (t2449 * t2553 - (t2075 * t2450 - (t1881 + t1978 * t2452)));
-            let t2569 = t2448 * t2558
-                + (t2449 * t2554 - (t2076 * t2450 - (t1882 + t1979 * t2452)));
-            let t2570 = t1277 * t2454
-                + (t1167 * t2456 + (t1024 * t2458 + (t761 + t901 * t2461)));
-            let t2571 = t1280 * t2454
-                + (t1170 * t2456 + (t1027 * t2458 - (t764 - t904 * t2461)));
-            let t2572 = t1283 * t2454
-                + (t1173 * t2456 + (t1030 * t2458 + (t767 + t907 * t2461)));
-            let t2573 = t892 * t2461;
-            let t2574 = t1015 * t2458;
-            let t2575 = t1158 * t2456;
-            let t2576 = t1268 * t2454;
-            let t2577 = t1997 * t2452;
-            let t2578 = t2094 * t2450;
-            let t2579 = t2341 * t2448;
-            let t2580 = t2579
-                + (t2578 - (t2577 - (t2576 + (t2575 + (t2574 + (t750 + t2573))))));
-            let t2581 = t2579
-                + (t2578 - (t2577 - (t2576 + (t2575 + (t2574 + (t751 + t2573))))));
-            let t2582 = t1269 * t2454
-                + (t1159 * t2456 + (t1016 * t2458 - (t752 - t893 * t2461)));
+            let t2400 = t2350 * (t2178 - (t211 * t2187 - t204 * t2186))
+                - (t2355 * (t1163 + (t211 * t1172 - t204 * t1171)) - t2399);
+            let t2401 = t2348 * (t2386 - (t211 * t2394 - t204 * t2393))
+                - (t2349 * (t2221 + (t211 * t2230 - t204 * t2229)) + t2400);
+            let t2402 = t1170 * t2355
+                - (t1067 * t2357 + (t930 * t2359 + (t455 + t814 * t2362)));
+            let t2403 = t2348 * (t2390 + t189 * t2392)
+                - (t2228 * t2349 + (t2185 * t2350 - t2402));
+            let t2404 = t1171 * t2355
+                - (t1068 * t2357 + (t925 * t2359 + (t450 + t809 * t2362)));
+            let t2405 = t1172 * t2355
+                - (t1069 * t2357 + (t926 * t2359 + (t451 + t810 * t2362)));
+            let t2406 = t2357 * (t1097 - (t517 * t1108 + (t593 * t1107 - t583 * t1106)));
+            let t2407 = t2355 * (t1200 - (t517 * t1211 + (t593 * t1210 + t583 * t1209)));
+            let t2408 = t2353 * (t2152 + (t517 * t2159 - (t593 * t2158 - t583 * t2157)));
+            let t2409 = t2408
+                + (t2407 + (t2406 + (t973 * t2359 - (t755 - t857 * t2362))));
+            let t2410 = t2351 * (t2163 + (t517 * t2170 - (t593 * t2169 - t583 * t2168)));
+            let t2411 = t2349 * (t2258 - (t517 * t2269 + (t593 * t2268 - t583 * t2267)));
+            let t2412 = t2357 * (t1100 - (t536 * t1108 - (t594 * t1107 - t585 * t1106)));
+            let t2413 = t2355 * (t1203 - (t536 * t1211 - (t594 * t1210 + t585 * t1209)));
+            let t2414 = t2353 * (t2153 + (t536 * t2159 + (t594 * t2158 - t585 * t2157)));
+            let t2415 = t2414
+                + (t2413 + (t2412 + (t974 * t2359 + (t756 + t858 * t2362))));
+            let t2416 = t2351 * (t2164 + (t536 * t2170 + (t594 * t2169 - t585 * t2168)));
+            let t2417 = t2349 * (t2261 - (t536 * t2269 - (t594 * t2268 - t585 * t2267)));
+            let t2418 = t2357 * (t1103 + (t524 * t1108 - (t595 * t1107 - t587 * t1106)));
+            let t2419 = t2355 * (t1206 + (t524 * t1211 - (t595 * t1210 + t587 * t1209)));
+            let t2420 = t2353 * (t2154 - (t524 * t2159 + (t595 * t2158 - t587 * t2157)));
+            let t2421 = t2420
+                + (t2419 + (t2418 + (t975 * t2359 - (t757 - t859 * t2362))));
+            let t2422 = t2351 * (t2165 - (t524 * t2170 + (t595 * t2169 - t587 * t2168)));
+            let t2423 = t2349 * (t2264 + (t524 * t2269 - (t595 * t2268 - t587 * t2267)));
+            let t2424 = t1209 * t2355
+                - (t1106 * t2357 - (t970 * t2359 - (t752 - t854 * t2362)));
+            let t2425 = t1210 * t2355
+                + (t1107 * t2357 - (t971 * t2359 - (t753 - t855 * t2362)));
+            let t2426 = t1211 * t2355
+                + (t1108 * t2357 + (t972 * t2359 + (t754 + t856 * t2362)));
+            let t2427 = t1889 * t2353;
+            let t2428 = t1986 * t2351;
+            let t2429 = t2101 * t2350;
+            let t2430 = t2275 * t2349;
+            let t2431 = t2276 * t2349
+                - (t2102 * t2350 + (t1987 * t2351 + (t1815 - t1890 * t2353)));
+            let t2432 = t1445 * t2189;
+            let t2433 = t2432 + (t1456 * t2190 - t2432) - (t2101 - t1408 * t2188);
+            let t2434 = t1445 * t2278;
+            let t2435 = t2434 + (t1456 * t2279 - t2434) - (t2275 - t1408 * t2277);
+            let t2436 = t2349 * t2435
+                - (t2350 * t2433 - (t1992 * t2351 + (t1827 - t1895 * t2353)));
+            let t2437 = t1446 * t2189;
+            let t2438 = t2437 + (t1458 * t2190 - t2437) - (t2101 + t1421 * t2188);
+            let t2439 = t1446 * t2278;
+            let t2440 = t2439 + (t1458 * t2279 - t2439) - (t2275 + t1421 * t2277);
+            let t2441 = t2349 * t2440
+                - (t2350 * t2438 - (t1998 * t2351 + (t1835 - t1901 * t2353)));
+            let t2442 = t1444 * t2189;
+            let t2443 = t2442 - (t1460 * t2190 + t2442) - (t2102 + t1435 * t2188);
+            let t2444 = t1444 * t2278;
+            let t2445 = t2444 - (t1460 * t2279 + t2444) - (t2276 + t1435 * t2277);
+            let t2446 = t2349 * t2445
+                - (t2350 * t2443 - (t2001 * t2351 + (t1840 - t1904 * t2353)));
+            let t2447 = t1893 * t2353;
+            let t2448 = t1990 * t2351;
+            let t2449 = t2189 * t2350;
+            let t2450 = t2278 * t2349;
+            let t2451 = t2279 * t2349
+                - (t2190 * t2350 - (t1989 * t2351 + (t1822 - t1892 * t2353)));
+            let t2452 = t1334 * t2189 + (t1316 * t2190 - t1321 * t2189);
+            let t2453 = t1335 * t2189 + (t1322 * t2190 - t1324 * t2189);
+            let t2454 = t1333 * t2189 + (t1328 * t2190 - t1327 * t2189);
+            let t2455 = t1832 * t2454 + (t1346 * t2453 + t1829 * t2452)
+                + (t2433 + (t1463 * t2189 - (t2432 - t1451 * t2190)));
+            let t2456 = t1334 * t2278 + (t1316 * t2279 - t1321 * t2278);
+            let t2457 = t1335 * t2278 + (t1322 * t2279 - t1324 * t2278);
+            let t2458 = t1333 * t2278 + (t1328 * t2279 - t1327 * t2278);
+            let t2459 = t1832 * t2458 + (t1346 * t2457 + t1829 * t2456)
+                + (t2435 + (t1463 * t2278 - (t2434 - t1451 * t2279)));
+            let t2460 = t2349 * t2459
+                - (t2350 * t2455 - (t1996 * t2351 + (t1833 - t1899 * t2353)));
+            let t2461 = t1837 * t2454 - (t1414 * t2453 - t1836 * t2452)
+                + (t2438 + (t1464 * t2189 - (t2437 + t1452 * t2190)));
+            let t2462 = t1837 * t2458 - (t1414 * t2457 - t1836 * t2456)
+                + (t2440 + (t1464 * t2278 - (t2439 + t1452 * t2279)));
+            let t2463 = t2349 * t2462
+                - (t2350 * t2461 - (t1999 * t2351 + (t1838 - t1902 * t2353)));
+            let t2464 = t1441 * t2454 - (t1427 * t2453 - t1436 * t2452)
+                + (t2443 + (t1465 * t2189 - (t2442 + t1453 * t2190)));
+            let t2465 = t1441 * t2458 - (t1427 * t2457 - t1436 * t2456)
+                + (t2445 + (t1465 * t2278 - (t2444 + t1453 * t2279)));
+            let t2466 = t2349 * t2465
+                - (t2350 * t2464 - (t2002 * t2351 + (t1841 - t1905 * t2353)));
+            let t2467 = t2349 * t2456
+                - (t2350 * t2452 - (t1993 * t2351 + (t1828 - t1896 * t2353)));
+            let t2468 = t2349 * t2457
+                - (t2350 * t2453 - (t1994 * t2351 + (t1830 - t1897 * t2353)));
+            let t2469 = t2349 * t2458
+                - (t2350 * t2454 - (t1995 * t2351 + (t1831 - t1898 * t2353)));
+            let t2470 = t1199 * t2355
+                + (t1096 * t2357 + (t960 * t2359 - (t742 - t844 * t2362)));
+            let t2471 = t1202 * t2355
+                + (t1099 * t2357 + (t963 * t2359 - (t745 - t847 * t2362)));
+            let t2472 = t1205 * t2355
+                + (t1102 * t2357 + (t966 * t2359 - (t748 - t850 * t2362)));
+            let t2473 = t835 * t2362;
+            let t2474 = t951 * t2359;
+            let t2475 = t1087 * t2357;
+            let t2476 = t1190 * t2355;
+            let t2477 = t1916 * t2353;
+            let t2478 = t2013 * t2351;
+            let t2479 = t2248 * t2349;
+            let t2480 = t2479
+                - (t2478 - (t2477 + (t2476 + (t2475 + (t2474 - (t731 - t2473))))));
+            let t2481 = t2479
+                - (t2478 - (t2477 + (t2476 + (t2475 + (t2474 - (t732 - t2473))))));
+            let t2482 = t1191 * t2355
+                + (t1088 * t2357 + (t952 * t2359 - (t733 - t836 * t2362)));
             (
-                t2443,
+                t2401,
+                t2403,
+                t2404,
+                t2405,
+                t2409,
+                t2410,
+                t2411,
+                t2415,
+                t2416,
+                t2417,
+                t2421,
+                t2422,
+                t2423,
+                t2424,
+                t2425,
+                t2426,
+                t2427,
+                t2428,
+                t2429,
+                t2430,
+                t2431,
+                t2436,
+                t2441,
+                t2446,
                 t2447,
                 t2448,
                 t2449,
                 t2450,
-                t2452,
-                t2454,
-                t2456,
-                t2458,
-                t2461,
-                t2462,
-                t2464,
-                t2465,
+                t2451,
+                t2460,
+                t2463,
+                t2466,
                 t2467,
                 t2468,
+                t2469,
                 t2470,
                 t2471,
-                t2479,
+                t2472,
                 t2480,
-                t2493,
-                t2494,
-                t2495,
-                t2498,
-                t2501,
-                t2503,
-                t2504,
-                t2505,
-                t2509,
-                t2510,
-                t2511,
-                t2515,
-                t2516,
-                t2517,
-                t2521,
-                t2522,
-                t2523,
-                t2524,
-                t2525,
-                t2526,
-                t2527,
-                t2528,
-                t2529,
-                t2530,
-                t2531,
-                t2536,
-                t2541,
-                t2546,
-                t2547,
-                t2548,
-                t2549,
-                t2550,
-                t2551,
-                t2560,
-                t2563,
-                t2566,
-                t2567,
-                t2568,
-                t2569,
-                t2570,
-                t2571,
-                t2572,
-                t2580,
-                t2581,
-                t2582,
+                t2481,
+                t2482,
             )
         };
         *out = [
-            t2447 * t2464 - (t2306 * t2448 + (t2175 * t2449 - t2462)),
-            t2309 * t2448 + (t2177 * t2449 - t2465) - t2447 * t2467,
-            t2312 * t2448 + (t2179 * t2449 - t2468) - t2447 * t2470,
-            t2443 * t2447 - (t2303 * t2448 + (t2172 * t2449 - t2471)),
-            t2479,
-            t2480,
-            t2495,
-            -t2498,
-            -t2501,
-            -t2503,
-            t2322 * t2448 + (t2276 * t2449 - t2504) - t2447 * t2493,
-            t2447 * t2494 - (t2323 * t2448 + (t2277 * t2449 - t2505)),
-            t2511 + (t2510 - t2509),
-            -(t2517 + (t2516 - t2515)),
-            -(t2523 + (t2522 - t2521)),
-            t2363 * t2448 + (t2256 * t2450 - (t2241 * t2452 - t2524)),
-            t2361 * t2448 + (t2254 * t2450 - (t2239 * t2452 - t2525)),
-            -(t2366 * t2448 + (t2259 * t2450 - (t2244 * t2452 - t2526))),
-            -(t2530 + (t2529 + (t2528 - (t1862 + t2527)))),
-            t2530 + (t2529 + (t2528 - (t1864 + t2527))),
-            -t2531,
-            -t1824,
-            -t1845,
-            t1857,
-            t2536,
-            -t2541,
-            t2546,
-            t2550 + (t2549 - (t2548 + (t1875 - t2547))),
-            -t2551,
-            t2550 + (t2549 - (t2548 - (t1877 + t2547))),
-            t2560,
-            -t2563,
-            t2566,
-            -t2567,
-            -t2568,
-            t2569,
-            t2350 * t2448 + (t2103 * t2450 - (t2006 * t2452 - t2570)),
-            -(t2353 * t2448 + (t2105 * t2450 - (t2008 * t2452 - t2571))),
-            -(t2356 * t2448 + (t2107 * t2450 - (t2010 * t2452 - t2572))),
-            -t2580,
-            -t2581,
-            -(t2342 * t2448 + (t2095 * t2450 - (t1998 * t2452 - t2582))),
-            t2461,
-            t2458,
-            t2456,
-            t2454,
-            t2452,
-            t2450,
-            -t2449,
-            t2448,
-            t2447,
+            -(t2348 * t2365 + (t2214 * t2349 - (t2094 * t2350 + t2363))),
+            t2348 * t2368 + (t2217 * t2349 - (t2096 * t2350 + t2366)),
+            t2348 * t2371 + (t2220 * t2349 - (t2098 * t2350 + t2369)),
+            -(t2344 * t2348 + (t2211 * t2349 - (t2091 * t2350 + t2372))),
+            -t2380,
+            -t2381,
+            -t2395,
+            t2398,
+            t2401,
+            -t2403,
+            t2348 * t2393 + (t2229 * t2349 - (t2186 * t2350 + t2404)),
+            -(t2348 * t2394 + (t2230 * t2349 - (t2187 * t2350 + t2405))),
+            t2411 - (t2410 - t2409),
+            t2416 - t2415 - t2417,
+            t2422 - t2421 - t2423,
+            t2168 * t2351 - (t2157 * t2353 - t2424) - t2267 * t2349,
+            t2169 * t2351 - (t2158 * t2353 + t2425) - t2268 * t2349,
+            t2269 * t2349 + (t2170 * t2351 - (t2159 * t2353 - t2426)),
+            t2429 + (t2428 + (t1811 - t2427)) - t2430,
+            t2430 - (t2429 + (t2428 + (t1813 - t2427))),
+            -t2431,
+            -t1773,
+            -t1794,
+            t1806,
+            t2436,
+            -t2441,
+            t2446,
+            t2450 - (t2449 - (t2448 - (t1824 + t2447))),
+            -t2451,
+            t2450 - (t2449 - (t2448 + (t1826 - t2447))),
+            t2460,
+            -t2463,
+            t2466,
+            -t2467,
+            -t2468,
+            t2469,
+            t2257 * t2349 - (t2022 * t2351 - (t1925 * t2353 + t2470)),
+            t2024 * t2351 - (t1927 * t2353 + t2471) - t2260 * t2349,
+            t2026 * t2351 - (t1929 * t2353 + t2472) - t2263 * t2349,
+            -t2480,
+            -t2481,
+            t2014 * t2351 - (t1917 * t2353 + t2482) - t2249 * t2349,
+            t2362,
+            t2359,
+            t2357,
+            t2355,
+            -t2353,
+            -t2351,
+            t2350,
+            t2349,
+            -t2348,
         ];
     }
     /// Writes λ: 2845 operations (1187 ±, 1646 ×, 12 ÷) and 6 functions.
@@ -16304,33 +16162,35 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
         let closing8 = accelerations[50];
         let (
             t2,
-            t5,
+            t3,
+            t6,
             t7,
-            t8,
-            t11,
-            t12,
+            t9,
+            t10,
+            t14,
             t15,
-            t16,
             t18,
             t19,
-            t21,
             t22,
-            t24,
+            t23,
+            t27,
+            t28,
             t29,
             t33,
             t34,
             t35,
             t36,
-            t39,
-            t40,
-            t41,
+            t37,
+            t38,
             t42,
             t43,
             t44,
-            t46,
+            t45,
             t47,
-            t49,
+            t48,
+            t52,
             t53,
+            t54,
             t55,
             t57,
             t58,
@@ -16338,13 +16198,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t60,
             t61,
             t62,
-            t63,
             t64,
             t65,
             t66,
-            t68,
+            t67,
             t69,
-            t71,
+            t70,
+            t74,
+            t75,
             t76,
             t79,
             t80,
@@ -16403,154 +16264,147 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t142,
             t143,
             t144,
-            t145,
-            t146,
-            t147,
-            t148,
-            t149,
-            t150,
-            t151,
-            t152,
             t153,
-            t154,
+            t155,
             t157,
-            t158,
+            t160,
+            t161,
             t162,
             t163,
             t164,
-            t165,
             t166,
+            t167,
+            t168,
             t169,
             t170,
             t171,
+            t172,
             t173,
             t174,
+            t175,
             t176,
             t177,
+            t178,
             t179,
             t180,
             t181,
             t182,
-            t183,
             t185,
             t186,
-            t188,
-            t189,
+            t190,
             t191,
             t192,
             t193,
             t194,
-            t195,
-            t196,
             t197,
             t198,
             t199,
         ) = {
-            let t0 = shaft_e0 * shaft_e2;
-            let t1 = shaft_e1 * shaft_e3;
+            let t0 = sleeve_e0 * sleeve_e2;
+            let t1 = sleeve_e1 * sleeve_e3;
             let t2 = t1 - t0;
-            let t3 = shaft_e0 * shaft_e1;
-            let t4 = shaft_e2 * shaft_e3;
-            let t5 = t4 + t3;
-            let t6 = shaft_e0 * shaft_e0;
-            let t7 = k(0.5) - (t6 + shaft_e3 * shaft_e3);
-            let t8 = k(0.6030226891555273) * t7
-                + (k(0.6030226891555273) * t5 + k(1.8090680674665818) * t2);
-            let t9 = sleeve_e0 * sleeve_e2;
-            let t10 = sleeve_e1 * sleeve_e3;
-            let t11 = t10 - t9;
-            let t12 = k(2.0) * t11;
-            let t13 = sleeve_e0 * sleeve_e1;
-            let t14 = sleeve_e2 * sleeve_e3;
-            let t15 = t14 + t13;
-            let t16 = k(2.0) * t15;
-            let t17 = sleeve_e0 * sleeve_e0;
-            let t18 = k(0.5) - (t17 + sleeve_e3 * sleeve_e3);
+            let t3 = k(2.0) * t2;
+            let t4 = sleeve_e0 * sleeve_e1;
+            let t5 = sleeve_e2 * sleeve_e3;
+            let t6 = t5 + t4;
+            let t7 = k(2.0) * t6;
+            let t8 = sleeve_e0 * sleeve_e0;
+            let t9 = k(0.5) - (t8 + sleeve_e3 * sleeve_e3);
+            let t10 = k(2.0) * t9;
+            let t11 = k(0.1) * (t10 * sleeve_wy + t7 * sleeve_wz)
+                - k(0.05) * (t10 * sleeve_wx + t3 * sleeve_wz);
+            let t12 = shaft_e0 * shaft_e2;
+            let t13 = shaft_e1 * shaft_e3;
+            let t14 = t13 - t12;
+            let t15 = k(2.0) * t14;
+            let t16 = shaft_e0 * shaft_e1;
+            let t17 = shaft_e2 * shaft_e3;
+            let t18 = t17 + t16;
             let t19 = k(2.0) * t18;
-            let t20 = k(0.1) * (t19 * sleeve_wy + t16 * sleeve_wz)
-                - k(0.05) * (t19 * sleeve_wx + t12 * sleeve_wz);
-            let t21 = k(2.0) * t2;
-            let t22 = k(2.0) * t5;
-            let t23 = t22 * shaft_wx - t21 * shaft_wy;
-            let t24 = k(2.0) * t7;
-            let t25 = t24 * shaft_wy + t22 * shaft_wz;
-            let t26 = t24 * shaft_wx + t21 * shaft_wz;
-            let t27 = shaft_sz - (k(0.05) * t26 - k(0.2) * t25 - k(0.05) * t23)
-                - (sleeve_sz - (t20 + k(0.05) * (t16 * sleeve_wx - t12 * sleeve_wy)));
-            let t28 = sleeve_rz - (k(0.1) * t18 + (k(0.1) * t15 + k(0.2) * t11));
-            let t29 = t28 - (shaft_rz + (k(0.1) * t7 + (k(0.1) * t5 + k(0.4) * t2)));
+            let t20 = t19 * shaft_wx - t15 * shaft_wy;
+            let t21 = shaft_e0 * shaft_e0;
+            let t22 = k(0.5) - (t21 + shaft_e3 * shaft_e3);
+            let t23 = k(2.0) * t22;
+            let t24 = t23 * shaft_wy + t19 * shaft_wz;
+            let t25 = t23 * shaft_wx + t15 * shaft_wz;
+            let t26 = shaft_sz - (k(0.05) * t25 - k(0.2) * t24 - k(0.05) * t20)
+                - (sleeve_sz - (t11 + k(0.05) * (t7 * sleeve_wx - t3 * sleeve_wy)));
+            let t27 = k(0.6030226891555273) * t22
+                + (k(0.6030226891555273) * t18 + k(1.8090680674665818) * t14);
+            let t28 = sleeve_rz - (k(0.1) * t9 + (k(0.1) * t6 + k(0.2) * t2));
+            let t29 = t28 - (shaft_rz + (k(0.1) * t22 + (k(0.1) * t18 + k(0.4) * t14)));
             let t30 = t29
-                * (k(0.9045340337332909) * t25 - k(0.30151134457776363) * t26
-                    + k(0.30151134457776363) * t23) - t27 * t8;
-            let t31 = shaft_e0 * shaft_e3;
-            let t32 = shaft_e1 * shaft_e2;
+                * (k(0.9045340337332909) * t24 - k(0.30151134457776363) * t25
+                    + k(0.30151134457776363) * t20) - t27 * t26;
+            let t31 = sleeve_e0 * sleeve_e3;
+            let t32 = sleeve_e1 * sleeve_e2;
             let t33 = t32 + t31;
-            let t34 = k(0.5) - (t6 + shaft_e2 * shaft_e2);
-            let t35 = t4 - t3;
-            let t36 = k(0.6030226891555273) * t35
-                + (k(0.6030226891555273) * t34 - k(1.8090680674665818) * t33);
-            let t37 = sleeve_e0 * sleeve_e3;
-            let t38 = sleeve_e1 * sleeve_e2;
-            let t39 = t38 + t37;
-            let t40 = k(2.0) * t39;
-            let t41 = k(0.5) - (t17 + sleeve_e2 * sleeve_e2);
-            let t42 = k(2.0) * t41;
-            let t43 = t14 - t13;
-            let t44 = k(2.0) * t43;
-            let t45 = k(0.1) * (t44 * sleeve_wy + t42 * sleeve_wz)
-                - k(0.05) * (t44 * sleeve_wx - t40 * sleeve_wz);
-            let t46 = k(2.0) * t33;
-            let t47 = k(2.0) * t34;
-            let t48 = t47 * shaft_wx + t46 * shaft_wy;
-            let t49 = k(2.0) * t35;
-            let t50 = t49 * shaft_wy + t47 * shaft_wz;
-            let t51 = t49 * shaft_wx - t46 * shaft_wz;
-            let t52 = shaft_sy + (k(0.05) * t51 - k(0.2) * t50 - k(0.05) * t48)
-                - (sleeve_sy + (t45 + k(0.05) * (t42 * sleeve_wx + t40 * sleeve_wy)));
-            let t53 = k(0.2) * t39;
-            let t54 = sleeve_ry + (k(0.1) * t43 + (k(0.1) * t41 - t53));
-            let t55 = t54 - (shaft_ry - (k(0.1) * t35 + (k(0.1) * t34 - k(0.4) * t33)));
+            let t34 = k(2.0) * t33;
+            let t35 = k(0.5) - (t8 + sleeve_e2 * sleeve_e2);
+            let t36 = k(2.0) * t35;
+            let t37 = t5 - t4;
+            let t38 = k(2.0) * t37;
+            let t39 = k(0.1) * (t38 * sleeve_wy + t36 * sleeve_wz)
+                - k(0.05) * (t38 * sleeve_wx - t34 * sleeve_wz);
+            let t40 = shaft_e0 * shaft_e3;
+            let t41 = shaft_e1 * shaft_e2;
+            let t42 = t41 + t40;
+            let t43 = k(2.0) * t42;
+            let t44 = k(0.5) - (t21 + shaft_e2 * shaft_e2);
+            let t45 = k(2.0) * t44;
+            let t46 = t45 * shaft_wx + t43 * shaft_wy;
+            let t47 = t17 - t16;
+            let t48 = k(2.0) * t47;
+            let t49 = t48 * shaft_wy + t45 * shaft_wz;
+            let t50 = t48 * shaft_wx - t43 * shaft_wz;
+            let t51 = shaft_sy + (k(0.05) * t50 - k(0.2) * t49 - k(0.05) * t46)
+                - (sleeve_sy + (t39 + k(0.05) * (t36 * sleeve_wx + t34 * sleeve_wy)));
+            let t52 = k(0.6030226891555273) * t47
+                + (k(0.6030226891555273) * t44 - k(1.8090680674665818) * t42);
+            let t53 = k(0.2) * t33;
+            let t54 = sleeve_ry + (k(0.1) * t37 + (k(0.1) * t35 - t53));
+            let t55 = t54 - (shaft_ry - (k(0.1) * t47 + (k(0.1) * t44 - k(0.4) * t42)));
             let t56 = t55
-                * (k(0.9045340337332909) * t50 - k(0.30151134457776363) * t51
-                    + k(0.30151134457776363) * t48) - t52 * t36;
-            let t57 = k(0.5) - (t6 + shaft_e1 * shaft_e1);
-            let t58 = t32 - t31;
-            let t59 = t1 + t0;
-            let t60 = k(0.6030226891555273) * t59
-                - (k(0.6030226891555273) * t58 - k(1.8090680674665818) * t57);
-            let t61 = k(0.5) - (t17 + sleeve_e1 * sleeve_e1);
+                * (k(0.9045340337332909) * t49 - k(0.30151134457776363) * t50
+                    + k(0.30151134457776363) * t46) - t52 * t51;
+            let t57 = k(0.5) - (t8 + sleeve_e1 * sleeve_e1);
+            let t58 = k(2.0) * t57;
+            let t59 = t32 - t31;
+            let t60 = k(2.0) * t59;
+            let t61 = t1 + t0;
             let t62 = k(2.0) * t61;
-            let t63 = t38 - t37;
-            let t64 = k(2.0) * t63;
-            let t65 = t10 + t9;
-            let t66 = k(2.0) * t65;
-            let t67 = k(0.1) * (t66 * sleeve_wy - t64 * sleeve_wz)
-                - k(0.05) * (t66 * sleeve_wx + t62 * sleeve_wz);
-            let t68 = k(2.0) * t57;
-            let t69 = k(2.0) * t58;
-            let t70 = t69 * shaft_wx + t68 * shaft_wy;
-            let t71 = k(2.0) * t59;
-            let t72 = t71 * shaft_wy - t69 * shaft_wz;
-            let t73 = t71 * shaft_wx + t68 * shaft_wz;
-            let t74 = shaft_sx + (k(0.05) * t73 - k(0.2) * t72 + k(0.05) * t70)
-                - (sleeve_sx + (t67 - k(0.05) * (t64 * sleeve_wx + t62 * sleeve_wy)));
-            let t75 = sleeve_rx + (k(0.1) * t65 - (k(0.1) * t63 - k(0.2) * t61));
-            let t76 = t75 - (shaft_rx - (k(0.1) * t59 - (k(0.1) * t58 - k(0.4) * t57)));
+            let t63 = k(0.1) * (t62 * sleeve_wy - t60 * sleeve_wz)
+                - k(0.05) * (t62 * sleeve_wx + t58 * sleeve_wz);
+            let t64 = k(0.5) - (t21 + shaft_e1 * shaft_e1);
+            let t65 = k(2.0) * t64;
+            let t66 = t41 - t40;
+            let t67 = k(2.0) * t66;
+            let t68 = t67 * shaft_wx + t65 * shaft_wy;
+            let t69 = t13 + t12;
+            let t70 = k(2.0) * t69;
+            let t71 = t70 * shaft_wy - t67 * shaft_wz;
+            let t72 = t70 * shaft_wx + t65 * shaft_wz;
+            let t73 = shaft_sx + (k(0.05) * t72 - k(0.2) * t71 + k(0.05) * t68)
+                - (sleeve_sx + (t63 - k(0.05) * (t60 * sleeve_wx + t58 * sleeve_wy)));
+            let t74 = k(0.6030226891555273) * t69
+                - (k(0.6030226891555273) * t66 - k(1.8090680674665818) * t64);
+            let t75 = sleeve_rx + (k(0.1) * t61 - (k(0.1) * t59 - k(0.2) * t57));
+            let t76 = t75 - (shaft_rx - (k(0.1) * t69 - (k(0.1) * t66 - k(0.4) * t64)));
             let t77 = t76
-                * (k(0.9045340337332909) * t72 - k(0.30151134457776363) * t73
-                    - k(0.30151134457776363) * t70) - t74 * t60;
+                * (k(0.9045340337332909) * t71 - k(0.30151134457776363) * t72
+                    - k(0.30151134457776363) * t68) - t74 * t73;
             let t78 = t77 + t56 - t30;
             let t79 = k(3.0) * t78;
-            let t80 = t60 * t79;
-            let t81 = k(0.05) - (t29 * t8 - (t55 * t36 + t76 * t60));
+            let t80 = t74 * t79;
+            let t81 = k(0.05) - (t29 * t27 - (t55 * t52 + t76 * t74));
             let t82 = (k(0.0001) + t81 * t81).sqrt();
             let t83 = (k(1.0) - t81 / t82) * t78 + k(250.0) * (t81 - t82);
-            let t84 = t60 * t83;
-            let t85 = t58 + t59;
+            let t84 = t74 * t83;
+            let t85 = t66 + t69;
             let t86 = k(1.4142135623730951) * t85;
             let t87 = closing0 * t86;
-            let t88 = k(1.2792042981336627) * t59
-                - (k(1.2792042981336627) * t58 + k(0.8528028654224418) * t57);
+            let t88 = k(1.2792042981336627) * t69
+                - (k(1.2792042981336627) * t66 + k(0.8528028654224418) * t64);
             let t89 = closing1 * t88;
             let t90 = t89 + (t87 - (k(0.5) * shaft_dsx - (t84 + t80)));
             let t91 = slide_e0 * slide_e3;
@@ -16570,13 +16424,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t104 = k(1.0) / self.rod_length;
             let t105 = closing6 * (k(0.5) * (t104 * (k(2.0) * t103)));
             let t106 = k(1.5) * carrier_dsx + t105 - t90;
-            let t107 = t36 * t79;
-            let t108 = t36 * t83;
-            let t109 = t34 - t35;
+            let t107 = t52 * t79;
+            let t108 = t52 * t83;
+            let t109 = t44 - t47;
             let t110 = k(1.4142135623730951) * t109;
             let t111 = closing0 * t110;
-            let t112 = k(1.2792042981336627) * t35
-                + (k(1.2792042981336627) * t34 + k(0.8528028654224418) * t33);
+            let t112 = k(1.2792042981336627) * t47
+                + (k(1.2792042981336627) * t44 + k(0.8528028654224418) * t42);
             let t113 = closing1 * t112;
             let t114 = t113 - (t111 + (k(0.5) * shaft_dsy - (t108 + t107)));
             let t115 = slide_e0 * slide_e0;
@@ -16591,12 +16445,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 - (slide_ry + t117);
             let t124 = closing6 * (k(0.5) * (t104 * (k(2.0) * t123)));
             let t125 = k(1.5) * carrier_dsy + t124 - t114;
-            let t126 = t8 * t83 + t8 * t79;
-            let t127 = t5 - t7;
+            let t126 = t27 * t83 + t27 * t79;
+            let t127 = t18 - t22;
             let t128 = k(1.4142135623730951) * t127;
             let t129 = closing0 * t128;
-            let t130 = k(1.2792042981336627) * t7
-                + (k(1.2792042981336627) * t5 - k(0.8528028654224418) * t2);
+            let t130 = k(1.2792042981336627) * t22
+                + (k(1.2792042981336627) * t18 - k(0.8528028654224418) * t14);
             let t131 = closing1 * t130;
             let t132 = t131
                 - (t129 - (k(0.5) * shaft_dsz + (k(0.5) * self.gravity + t126)));
@@ -16611,100 +16465,103 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 - (slide_rz - t136);
             let t141 = closing6 * (k(0.5) * (t104 * (k(2.0) * t140)));
             let t142 = k(1.5) * (self.gravity + carrier_dsz) + t141 + t132;
-            let t143 = k(2.0) * t119;
-            let t144 = k(2.0) * t99;
-            let t145 = k(2.0) * t138;
-            let t146 = t145 * t24 - (t144 * t71 - t143 * t49);
-            let t147 = t145 * t22 + (t144 * t69 + t143 * t47);
-            let t148 = k(0.6) * t147;
-            let t149 = k(2.0) * t122;
-            let t150 = k(2.0) * t102;
-            let t151 = k(2.0) * t139;
-            let t152 = t151 * t22 - (t150 * t69 - t149 * t47);
-            let t153 = t150 * t71 + t149 * t49 + t151 * t24;
-            let t154 = k(0.8) * t153;
-            let t155 = k(0.8) * (t154 - k(0.6) * t152) + k(0.6) * (t148 - k(0.8) * t146);
-            let t156 = turn1.cos();
-            let t157 = k(0.6) * t146;
-            let t158 = k(0.8) * t152;
-            let t159 = k(0.8) * (t158 + k(0.6) * t153) - k(0.6) * (t157 + k(0.8) * t147);
-            let t160 = turn1.sin();
-            let t161 = -(t156 * t159 + t160 * t155).atan2(t156 * t155 - t160 * t159);
-            let t162 = k(2.0) * (k(0.1) - (turn1 + t161));
-            let t163 = k(2.0) * t96;
-            let t164 = k(2.0) * t118;
-            let t165 = k(2.0) * t137;
-            let t166 = t165 * t21 + (t164 * t46 + t163 * t68);
-            let t167 = t103 * (k(0.4) * t102 - k(0.8) * t99)
+            let t143 = k(0.6666666666666666) * t138;
+            let t144 = k(1.3333333333333333) * t137;
+            let t145 = t144 - t143;
+            let t146 = k(0.6666666666666666) * t119;
+            let t147 = k(1.3333333333333333) * t118;
+            let t148 = t147 + t146;
+            let t149 = k(1.3333333333333333) * t96;
+            let t150 = k(0.6666666666666666) * t99;
+            let t151 = t150 + t149;
+            let t152 = k(0.6666666666666666) * (t151 + t148)
+                - k(0.3333333333333333) * t145;
+            let t153 = k(0.6666666666666666) * t139;
+            let t154 = t144 + t153;
+            let t155 = k(0.6666666666666666) * t122;
+            let t156 = t147 - t155;
+            let t157 = k(0.6666666666666666) * t102;
+            let t158 = t157 + t149;
+            let t159 = k(0.6666666666666666) * (t158 + t156)
+                - k(0.3333333333333333) * t154;
+            let t160 = k(0.6666666666666666) * (t159 + t152);
+            let t161 = t138 + t139;
+            let t162 = t119 + t122;
+            let t163 = t99 - t102;
+            let t164 = k(0.8888888888888888) * t163 - k(0.4444444444444444) * t162
+                - k(0.8888888888888888) * t161;
+            let t165 = k(0.6666666666666666)
+                * (k(0.8888888888888888) * (t163 + t162) + k(0.4444444444444444) * t161);
+            let t166 = t165 + k(0.3333333333333333) * t152;
+            let t167 = k(0.6666666666666666) * t158 - k(0.3333333333333333) * t156
+                + k(0.6666666666666666) * t154;
+            let t168 = k(0.3333333333333333) * t159 - t165;
+            let t169 = k(0.6666666666666666) * t151 - k(0.3333333333333333) * t148
+                + k(0.6666666666666666) * t145;
+            let t170 = k(1.0) / (t169 * t168 - (t167 * t166 - t164 * t160));
+            let t171 = k(2.0) * t119;
+            let t172 = k(2.0) * t99;
+            let t173 = k(2.0) * t138;
+            let t174 = t173 * t23 - (t172 * t70 - t171 * t48);
+            let t175 = t173 * t19 + (t172 * t67 + t171 * t45);
+            let t176 = k(0.6) * t175;
+            let t177 = k(2.0) * t122;
+            let t178 = k(2.0) * t102;
+            let t179 = k(2.0) * t139;
+            let t180 = t179 * t19 - (t178 * t67 - t177 * t45);
+            let t181 = t178 * t70 + t177 * t48 + t179 * t23;
+            let t182 = k(0.8) * t181;
+            let t183 = k(0.8) * (t182 - k(0.6) * t180) + k(0.6) * (t176 - k(0.8) * t174);
+            let t184 = turn1.cos();
+            let t185 = k(0.6) * t174;
+            let t186 = k(0.8) * t180;
+            let t187 = k(0.8) * (t186 + k(0.6) * t181) - k(0.6) * (t185 + k(0.8) * t175);
+            let t188 = turn1.sin();
+            let t189 = -(t184 * t187 + t188 * t183).atan2(t184 * t183 - t188 * t187);
+            let t190 = k(2.0) * (k(0.1) - (turn1 + t189));
+            let t191 = k(2.0) * t96;
+            let t192 = k(2.0) * t118;
+            let t193 = k(2.0) * t137;
+            let t194 = t193 * t15 + (t192 * t43 + t191 * t65);
+            let t195 = t103 * (k(0.4) * t102 - k(0.8) * t99)
                 + t123 * (k(0.4) * t122 + k(0.8) * t119);
-            let t168 = t104 * (k(2.0) * (t167 - t140 * (k(0.4) * t139 + k(0.8) * t138)));
-            let t169 = closing6 * (k(0.5) * t168)
+            let t196 = t104 * (k(2.0) * (t195 - t140 * (k(0.4) * t139 + k(0.8) * t138)));
+            let t197 = closing6 * (k(0.5) * t196)
                 + (k(0.02) * carrier_dwx
-                    - (k(0.005) * (carrier_wy * carrier_wz) - t166 * t162));
-            let t170 = k(1.3333333333333333) * t96;
-            let t171 = k(0.6666666666666666) * t99;
-            let t172 = k(1.3333333333333333) * t102 - (t171 - t170);
-            let t173 = k(0.6666666666666666) * t119;
-            let t174 = k(1.3333333333333333) * t118;
-            let t175 = k(1.3333333333333333) * t122 - (t174 - t173);
-            let t176 = k(0.6666666666666666) * t138;
-            let t177 = k(1.3333333333333333) * t137;
-            let t178 = t177 + t176 + k(1.3333333333333333) * t139;
-            let t179 = k(0.6666666666666666) * t178
-                + (k(0.3333333333333333) * t175 + k(0.6666666666666666) * t172);
-            let t180 = k(0.3333333333333333) * t178
-                + k(0.6666666666666666) * (t175 - t172);
-            let t181 = k(1.0) / (t180 * t180 + t179 * t179);
-            let t182 = k(1.3333333333333333) * t138;
-            let t183 = k(0.6666666666666666) * t139;
-            let t184 = t183 - t182;
-            let t185 = k(1.3333333333333333) * t119;
-            let t186 = k(0.6666666666666666) * t122;
-            let t187 = t186 - t185;
-            let t188 = k(1.3333333333333333) * t99;
-            let t189 = k(0.6666666666666666) * t102;
-            let t190 = t189 + t188;
-            let t191 = (k(0.6666666666666666) * t190 + k(0.3333333333333333) * t187
-                + k(0.6666666666666666) * t184) * t180
-                + (k(0.6666666666666666) * (t190 - t187) - k(0.3333333333333333) * t184)
-                    * t179;
-            let t192 = shaft_rx - t75;
-            let t193 = shaft_ry - t54;
-            let t194 = shaft_rz - t28;
-            let t195 = t22 * t194 - (t47 * t193 - t69 * t192);
-            let t196 = t24 * t194 - (t49 * t193 + t71 * t192);
-            let t197 = k(0.30151134457776363) * (t196 - t195);
-            let t198 = k(0.0002) * shaft_wz;
-            let t199 = k(0.0001) * shaft_wy;
+                    - (k(0.005) * (carrier_wy * carrier_wz) - t194 * t190));
+            let t198 = k(1.3333333333333333) * t102 - (t150 - t149);
+            let t199 = k(1.3333333333333333) * t122 - (t147 - t146);
             (
                 t2,
-                t5,
+                t3,
+                t6,
                 t7,
-                t8,
-                t11,
-                t12,
+                t9,
+                t10,
+                t14,
                 t15,
-                t16,
                 t18,
                 t19,
-                t21,
                 t22,
-                t24,
+                t23,
+                t27,
+                t28,
                 t29,
                 t33,
                 t34,
                 t35,
                 t36,
-                t39,
-                t40,
-                t41,
+                t37,
+                t38,
                 t42,
                 t43,
                 t44,
-                t46,
+                t45,
                 t47,
-                t49,
+                t48,
+                t52,
                 t53,
+                t54,
                 t55,
                 t57,
                 t58,
@@ -16712,13 +16569,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 t60,
                 t61,
                 t62,
-                t63,
                 t64,
                 t65,
                 t66,
-                t68,
+                t67,
                 t69,
-                t71,
+                t70,
+                t74,
+                t75,
                 t76,
                 t79,
                 t80,
@@ -16777,71 +16635,62 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 t142,
                 t143,
                 t144,
-                t145,
-                t146,
-                t147,
-                t148,
-                t149,
-                t150,
-                t151,
-                t152,
                 t153,
-                t154,
+                t155,
                 t157,
-                t158,
+                t160,
+                t161,
                 t162,
                 t163,
                 t164,
-                t165,
                 t166,
+                t167,
+                t168,
                 t169,
                 t170,
                 t171,
+                t172,
                 t173,
                 t174,
+                t175,
                 t176,
                 t177,
+                t178,
                 t179,
                 t180,
                 t181,
                 t182,
-                t183,
                 t185,
                 t186,
-                t188,
-                t189,
+                t190,
                 t191,
                 t192,
                 t193,
                 t194,
-                t195,
-                t196,
                 t197,
                 t198,
                 t199,
             )
         };
         let (
-            t211,
-            t212,
-            t213,
-            t215,
-            t216,
-            t217,
-            t220,
-            t221,
-            t222,
-            t223,
-            t224,
-            t225,
-            t226,
-            t227,
-            t228,
-            t255,
-            t263,
-            t279,
-            t302,
-            t305,
+            t230,
+            t231,
+            t232,
+            t234,
+            t235,
+            t236,
+            t239,
+            t240,
+            t241,
+            t242,
+            t243,
+            t244,
+            t245,
+            t246,
+            t247,
+            t274,
+            t282,
+            t298,
             t329,
             t330,
             t331,
@@ -16900,193 +16749,193 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t398,
             t399,
         ) = {
-            let t200 = shaft_wy * shaft_wy;
-            let t201 = shaft_wz * shaft_wz;
-            let t202 = k(0.0003) * (t201 - t200) + shaft_wx * (t199 + t198)
-                + (t83 * t197 + (t162 + t79 * t197));
-            let t203 = k(0.1) * t127;
-            let t204 = k(0.1) * t109;
-            let t205 = k(0.1) * t85;
-            let t206 = k(1.4142135623730951) * (t58 - t59) * t76 + t86 * t205
-                - (k(1.4142135623730951) * (t34 + t35) * t55 - t110 * t204);
-            let t207 = closing0
-                * (t206 + (k(1.4142135623730951) * (t5 + t7) * t29 + t128 * t203));
-            let t208 = t207
+            let t200 = t144 + t143 + k(1.3333333333333333) * t139;
+            let t201 = k(0.6666666666666666) * t200
+                + (k(0.3333333333333333) * t199 + k(0.6666666666666666) * t198);
+            let t202 = k(0.3333333333333333) * t200
+                + k(0.6666666666666666) * (t199 - t198);
+            let t203 = k(1.0) / (t202 * t202 + t201 * t201);
+            let t204 = k(1.3333333333333333) * t138;
+            let t205 = t153 - t204;
+            let t206 = k(1.3333333333333333) * t119;
+            let t207 = t155 - t206;
+            let t208 = k(1.3333333333333333) * t99;
+            let t209 = t157 + t208;
+            let t210 = (k(0.6666666666666666) * t209 + k(0.3333333333333333) * t207
+                + k(0.6666666666666666) * t205) * t202
+                + (k(0.6666666666666666) * (t209 - t207) - k(0.3333333333333333) * t205)
+                    * t201;
+            let t211 = shaft_rx - t75;
+            let t212 = shaft_ry - t54;
+            let t213 = shaft_rz - t28;
+            let t214 = t23 * t213 - (t48 * t212 + t70 * t211);
+            let t215 = t19 * t213 - (t45 * t212 - t67 * t211);
+            let t216 = k(0.30151134457776363) * (t215 - t214);
+            let t217 = k(0.0002) * shaft_wz;
+            let t218 = k(0.0001) * shaft_wy;
+            let t219 = shaft_wy * shaft_wy;
+            let t220 = shaft_wz * shaft_wz;
+            let t221 = k(0.0003) * (t220 - t219) + shaft_wx * (t218 + t217)
+                - (t83 * t216 + (t79 * t216 - t190));
+            let t222 = k(0.1) * t127;
+            let t223 = k(0.1) * t109;
+            let t224 = k(0.1) * t85;
+            let t225 = k(1.4142135623730951) * (t66 - t69) * t76 + t86 * t224
+                - (k(1.4142135623730951) * (t44 + t47) * t55 - t110 * t223);
+            let t226 = closing0
+                * (t225 + (k(1.4142135623730951) * (t18 + t22) * t29 + t128 * t222));
+            let t227 = t226
                 - (k(0.001) * shaft_dwx + k(0.0002) * shaft_dwy - k(0.0001) * shaft_dwz
-                    - t202);
-            let t209 = t76 * (k(1.2792042981336627) * t85) + t205 * t88
-                - (t55 * (k(1.2792042981336627) * t109) + t204 * t112);
-            let t210 = closing1
-                * (t209 + (t29 * (k(1.2792042981336627) * t127) - t203 * t130)) + t208;
-            let t211 = t22 * t12 - (t47 * t40 + t69 * t62);
-            let t212 = t22 * t16 + (t69 * t64 + t47 * t42);
-            let t213 = t22 * t19 - (t69 * t66 - t47 * t44);
-            let t214 = k(0.30151134457776363) * t213
-                + (k(0.30151134457776363) * t212 + k(0.9045340337332909) * t211);
-            let t215 = t24 * t12 - (t49 * t40 - t71 * t62);
-            let t216 = t24 * t16 - (t71 * t64 - t49 * t42);
-            let t217 = t71 * t66 + t49 * t44 + t24 * t19;
-            let t218 = k(0.30151134457776363) * t217
-                + (k(0.30151134457776363) * t216 + k(0.9045340337332909) * t215);
-            let t219 = closing3 * (k(0.6396021490668313) * (t218 - t214))
-                - (closing2 * (k(0.7071067811865476) * (t218 + t214)) + t210);
-            let t220 = t213 - t212;
-            let t221 = t217 - t216;
-            let t222 = t221 - t220;
-            let t223 = k(0.5) * t222;
-            let t224 = t21 * t16 - (t46 * t42 + t68 * t64);
-            let t225 = t21 * t19 - (t46 * t44 - t68 * t66);
-            let t226 = t225 - t224;
-            let t227 = k(0.45226701686664544) * t221
-                + (k(0.45226701686664544) * t220 - k(0.30151134457776363) * t226);
-            let t228 = k(1.0) / (t227 * t227 + t223 * t223);
-            let t229 = (k(0.5) * (t221 + t220) * t227
-                + k(0.45226701686664544) * t222 * t223) * t228;
-            let t230 = closing7 * t229 - t219;
-            let t231 = k(0.30151134457776363) * (t21 * t194 + (t46 * t193 - t68 * t192));
-            let t232 = k(0.9045340337332909) * t196 - t231;
-            let t233 = shaft_wx * shaft_wx;
-            let t234 = k(0.0003) * shaft_wx;
-            let t235 = shaft_wy * (t198 - t234)
-                - (k(0.005) * (shaft_wx * shaft_wz) + k(0.0001) * (t201 - t233));
-            let t236 = k(0.0002) * shaft_dwx + k(0.006) * shaft_dwy
-                + k(0.0003) * shaft_dwz + (t235 + (t83 * t232 + t79 * t232));
-            let t237 = k(0.1) * t2;
-            let t238 = k(0.4) * t7;
-            let t239 = t238 - t237;
-            let t240 = t29 * (k(1.4142135623730951) * t2);
-            let t241 = k(0.1) * t33;
-            let t242 = k(0.4) * t35;
-            let t243 = t242 + t241;
-            let t244 = t55 * (k(1.4142135623730951) * t33);
-            let t245 = k(0.1) * t57;
-            let t246 = k(0.4) * t59;
-            let t247 = t246 - t245;
-            let t248 = t76 * (k(1.4142135623730951) * t57);
-            let t249 = t248 - t86 * t247 - (t244 - t110 * t243) - (t240 - t128 * t239);
-            let t250 = k(1.2792042981336627) * t2;
-            let t251 = k(1.2792042981336627) * t33;
-            let t252 = k(1.2792042981336627) * t57;
-            let t253 = t76 * (k(0.8528028654224418) * t59 + t252) - t247 * t88
-                + (t55 * (k(0.8528028654224418) * t35 - t251) - t243 * t112);
-            let t254 = closing1
-                * (t253 - (t29 * (k(0.8528028654224418) * t7 + t250) + t239 * t130));
-            let t255 = t21 * t12 + (t46 * t40 + t68 * t62);
-            let t256 = k(0.30151134457776363) * t225
-                + (k(0.30151134457776363) * t224 + k(0.9045340337332909) * t255);
-            let t257 = closing2 * (k(0.7071067811865476) * t256);
-            let t258 = k(0.6396021490668313) * t256;
-            let t259 = closing3 * (k(0.4264014327112209) * t218 + t258)
-                + (t257 - (t254 + (closing0 * t249 - t236)));
-            let t260 = k(0.45226701686664544) * t226;
-            let t261 = t227 * (k(0.5) * t226);
-            let t262 = closing7
-                * (t228 * (t261 - t223 * (k(0.30151134457776363) * t221 + t260))) + t259;
-            let t263 = t238 * t132 + (t242 * t114 + t246 * t90) + t262;
-            let t264 = (t165 * t22 - (t164 * t47 + t163 * t69)) * t263 - t166 * t230;
-            let t265 = t231 - k(0.9045340337332909) * t195;
-            let t266 = shaft_wz * (t199 + t234)
-                + (k(0.005) * (shaft_wx * shaft_wy) - k(0.0002) * (t200 - t233));
-            let t267 = k(0.0001) * shaft_dwx - k(0.0003) * shaft_dwy
-                - k(0.006) * shaft_dwz - (t266 - (t83 * t265 + t79 * t265));
-            let t268 = k(0.4) * t5;
-            let t269 = t268 - t237;
-            let t270 = k(0.4) * t34;
-            let t271 = t270 + t241;
-            let t272 = k(0.4) * t58;
-            let t273 = t272 + t245;
-            let t274 = t248 - t86 * t273 - (t244 + t110 * t271) - (t240 + t128 * t269);
-            let t275 = t76 * (t252 - k(0.8528028654224418) * t58) + t273 * t88
-                - (t55 * (t251 - k(0.8528028654224418) * t34) + t271 * t112);
-            let t276 = closing1
-                * (t275 - (t29 * (t250 + k(0.8528028654224418) * t5) + t269 * t130));
-            let t277 = closing3 * (t258 + k(0.4264014327112209) * t214)
-                - (t257 + (t276 - (closing0 * t274 - t267)));
-            let t278 = closing7
-                * (t228 * (t261 + t223 * (t260 + k(0.30151134457776363) * t220))) - t277;
-            let t279 = t268 * t132 + (t270 * t114 - t272 * t90) - t278;
-            let t280 = (t165 * t24 - (t164 * t49 - t163 * t71)) * t279 - t264;
-            let t281 = t99 - t102;
-            let t282 = t119 + t122;
-            let t283 = t138 + t139;
-            let t284 = k(0.2) * t283 * t132
-                + (k(0.2) * t282 * t114 - k(0.2) * t281 * t90);
-            let t285 = k(0.2) * t102;
-            let t286 = k(0.2) * t122;
-            let t287 = k(0.2) * t139;
-            let t288 = t287 * t142 - (t286 * t125 + t285 * t106);
-            let t289 = t288 + (t284 + t280 - (closing8 * (t191 * t181) + t169));
-            let t290 = t177 - t176;
-            let t291 = t174 + t173;
-            let t292 = t171 + t170;
-            let t293 = k(0.6666666666666666) * (t292 + t291)
-                - k(0.3333333333333333) * t290;
-            let t294 = t177 + t183;
-            let t295 = t174 - t186;
-            let t296 = t189 + t170;
-            let t297 = k(0.6666666666666666) * (t296 + t295)
-                - k(0.3333333333333333) * t294;
-            let t298 = k(0.6666666666666666) * (t297 + t293);
-            let t299 = k(0.8888888888888888) * t281 - k(0.4444444444444444) * t282
-                - k(0.8888888888888888) * t283;
-            let t300 = k(0.6666666666666666)
-                * (k(0.8888888888888888) * (t281 + t282) + k(0.4444444444444444) * t283);
-            let t301 = t300 + k(0.3333333333333333) * t293;
-            let t302 = k(0.6666666666666666) * t296 - k(0.3333333333333333) * t295
-                + k(0.6666666666666666) * t294;
-            let t303 = k(0.3333333333333333) * t297 - t300;
-            let t304 = k(0.6666666666666666) * t292 - k(0.3333333333333333) * t291
-                + k(0.6666666666666666) * t290;
-            let t305 = k(1.0) / (t304 * t303 - (t302 * t301 - t299 * t298));
-            let t306 = t145 * t21 - (t143 * t46 + t144 * t68);
-            let t307 = t103 * (t285 + k(0.8) * t96) + t123 * (t286 - k(0.8) * t118);
+                    - t221);
+            let t228 = t76 * (k(1.2792042981336627) * t85) + t224 * t88
+                - (t55 * (k(1.2792042981336627) * t109) + t223 * t112);
+            let t229 = closing1
+                * (t228 + (t29 * (k(1.2792042981336627) * t127) - t222 * t130)) + t227;
+            let t230 = t19 * t3 - (t45 * t34 + t67 * t58);
+            let t231 = t19 * t7 + (t67 * t60 + t45 * t36);
+            let t232 = t19 * t10 - (t67 * t62 - t45 * t38);
+            let t233 = k(0.30151134457776363) * t232
+                + (k(0.30151134457776363) * t231 + k(0.9045340337332909) * t230);
+            let t234 = t23 * t3 - (t48 * t34 - t70 * t58);
+            let t235 = t23 * t7 - (t70 * t60 - t48 * t36);
+            let t236 = t70 * t62 + t48 * t38 + t23 * t10;
+            let t237 = k(0.30151134457776363) * t236
+                + (k(0.30151134457776363) * t235 + k(0.9045340337332909) * t234);
+            let t238 = closing3 * (k(0.6396021490668313) * (t237 - t233))
+                - (closing2 * (k(0.7071067811865476) * (t237 + t233)) + t229);
+            let t239 = t232 - t231;
+            let t240 = t236 - t235;
+            let t241 = t240 - t239;
+            let t242 = k(0.5) * t241;
+            let t243 = t15 * t7 - (t43 * t36 + t65 * t60);
+            let t244 = t15 * t10 - (t43 * t38 - t65 * t62);
+            let t245 = t244 - t243;
+            let t246 = k(0.45226701686664544) * t240
+                + (k(0.45226701686664544) * t239 - k(0.30151134457776363) * t245);
+            let t247 = k(1.0) / (t246 * t246 + t242 * t242);
+            let t248 = (k(0.5) * (t240 + t239) * t246
+                + k(0.45226701686664544) * t241 * t242) * t247;
+            let t249 = closing7 * t248 - t238;
+            let t250 = k(0.30151134457776363) * (t15 * t213 + (t43 * t212 - t65 * t211));
+            let t251 = t250 - k(0.9045340337332909) * t214;
+            let t252 = shaft_wx * shaft_wx;
+            let t253 = k(0.0003) * shaft_wx;
+            let t254 = shaft_wy * (t217 - t253)
+                - (k(0.005) * (shaft_wx * shaft_wz) + k(0.0001) * (t220 - t252));
+            let t255 = k(0.0002) * shaft_dwx + k(0.006) * shaft_dwy
+                + k(0.0003) * shaft_dwz + (t254 - (t83 * t251 + t79 * t251));
+            let t256 = k(0.1) * t14;
+            let t257 = k(0.4) * t22;
+            let t258 = t257 - t256;
+            let t259 = t29 * (k(1.4142135623730951) * t14);
+            let t260 = k(0.1) * t42;
+            let t261 = k(0.4) * t47;
+            let t262 = t261 + t260;
+            let t263 = t55 * (k(1.4142135623730951) * t42);
+            let t264 = k(0.1) * t64;
+            let t265 = k(0.4) * t69;
+            let t266 = t265 - t264;
+            let t267 = t76 * (k(1.4142135623730951) * t64);
+            let t268 = t267 - t86 * t266 - (t263 - t110 * t262) - (t259 - t128 * t258);
+            let t269 = k(1.2792042981336627) * t14;
+            let t270 = k(1.2792042981336627) * t42;
+            let t271 = k(1.2792042981336627) * t64;
+            let t272 = t76 * (k(0.8528028654224418) * t69 + t271) - t266 * t88
+                + (t55 * (k(0.8528028654224418) * t47 - t270) - t262 * t112);
+            let t273 = closing1
+                * (t272 - (t29 * (k(0.8528028654224418) * t22 + t269) + t258 * t130));
+            let t274 = t15 * t3 + (t43 * t34 + t65 * t58);
+            let t275 = k(0.30151134457776363) * t244
+                + (k(0.30151134457776363) * t243 + k(0.9045340337332909) * t274);
+            let t276 = closing2 * (k(0.7071067811865476) * t275);
+            let t277 = k(0.6396021490668313) * t275;
+            let t278 = closing3 * (k(0.4264014327112209) * t237 + t277)
+                + (t276 - (t273 + (closing0 * t268 - t255)));
+            let t279 = k(0.45226701686664544) * t245;
+            let t280 = t246 * (k(0.5) * t245);
+            let t281 = closing7
+                * (t247 * (t280 - t242 * (k(0.30151134457776363) * t240 + t279))) + t278;
+            let t282 = t257 * t132 + (t261 * t114 + t265 * t90) + t281;
+            let t283 = (t193 * t19 - (t192 * t45 + t191 * t67)) * t282 - t194 * t249;
+            let t284 = k(0.9045340337332909) * t215 - t250;
+            let t285 = shaft_wz * (t218 + t253)
+                + (k(0.005) * (shaft_wx * shaft_wy) - k(0.0002) * (t219 - t252));
+            let t286 = k(0.0001) * shaft_dwx - k(0.0003) * shaft_dwy
+                - k(0.006) * shaft_dwz - (t285 + (t83 * t284 + t79 * t284));
+            let t287 = k(0.4) * t18;
+            let t288 = t287 - t256;
+            let t289 = k(0.4) * t44;
+            let t290 = t289 + t260;
+            let t291 = k(0.4) * t66;
+            let t292 = t291 + t264;
+            let t293 = t267 - t86 * t292 - (t263 + t110 * t290) - (t259 + t128 * t288);
+            let t294 = t76 * (t271 - k(0.8528028654224418) * t66) + t292 * t88
+                - (t55 * (t270 - k(0.8528028654224418) * t44) + t290 * t112);
+            let t295 = closing1
+                * (t294 - (t29 * (t269 + k(0.8528028654224418) * t18) + t288 * t130));
+            let t296 = closing3 * (t277 + k(0.4264014327112209) * t233)
+                - (t276 + (t295 - (closing0 * t293 - t286)));
+            let t297 = closing7
+                * (t247 * (t280 + t242 * (t279 + k(0.30151134457776363) * t239))) - t296;
+            let t298 = t287 * t132 + (t289 * t114 - t291 * t90) - t297;
+            let t299 = (t193 * t23 - (t192 * t48 - t191 * t70)) * t298 - t283;
+            let t300 = k(0.2) * t161 * t132
+                + (k(0.2) * t162 * t114 - k(0.2) * t163 * t90);
+            let t301 = k(0.2) * t102;
+            let t302 = k(0.2) * t122;
+            let t303 = k(0.2) * t139;
+            let t304 = t303 * t142 - (t302 * t125 + t301 * t106);
+            let t305 = t304 + (t300 + t299 - (closing8 * (t210 * t203) + t197));
+            let t306 = t173 * t15 - (t171 * t43 + t172 * t65);
+            let t307 = t103 * (t301 + k(0.8) * t96) + t123 * (t302 - k(0.8) * t118);
             let t308 = k(0.5)
-                * (t104 * (k(2.0) * (t307 - t140 * (t287 + k(0.8) * t137))));
+                * (t104 * (k(2.0) * (t307 - t140 * (t303 + k(0.8) * t137))));
             let t309 = closing6 * t308
                 - (k(0.03) * carrier_dwy
-                    - (k(0.005) * (carrier_wx * carrier_wz) - t306 * t162));
+                    - (k(0.005) * (carrier_wx * carrier_wz) - t306 * t190));
             let t310 = t137 - t139;
             let t311 = t118 + t122;
             let t312 = t96 - t102;
-            let t313 = t180
+            let t313 = t202
                 * (k(0.8888888888888888) * t312 - k(0.4444444444444444) * t311
                     + k(0.8888888888888888) * t310)
-                + t179
+                + t201
                     * (k(0.8888888888888888) * (t312 + t311)
                         - k(0.4444444444444444) * t310);
             let t314 = k(0.2) * (t118 - t122) * t114 - k(0.2) * (t96 + t102) * t90;
             let t315 = k(0.2) * (t137 + t139) * t132 - t314
-                - (t146 * t279 - (t147 * t263 - t306 * t230));
-            let t316 = t288 + (t315 + (closing8 * (t181 * t313) - t309));
-            let t317 = t151 * t21 - (t149 * t46 - t150 * t68);
+                - (t174 * t298 - (t175 * t282 - t306 * t249));
+            let t316 = t304 + (t315 + (closing8 * (t203 * t313) - t309));
+            let t317 = t179 * t15 - (t177 * t43 - t178 * t65);
             let t318 = t103 * (k(0.4) * t96 + k(0.2) * t99)
                 - t123 * (k(0.4) * t118 + k(0.2) * t119);
             let t319 = t104 * (k(2.0) * (t318 - t140 * (k(0.4) * t137 - k(0.2) * t138)));
             let t320 = closing6 * (k(0.5) * t319)
                 + (k(0.025) * carrier_dwz
-                    + (k(0.01) * (carrier_wx * carrier_wy) - t317 * t162));
-            let t321 = t182 - k(0.6666666666666666) * t137;
-            let t322 = t185 + k(0.6666666666666666) * t118;
-            let t323 = t188 + k(0.6666666666666666) * t96;
-            let t324 = t180
+                    + (k(0.01) * (carrier_wx * carrier_wy) - t317 * t190));
+            let t321 = t204 - k(0.6666666666666666) * t137;
+            let t322 = t206 + k(0.6666666666666666) * t118;
+            let t323 = t208 + k(0.6666666666666666) * t96;
+            let t324 = t202
                 * (k(0.6666666666666666) * t323 - k(0.3333333333333333) * t322
                     - k(0.6666666666666666) * t321)
-                + t179
+                + t201
                     * (k(0.6666666666666666) * (t323 + t322)
                         + k(0.3333333333333333) * t321);
             let t325 = k(0.2) * (t96 + t99);
             let t326 = k(0.2) * (t118 + t119);
             let t327 = k(0.2) * (t137 - t138);
             let t328 = t327 * t132 - (t326 * t114 - t325 * t90)
-                - (t153 * t279 - (t152 * t263 - t317 * t230));
+                - (t181 * t298 - (t180 * t282 - t317 * t249));
             let t329 = t327 * t142 + (t326 * t125 - t325 * t106)
-                + (t328 - (closing8 * (t181 * t324) + t320));
-            let t330 = t303 * t305 * t329 - (t301 * t305 * t316 + t298 * t305 * t289);
-            let t331 = k(0.6666666666666666) * t299;
-            let t332 = t305 * (t331 + k(0.3333333333333333) * t304) * t316
-                + t305 * (k(0.6666666666666666) * (t302 + t304)) * t289;
-            let t333 = t154 - t157;
-            let t334 = t148 - t158;
+                + (t328 - (closing8 * (t203 * t324) + t320));
+            let t330 = t329 * (t168 * t170)
+                - (t316 * (t166 * t170) + t305 * (t160 * t170));
+            let t331 = k(0.6666666666666666) * t164;
+            let t332 = t316 * (t170 * (t331 + k(0.3333333333333333) * t169))
+                + t305 * (t170 * (k(0.6666666666666666) * (t167 + t169)));
+            let t333 = t182 - t185;
+            let t334 = t176 - t186;
             let t335 = k(1.0) / (t334 * t334 + t333 * t333);
             let t336 = slide_e0 * slide_e2;
             let t337 = slide_e1 * slide_e3;
@@ -17165,26 +17014,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t399 = t103 * (k(0.2) * t353) + t123 * (k(0.2) * t347)
                 - t140 * (k(0.2) * t341);
             (
-                t211,
-                t212,
-                t213,
-                t215,
-                t216,
-                t217,
-                t220,
-                t221,
-                t222,
-                t223,
-                t224,
-                t225,
-                t226,
-                t227,
-                t228,
-                t255,
-                t263,
-                t279,
-                t302,
-                t305,
+                t230,
+                t231,
+                t232,
+                t234,
+                t235,
+                t236,
+                t239,
+                t240,
+                t241,
+                t242,
+                t243,
+                t244,
+                t245,
+                t246,
+                t247,
+                t274,
+                t282,
+                t298,
                 t329,
                 t330,
                 t331,
@@ -17664,9 +17511,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t662,
             t663,
             t665,
-            t747,
-            t750,
-            t753,
+            t678,
+            t681,
+            t684,
             t770,
             t771,
             t773,
@@ -17743,156 +17590,157 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 - (t388
                     + (self.puck_mass * puck_dsz
                         + (self.gravity * self.puck_mass + t664))) + t663;
-            let t666 = t654 * t664 - (t649 * t661 + t633 * t658)
+            let t666 = k(0.3849001794597505) * t640;
+            let t667 = t666 + k(1.9245008972987525) * t448;
+            let t668 = k(0.3849001794597505) * t637;
+            let t669 = k(0.3849001794597505) * t632;
+            let t670 = t669 + k(1.9245008972987525) * t459;
+            let t671 = k(0.03774256780481986) * t670
+                - k(0.9813067629253163) * (t668 - k(1.9245008972987525) * t454)
+                - k(0.1887128390240993) * t667;
+            let t672 = t448 - t641;
+            let t673 = t459 + t630;
+            let t674 = k(0.19245008972987526)
+                * (k(0.014527121121346966) * t673 + k(0.3777051491550211) * (t454 + t638)
+                    - k(0.07263560560673482) * t672);
+            let t675 = t674 + k(0.9622504486493763) * t671;
+            let t676 = t666 + k(1.9245008972987525) * t641;
+            let t677 = t669 - k(1.9245008972987525) * t630;
+            let t678 = k(0.9805806756909201) * t677 + k(0.19611613513818404) * t676;
+            let t679 = k(0.03774256780481986) * t677
+                - k(0.9813067629253163) * (t668 + k(1.9245008972987525) * t638)
+                - k(0.1887128390240993) * t676;
+            let t680 = k(0.9622504486493763) * t679 - t674;
+            let t681 = k(0.9805806756909201) * t670 + k(0.19611613513818404) * t667;
+            let t682 = k(0.19245008972987526) * (t679 + t671);
+            let t683 = k(0.3774256780481986) * t673 + k(0.07548513560963972) * t672;
+            let t684 = k(1.0) / (t683 * t682 + (t681 * t680 - t678 * t675));
+            let t685 = t654 * t664 - (t649 * t661 + t633 * t658)
                 + (t653 * t664 - (t648 * t661 - t631 * t658));
-            let t667 = (k(10.0)
+            let t686 = (k(10.0)
                 * (k(0.19245008972987526) * (puck_wx + puck_wy)
                     + k(0.9622504486493763) * puck_wz))
                 .tanh();
-            let t668 = k(0.009622504486493762) * t667;
-            let t669 = k(0.004) * puck_dwx
-                - (k(0.002) * (puck_wy * puck_wz) - (t668 - k(0.1) * t666));
-            let t670 = k(0.2) * t41;
-            let t671 = t16 * t8 + (t42 * t36 - t64 * t60);
-            let t672 = t19 * t8 + (t44 * t36 + t66 * t60);
-            let t673 = k(0.05) * (t672 - t671);
-            let t674 = t79 * t673 - (k(0.05) * (t670 + k(0.4) * t63) - k(0.02) * t11);
-            let t675 = k(0.004) * sleeve_dwx
-                + (k(0.002) * (sleeve_wy * sleeve_wz) - (t83 * t673 + t674));
-            let t676 = k(0.1) * (t15 - t18);
-            let t677 = k(0.1) * (t41 - t43);
-            let t678 = k(0.1) * (t63 + t65);
-            let t679 = closing0 * (t86 * t678 + t110 * t677 + t128 * t676) - t675;
-            let t680 = closing1 * (t678 * t88 - t677 * t112 - t676 * t130) + t679;
-            let t681 = closing3
-                * (k(0.128564869306645) * t226 - k(0.19284730395996752) * t220
-                    - k(0.19284730395996752) * t221)
-                - (closing2 * (k(0.21320071635561044) * t222) - t680);
-            let t682 = t217 + t216;
-            let t683 = t213 + t212;
-            let t684 = t223
-                * (k(0.30151134457776363) * (t225 + t224) - k(0.45226701686664544) * t683
-                    - k(0.45226701686664544) * t682);
-            let t685 = closing7 * (t228 * (t227 * (k(0.5) * (t683 - t682)) - t684))
-                - t681;
-            let t686 = k(0.4) * t18 * t663 + (k(0.4) * t43 * t660 + k(0.4) * t65 * t626);
-            let t687 = t686 - t685;
-            let t688 = k(0.4) * t61;
-            let t689 = k(0.05) * (t12 * t8 - (t40 * t36 - t62 * t60));
-            let t690 = k(0.1) * t672 - t689;
-            let t691 = t83 * t690
-                + (t79 * t690 + (k(0.05) * (t53 + t688) - k(0.02) * t15));
-            let t692 = k(0.1) * t11;
-            let t693 = k(0.2) * t18;
-            let t694 = t693 - t692;
-            let t695 = k(0.1) * t39;
-            let t696 = k(0.2) * t43;
-            let t697 = t696 + t695;
-            let t698 = k(0.1) * t61;
-            let t699 = k(0.2) * t65;
-            let t700 = t699 - t698;
-            let t701 = closing0 * (t86 * t700 - t110 * t697 - t128 * t694)
-                + (k(0.003) * sleeve_dwy - (k(0.001) * (sleeve_wx * sleeve_wz) - t691));
-            let t702 = closing1 * (t700 * t88 + t697 * t112 + t694 * t130) + t701;
-            let t703 = k(0.30151134457776363) * t215;
-            let t704 = k(0.9045340337332909) * t217 - t703;
-            let t705 = k(0.30151134457776363) * t211;
-            let t706 = k(0.9045340337332909) * t213 - t705;
-            let t707 = k(0.30151134457776363) * t255;
-            let t708 = k(0.4264014327112209) * (k(0.9045340337332909) * t225 - t707)
-                - k(0.6396021490668313) * t706 - k(0.6396021490668313) * t704;
-            let t709 = t227 * (k(0.5) * (t215 - t211))
-                + t223
-                    * (t707 - k(0.45226701686664544) * t211
-                        - k(0.45226701686664544) * t215);
-            let t710 = closing7 * (t228 * t709);
-            let t711 = t710
-                + (closing3 * t708
-                    + (closing2 * (k(0.7071067811865476) * (t706 - t704)) + t702));
-            let t712 = t693 * t663 + (t696 * t660 + t699 * t626) + t711;
-            let t713 = (t16 * t652 - (t42 * t647 + t64 * t628)) * t712
-                - (t12 * t652 + (t40 * t647 + t62 * t628)) * t687;
-            let t714 = t689 - k(0.1) * t671;
-            let t715 = k(0.001) * (sleeve_wx * sleeve_wy)
-                + (t83 * t714 + (t79 * t714 - k(0.02) * t18));
-            let t716 = k(0.2) * t15;
-            let t717 = t692 - t716;
-            let t718 = t695 + t670;
-            let t719 = k(0.2) * t63;
-            let t720 = t698 + t719;
-            let t721 = closing0 * (t86 * t720 + t110 * t718 - t128 * t717)
-                - (k(0.005) * sleeve_dwz - t715);
-            let t722 = closing1 * (t720 * t88 - t718 * t112 + t717 * t130) + t721;
-            let t723 = t703 - k(0.9045340337332909) * t216;
-            let t724 = t705 - k(0.9045340337332909) * t212;
-            let t725 = k(0.4264014327112209) * (t707 - k(0.9045340337332909) * t224)
-                - k(0.6396021490668313) * t724 - k(0.6396021490668313) * t723;
-            let t726 = t710
-                + (closing3 * t725
-                    + (closing2 * (k(0.7071067811865476) * (t724 - t723)) + t722));
-            let t727 = (t716 - k(0.4) * t11) * t663
-                + ((t670 + k(0.4) * t39) * t660 - (t719 + t688) * t626);
-            let t728 = t727 - t726;
-            let t729 = (t19 * t652 - (t44 * t647 - t66 * t628)) * t728 - t713;
-            let t730 = k(0.2) * t630;
-            let t731 = k(0.2) * t638;
-            let t732 = (k(0.4) * t637 - t731) * t660 + (k(0.4) * t632 + t730) * t626;
-            let t733 = k(0.2) * t641;
-            let t734 = t733 * t665 + (t731 * t662 - t730 * t659)
-                - ((k(0.4) * t640 - t733) * t663 + t732 + t729 - t669);
-            let t735 = k(0.3849001794597505) * t640;
-            let t736 = t735 + k(1.9245008972987525) * t448;
-            let t737 = k(0.3849001794597505) * t637;
-            let t738 = k(0.3849001794597505) * t632;
-            let t739 = t738 + k(1.9245008972987525) * t459;
-            let t740 = k(0.03774256780481986) * t739
-                - k(0.9813067629253163) * (t737 - k(1.9245008972987525) * t454)
-                - k(0.1887128390240993) * t736;
-            let t741 = t448 - t641;
-            let t742 = t459 + t630;
-            let t743 = k(0.19245008972987526)
-                * (k(0.014527121121346966) * t742 + k(0.3777051491550211) * (t454 + t638)
-                    - k(0.07263560560673482) * t741);
-            let t744 = t743 + k(0.9622504486493763) * t740;
-            let t745 = t735 + k(1.9245008972987525) * t641;
-            let t746 = t738 - k(1.9245008972987525) * t630;
-            let t747 = k(0.9805806756909201) * t746 + k(0.19611613513818404) * t745;
-            let t748 = k(0.03774256780481986) * t746
-                - k(0.9813067629253163) * (t737 + k(1.9245008972987525) * t638)
-                - k(0.1887128390240993) * t745;
-            let t749 = k(0.9622504486493763) * t748 - t743;
-            let t750 = k(0.9805806756909201) * t739 + k(0.19611613513818404) * t736;
-            let t751 = k(0.19245008972987526) * (t748 + t740);
-            let t752 = k(0.3774256780481986) * t742 + k(0.07548513560963972) * t741;
-            let t753 = k(1.0) / (t752 * t751 + (t750 * t749 - t747 * t744));
+            let t687 = k(0.009622504486493762) * t686;
+            let t688 = k(0.004) * puck_dwx
+                - (k(0.002) * (puck_wy * puck_wz) - (t687 - k(0.1) * t685));
+            let t689 = k(0.2) * t35;
+            let t690 = t10 * t27 + (t38 * t52 + t62 * t74);
+            let t691 = t7 * t27 + (t36 * t52 - t60 * t74);
+            let t692 = k(0.05) * (t691 - t690);
+            let t693 = t79 * t692 + (k(0.05) * (t689 + k(0.4) * t59) - k(0.02) * t2);
+            let t694 = k(0.004) * sleeve_dwx
+                + (k(0.002) * (sleeve_wy * sleeve_wz) + (t83 * t692 + t693));
+            let t695 = k(0.1) * (t6 - t9);
+            let t696 = k(0.1) * (t35 - t37);
+            let t697 = k(0.1) * (t59 + t61);
+            let t698 = closing0 * (t86 * t697 + t110 * t696 + t128 * t695) - t694;
+            let t699 = closing1 * (t697 * t88 - t696 * t112 - t695 * t130) + t698;
+            let t700 = closing3
+                * (k(0.128564869306645) * t245 - k(0.19284730395996752) * t239
+                    - k(0.19284730395996752) * t240)
+                - (closing2 * (k(0.21320071635561044) * t241) - t699);
+            let t701 = t236 + t235;
+            let t702 = t232 + t231;
+            let t703 = t242
+                * (k(0.30151134457776363) * (t244 + t243) - k(0.45226701686664544) * t702
+                    - k(0.45226701686664544) * t701);
+            let t704 = closing7 * (t247 * (t246 * (k(0.5) * (t702 - t701)) - t703))
+                - t700;
+            let t705 = k(0.4) * t9 * t663 + (k(0.4) * t37 * t660 + k(0.4) * t61 * t626);
+            let t706 = t705 - t704;
+            let t707 = k(0.4) * t57;
+            let t708 = k(0.05) * (t3 * t27 - (t34 * t52 - t58 * t74));
+            let t709 = t708 - k(0.1) * t690;
+            let t710 = t83 * t709
+                + (t79 * t709 - (k(0.05) * (t53 + t707) - k(0.02) * t6));
+            let t711 = k(0.1) * t2;
+            let t712 = k(0.2) * t9;
+            let t713 = t712 - t711;
+            let t714 = k(0.1) * t33;
+            let t715 = k(0.2) * t37;
+            let t716 = t715 + t714;
+            let t717 = k(0.1) * t57;
+            let t718 = k(0.2) * t61;
+            let t719 = t718 - t717;
+            let t720 = closing0 * (t86 * t719 - t110 * t716 - t128 * t713)
+                + (k(0.003) * sleeve_dwy - (k(0.001) * (sleeve_wx * sleeve_wz) + t710));
+            let t721 = closing1 * (t719 * t88 + t716 * t112 + t713 * t130) + t720;
+            let t722 = k(0.30151134457776363) * t234;
+            let t723 = k(0.9045340337332909) * t236 - t722;
+            let t724 = k(0.30151134457776363) * t230;
+            let t725 = k(0.9045340337332909) * t232 - t724;
+            let t726 = k(0.30151134457776363) * t274;
+            let t727 = k(0.4264014327112209) * (k(0.9045340337332909) * t244 - t726)
+                - k(0.6396021490668313) * t725 - k(0.6396021490668313) * t723;
+            let t728 = t246 * (k(0.5) * (t234 - t230))
+                + t242
+                    * (t726 - k(0.45226701686664544) * t230
+                        - k(0.45226701686664544) * t234);
+            let t729 = closing7 * (t247 * t728);
+            let t730 = t729
+                + (closing3 * t727
+                    + (closing2 * (k(0.7071067811865476) * (t725 - t723)) + t721));
+            let t731 = t712 * t663 + (t715 * t660 + t718 * t626) + t730;
+            let t732 = t731 * (t7 * t652 - (t36 * t647 + t60 * t628))
+                - t706 * (t3 * t652 + (t34 * t647 + t58 * t628));
+            let t733 = k(0.1) * t691 - t708;
+            let t734 = k(0.001) * (sleeve_wx * sleeve_wy)
+                - (t83 * t733 + (t79 * t733 + k(0.02) * t9));
+            let t735 = k(0.2) * t6;
+            let t736 = t711 - t735;
+            let t737 = t714 + t689;
+            let t738 = k(0.2) * t59;
+            let t739 = t717 + t738;
+            let t740 = closing0 * (t86 * t739 + t110 * t737 - t128 * t736)
+                - (k(0.005) * sleeve_dwz - t734);
+            let t741 = closing1 * (t739 * t88 - t737 * t112 + t736 * t130) + t740;
+            let t742 = t722 - k(0.9045340337332909) * t235;
+            let t743 = t724 - k(0.9045340337332909) * t231;
+            let t744 = k(0.4264014327112209) * (t726 - k(0.9045340337332909) * t243)
+                - k(0.6396021490668313) * t743 - k(0.6396021490668313) * t742;
+            let t745 = t729
+                + (closing3 * t744
+                    + (closing2 * (k(0.7071067811865476) * (t743 - t742)) + t741));
+            let t746 = (t735 - k(0.4) * t2) * t663
+                + ((t689 + k(0.4) * t33) * t660 - (t738 + t707) * t626);
+            let t747 = t746 - t745;
+            let t748 = t747 * (t10 * t652 - (t38 * t647 - t62 * t628)) - t732;
+            let t749 = k(0.2) * t630;
+            let t750 = k(0.2) * t638;
+            let t751 = (k(0.4) * t637 - t750) * t660 + (k(0.4) * t632 + t749) * t626;
+            let t752 = k(0.2) * t641;
+            let t753 = t752 * t665 + (t750 * t662 - t749 * t659)
+                - ((k(0.4) * t640 - t752) * t663 + t751 + t748 - t688);
             let t754 = k(0.1) * (t652 * t664 + (t647 * t661 - t628 * t658));
             let t755 = k(0.2) * t640;
             let t756 = k(0.2) * t637;
             let t757 = k(0.2) * t632;
             let t758 = closing4 * (t363 * t757 - t375 * t756 - t387 * t755)
                 + (k(0.005) * puck_dwy
-                    + (k(0.001) * (puck_wx * puck_wz) + (t668 + t754)));
+                    + (k(0.001) * (puck_wx * puck_wz) + (t687 + t754)));
             let t759 = closing5 * (t757 * t368 + t756 * t380 + t755 * t390) + t758;
-            let t760 = (t16 * t653 + (t42 * t648 + t64 * t631)) * t712
-                - (t12 * t653 - (t40 * t648 + t62 * t631)) * t687;
-            let t761 = (t19 * t653 + (t44 * t648 - t66 * t631)) * t728 - t760;
+            let t760 = t731 * (t7 * t653 + (t36 * t648 + t60 * t631))
+                - t706 * (t3 * t653 - (t34 * t648 + t58 * t631));
+            let t761 = t747 * (t10 * t653 + (t38 * t648 - t62 * t631)) - t760;
             let t762 = t449 * t663 - (t455 * t660 - t460 * t626) + t761 - t759;
             let t763 = t449 * t665 - (t455 * t662 - t460 * t659) + t762;
             let t764 = k(0.003) * puck_dwz
                 + (k(0.001) * (puck_wx * puck_wy)
-                    + (k(0.048112522432468816) * t667 - t754));
-            let t765 = closing4 * (t730 * t363 + t731 * t375 + t733 * t387) - t764;
-            let t766 = closing5 * (t730 * t368 - t731 * t380 - t733 * t390) + t765;
-            let t767 = (t16 * t654 + (t42 * t649 - t64 * t633)) * t712
-                - (t12 * t654 - (t40 * t649 - t62 * t633)) * t687;
-            let t768 = (t19 * t654 + (t44 * t649 + t66 * t633)) * t728 - t767;
+                    + (k(0.048112522432468816) * t686 - t754));
+            let t765 = closing4 * (t749 * t363 + t750 * t375 + t752 * t387) - t764;
+            let t766 = closing5 * (t749 * t368 - t750 * t380 - t752 * t390) + t765;
+            let t767 = t731 * (t7 * t654 + (t36 * t649 - t60 * t633))
+                - t706 * (t3 * t654 - (t34 * t649 - t58 * t633));
+            let t768 = t747 * (t10 * t654 + (t38 * t649 + t62 * t633)) - t767;
             let t769 = k(0.4) * t448 * t663
                 - (k(0.4) * t454 * t660 - k(0.4) * t459 * t626);
             let t770 = t769 - t768 + t766;
-            let t771 = t751 * t753 * t770 - (t749 * t753 * t763 - t744 * t753 * t734);
-            let t772 = k(0.19245008972987526) * t752;
-            let t773 = t753 * (k(0.9622504486493763) * t747 - t772) * t763
-                - t753 * (t772 + k(0.9622504486493763) * t750) * t734;
+            let t771 = t770 * (t682 * t684)
+                - (t763 * (t680 * t684) - t753 * (t675 * t684));
+            let t772 = k(0.19245008972987526) * t683;
+            let t773 = t763 * (t684 * (k(0.9622504486493763) * t678 - t772))
+                - t753 * (t684 * (t772 + k(0.9622504486493763) * t681));
             (
                 t607,
                 t609,
@@ -17912,9 +17760,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 t662,
                 t663,
                 t665,
-                t747,
-                t750,
-                t753,
+                t678,
+                t681,
+                t684,
                 t770,
                 t771,
                 t773,
@@ -17925,11 +17773,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             -t125,
             -t142,
             t330,
-            t305 * (k(0.3333333333333333) * t302 - t331) * t329 - t332,
+            t329 * (t170 * (k(0.3333333333333333) * t167 - t331)) - t332,
             t90,
             t114,
             -t132,
-            t333 * t335 * t263 - t334 * t335 * t279,
+            t333 * t335 * t282 - t334 * t335 * t298,
             closing0,
             closing1,
             closing2,
@@ -17952,7 +17800,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t622 * t623 * t496,
             k(0.9622504486493763) * t665 - k(0.19245008972987526) * (t662 + t659),
             t771,
-            t753 * (k(0.19245008972987526) * (t747 + t750)) * t770 - t773,
+            t770 * (t684 * (k(0.19245008972987526) * (t678 + t681))) - t773,
             t626,
             t660,
             -t663,
@@ -18121,22 +17969,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for AllJoints<T> {
             t55,
             t56,
             t57,
+            t60,
             t61,
-            t62,
+            t64,
             t65,
-            t66,
+            t67,
             t68,
-            t69,
             t75,
             t76,
-            t82,
-            t84,
-            t86,
+            t81,
+            t83,
+            t85,
             t92,
             t93,
-            t97,
-            t99,
-            t101,
+            t96,
+            t98,
+            t100,
             t107,
             t108,
             t110,
@@ -18182,27 +18030,30 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for AllJoints<T> {
             t163,
             t164,
             t165,
-            t166,
             t167,
             t168,
-            t169,
             t170,
             t171,
-            t172,
             t173,
-            t179,
+            t174,
+            t176,
+            t178,
             t180,
             t181,
             t182,
             t183,
             t184,
-            t187,
+            t185,
+            t186,
             t188,
             t189,
+            t190,
             t191,
             t192,
+            t193,
             t194,
             t195,
+            t196,
             t197,
             t198,
             t199,
@@ -18269,83 +18120,83 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for AllJoints<T> {
             let t55 = k(0.5) - (t27 + shaft_e3 * shaft_e3);
             let t56 = k(2.0) * t55;
             let t57 = self.gravity + (shaft_dsz + (t56 * t36 + (t54 * t31 + t52 * t26)));
-            let t58 = k(0.6030226891555273) * t55
+            let t58 = sleeve_e0 * sleeve_e2;
+            let t59 = sleeve_e1 * sleeve_e3;
+            let t60 = t59 - t58;
+            let t61 = k(2.0) * t60;
+            let t62 = sleeve_e0 * sleeve_e1;
+            let t63 = sleeve_e2 * sleeve_e3;
+            let t64 = t63 + t62;
+            let t65 = k(2.0) * t64;
+            let t66 = sleeve_e0 * sleeve_e0;
+            let t67 = k(0.5) - (t66 + sleeve_e3 * sleeve_e3);
+            let t68 = k(2.0) * t67;
+            let t69 = k(0.1) * (t68 * sleeve_wy + t65 * sleeve_wz)
+                - k(0.05) * (t68 * sleeve_wx + t61 * sleeve_wz);
+            let t70 = t54 * shaft_wx - t52 * shaft_wy;
+            let t71 = t56 * shaft_wy + t54 * shaft_wz;
+            let t72 = t56 * shaft_wx + t52 * shaft_wz;
+            let t73 = shaft_sz - (k(0.05) * t72 - k(0.2) * t71 - k(0.05) * t70)
+                - (sleeve_sz - (t69 + k(0.05) * (t65 * sleeve_wx - t61 * sleeve_wy)));
+            let t74 = k(0.6030226891555273) * t55
                 + (k(0.6030226891555273) * t53 + k(1.8090680674665818) * t51);
-            let t59 = sleeve_e0 * sleeve_e2;
-            let t60 = sleeve_e1 * sleeve_e3;
-            let t61 = t60 - t59;
-            let t62 = k(2.0) * t61;
-            let t63 = sleeve_e0 * sleeve_e1;
-            let t64 = sleeve_e2 * sleeve_e3;
-            let t65 = t64 + t63;
-            let t66 = k(2.0) * t65;
-            let t67 = sleeve_e0 * sleeve_e0;
-            let t68 = k(0.5) - (t67 + sleeve_e3 * sleeve_e3);
-            let t69 = k(2.0) * t68;
-            let t70 = k(0.1) * (t69 * sleeve_wy + t66 * sleeve_wz)
-                - k(0.05) * (t69 * sleeve_wx + t62 * sleeve_wz);
-            let t71 = t54 * shaft_wx - t52 * shaft_wy;
-            let t72 = t56 * shaft_wy + t54 * shaft_wz;
-            let t73 = t56 * shaft_wx + t52 * shaft_wz;
-            let t74 = shaft_sz - (k(0.05) * t73 - k(0.2) * t72 - k(0.05) * t71)
-                - (sleeve_sz - (t70 + k(0.05) * (t66 * sleeve_wx - t62 * sleeve_wy)));
-            let t75 = sleeve_rz - (k(0.1) * t68 + (k(0.1) * t65 + k(0.2) * t61));
+            let t75 = sleeve_rz - (k(0.1) * t67 + (k(0.1) * t64 + k(0.2) * t60));
             let t76 = t75 - (shaft_rz + (k(0.1) * t55 + (k(0.1) * t53 + k(0.4) * t51)));
             let t77 = t76
-                * (k(0.9045340337332909) * t72 - k(0.30151134457776363) * t73
-                    + k(0.30151134457776363) * t71) - t74 * t58;
-            let t78 = k(0.6030226891555273) * t48
+                * (k(0.9045340337332909) * t71 - k(0.30151134457776363) * t72
+                    + k(0.30151134457776363) * t70) - t74 * t73;
+            let t78 = sleeve_e0 * sleeve_e3;
+            let t79 = sleeve_e1 * sleeve_e2;
+            let t80 = t79 + t78;
+            let t81 = k(2.0) * t80;
+            let t82 = k(0.5) - (t66 + sleeve_e2 * sleeve_e2);
+            let t83 = k(2.0) * t82;
+            let t84 = t63 - t62;
+            let t85 = k(2.0) * t84;
+            let t86 = k(0.1) * (t85 * sleeve_wy + t83 * sleeve_wz)
+                - k(0.05) * (t85 * sleeve_wx - t81 * sleeve_wz);
+            let t87 = t45 * shaft_wx + t43 * shaft_wy;
+            let t88 = t49 * shaft_wy + t45 * shaft_wz;
+            let t89 = t49 * shaft_wx - t43 * shaft_wz;
+            let t90 = shaft_sy + (k(0.05) * t89 - k(0.2) * t88 - k(0.05) * t87)
+                - (sleeve_sy + (t86 + k(0.05) * (t83 * sleeve_wx + t81 * sleeve_wy)));
+            let t91 = k(0.6030226891555273) * t48
                 + (k(0.6030226891555273) * t44 - k(1.8090680674665818) * t42);
-            let t79 = sleeve_e0 * sleeve_e3;
-            let t80 = sleeve_e1 * sleeve_e2;
-            let t81 = t80 + t79;
-            let t82 = k(2.0) * t81;
-            let t83 = k(0.5) - (t67 + sleeve_e2 * sleeve_e2);
-            let t84 = k(2.0) * t83;
-            let t85 = t64 - t63;
-            let t86 = k(2.0) * t85;
-            let t87 = k(0.1) * (t86 * sleeve_wy + t84 * sleeve_wz)
-                - k(0.05) * (t86 * sleeve_wx - t82 * sleeve_wz);
-            let t88 = t45 * shaft_wx + t43 * shaft_wy;
-            let t89 = t49 * shaft_wy + t45 * shaft_wz;
-            let t90 = t49 * shaft_wx - t43 * shaft_wz;
-            let t91 = shaft_sy + (k(0.05) * t90 - k(0.2) * t89 - k(0.05) * t88)
-                - (sleeve_sy + (t87 + k(0.05) * (t84 * sleeve_wx + t82 * sleeve_wy)));
-            let t92 = sleeve_ry + (k(0.1) * t85 + (k(0.1) * t83 - k(0.2) * t81));
+            let t92 = sleeve_ry + (k(0.1) * t84 + (k(0.1) * t82 - k(0.2) * t80));
             let t93 = t92 - (shaft_ry - (k(0.1) * t48 + (k(0.1) * t44 - k(0.4) * t42)));
             let t94 = t93
-                * (k(0.9045340337332909) * t89 - k(0.30151134457776363) * t90
-                    + k(0.30151134457776363) * t88) - t91 * t78;
-            let t95 = k(0.6030226891555273) * t39
+                * (k(0.9045340337332909) * t88 - k(0.30151134457776363) * t89
+                    + k(0.30151134457776363) * t87) - t91 * t90;
+            let t95 = k(0.5) - (t66 + sleeve_e1 * sleeve_e1);
+            let t96 = k(2.0) * t95;
+            let t97 = t79 - t78;
+            let t98 = k(2.0) * t97;
+            let t99 = t59 + t58;
+            let t100 = k(2.0) * t99;
+            let t101 = k(0.1) * (t100 * sleeve_wy - t98 * sleeve_wz)
+                - k(0.05) * (t100 * sleeve_wx + t96 * sleeve_wz);
+            let t102 = t35 * shaft_wx + t29 * shaft_wy;
+            let t103 = t40 * shaft_wy - t35 * shaft_wz;
+            let t104 = t40 * shaft_wx + t29 * shaft_wz;
+            let t105 = shaft_sx + (k(0.05) * t104 - k(0.2) * t103 + k(0.05) * t102)
+                - (sleeve_sx + (t101 - k(0.05) * (t98 * sleeve_wx + t96 * sleeve_wy)));
+            let t106 = k(0.6030226891555273) * t39
                 - (k(0.6030226891555273) * t34 - k(1.8090680674665818) * t28);
-            let t96 = k(0.5) - (t67 + sleeve_e1 * sleeve_e1);
-            let t97 = k(2.0) * t96;
-            let t98 = t80 - t79;
-            let t99 = k(2.0) * t98;
-            let t100 = t60 + t59;
-            let t101 = k(2.0) * t100;
-            let t102 = k(0.1) * (t101 * sleeve_wy - t99 * sleeve_wz)
-                - k(0.05) * (t101 * sleeve_wx + t97 * sleeve_wz);
-            let t103 = t35 * shaft_wx + t29 * shaft_wy;
-            let t104 = t40 * shaft_wy - t35 * shaft_wz;
-            let t105 = t40 * shaft_wx + t29 * shaft_wz;
-            let t106 = shaft_sx + (k(0.05) * t105 - k(0.2) * t104 + k(0.05) * t103)
-                - (sleeve_sx + (t102 - k(0.05) * (t99 * sleeve_wx + t97 * sleeve_wy)));
-            let t107 = sleeve_rx + (k(0.1) * t100 - (k(0.1) * t98 - k(0.2) * t96));
+            let t107 = sleeve_rx + (k(0.1) * t99 - (k(0.1) * t97 - k(0.2) * t95));
             let t108 = t107
                 - (shaft_rx - (k(0.1) * t39 - (k(0.1) * t34 - k(0.4) * t28)));
             let t109 = t108
-                * (k(0.9045340337332909) * t104 - k(0.30151134457776363) * t105
-                    - k(0.30151134457776363) * t103) - t106 * t95;
+                * (k(0.9045340337332909) * t103 - k(0.30151134457776363) * t104
+                    - k(0.30151134457776363) * t102) - t106 * t105;
             let t110 = t109 + t94 - t77;
             let t111 = k(3.0) * t110;
-            let t112 = k(0.05) - (t76 * t58 - (t93 * t78 + t108 * t95));
+            let t112 = k(0.05) - (t76 * t74 - (t93 * t91 + t108 * t106));
             let t113 = (k(0.0001) + t112 * t112).sqrt();
             let t114 = (k(1.0) - t112 / t113) * t110 + k(250.0) * (t112 - t113);
             let t115 = t34 + t39;
             let t116 = k(1.4142135623730951) * t115;
             let t117 = closing0 * t116
-                - (k(0.5) * shaft_dsx - (t95 * t114 + t95 * t111));
+                - (k(0.5) * shaft_dsx - (t106 * t114 + t106 * t111));
             let t118 = k(1.2792042981336627) * t39
                 - (k(1.2792042981336627) * t34 + k(0.8528028654224418) * t28);
             let t119 = closing1 * t118 + t117;
@@ -18368,7 +18219,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for AllJoints<T> {
             let t134 = t44 - t48;
             let t135 = k(1.4142135623730951) * t134;
             let t136 = closing0 * t135
-                + (k(0.5) * shaft_dsy - (t78 * t114 + t78 * t111));
+                + (k(0.5) * shaft_dsy - (t91 * t114 + t91 * t111));
             let t137 = k(1.2792042981336627) * t48
                 + (k(1.2792042981336627) * t44 + k(0.8528028654224418) * t42);
             let t138 = closing1 * t137 - t136;
@@ -18387,7 +18238,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for AllJoints<T> {
             let t149 = t53 - t55;
             let t150 = k(1.4142135623730951) * t149;
             let t151 = closing0 * t150
-                - (k(0.5) * shaft_dsz + (t148 + (t58 * t114 + t58 * t111)));
+                - (k(0.5) * shaft_dsz + (t148 + (t74 * t114 + t74 * t111)));
             let t152 = k(1.2792042981336627) * t55
                 + (k(1.2792042981336627) * t53 - k(0.8528028654224418) * t51);
             let t153 = closing1 * t152 - t151;
@@ -18403,49 +18254,48 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for AllJoints<T> {
                 + closing6 * (k(0.5) * (t132 * (k(2.0) * t160)));
             let t162 = t161 + t153;
             let t163 = k(0.6666666666666666) * t162;
-            let t164 = k(2.0) * t142;
-            let t165 = k(2.0) * t127;
-            let t166 = k(2.0) * t158;
-            let t167 = t166 * t56 - (t165 * t40 - t164 * t49);
-            let t168 = t166 * t54 + (t165 * t35 + t164 * t45);
-            let t169 = k(2.0) * t145;
-            let t170 = k(2.0) * t130;
-            let t171 = k(2.0) * t159;
-            let t172 = t171 * t54 - (t170 * t35 - t169 * t45);
-            let t173 = t170 * t40 + t169 * t49 + t171 * t56;
-            let t174 = k(0.8) * (k(0.8) * t173 - k(0.6) * t172)
-                + k(0.6) * (k(0.6) * t168 - k(0.8) * t167);
-            let t175 = turn1.cos();
-            let t176 = k(0.8) * (k(0.8) * t172 + k(0.6) * t173)
-                - k(0.6) * (k(0.6) * t167 + k(0.8) * t168);
-            let t177 = turn1.sin();
-            let t178 = -(t175 * t176 + t177 * t174).atan2(t175 * t174 - t177 * t176);
-            let t179 = k(0.1) - (turn1 + t178);
-            let t180 = k(2.0) * t179;
-            let t181 = k(2.0) * t124;
-            let t182 = k(2.0) * t141;
-            let t183 = k(2.0) * t157;
-            let t184 = t183 * t52 + (t182 * t43 + t181 * t29);
-            let t185 = t131 * (k(0.4) * t130 - k(0.8) * t127)
-                + t146 * (k(0.4) * t145 + k(0.8) * t142);
-            let t186 = t132 * (k(2.0) * (t185 - t160 * (k(0.4) * t159 + k(0.8) * t158)));
-            let t187 = closing6 * (k(0.5) * t186)
-                + (k(0.02) * carrier_dwx
-                    - (k(0.005) * (carrier_wy * carrier_wz) - t184 * t180));
-            let t188 = k(1.3333333333333333) * t124;
-            let t189 = k(0.6666666666666666) * t127;
-            let t190 = k(1.3333333333333333) * t130 - (t189 - t188);
-            let t191 = k(0.6666666666666666) * t142;
-            let t192 = k(1.3333333333333333) * t141;
-            let t193 = k(1.3333333333333333) * t145 - (t192 - t191);
-            let t194 = k(0.6666666666666666) * t158;
-            let t195 = k(1.3333333333333333) * t157;
-            let t196 = t195 + t194 + k(1.3333333333333333) * t159;
-            let t197 = k(0.6666666666666666) * t196
-                + (k(0.3333333333333333) * t193 + k(0.6666666666666666) * t190);
-            let t198 = k(0.3333333333333333) * t196
-                + k(0.6666666666666666) * (t193 - t190);
-            let t199 = k(1.0) / (t198 * t198 + t197 * t197);
+            let t164 = k(0.6666666666666666) * t158;
+            let t165 = k(1.3333333333333333) * t157;
+            let t166 = t165 - t164;
+            let t167 = k(0.6666666666666666) * t142;
+            let t168 = k(1.3333333333333333) * t141;
+            let t169 = t168 + t167;
+            let t170 = k(1.3333333333333333) * t124;
+            let t171 = k(0.6666666666666666) * t127;
+            let t172 = t171 + t170;
+            let t173 = k(0.6666666666666666) * (t172 + t169)
+                - k(0.3333333333333333) * t166;
+            let t174 = k(0.6666666666666666) * t159;
+            let t175 = t165 + t174;
+            let t176 = k(0.6666666666666666) * t145;
+            let t177 = t168 - t176;
+            let t178 = k(0.6666666666666666) * t130;
+            let t179 = t178 + t170;
+            let t180 = k(0.6666666666666666) * (t179 + t177)
+                - k(0.3333333333333333) * t175;
+            let t181 = k(0.6666666666666666) * (t180 + t173);
+            let t182 = t158 + t159;
+            let t183 = t142 + t145;
+            let t184 = t127 - t130;
+            let t185 = k(0.8888888888888888) * t184 - k(0.4444444444444444) * t183
+                - k(0.8888888888888888) * t182;
+            let t186 = k(0.8888888888888888) * (t184 + t183)
+                + k(0.4444444444444444) * t182;
+            let t187 = k(0.6666666666666666) * t186;
+            let t188 = t187 + k(0.3333333333333333) * t173;
+            let t189 = k(0.6666666666666666) * t179 - k(0.3333333333333333) * t177
+                + k(0.6666666666666666) * t175;
+            let t190 = k(0.3333333333333333) * t180 - t187;
+            let t191 = k(0.6666666666666666) * t172 - k(0.3333333333333333) * t169
+                + k(0.6666666666666666) * t166;
+            let t192 = k(1.0) / (t191 * t190 - (t189 * t188 - t185 * t181));
+            let t193 = k(2.0) * t142;
+            let t194 = k(2.0) * t127;
+            let t195 = k(2.0) * t158;
+            let t196 = t195 * t56 - (t194 * t40 - t193 * t49);
+            let t197 = t195 * t54 + (t194 * t35 + t193 * t45);
+            let t198 = k(2.0) * t145;
+            let t199 = k(2.0) * t130;
             (
                 t0,
                 t1,
@@ -18484,22 +18334,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for AllJoints<T> {
                 t55,
                 t56,
                 t57,
+                t60,
                 t61,
-                t62,
+                t64,
                 t65,
-                t66,
+                t67,
                 t68,
-                t69,
                 t75,
                 t76,
-                t82,
-                t84,
-                t86,
+                t81,
+                t83,
+                t85,
                 t92,
                 t93,
-                t97,
-                t99,
-                t101,
+                t96,
+                t98,
+                t100,
                 t107,
                 t108,
                 t110,
@@ -18545,253 +18395,258 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for AllJoints<T> {
                 t163,
                 t164,
                 t165,
-                t166,
                 t167,
                 t168,
-                t169,
                 t170,
                 t171,
-                t172,
                 t173,
-                t179,
+                t174,
+                t176,
+                t178,
                 t180,
                 t181,
                 t182,
                 t183,
                 t184,
-                t187,
+                t185,
+                t186,
                 t188,
                 t189,
+                t190,
                 t191,
                 t192,
+                t193,
                 t194,
                 t195,
+                t196,
                 t197,
                 t198,
                 t199,
             )
         };
         let (t359, t361, t362, t363, t379, t387, t392, t396, t398, t399) = {
-            let t200 = k(1.3333333333333333) * t158;
-            let t201 = k(0.6666666666666666) * t159;
-            let t202 = t201 - t200;
-            let t203 = k(1.3333333333333333) * t142;
-            let t204 = k(0.6666666666666666) * t145;
-            let t205 = t204 - t203;
-            let t206 = k(1.3333333333333333) * t127;
-            let t207 = k(0.6666666666666666) * t130;
-            let t208 = t207 + t206;
-            let t209 = (k(0.6666666666666666) * t208 + k(0.3333333333333333) * t205
-                + k(0.6666666666666666) * t202) * t198
-                + (k(0.6666666666666666) * (t208 - t205) - k(0.3333333333333333) * t202)
-                    * t197;
-            let t210 = shaft_rx - t107;
-            let t211 = shaft_ry - t92;
-            let t212 = shaft_rz - t75;
-            let t213 = t54 * t212 - (t45 * t211 - t35 * t210);
-            let t214 = t56 * t212 - (t49 * t211 + t40 * t210);
-            let t215 = k(0.30151134457776363) * (t214 - t213);
-            let t216 = k(0.0002) * shaft_wz;
-            let t217 = k(0.0001) * shaft_wy;
-            let t218 = shaft_wy * shaft_wy;
-            let t219 = shaft_wz * shaft_wz;
-            let t220 = k(0.0003) * (t219 - t218) + shaft_wx * (t217 + t216)
-                + (t114 * t215 + (t180 + t111 * t215));
-            let t221 = k(0.1) * t149;
-            let t222 = k(0.1) * t134;
-            let t223 = k(0.1) * t115;
-            let t224 = k(1.4142135623730951) * (t34 - t39) * t108 + t116 * t223
-                - (k(1.4142135623730951) * (t44 + t48) * t93 - t135 * t222);
-            let t225 = closing0
-                * (t224 + (k(1.4142135623730951) * (t53 + t55) * t76 + t150 * t221));
-            let t226 = t225
+            let t200 = k(2.0) * t159;
+            let t201 = t200 * t54 - (t199 * t35 - t198 * t45);
+            let t202 = t199 * t40 + t198 * t49 + t200 * t56;
+            let t203 = k(0.8) * (k(0.8) * t202 - k(0.6) * t201)
+                + k(0.6) * (k(0.6) * t197 - k(0.8) * t196);
+            let t204 = turn1.cos();
+            let t205 = k(0.8) * (k(0.8) * t201 + k(0.6) * t202)
+                - k(0.6) * (k(0.6) * t196 + k(0.8) * t197);
+            let t206 = turn1.sin();
+            let t207 = -(t204 * t205 + t206 * t203).atan2(t204 * t203 - t206 * t205);
+            let t208 = k(0.1) - (turn1 + t207);
+            let t209 = k(2.0) * t208;
+            let t210 = k(2.0) * t124;
+            let t211 = k(2.0) * t141;
+            let t212 = k(2.0) * t157;
+            let t213 = t212 * t52 + (t211 * t43 + t210 * t29);
+            let t214 = t131 * (k(0.4) * t130 - k(0.8) * t127)
+                + t146 * (k(0.4) * t145 + k(0.8) * t142);
+            let t215 = t132 * (k(2.0) * (t214 - t160 * (k(0.4) * t159 + k(0.8) * t158)));
+            let t216 = closing6 * (k(0.5) * t215)
+                + (k(0.02) * carrier_dwx
+                    - (k(0.005) * (carrier_wy * carrier_wz) - t213 * t209));
+            let t217 = k(1.3333333333333333) * t130 - (t171 - t170);
+            let t218 = k(1.3333333333333333) * t145 - (t168 - t167);
+            let t219 = t165 + t164 + k(1.3333333333333333) * t159;
+            let t220 = k(0.6666666666666666) * t219
+                + (k(0.3333333333333333) * t218 + k(0.6666666666666666) * t217);
+            let t221 = k(0.3333333333333333) * t219
+                + k(0.6666666666666666) * (t218 - t217);
+            let t222 = k(1.0) / (t221 * t221 + t220 * t220);
+            let t223 = k(1.3333333333333333) * t158;
+            let t224 = t174 - t223;
+            let t225 = k(1.3333333333333333) * t142;
+            let t226 = t176 - t225;
+            let t227 = k(1.3333333333333333) * t127;
+            let t228 = t178 + t227;
+            let t229 = (k(0.6666666666666666) * t228 + k(0.3333333333333333) * t226
+                + k(0.6666666666666666) * t224) * t221
+                + (k(0.6666666666666666) * (t228 - t226) - k(0.3333333333333333) * t224)
+                    * t220;
+            let t230 = shaft_rx - t107;
+            let t231 = shaft_ry - t92;
+            let t232 = shaft_rz - t75;
+            let t233 = t56 * t232 - (t49 * t231 + t40 * t230);
+            let t234 = t54 * t232 - (t45 * t231 - t35 * t230);
+            let t235 = k(0.30151134457776363) * (t234 - t233);
+            let t236 = k(0.0002) * shaft_wz;
+            let t237 = k(0.0001) * shaft_wy;
+            let t238 = shaft_wy * shaft_wy;
+            let t239 = shaft_wz * shaft_wz;
+            let t240 = k(0.0003) * (t239 - t238) + shaft_wx * (t237 + t236)
+                - (t114 * t235 + (t111 * t235 - t209));
+            let t241 = k(0.1) * t149;
+            let t242 = k(0.1) * t134;
+            let t243 = k(0.1) * t115;
+            let t244 = k(1.4142135623730951) * (t34 - t39) * t108 + t116 * t243
+                - (k(1.4142135623730951) * (t44 + t48) * t93 - t135 * t242);
+            let t245 = closing0
+                * (t244 + (k(1.4142135623730951) * (t53 + t55) * t76 + t150 * t241));
+            let t246 = t245
                 - (k(0.001) * shaft_dwx + k(0.0002) * shaft_dwy - k(0.0001) * shaft_dwz
-                    - t220);
-            let t227 = t108 * (k(1.2792042981336627) * t115) + t223 * t118
-                - (t93 * (k(1.2792042981336627) * t134) + t222 * t137);
-            let t228 = closing1
-                * (t227 + (t76 * (k(1.2792042981336627) * t149) - t221 * t152)) + t226;
-            let t229 = t54 * t66 + (t35 * t99 + t45 * t84);
-            let t230 = k(0.30151134457776363) * t229
-                + k(0.9045340337332909) * (t54 * t62 - (t45 * t82 + t35 * t97));
-            let t231 = t54 * t69 - (t35 * t101 - t45 * t86);
-            let t232 = k(0.30151134457776363) * t231 + t230;
-            let t233 = t56 * t66 - (t40 * t99 - t49 * t84);
-            let t234 = k(0.30151134457776363) * t233
-                + k(0.9045340337332909) * (t56 * t62 - (t49 * t82 - t40 * t97));
-            let t235 = t40 * t101 + t49 * t86 + t56 * t69;
-            let t236 = k(0.30151134457776363) * t235 + t234;
-            let t237 = closing3 * (k(0.6396021490668313) * (t236 - t232))
-                - (closing2 * (k(0.7071067811865476) * (t236 + t232)) + t228);
-            let t238 = t231 - t229;
-            let t239 = t235 - t233;
-            let t240 = t239 - t238;
-            let t241 = k(0.5) * t240;
-            let t242 = t52 * t66 - (t43 * t84 + t29 * t99);
-            let t243 = t52 * t69 - (t43 * t86 - t29 * t101);
-            let t244 = t243 - t242;
-            let t245 = k(0.45226701686664544) * t239
-                + (k(0.45226701686664544) * t238 - k(0.30151134457776363) * t244);
-            let t246 = k(1.0) / (t245 * t245 + t241 * t241);
-            let t247 = (k(0.5) * (t239 + t238) * t245
-                + k(0.45226701686664544) * t240 * t241) * t246;
-            let t248 = closing7 * t247 - t237;
-            let t249 = k(0.30151134457776363) * (t52 * t212 + (t43 * t211 - t29 * t210));
-            let t250 = k(0.9045340337332909) * t214 - t249;
-            let t251 = shaft_wx * shaft_wx;
-            let t252 = k(0.0003) * shaft_wx;
-            let t253 = shaft_wy * (t216 - t252)
-                - (k(0.005) * (shaft_wx * shaft_wz) + k(0.0001) * (t219 - t251));
-            let t254 = k(0.0002) * shaft_dwx + k(0.006) * shaft_dwy
-                + k(0.0003) * shaft_dwz + (t253 + (t114 * t250 + t111 * t250));
-            let t255 = k(0.1) * t51;
-            let t256 = k(0.4) * t55;
-            let t257 = t256 - t255;
-            let t258 = t76 * (k(1.4142135623730951) * t51);
-            let t259 = k(0.1) * t42;
-            let t260 = k(0.4) * t48;
-            let t261 = t260 + t259;
-            let t262 = t93 * (k(1.4142135623730951) * t42);
-            let t263 = k(0.1) * t28;
-            let t264 = k(0.4) * t39;
-            let t265 = t264 - t263;
-            let t266 = t108 * (k(1.4142135623730951) * t28);
-            let t267 = t266 - t116 * t265 - (t262 - t135 * t261) - (t258 - t150 * t257);
-            let t268 = k(1.2792042981336627) * t51;
-            let t269 = k(1.2792042981336627) * t42;
-            let t270 = k(1.2792042981336627) * t28;
-            let t271 = t108 * (k(0.8528028654224418) * t39 + t270) - t265 * t118
-                + (t93 * (k(0.8528028654224418) * t48 - t269) - t261 * t137);
-            let t272 = closing1
-                * (t271 - (t76 * (k(0.8528028654224418) * t55 + t268) + t257 * t152));
-            let t273 = k(0.30151134457776363) * t242
-                + k(0.9045340337332909) * (t52 * t62 + (t43 * t82 + t29 * t97));
-            let t274 = k(0.30151134457776363) * t243 + t273;
-            let t275 = closing2 * (k(0.7071067811865476) * t274);
-            let t276 = k(0.6396021490668313) * t274;
-            let t277 = closing3 * (k(0.4264014327112209) * t236 + t276)
-                + (t275 - (t272 + (closing0 * t267 - t254)));
-            let t278 = k(0.45226701686664544) * t244;
-            let t279 = t245 * (k(0.5) * t244);
-            let t280 = closing7
-                * (t246 * (t279 - t241 * (k(0.30151134457776363) * t239 + t278))) + t277;
-            let t281 = t256 * t153 + (t260 * t138 + t264 * t119) + t280;
-            let t282 = (t183 * t54 - (t182 * t45 + t181 * t35)) * t281 - t184 * t248;
-            let t283 = t249 - k(0.9045340337332909) * t213;
-            let t284 = shaft_wz * (t217 + t252)
-                + (k(0.005) * (shaft_wx * shaft_wy) - k(0.0002) * (t218 - t251));
-            let t285 = k(0.0001) * shaft_dwx - k(0.0003) * shaft_dwy
-                - k(0.006) * shaft_dwz - (t284 - (t114 * t283 + t111 * t283));
-            let t286 = k(0.4) * t53;
-            let t287 = t286 - t255;
-            let t288 = k(0.4) * t44;
-            let t289 = t288 + t259;
-            let t290 = k(0.4) * t34;
-            let t291 = t290 + t263;
-            let t292 = t266 - t116 * t291 - (t262 + t135 * t289) - (t258 + t150 * t287);
-            let t293 = t108 * (t270 - k(0.8528028654224418) * t34) + t291 * t118
-                - (t93 * (t269 - k(0.8528028654224418) * t44) + t289 * t137);
-            let t294 = closing1
-                * (t293 - (t76 * (t268 + k(0.8528028654224418) * t53) + t287 * t152));
-            let t295 = closing3 * (t276 + k(0.4264014327112209) * t232)
-                - (t275 + (t294 - (closing0 * t292 - t285)));
-            let t296 = closing7
-                * (t246 * (t279 + t241 * (t278 + k(0.30151134457776363) * t238))) - t295;
-            let t297 = t286 * t153 + (t288 * t138 - t290 * t119) - t296;
-            let t298 = (t183 * t56 - (t182 * t49 - t181 * t40)) * t297 - t282;
-            let t299 = t127 - t130;
-            let t300 = t142 + t145;
-            let t301 = t158 + t159;
-            let t302 = k(0.2) * t301 * t153
-                + (k(0.2) * t300 * t138 - k(0.2) * t299 * t119);
-            let t303 = k(0.2) * t130;
-            let t304 = k(0.2) * t145;
-            let t305 = k(0.2) * t159;
-            let t306 = t305 * t162 - (t304 * t147 + t303 * t133);
-            let t307 = t306 + (t302 + t298 - (closing8 * (t209 * t199) + t187));
-            let t308 = t195 - t194;
-            let t309 = t192 + t191;
-            let t310 = t189 + t188;
-            let t311 = k(0.6666666666666666) * (t310 + t309)
-                - k(0.3333333333333333) * t308;
-            let t312 = t195 + t201;
-            let t313 = t192 - t204;
-            let t314 = t207 + t188;
-            let t315 = k(0.6666666666666666) * (t314 + t313)
-                - k(0.3333333333333333) * t312;
-            let t316 = k(0.6666666666666666) * (t315 + t311);
-            let t317 = k(0.8888888888888888) * t299 - k(0.4444444444444444) * t300
-                - k(0.8888888888888888) * t301;
-            let t318 = k(0.8888888888888888) * (t299 + t300)
-                + k(0.4444444444444444) * t301;
-            let t319 = k(0.6666666666666666) * t318;
-            let t320 = t319 + k(0.3333333333333333) * t311;
-            let t321 = k(0.6666666666666666) * t314 - k(0.3333333333333333) * t313
-                + k(0.6666666666666666) * t312;
-            let t322 = k(0.3333333333333333) * t315 - t319;
-            let t323 = k(0.6666666666666666) * t310 - k(0.3333333333333333) * t309
-                + k(0.6666666666666666) * t308;
-            let t324 = k(1.0) / (t323 * t322 - (t321 * t320 - t317 * t316));
-            let t325 = t166 * t52 - (t164 * t43 + t165 * t29);
-            let t326 = t131 * (t303 + k(0.8) * t124) + t146 * (t304 - k(0.8) * t141);
+                    - t240);
+            let t247 = t108 * (k(1.2792042981336627) * t115) + t243 * t118
+                - (t93 * (k(1.2792042981336627) * t134) + t242 * t137);
+            let t248 = closing1
+                * (t247 + (t76 * (k(1.2792042981336627) * t149) - t241 * t152)) + t246;
+            let t249 = t54 * t65 + (t35 * t98 + t45 * t83);
+            let t250 = k(0.30151134457776363) * t249
+                + k(0.9045340337332909) * (t54 * t61 - (t45 * t81 + t35 * t96));
+            let t251 = t54 * t68 - (t35 * t100 - t45 * t85);
+            let t252 = k(0.30151134457776363) * t251 + t250;
+            let t253 = t56 * t65 - (t40 * t98 - t49 * t83);
+            let t254 = k(0.30151134457776363) * t253
+                + k(0.9045340337332909) * (t56 * t61 - (t49 * t81 - t40 * t96));
+            let t255 = t40 * t100 + t49 * t85 + t56 * t68;
+            let t256 = k(0.30151134457776363) * t255 + t254;
+            let t257 = closing3 * (k(0.6396021490668313) * (t256 - t252))
+                - (closing2 * (k(0.7071067811865476) * (t256 + t252)) + t248);
+            let t258 = t251 - t249;
+            let t259 = t255 - t253;
+            let t260 = t259 - t258;
+            let t261 = k(0.5) * t260;
+            let t262 = t52 * t65 - (t43 * t83 + t29 * t98);
+            let t263 = t52 * t68 - (t43 * t85 - t29 * t100);
+            let t264 = t263 - t262;
+            let t265 = k(0.45226701686664544) * t259
+                + (k(0.45226701686664544) * t258 - k(0.30151134457776363) * t264);
+            let t266 = k(1.0) / (t265 * t265 + t261 * t261);
+            let t267 = (k(0.5) * (t259 + t258) * t265
+                + k(0.45226701686664544) * t260 * t261) * t266;
+            let t268 = closing7 * t267 - t257;
+            let t269 = k(0.30151134457776363) * (t52 * t232 + (t43 * t231 - t29 * t230));
+            let t270 = t269 - k(0.9045340337332909) * t233;
+            let t271 = shaft_wx * shaft_wx;
+            let t272 = k(0.0003) * shaft_wx;
+            let t273 = shaft_wy * (t236 - t272)
+                - (k(0.005) * (shaft_wx * shaft_wz) + k(0.0001) * (t239 - t271));
+            let t274 = k(0.0002) * shaft_dwx + k(0.006) * shaft_dwy
+                + k(0.0003) * shaft_dwz + (t273 - (t114 * t270 + t111 * t270));
+            let t275 = k(0.1) * t51;
+            let t276 = k(0.4) * t55;
+            let t277 = t276 - t275;
+            let t278 = t76 * (k(1.4142135623730951) * t51);
+            let t279 = k(0.1) * t42;
+            let t280 = k(0.4) * t48;
+            let t281 = t280 + t279;
+            let t282 = t93 * (k(1.4142135623730951) * t42);
+            let t283 = k(0.1) * t28;
+            let t284 = k(0.4) * t39;
+            let t285 = t284 - t283;
+            let t286 = t108 * (k(1.4142135623730951) * t28);
+            let t287 = t286 - t116 * t285 - (t282 - t135 * t281) - (t278 - t150 * t277);
+            let t288 = k(1.2792042981336627) * t51;
+            let t289 = k(1.2792042981336627) * t42;
+            let t290 = k(1.2792042981336627) * t28;
+            let t291 = t108 * (k(0.8528028654224418) * t39 + t290) - t285 * t118
+                + (t93 * (k(0.8528028654224418) * t48 - t289) - t281 * t137);
+            let t292 = closing1
+                * (t291 - (t76 * (k(0.8528028654224418) * t55 + t288) + t277 * t152));
+            let t293 = k(0.30151134457776363) * t262
+                + k(0.9045340337332909) * (t52 * t61 + (t43 * t81 + t29 * t96));
+            let t294 = k(0.30151134457776363) * t263 + t293;
+            let t295 = closing2 * (k(0.7071067811865476) * t294);
+            let t296 = k(0.6396021490668313) * t294;
+            let t297 = closing3 * (k(0.4264014327112209) * t256 + t296)
+                + (t295 - (t292 + (closing0 * t287 - t274)));
+            let t298 = k(0.45226701686664544) * t264;
+            let t299 = t265 * (k(0.5) * t264);
+            let t300 = closing7
+                * (t266 * (t299 - t261 * (k(0.30151134457776363) * t259 + t298))) + t297;
+            let t301 = t276 * t153 + (t280 * t138 + t284 * t119) + t300;
+            let t302 = (t212 * t54 - (t211 * t45 + t210 * t35)) * t301 - t213 * t268;
+            let t303 = k(0.9045340337332909) * t234 - t269;
+            let t304 = shaft_wz * (t237 + t272)
+                + (k(0.005) * (shaft_wx * shaft_wy) - k(0.0002) * (t238 - t271));
+            let t305 = k(0.0001) * shaft_dwx - k(0.0003) * shaft_dwy
+                - k(0.006) * shaft_dwz - (t304 + (t114 * t303 + t111 * t303));
+            let t306 = k(0.4) * t53;
+            let t307 = t306 - t275;
+            let t308 = k(0.4) * t44;
+            let t309 = t308 + t279;
+            let t310 = k(0.4) * t34;
+            let t311 = t310 + t283;
+            let t312 = t286 - t116 * t311 - (t282 + t135 * t309) - (t278 + t150 * t307);
+            let t313 = t108 * (t290 - k(0.8528028654224418) * t34) + t311 * t118
+                - (t93 * (t289 - k(0.8528028654224418) * t44) + t309 * t137);
+            let t314 = closing1
+                * (t313 - (t76 * (t288 + k(0.8528028654224418) * t53) + t307 * t152));
+            let t315 = closing3 * (t296 + k(0.4264014327112209) * t252)
+                - (t295 + (t314 - (closing0 * t312 - t305)));
+            let t316 = closing7
+                * (t266 * (t299 + t261 * (t298 + k(0.30151134457776363) * t258))) - t315;
+            let t317 = t306 * t153 + (t308 * t138 - t310 * t119) - t316;
+            let t318 = (t212 * t56 - (t211 * t49 - t210 * t40)) * t317 - t302;
+            let t319 = k(0.2) * t182 * t153
+                + (k(0.2) * t183 * t138 - k(0.2) * t184 * t119);
+            let t320 = k(0.2) * t130;
+            let t321 = k(0.2) * t145;
+            let t322 = k(0.2) * t159;
+            let t323 = t322 * t162 - (t321 * t147 + t320 * t133);
+            let t324 = t323 + (t319 + t318 - (closing8 * (t229 * t222) + t216));
+            let t325 = t195 * t52 - (t193 * t43 + t194 * t29);
+            let t326 = t131 * (t320 + k(0.8) * t124) + t146 * (t321 - k(0.8) * t141);
             let t327 = k(0.5)
-                * (t132 * (k(2.0) * (t326 - t160 * (t305 + k(0.8) * t157))));
+                * (t132 * (k(2.0) * (t326 - t160 * (t322 + k(0.8) * t157))));
             let t328 = closing6 * t327
                 - (k(0.03) * carrier_dwy
-                    - (k(0.005) * (carrier_wx * carrier_wz) - t325 * t180));
+                    - (k(0.005) * (carrier_wx * carrier_wz) - t325 * t209));
             let t329 = t157 - t159;
             let t330 = t141 + t145;
             let t331 = t124 - t130;
-            let t332 = t198
+            let t332 = t221
                 * (k(0.8888888888888888) * t331 - k(0.4444444444444444) * t330
                     + k(0.8888888888888888) * t329)
-                + t197
+                + t220
                     * (k(0.8888888888888888) * (t331 + t330)
                         - k(0.4444444444444444) * t329);
             let t333 = k(0.2) * (t141 - t145) * t138 - k(0.2) * (t124 + t130) * t119;
             let t334 = k(0.2) * (t157 + t159) * t153 - t333
-                - (t167 * t297 - (t168 * t281 - t325 * t248));
-            let t335 = t306 + (t334 + (closing8 * (t199 * t332) - t328));
-            let t336 = t171 * t52 - (t169 * t43 - t170 * t29);
+                - (t196 * t317 - (t197 * t301 - t325 * t268));
+            let t335 = t323 + (t334 + (closing8 * (t222 * t332) - t328));
+            let t336 = t200 * t52 - (t198 * t43 - t199 * t29);
             let t337 = t131 * (k(0.4) * t124 + k(0.2) * t127)
                 - t146 * (k(0.4) * t141 + k(0.2) * t142);
             let t338 = t132 * (k(2.0) * (t337 - t160 * (k(0.4) * t157 - k(0.2) * t158)));
             let t339 = closing6 * (k(0.5) * t338)
                 + (k(0.025) * carrier_dwz
-                    + (k(0.01) * (carrier_wx * carrier_wy) - t336 * t180));
-            let t340 = t200 - k(0.6666666666666666) * t157;
-            let t341 = t203 + k(0.6666666666666666) * t141;
-            let t342 = t206 + k(0.6666666666666666) * t124;
-            let t343 = t198
+                    + (k(0.01) * (carrier_wx * carrier_wy) - t336 * t209));
+            let t340 = t223 - k(0.6666666666666666) * t157;
+            let t341 = t225 + k(0.6666666666666666) * t141;
+            let t342 = t227 + k(0.6666666666666666) * t124;
+            let t343 = t221
                 * (k(0.6666666666666666) * t342 - k(0.3333333333333333) * t341
                     - k(0.6666666666666666) * t340)
-                + t197
+                + t220
                     * (k(0.6666666666666666) * (t342 + t341)
                         + k(0.3333333333333333) * t340);
             let t344 = k(0.2) * (t124 + t127);
             let t345 = k(0.2) * (t141 + t142);
             let t346 = k(0.2) * (t157 - t158);
             let t347 = t346 * t153 - (t345 * t138 - t344 * t119)
-                - (t173 * t297 - (t172 * t281 - t336 * t248));
+                - (t202 * t317 - (t201 * t301 - t336 * t268));
             let t348 = t346 * t162 + (t345 * t147 - t344 * t133);
-            let t349 = t348 + (t347 - (closing8 * (t199 * t343) + t339));
-            let t350 = t322 * t324 * t349 - (t320 * t324 * t335 + t316 * t324 * t307);
-            let t351 = k(0.6666666666666666) * t317;
-            let t352 = t324 * (t351 + k(0.3333333333333333) * t323) * t335
-                + t324 * (k(0.6666666666666666) * (t321 + t323)) * t307;
-            let t353 = t324 * (k(0.3333333333333333) * t321 - t351) * t349 - t352;
-            let t354 = t318 * t353 - (t306 + t317 * t350);
-            let t355 = t315 * t353 + (t306 - t321 * t350);
-            let t356 = t311 * t353 + (t348 - t323 * t350);
+            let t349 = t348 + (t347 - (closing8 * (t222 * t343) + t339));
+            let t350 = t349 * (t190 * t192)
+                - (t335 * (t188 * t192) + t324 * (t181 * t192));
+            let t351 = k(0.6666666666666666) * t185;
+            let t352 = t335 * (t192 * (t351 + k(0.3333333333333333) * t191))
+                + t324 * (t192 * (k(0.6666666666666666) * (t189 + t191)));
+            let t353 = t349 * (t192 * (k(0.3333333333333333) * t189 - t351)) - t352;
+            let t354 = t186 * t353 - (t323 + t185 * t350);
+            let t355 = t180 * t353 + (t323 - t189 * t350);
+            let t356 = t173 * t353 + (t348 - t191 * t350);
             let t357 = carrier_ry - (carrier_ry - k(0.2) * (t141 - t142));
             let t358 = carrier_rz - (carrier_rz - k(0.2) * (t157 + t158));
             let t359 = t147 * t358 - t162 * t357
-                - (t170 * t356 - (t165 * t355 - t181 * t354));
+                - (t199 * t356 - (t194 * t355 - t210 * t354));
             let t360 = carrier_rx - (carrier_rx + k(0.2) * (t124 - t127));
             let t361 = t162 * t360 - t133 * t358
-                - (t169 * t356 + (t164 * t355 - t182 * t354));
+                - (t198 * t356 + (t193 * t355 - t211 * t354));
             let t362 = t133 * t357 - t147 * t360
-                + (t171 * t356 + (t166 * t355 + t183 * t354));
+                + (t200 * t356 + (t195 * t355 + t212 * t354));
             let t363 = k(0.6666666666666666) * t362;
             let t364 = puck_wx * (k(0.004) * puck_wx) + puck_wy * (k(0.005) * puck_wy)
                 + puck_wz * (k(0.003) * puck_wz);
@@ -18849,7 +18704,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for AllJoints<T> {
             let t388 = (t387 * t387 + (t385 * t385 + t383 * t383)).sqrt();
             let t389 = k(0.6) - t388;
             let t390 = carrier_rz * (k(1.5) * self.gravity)
-                + k(0.5) * (t179 * t180 + t389 * (k(30.0) * t389));
+                + k(0.5) * (t208 * t209 + t389 * (k(30.0) * t389));
             let t391 = slide_rz * (k(0.8) * self.gravity)
                 + (sleeve_rz * (k(0.4) * self.gravity) + (shaft_rz * t148 + t390));
             let t392 = puck_rz * (self.gravity * self.puck_mass)
@@ -18872,10 +18727,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for AllJoints<T> {
             let t400 = t387 * t396 * (puck_sz - t399) + t398;
             let t401 = k(0.05) * sleeve_wy;
             let t402 = k(0.05) * sleeve_wx;
-            let t403 = k(0.1) * (sleeve_sy + (t84 * t402 + t82 * t401))
-                - k(0.2) * (sleeve_sx - (t99 * t402 + t97 * t401));
-            let t404 = sleeve_wz * (k(0.02) * t68)
-                - (sleeve_wy * (k(0.02) * t65) + sleeve_wx * (k(0.02) * t61));
+            let t403 = k(0.1) * (sleeve_sy + (t83 * t402 + t81 * t401))
+                - k(0.2) * (sleeve_sx - (t98 * t402 + t96 * t401));
+            let t404 = sleeve_wz * (k(0.02) * t67)
+                - (sleeve_wy * (k(0.02) * t64) + sleeve_wx * (k(0.02) * t60));
             let t405 = slide_e0 * slide_e2;
             let t406 = slide_e1 * slide_e3;
             let t407 = k(2.0) * t156;

@@ -771,70 +771,69 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Cam<T> {
         let plunger_wy = y[24];
         let plunger_wz = y[25];
         let t0 = table0[2] + k(9.81);
-        let t1 = follower_e0 * follower_e3;
-        let t2 = follower_e1 * follower_e2;
-        let t3 = k(2.0) * (t2 + t1);
-        let t4 = follower_e0 * follower_e0;
-        let t5 = k(2.0) * (k(0.5) - (t4 + follower_e1 * follower_e1));
-        let t6 = k(2.0) * (k(0.5) - (t4 + follower_e2 * follower_e2));
-        let t7 = t5 * t6;
-        let t8 = k(2.0) * (t2 - t1);
-        let t9 = t8 * t3 - t7;
-        let t10 = k(1.0) / (t5 * t9);
-        let t11 = follower_wx * follower_wz;
-        let t12 = follower_wy * follower_wz;
-        let t13 = follower_wx * follower_wx;
-        let t14 = follower_wy * follower_wy + t13;
-        let t15 = k(2.0) * (follower_e1 * follower_e3 + follower_e0 * follower_e2);
-        let t16 = t15 * t14 - (t8 * t12 - t5 * t11);
-        let t17 = k(2.0) * (follower_e2 * follower_e3 - follower_e0 * follower_e1) * t14
-            + (t6 * t12 - t3 * t11);
-        let t18 = t17 * (t10 * (t5 * t5)) + t16 * (t10 * (t5 * t3));
-        let t19 = t15 * t12
-            - (t8 * (follower_wz * follower_wz + t13)
-                + t5 * (follower_wx * follower_wy));
-        let t20 = t17 * (t10 * (t5 * t15)) + t16 * (t10 * (t15 * t3));
+        let t1 = follower_wx * follower_wz;
+        let t2 = follower_e0 * follower_e0;
+        let t3 = k(2.0) * (k(0.5) - (t2 + follower_e1 * follower_e1));
+        let t4 = follower_wy * follower_wz;
+        let t5 = follower_e0 * follower_e3;
+        let t6 = follower_e1 * follower_e2;
+        let t7 = k(2.0) * (t6 - t5);
+        let t8 = follower_wx * follower_wx;
+        let t9 = follower_wy * follower_wy + t8;
+        let t10 = k(2.0) * (follower_e1 * follower_e3 + follower_e0 * follower_e2);
+        let t11 = t10 * t9 - (t7 * t4 - t3 * t1);
+        let t12 = k(2.0) * (t6 + t5);
+        let t13 = k(2.0) * (k(0.5) - (t2 + follower_e2 * follower_e2));
+        let t14 = t3 * t13;
+        let t15 = t7 * t12 - t14;
+        let t16 = k(1.0) / (t3 * t15);
+        let t17 = k(2.0) * (follower_e2 * follower_e3 - follower_e0 * follower_e1) * t9
+            + (t13 * t4 - t12 * t1);
+        let t18 = t16 * (t3 * t3) * t17 + t16 * (t3 * t12) * t11;
+        let t19 = t10 * t4
+            - (t7 * (follower_wz * follower_wz + t8) + t3 * (follower_wx * follower_wy));
+        let t20 = t17 * (t16 * (t3 * t10)) + t11 * (t16 * (t10 * t12));
         let t21 = k(0.5) + k(3.0) * t;
         let t22 = t21.sin();
         let t23 = k(3.0) * t21.cos() * (k(0.2) * t);
         let t24 = t23 - t * (k(0.1) * t) * (k(9.0) * t22)
             + (t23 + k(0.2) * (k(1.0) + t22));
         let t25 = t24 + k(9.81);
-        let t26 = plunger_e0 * plunger_e3;
-        let t27 = plunger_e1 * plunger_e2;
-        let t28 = k(2.0) * (t27 + t26);
-        let t29 = plunger_e0 * plunger_e0;
-        let t30 = k(2.0) * (k(0.5) - (t29 + plunger_e1 * plunger_e1));
-        let t31 = k(2.0) * (k(0.5) - (t29 + plunger_e2 * plunger_e2));
-        let t32 = t30 * t31;
-        let t33 = k(2.0) * (t27 - t26);
-        let t34 = t33 * t28 - t32;
-        let t35 = k(1.0) / (t30 * t34);
-        let t36 = plunger_wx * plunger_wz;
-        let t37 = plunger_wy * plunger_wz;
-        let t38 = plunger_wx * plunger_wx;
-        let t39 = plunger_wy * plunger_wy + t38;
-        let t40 = k(2.0) * (plunger_e1 * plunger_e3 + plunger_e0 * plunger_e2);
-        let t41 = t40 * t39 - (t33 * t37 - t30 * t36);
-        let t42 = k(2.0) * (plunger_e2 * plunger_e3 - plunger_e0 * plunger_e1) * t39
-            + (t31 * t37 - t28 * t36);
-        let t43 = t42 * (t35 * (t30 * t30)) + t41 * (t35 * (t30 * t28));
-        let t44 = t40 * t37
-            - (t33 * (plunger_wz * plunger_wz + t38) + t30 * (plunger_wx * plunger_wy));
-        let t45 = t42 * (t35 * (t30 * t40)) + t41 * (t35 * (t40 * t28));
+        let t26 = plunger_wx * plunger_wz;
+        let t27 = plunger_e0 * plunger_e0;
+        let t28 = k(2.0) * (k(0.5) - (t27 + plunger_e1 * plunger_e1));
+        let t29 = plunger_wy * plunger_wz;
+        let t30 = plunger_e0 * plunger_e3;
+        let t31 = plunger_e1 * plunger_e2;
+        let t32 = k(2.0) * (t31 - t30);
+        let t33 = plunger_wx * plunger_wx;
+        let t34 = plunger_wy * plunger_wy + t33;
+        let t35 = k(2.0) * (plunger_e1 * plunger_e3 + plunger_e0 * plunger_e2);
+        let t36 = t35 * t34 - (t32 * t29 - t28 * t26);
+        let t37 = k(2.0) * (t31 + t30);
+        let t38 = k(2.0) * (k(0.5) - (t27 + plunger_e2 * plunger_e2));
+        let t39 = t28 * t38;
+        let t40 = t32 * t37 - t39;
+        let t41 = k(1.0) / (t28 * t40);
+        let t42 = k(2.0) * (plunger_e2 * plunger_e3 - plunger_e0 * plunger_e1) * t34
+            + (t38 * t29 - t37 * t26);
+        let t43 = t41 * (t28 * t28) * t42 + t41 * (t28 * t37) * t36;
+        let t44 = t35 * t29
+            - (t32 * (plunger_wz * plunger_wz + t33) + t28 * (plunger_wx * plunger_wy));
+        let t45 = t42 * (t41 * (t28 * t35)) + t36 * (t41 * (t35 * t37));
         *out = [
             k(0.0),
             k(0.0),
             t0 - k(9.81),
             -t18,
-            t17 * (t10 * (t5 * t8)) + t16 * (t7 * t10),
-            t20 - t19 * (t9 * t10),
+            t17 * (t16 * (t3 * t7)) + t11 * (t14 * t16),
+            t20 - t15 * t16 * t19,
             k(0.0),
             k(0.0),
             t25 - k(9.81),
             -t43,
-            t42 * (t35 * (t30 * t33)) + t41 * (t32 * t35),
-            t45 - t44 * (t34 * t35),
+            t42 * (t41 * (t28 * t32)) + t36 * (t39 * t41),
+            t45 - t40 * t41 * t44,
             -(k(0.5) * t0),
             -(k(0.25) * t25),
         ];

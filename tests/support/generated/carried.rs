@@ -18,7 +18,7 @@
 //! | gamma | γ | 463 | 581 | 0 | 1044 | 0 of 10 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 258 | 352 | 0 | 610 | 0 of 10 |
 //! | applied_force | (f, n' − w̃'J'w') | 214 | 287 | 0 | 501 | 0 of 12 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 1096 | 1370 | 4 | 2470 | 0 of 12 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 840 | 1105 | 4 | 1949 | 0 of 12 |
 //! | multipliers | λ, the accelerations being known | 400 | 556 | 2 | 958 | 0 of 10 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 420 | 577 | 1 | 998 | 0 of 16 |
 //! | energy | T and V | 119 | 163 | 0 | 282 | 0 of 2 |
@@ -29,8 +29,9 @@
 //! | to_maximal | (q, v) of a joint state | 130 | 178 | 0 | 308 | 0 of 27 |
 //! | to_joints | (x, u) of a maximal state | 148 | 201 | 0 | 349 | 0 of 4 |
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 358 | 519 | 1 | 878 | 0 of 2 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 482 | 577 | 1 | 1060 | 0 of 12 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 840 | 1105 | 4 | 1949 | 0 of 12 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 342 | 460 | 0 | 802 | 0 of 10 |
+//! | corrected_solution | both | 959 | 1263 | 4 | 2226 | 0 of 22 |
 //!
 //! # Proof
 //!
@@ -45,9 +46,9 @@
 //! * joint_derivative: eqs. (14) and (16) on the constraints
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
-//! * corrected_multipliers: eq. (17) on the constraints
+//! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //!
-//! All of it holds but with a probability below 1e-151.
+//! All of it holds but with a probability below 1e-150.
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
 
 /// The mechanism `carried`.
@@ -153,6 +154,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Carried<T> {
         let slider_dwy = accelerations[10];
         let slider_dwz = accelerations[11];
         let (
+            t2,
             t3,
             t7,
             t10,
@@ -163,6 +165,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Carried<T> {
             t22,
             t23,
             t28,
+            t29,
+            t34,
             t35,
             t37,
             t39,
@@ -173,6 +177,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Carried<T> {
             t48,
             t49,
             t54,
+            t55,
+            t58,
             t59,
             t61,
             t63,
@@ -183,24 +189,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Carried<T> {
             t70,
             t71,
             t76,
+            t77,
             t80,
             t81,
             t94,
             t96,
             t97,
-            t100,
-            t101,
-            t102,
-            t103,
             t107,
-            t111,
-            t112,
-            t113,
-            t114,
-            t119,
-            t120,
-            t121,
-            t122,
             t130,
             t131,
             t132,
@@ -226,20 +221,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Carried<T> {
             t161,
             t162,
             t171,
+            t175,
+            t177,
+            t178,
             t179,
-            t185,
+            t180,
+            t181,
+            t183,
             t186,
-            t187,
-            t188,
-            t189,
             t190,
             t191,
-            t192,
             t193,
             t194,
-            t195,
-            t196,
-            t197,
             t198,
             t199,
         ) = {
@@ -427,55 +420,58 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Carried<T> {
             let t160 = t86 * t148 - t97 * t149 + (t90 * t150 + t96 * t147);
             let t161 = t105 * t150 + t96 * t152;
             let t162 = t116 * t148 + t97 * t154 - t161;
-            let t163 = k(0.1) * (t7 * t27 + (t37 * t53 - t61 * t75))
+            let t163 = t121 - t119;
+            let t164 = t113 - t111;
+            let t165 = t102 - t100;
+            let t166 = k(0.6666666666666666) * (t165 - t164)
+                + k(0.3333333333333333) * t163;
+            let t167 = t119 - k(0.3333333333333333) * t122;
+            let t168 = t111 + k(0.3333333333333333) * t114;
+            let t169 = t100 - k(0.3333333333333333) * t103;
+            let t170 = k(0.6666666666666666) * (t169 - t168)
+                + k(0.3333333333333333) * t167;
+            let t171 = k(0.6666666666666666) * (t170 - t166);
+            let t172 = t122 - t120;
+            let t173 = t114 + t112;
+            let t174 = t103 - t101;
+            let t175 = k(0.4444444444444444) * t174 - k(0.2222222222222222) * t173
+                - k(0.4444444444444444) * t172;
+            let t176 = k(0.6666666666666666)
+                * (k(0.4444444444444444) * (t174 + t173) + k(0.2222222222222222) * t172);
+            let t177 = t176 - k(0.3333333333333333) * t166;
+            let t178 = k(0.6666666666666666) * t169 + k(0.3333333333333333) * t168
+                - k(0.6666666666666666) * t167;
+            let t179 = k(0.3333333333333333) * t170 - t176;
+            let t180 = k(0.6666666666666666) * t165 + k(0.3333333333333333) * t164
+                - k(0.6666666666666666) * t163;
+            let t181 = k(1.0) / (t180 * t179 + (t178 * t177 - t175 * t171));
+            let t182 = k(0.1) * (t7 * t27 + (t37 * t53 - t61 * t75))
                 - k(0.05) * (t10 * t27 + (t39 * t53 + t63 * t75));
-            let t164 = slider_wy * slider_wy;
-            let t165 = slider_wz * slider_wz;
-            let t166 = k(0.001) * slider_wz;
-            let t167 = k(0.002) * slider_wy;
-            let t168 = slider_wx * (t167 - t166)
-                - (k(0.005) * (slider_wy * slider_wz) - k(0.003) * (t165 - t164));
-            let t169 = k(0.02) * slider_dwx + k(0.001) * slider_dwy
-                + k(0.002) * slider_dwz + (t168 + (t135 * t163 + t81 * t163));
-            let t170 = (k(0.1) * t38 - k(0.2) * t36) * t145
+            let t183 = slider_wy * slider_wy;
+            let t184 = slider_wz * slider_wz;
+            let t185 = k(0.001) * slider_wz;
+            let t186 = k(0.002) * slider_wy;
+            let t187 = slider_wx * (t186 - t185)
+                - (k(0.005) * (slider_wy * slider_wz) - k(0.003) * (t184 - t183));
+            let t188 = k(0.02) * slider_dwx + k(0.001) * slider_dwy
+                + k(0.002) * slider_dwz + (t187 + (t135 * t182 + t81 * t182));
+            let t189 = (k(0.1) * t38 - k(0.2) * t36) * t145
                 + (k(0.1) * t62 + k(0.2) * t60) * t137;
-            let t171 = (k(0.1) * t9 - k(0.2) * t6) * t158 - t170 + t169;
-            let t172 = t3 * t27 - (t35 * t53 - t59 * t75);
-            let t173 = k(0.1) * t172;
-            let t174 = slider_wx * slider_wx;
-            let t175 = k(0.003) * slider_wx;
-            let t176 = slider_wy * (t166 + t175)
-                - (k(0.005) * (slider_wx * slider_wz) - k(0.002) * (t165 - t174));
-            let t177 = k(0.001) * slider_dwx + k(0.03) * slider_dwy
-                - k(0.003) * slider_dwz + (t176 - (t135 * t173 + t81 * t173));
-            let t178 = k(0.2) * t2 * t158 + (k(0.2) * t34 * t145 - k(0.2) * t58 * t137);
-            let t179 = t178 + t177;
-            let t180 = t179 * (t15 * t7 - (t44 * t37 + t66 * t61))
-                + t171 * (t15 * t3 + (t44 * t35 + t66 * t59));
-            let t181 = k(0.05) * t172;
-            let t182 = slider_wz * (t167 + t175)
-                - (k(0.01) * (slider_wx * slider_wy) - k(0.001) * (t164 - t174));
-            let t183 = k(0.002) * slider_dwx - k(0.003) * slider_dwy
-                + k(0.025) * slider_dwz - (t182 + (t135 * t181 + t81 * t181));
-            let t184 = k(0.1) * t2 * t158 + (k(0.1) * t34 * t145 - k(0.1) * t58 * t137);
-            let t185 = t184 + t183;
-            let t186 = t185 * (t15 * t10 - (t44 * t39 - t66 * t63)) - t180;
-            let t187 = arm_rx - t77;
-            let t188 = arm_ry - t55;
-            let t189 = arm_rz - t29;
-            let t190 = t23 * t189 - (t49 * t188 + t71 * t187);
-            let t191 = t19 * t189 - (t46 * t188 - t68 * t187);
-            let t192 = t145 * (t49 * t191 - t46 * t190)
-                + t137 * (t71 * t191 + t68 * t190);
-            let t193 = k(0.6666666666666666) * t191;
-            let t194 = t193 - k(0.3333333333333333) * t190;
-            let t195 = arm_wy * arm_wy;
-            let t196 = arm_wz * arm_wz;
-            let t197 = k(0.02) * arm_wz;
-            let t198 = k(0.03) * arm_wy;
-            let t199 = arm_wx * (t198 + t197)
-                + (k(0.05) * (arm_wy * arm_wz) + k(0.01) * (t196 - t195));
+            let t190 = (k(0.1) * t9 - k(0.2) * t6) * t158 - t189 + t188;
+            let t191 = t3 * t27 - (t35 * t53 - t59 * t75);
+            let t192 = k(0.1) * t191;
+            let t193 = slider_wx * slider_wx;
+            let t194 = k(0.003) * slider_wx;
+            let t195 = slider_wy * (t185 + t194)
+                - (k(0.005) * (slider_wx * slider_wz) - k(0.002) * (t184 - t193));
+            let t196 = k(0.001) * slider_dwx + k(0.03) * slider_dwy
+                - k(0.003) * slider_dwz + (t195 - (t135 * t192 + t81 * t192));
+            let t197 = k(0.2) * t2 * t158 + (k(0.2) * t34 * t145 - k(0.2) * t58 * t137);
+            let t198 = t197 + t196;
+            let t199 = (t15 * t7 - (t44 * t37 + t66 * t61)) * t198
+                + (t15 * t3 + (t44 * t35 + t66 * t59)) * t190;
             (
+                t2,
                 t3,
                 t7,
                 t10,
@@ -486,6 +482,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Carried<T> {
                 t22,
                 t23,
                 t28,
+                t29,
+                t34,
                 t35,
                 t37,
                 t39,
@@ -496,6 +494,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Carried<T> {
                 t48,
                 t49,
                 t54,
+                t55,
+                t58,
                 t59,
                 t61,
                 t63,
@@ -506,24 +506,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Carried<T> {
                 t70,
                 t71,
                 t76,
+                t77,
                 t80,
                 t81,
                 t94,
                 t96,
                 t97,
-                t100,
-                t101,
-                t102,
-                t103,
                 t107,
-                t111,
-                t112,
-                t113,
-                t114,
-                t119,
-                t120,
-                t121,
-                t122,
                 t130,
                 t131,
                 t132,
@@ -549,85 +538,82 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Carried<T> {
                 t161,
                 t162,
                 t171,
+                t175,
+                t177,
+                t178,
                 t179,
-                t185,
+                t180,
+                t181,
+                t183,
                 t186,
-                t187,
-                t188,
-                t189,
                 t190,
                 t191,
-                t192,
                 t193,
                 t194,
-                t195,
-                t196,
-                t197,
                 t198,
                 t199,
             )
         };
         let (t253, t256) = {
-            let t200 = k(0.3) * arm_dwx + k(0.02) * arm_dwy - k(0.03) * arm_dwz
-                - (t199 + (t135 * t194 + (t131 + (t130 + t81 * t194))));
-            let t201 = t200 + (t158 * (t23 * t191 - t19 * t190) - t192 - t186);
-            let t202 = t28 * t159 - (t54 * t146 + t76 * t138) + t201;
-            let t203 = t121 - t119;
-            let t204 = t113 - t111;
-            let t205 = t102 - t100;
-            let t206 = k(0.6666666666666666) * (t205 - t204)
-                + k(0.3333333333333333) * t203;
-            let t207 = t119 - k(0.3333333333333333) * t122;
-            let t208 = t111 + k(0.3333333333333333) * t114;
-            let t209 = t100 - k(0.3333333333333333) * t103;
-            let t210 = k(0.6666666666666666) * (t209 - t208)
-                + k(0.3333333333333333) * t207;
-            let t211 = k(0.6666666666666666) * (t210 - t206);
-            let t212 = t122 - t120;
-            let t213 = t114 + t112;
-            let t214 = t103 - t101;
-            let t215 = k(0.4444444444444444) * t214 - k(0.2222222222222222) * t213
-                - k(0.4444444444444444) * t212;
-            let t216 = k(0.6666666666666666)
-                * (k(0.4444444444444444) * (t214 + t213) + k(0.2222222222222222) * t212);
-            let t217 = t216 - k(0.3333333333333333) * t206;
-            let t218 = k(0.6666666666666666) * t209 + k(0.3333333333333333) * t208
-                - k(0.6666666666666666) * t207;
-            let t219 = k(0.3333333333333333) * t210 - t216;
-            let t220 = k(0.6666666666666666) * t205 + k(0.3333333333333333) * t204
-                - k(0.6666666666666666) * t203;
-            let t221 = k(1.0) / (t220 * t219 + (t218 * t217 - t215 * t211));
-            let t222 = t179 * (t19 * t7 + (t46 * t37 + t68 * t61))
-                + t171 * (t19 * t3 - (t46 * t35 + t68 * t59));
-            let t223 = t185 * (t19 * t10 + (t46 * t39 - t68 * t63)) - t222;
-            let t224 = t15 * t189 + (t44 * t188 - t66 * t187);
-            let t225 = t145 * (t49 * t224 + t44 * t190)
-                + t137 * (t71 * t224 - t66 * t190);
-            let t226 = k(0.6666666666666666) * (t224 + t190);
+            let t200 = k(0.05) * t191;
+            let t201 = slider_wz * (t186 + t194)
+                - (k(0.01) * (slider_wx * slider_wy) - k(0.001) * (t183 - t193));
+            let t202 = k(0.002) * slider_dwx - k(0.003) * slider_dwy
+                + k(0.025) * slider_dwz - (t201 + (t135 * t200 + t81 * t200));
+            let t203 = k(0.1) * t2 * t158 + (k(0.1) * t34 * t145 - k(0.1) * t58 * t137);
+            let t204 = t203 + t202;
+            let t205 = (t15 * t10 - (t44 * t39 - t66 * t63)) * t204 - t199;
+            let t206 = arm_rx - t77;
+            let t207 = arm_ry - t55;
+            let t208 = arm_rz - t29;
+            let t209 = t23 * t208 - (t49 * t207 + t71 * t206);
+            let t210 = t19 * t208 - (t46 * t207 - t68 * t206);
+            let t211 = t145 * (t49 * t210 - t46 * t209)
+                + t137 * (t71 * t210 + t68 * t209);
+            let t212 = k(0.6666666666666666) * t210;
+            let t213 = t212 - k(0.3333333333333333) * t209;
+            let t214 = arm_wy * arm_wy;
+            let t215 = arm_wz * arm_wz;
+            let t216 = k(0.02) * arm_wz;
+            let t217 = k(0.03) * arm_wy;
+            let t218 = arm_wx * (t217 + t216)
+                + (k(0.05) * (arm_wy * arm_wz) + k(0.01) * (t215 - t214));
+            let t219 = k(0.3) * arm_dwx + k(0.02) * arm_dwy - k(0.03) * arm_dwz
+                - (t218 + (t135 * t213 + (t131 + (t130 + t81 * t213))));
+            let t220 = t219 + (t158 * (t23 * t210 - t19 * t209) - t211 - t205);
+            let t221 = t28 * t159 - (t54 * t146 + t76 * t138) + t220;
+            let t222 = (t19 * t7 + (t46 * t37 + t68 * t61)) * t198
+                + (t19 * t3 - (t46 * t35 + t68 * t59)) * t190;
+            let t223 = (t19 * t10 + (t46 * t39 - t68 * t63)) * t204 - t222;
+            let t224 = t15 * t208 + (t44 * t207 - t66 * t206);
+            let t225 = t145 * (t49 * t224 + t44 * t209)
+                + t137 * (t71 * t224 - t66 * t209);
+            let t226 = k(0.6666666666666666) * (t209 + t224);
             let t227 = arm_wx * arm_wx;
             let t228 = k(0.01) * arm_wx;
-            let t229 = arm_wy * (t197 - t228)
-                + (k(0.1) * (arm_wx * arm_wz) - k(0.03) * (t196 - t227));
+            let t229 = arm_wy * (t216 - t228)
+                + (k(0.1) * (arm_wx * arm_wz) - k(0.03) * (t215 - t227));
             let t230 = k(0.02) * arm_dwx + k(0.25) * arm_dwy + k(0.01) * arm_dwz
                 + (t229 + (t135 * t226 - (t133 + (t132 - t81 * t226))));
-            let t231 = t230 - (t158 * (t23 * t224 - t15 * t190) - t225 + t223);
+            let t231 = t230 - (t158 * (t23 * t224 - t15 * t209) - t225 + t223);
             let t232 = k(0.4) * t22 * t159 - (k(0.4) * t48 * t146 + k(0.4) * t70 * t138);
             let t233 = t232 + t231;
-            let t234 = t179 * (t23 * t7 + (t49 * t37 - t71 * t61))
-                + t171 * (t23 * t3 - (t49 * t35 - t71 * t59));
-            let t235 = t185 * (t23 * t10 + (t49 * t39 + t71 * t63)) - t234;
-            let t236 = t145 * (t46 * t224 + t44 * t191)
-                - t137 * (t68 * t224 + t66 * t191);
-            let t237 = k(0.3333333333333333) * t224 + t193;
-            let t238 = arm_wz * (t198 + t228)
-                - (k(0.05) * (arm_wx * arm_wy) + k(0.02) * (t195 - t227));
+            let t234 = (t23 * t7 + (t49 * t37 - t71 * t61)) * t198
+                + (t23 * t3 - (t49 * t35 - t71 * t59)) * t190;
+            let t235 = (t23 * t10 + (t49 * t39 + t71 * t63)) * t204 - t234;
+            let t236 = t145 * (t46 * t224 + t44 * t210)
+                - t137 * (t68 * t224 + t66 * t210);
+            let t237 = k(0.3333333333333333) * t224 + t212;
+            let t238 = arm_wz * (t217 + t228)
+                - (k(0.05) * (arm_wx * arm_wy) + k(0.02) * (t214 - t227));
             let t239 = k(0.03) * arm_dwx - k(0.01) * arm_dwy - k(0.2) * arm_dwz
                 - (t238 + (t135 * t237 - (t133 + (t132 - t81 * t237))));
-            let t240 = t239 + (t158 * (t19 * t224 - t15 * t191) - t236 - t235);
+            let t240 = t239 + (t158 * (t19 * t224 - t15 * t210) - t236 - t235);
             let t241 = (k(0.4) * t45 - k(0.2) * t43) * t146
                 - (k(0.4) * t67 - k(0.2) * t65) * t138;
             let t242 = (k(0.4) * t18 + k(0.2) * t14) * t159 - t241 - t240;
-            let t243 = t219 * t221 * t242 + (t217 * t221 * t233 - t211 * t221 * t202);
+            let t243 = t242 * (t179 * t181)
+                + (t233 * (t177 * t181) - t221 * (t171 * t181));
             let t244 = k(0.3333333333333333) * (t66 * t149 + t44 * t155 + t15 * t162)
                 - k(0.6666666666666666) * (t68 * t149 + t46 * t155 - t19 * t162);
             let t245 = k(0.6666666666666666) * (t71 * t149 - t49 * t155 + t23 * t162)
@@ -646,12 +632,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Carried<T> {
             let t253 = (k(0.6666666666666666) * t252 + k(0.3333333333333333) * t250
                 + k(0.6666666666666666) * t245) * t243
                 - ((k(0.2) * t162 - k(0.1) * t160) * t159 - (t156 + t143));
-            let t254 = k(0.6666666666666666) * t215;
-            let t255 = t221 * (t254 - k(0.3333333333333333) * t220) * t233
-                - t221 * (k(0.6666666666666666) * (t218 - t220)) * t202;
+            let t254 = k(0.6666666666666666) * t175;
+            let t255 = t233 * (t181 * (t254 - k(0.3333333333333333) * t180))
+                - t221 * (t181 * (k(0.6666666666666666) * (t178 - t180)));
             let t256 = (k(0.6666666666666666) * (t252 - t250)
                 - k(0.3333333333333333) * t245)
-                * (t221 * (k(0.3333333333333333) * t218 - t254) * t242 + t255);
+                * (t242 * (t181 * (k(0.3333333333333333) * t178 - t254)) + t255);
             (t253, t256)
         };
         *dy = [
@@ -752,6 +738,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Carried<T> {
         let slider_dwy = accelerations[10];
         let slider_dwz = accelerations[11];
         let (
+            t2,
             t3,
             t7,
             t10,
@@ -762,6 +749,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Carried<T> {
             t22,
             t23,
             t28,
+            t29,
+            t34,
             t35,
             t37,
             t39,
@@ -772,6 +761,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Carried<T> {
             t48,
             t49,
             t54,
+            t55,
+            t58,
             t59,
             t61,
             t63,
@@ -782,24 +773,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Carried<T> {
             t70,
             t71,
             t76,
+            t77,
             t80,
             t81,
             t94,
             t96,
             t97,
-            t100,
-            t101,
-            t102,
-            t103,
             t107,
-            t111,
-            t112,
-            t113,
-            t114,
-            t119,
-            t120,
-            t121,
-            t122,
             t130,
             t131,
             t132,
@@ -825,20 +805,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Carried<T> {
             t161,
             t162,
             t171,
+            t175,
+            t177,
+            t178,
             t179,
-            t185,
+            t180,
+            t181,
+            t183,
             t186,
-            t187,
-            t188,
-            t189,
             t190,
             t191,
-            t192,
             t193,
             t194,
-            t195,
-            t196,
-            t197,
             t198,
             t199,
         ) = {
@@ -1026,55 +1004,58 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Carried<T> {
             let t160 = t86 * t148 - t97 * t149 + (t90 * t150 + t96 * t147);
             let t161 = t105 * t150 + t96 * t152;
             let t162 = t116 * t148 + t97 * t154 - t161;
-            let t163 = k(0.1) * (t7 * t27 + (t37 * t53 - t61 * t75))
+            let t163 = t121 - t119;
+            let t164 = t113 - t111;
+            let t165 = t102 - t100;
+            let t166 = k(0.6666666666666666) * (t165 - t164)
+                + k(0.3333333333333333) * t163;
+            let t167 = t119 - k(0.3333333333333333) * t122;
+            let t168 = t111 + k(0.3333333333333333) * t114;
+            let t169 = t100 - k(0.3333333333333333) * t103;
+            let t170 = k(0.6666666666666666) * (t169 - t168)
+                + k(0.3333333333333333) * t167;
+            let t171 = k(0.6666666666666666) * (t170 - t166);
+            let t172 = t122 - t120;
+            let t173 = t114 + t112;
+            let t174 = t103 - t101;
+            let t175 = k(0.4444444444444444) * t174 - k(0.2222222222222222) * t173
+                - k(0.4444444444444444) * t172;
+            let t176 = k(0.6666666666666666)
+                * (k(0.4444444444444444) * (t174 + t173) + k(0.2222222222222222) * t172);
+            let t177 = t176 - k(0.3333333333333333) * t166;
+            let t178 = k(0.6666666666666666) * t169 + k(0.3333333333333333) * t168
+                - k(0.6666666666666666) * t167;
+            let t179 = k(0.3333333333333333) * t170 - t176;
+            let t180 = k(0.6666666666666666) * t165 + k(0.3333333333333333) * t164
+                - k(0.6666666666666666) * t163;
+            let t181 = k(1.0) / (t180 * t179 + (t178 * t177 - t175 * t171));
+            let t182 = k(0.1) * (t7 * t27 + (t37 * t53 - t61 * t75))
                 - k(0.05) * (t10 * t27 + (t39 * t53 + t63 * t75));
-            let t164 = slider_wy * slider_wy;
-            let t165 = slider_wz * slider_wz;
-            let t166 = k(0.001) * slider_wz;
-            let t167 = k(0.002) * slider_wy;
-            let t168 = slider_wx * (t167 - t166)
-                - (k(0.005) * (slider_wy * slider_wz) - k(0.003) * (t165 - t164));
-            let t169 = k(0.02) * slider_dwx + k(0.001) * slider_dwy
-                + k(0.002) * slider_dwz + (t168 + (t135 * t163 + t81 * t163));
-            let t170 = (k(0.1) * t38 - k(0.2) * t36) * t145
+            let t183 = slider_wy * slider_wy;
+            let t184 = slider_wz * slider_wz;
+            let t185 = k(0.001) * slider_wz;
+            let t186 = k(0.002) * slider_wy;
+            let t187 = slider_wx * (t186 - t185)
+                - (k(0.005) * (slider_wy * slider_wz) - k(0.003) * (t184 - t183));
+            let t188 = k(0.02) * slider_dwx + k(0.001) * slider_dwy
+                + k(0.002) * slider_dwz + (t187 + (t135 * t182 + t81 * t182));
+            let t189 = (k(0.1) * t38 - k(0.2) * t36) * t145
                 + (k(0.1) * t62 + k(0.2) * t60) * t137;
-            let t171 = (k(0.1) * t9 - k(0.2) * t6) * t158 - t170 + t169;
-            let t172 = t3 * t27 - (t35 * t53 - t59 * t75);
-            let t173 = k(0.1) * t172;
-            let t174 = slider_wx * slider_wx;
-            let t175 = k(0.003) * slider_wx;
-            let t176 = slider_wy * (t166 + t175)
-                - (k(0.005) * (slider_wx * slider_wz) - k(0.002) * (t165 - t174));
-            let t177 = k(0.001) * slider_dwx + k(0.03) * slider_dwy
-                - k(0.003) * slider_dwz + (t176 - (t135 * t173 + t81 * t173));
-            let t178 = k(0.2) * t2 * t158 + (k(0.2) * t34 * t145 - k(0.2) * t58 * t137);
-            let t179 = t178 + t177;
-            let t180 = t179 * (t15 * t7 - (t44 * t37 + t66 * t61))
-                + t171 * (t15 * t3 + (t44 * t35 + t66 * t59));
-            let t181 = k(0.05) * t172;
-            let t182 = slider_wz * (t167 + t175)
-                - (k(0.01) * (slider_wx * slider_wy) - k(0.001) * (t164 - t174));
-            let t183 = k(0.002) * slider_dwx - k(0.003) * slider_dwy
-                + k(0.025) * slider_dwz - (t182 + (t135 * t181 + t81 * t181));
-            let t184 = k(0.1) * t2 * t158 + (k(0.1) * t34 * t145 - k(0.1) * t58 * t137);
-            let t185 = t184 + t183;
-            let t186 = t185 * (t15 * t10 - (t44 * t39 - t66 * t63)) - t180;
-            let t187 = arm_rx - t77;
-            let t188 = arm_ry - t55;
-            let t189 = arm_rz - t29;
-            let t190 = t23 * t189 - (t49 * t188 + t71 * t187);
-            let t191 = t19 * t189 - (t46 * t188 - t68 * t187);
-            let t192 = t145 * (t49 * t191 - t46 * t190)
-                + t137 * (t71 * t191 + t68 * t190);
-            let t193 = k(0.6666666666666666) * t191;
-            let t194 = t193 - k(0.3333333333333333) * t190;
-            let t195 = arm_wy * arm_wy;
-            let t196 = arm_wz * arm_wz;
-            let t197 = k(0.02) * arm_wz;
-            let t198 = k(0.03) * arm_wy;
-            let t199 = arm_wx * (t198 + t197)
-                + (k(0.05) * (arm_wy * arm_wz) + k(0.01) * (t196 - t195));
+            let t190 = (k(0.1) * t9 - k(0.2) * t6) * t158 - t189 + t188;
+            let t191 = t3 * t27 - (t35 * t53 - t59 * t75);
+            let t192 = k(0.1) * t191;
+            let t193 = slider_wx * slider_wx;
+            let t194 = k(0.003) * slider_wx;
+            let t195 = slider_wy * (t185 + t194)
+                - (k(0.005) * (slider_wx * slider_wz) - k(0.002) * (t184 - t193));
+            let t196 = k(0.001) * slider_dwx + k(0.03) * slider_dwy
+                - k(0.003) * slider_dwz + (t195 - (t135 * t192 + t81 * t192));
+            let t197 = k(0.2) * t2 * t158 + (k(0.2) * t34 * t145 - k(0.2) * t58 * t137);
+            let t198 = t197 + t196;
+            let t199 = (t15 * t7 - (t44 * t37 + t66 * t61)) * t198
+                + (t15 * t3 + (t44 * t35 + t66 * t59)) * t190;
             (
+                t2,
                 t3,
                 t7,
                 t10,
@@ -1085,6 +1066,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Carried<T> {
                 t22,
                 t23,
                 t28,
+                t29,
+                t34,
                 t35,
                 t37,
                 t39,
@@ -1095,6 +1078,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Carried<T> {
                 t48,
                 t49,
                 t54,
+                t55,
+                t58,
                 t59,
                 t61,
                 t63,
@@ -1105,24 +1090,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Carried<T> {
                 t70,
                 t71,
                 t76,
+                t77,
                 t80,
                 t81,
                 t94,
                 t96,
                 t97,
-                t100,
-                t101,
-                t102,
-                t103,
                 t107,
-                t111,
-                t112,
-                t113,
-                t114,
-                t119,
-                t120,
-                t121,
-                t122,
                 t130,
                 t131,
                 t132,
@@ -1148,85 +1122,82 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Carried<T> {
                 t161,
                 t162,
                 t171,
+                t175,
+                t177,
+                t178,
                 t179,
-                t185,
+                t180,
+                t181,
+                t183,
                 t186,
-                t187,
-                t188,
-                t189,
                 t190,
                 t191,
-                t192,
                 t193,
                 t194,
-                t195,
-                t196,
-                t197,
                 t198,
                 t199,
             )
         };
         let (t253, t256) = {
-            let t200 = k(0.3) * arm_dwx + k(0.02) * arm_dwy - k(0.03) * arm_dwz
-                - (t199 + (t135 * t194 + (t131 + (t130 + t81 * t194))));
-            let t201 = t200 + (t158 * (t23 * t191 - t19 * t190) - t192 - t186);
-            let t202 = t28 * t159 - (t54 * t146 + t76 * t138) + t201;
-            let t203 = t121 - t119;
-            let t204 = t113 - t111;
-            let t205 = t102 - t100;
-            let t206 = k(0.6666666666666666) * (t205 - t204)
-                + k(0.3333333333333333) * t203;
-            let t207 = t119 - k(0.3333333333333333) * t122;
-            let t208 = t111 + k(0.3333333333333333) * t114;
-            let t209 = t100 - k(0.3333333333333333) * t103;
-            let t210 = k(0.6666666666666666) * (t209 - t208)
-                + k(0.3333333333333333) * t207;
-            let t211 = k(0.6666666666666666) * (t210 - t206);
-            let t212 = t122 - t120;
-            let t213 = t114 + t112;
-            let t214 = t103 - t101;
-            let t215 = k(0.4444444444444444) * t214 - k(0.2222222222222222) * t213
-                - k(0.4444444444444444) * t212;
-            let t216 = k(0.6666666666666666)
-                * (k(0.4444444444444444) * (t214 + t213) + k(0.2222222222222222) * t212);
-            let t217 = t216 - k(0.3333333333333333) * t206;
-            let t218 = k(0.6666666666666666) * t209 + k(0.3333333333333333) * t208
-                - k(0.6666666666666666) * t207;
-            let t219 = k(0.3333333333333333) * t210 - t216;
-            let t220 = k(0.6666666666666666) * t205 + k(0.3333333333333333) * t204
-                - k(0.6666666666666666) * t203;
-            let t221 = k(1.0) / (t220 * t219 + (t218 * t217 - t215 * t211));
-            let t222 = t179 * (t19 * t7 + (t46 * t37 + t68 * t61))
-                + t171 * (t19 * t3 - (t46 * t35 + t68 * t59));
-            let t223 = t185 * (t19 * t10 + (t46 * t39 - t68 * t63)) - t222;
-            let t224 = t15 * t189 + (t44 * t188 - t66 * t187);
-            let t225 = t145 * (t49 * t224 + t44 * t190)
-                + t137 * (t71 * t224 - t66 * t190);
-            let t226 = k(0.6666666666666666) * (t224 + t190);
+            let t200 = k(0.05) * t191;
+            let t201 = slider_wz * (t186 + t194)
+                - (k(0.01) * (slider_wx * slider_wy) - k(0.001) * (t183 - t193));
+            let t202 = k(0.002) * slider_dwx - k(0.003) * slider_dwy
+                + k(0.025) * slider_dwz - (t201 + (t135 * t200 + t81 * t200));
+            let t203 = k(0.1) * t2 * t158 + (k(0.1) * t34 * t145 - k(0.1) * t58 * t137);
+            let t204 = t203 + t202;
+            let t205 = (t15 * t10 - (t44 * t39 - t66 * t63)) * t204 - t199;
+            let t206 = arm_rx - t77;
+            let t207 = arm_ry - t55;
+            let t208 = arm_rz - t29;
+            let t209 = t23 * t208 - (t49 * t207 + t71 * t206);
+            let t210 = t19 * t208 - (t46 * t207 - t68 * t206);
+            let t211 = t145 * (t49 * t210 - t46 * t209)
+                + t137 * (t71 * t210 + t68 * t209);
+            let t212 = k(0.6666666666666666) * t210;
+            let t213 = t212 - k(0.3333333333333333) * t209;
+            let t214 = arm_wy * arm_wy;
+            let t215 = arm_wz * arm_wz;
+            let t216 = k(0.02) * arm_wz;
+            let t217 = k(0.03) * arm_wy;
+            let t218 = arm_wx * (t217 + t216)
+                + (k(0.05) * (arm_wy * arm_wz) + k(0.01) * (t215 - t214));
+            let t219 = k(0.3) * arm_dwx + k(0.02) * arm_dwy - k(0.03) * arm_dwz
+                - (t218 + (t135 * t213 + (t131 + (t130 + t81 * t213))));
+            let t220 = t219 + (t158 * (t23 * t210 - t19 * t209) - t211 - t205);
+            let t221 = t28 * t159 - (t54 * t146 + t76 * t138) + t220;
+            let t222 = (t19 * t7 + (t46 * t37 + t68 * t61)) * t198
+                + (t19 * t3 - (t46 * t35 + t68 * t59)) * t190;
+            let t223 = (t19 * t10 + (t46 * t39 - t68 * t63)) * t204 - t222;
+            let t224 = t15 * t208 + (t44 * t207 - t66 * t206);
+            let t225 = t145 * (t49 * t224 + t44 * t209)
+                + t137 * (t71 * t224 - t66 * t209);
+            let t226 = k(0.6666666666666666) * (t209 + t224);
             let t227 = arm_wx * arm_wx;
             let t228 = k(0.01) * arm_wx;
-            let t229 = arm_wy * (t197 - t228)
-                + (k(0.1) * (arm_wx * arm_wz) - k(0.03) * (t196 - t227));
+            let t229 = arm_wy * (t216 - t228)
+                + (k(0.1) * (arm_wx * arm_wz) - k(0.03) * (t215 - t227));
             let t230 = k(0.02) * arm_dwx + k(0.25) * arm_dwy + k(0.01) * arm_dwz
                 + (t229 + (t135 * t226 - (t133 + (t132 - t81 * t226))));
-            let t231 = t230 - (t158 * (t23 * t224 - t15 * t190) - t225 + t223);
+            let t231 = t230 - (t158 * (t23 * t224 - t15 * t209) - t225 + t223);
             let t232 = k(0.4) * t22 * t159 - (k(0.4) * t48 * t146 + k(0.4) * t70 * t138);
             let t233 = t232 + t231;
-            let t234 = t179 * (t23 * t7 + (t49 * t37 - t71 * t61))
-                + t171 * (t23 * t3 - (t49 * t35 - t71 * t59));
-            let t235 = t185 * (t23 * t10 + (t49 * t39 + t71 * t63)) - t234;
-            let t236 = t145 * (t46 * t224 + t44 * t191)
-                - t137 * (t68 * t224 + t66 * t191);
-            let t237 = k(0.3333333333333333) * t224 + t193;
-            let t238 = arm_wz * (t198 + t228)
-                - (k(0.05) * (arm_wx * arm_wy) + k(0.02) * (t195 - t227));
+            let t234 = (t23 * t7 + (t49 * t37 - t71 * t61)) * t198
+                + (t23 * t3 - (t49 * t35 - t71 * t59)) * t190;
+            let t235 = (t23 * t10 + (t49 * t39 + t71 * t63)) * t204 - t234;
+            let t236 = t145 * (t46 * t224 + t44 * t210)
+                - t137 * (t68 * t224 + t66 * t210);
+            let t237 = k(0.3333333333333333) * t224 + t212;
+            let t238 = arm_wz * (t217 + t228)
+                - (k(0.05) * (arm_wx * arm_wy) + k(0.02) * (t214 - t227));
             let t239 = k(0.03) * arm_dwx - k(0.01) * arm_dwy - k(0.2) * arm_dwz
                 - (t238 + (t135 * t237 - (t133 + (t132 - t81 * t237))));
-            let t240 = t239 + (t158 * (t19 * t224 - t15 * t191) - t236 - t235);
+            let t240 = t239 + (t158 * (t19 * t224 - t15 * t210) - t236 - t235);
             let t241 = (k(0.4) * t45 - k(0.2) * t43) * t146
                 - (k(0.4) * t67 - k(0.2) * t65) * t138;
             let t242 = (k(0.4) * t18 + k(0.2) * t14) * t159 - t241 - t240;
-            let t243 = t219 * t221 * t242 + (t217 * t221 * t233 - t211 * t221 * t202);
+            let t243 = t242 * (t179 * t181)
+                + (t233 * (t177 * t181) - t221 * (t171 * t181));
             let t244 = k(0.3333333333333333) * (t66 * t149 + t44 * t155 + t15 * t162)
                 - k(0.6666666666666666) * (t68 * t149 + t46 * t155 - t19 * t162);
             let t245 = k(0.6666666666666666) * (t71 * t149 - t49 * t155 + t23 * t162)
@@ -1245,12 +1216,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Carried<T> {
             let t253 = (k(0.6666666666666666) * t252 + k(0.3333333333333333) * t250
                 + k(0.6666666666666666) * t245) * t243
                 - ((k(0.2) * t162 - k(0.1) * t160) * t159 - (t156 + t143));
-            let t254 = k(0.6666666666666666) * t215;
-            let t255 = t221 * (t254 - k(0.3333333333333333) * t220) * t233
-                - t221 * (k(0.6666666666666666) * (t218 - t220)) * t202;
+            let t254 = k(0.6666666666666666) * t175;
+            let t255 = t233 * (t181 * (t254 - k(0.3333333333333333) * t180))
+                - t221 * (t181 * (k(0.6666666666666666) * (t178 - t180)));
             let t256 = (k(0.6666666666666666) * (t252 - t250)
                 - k(0.3333333333333333) * t245)
-                * (t221 * (k(0.3333333333333333) * t218 - t254) * t242 + t255);
+                * (t242 * (t181 * (k(0.3333333333333333) * t178 - t254)) + t255);
             (t253, t256)
         };
         *dy = [
@@ -3943,7 +3914,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Carried<T> {
             let t201 = k(0.1) * (t189 * t200 - (t188 * t197 - t187 * t198))
                 + k(0.05) * (t189 * t197 - (t188 * t196 + t187 * t193));
             let t202 = t201 + (k(0.1) * t96 - (t22 + t17));
-            let t203 = (k(1.7888543819998317) * t9 - k(0.8944271909999159) * t4) * t202
+            let t203 = t202 * (k(1.7888543819998317) * t9 - k(0.8944271909999159) * t4)
                 + t192
                 + (t192
                     + t185
@@ -3966,7 +3937,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Carried<T> {
             let t215 = k(0.1) * (t211 * t200 + (t210 * t197 - t209 * t198))
                 + k(0.05) * (t211 * t197 + (t210 * t196 + t209 * t193));
             let t216 = t215 + (k(0.1) * t99 - (t46 + t44));
-            let t217 = (k(1.7888543819998317) * t37 - k(0.8944271909999159) * t35) * t216
+            let t217 = t216 * (k(1.7888543819998317) * t37 - k(0.8944271909999159) * t35)
                 - t214
                 - (t214
                     + t208
@@ -3987,7 +3958,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Carried<T> {
             let t227 = k(0.1) * (t223 * t200 + (t222 * t197 + t221 * t198))
                 + k(0.05) * (t223 * t197 + (t222 * t196 - t221 * t193));
             let t228 = t227 + (k(0.1) * t105 - (t87 + t85));
-            let t229 = (k(1.7888543819998317) * t80 + k(0.8944271909999159) * t78) * t228
+            let t229 = t228 * (k(1.7888543819998317) * t80 + k(0.8944271909999159) * t78)
                 + t226
                 + (t226
                     + t220
@@ -3999,9 +3970,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Carried<T> {
                 + t185
                     * (k(0.7453559924999299) * t96
                         - (k(0.29814239699997197) * t21 - k(0.5962847939999439) * t16));
-            let t232 = (k(1.4907119849998598) * t14
-                + (k(0.5962847939999439) * t9 + k(1.1925695879998879) * t4)) * t202
-                - t230;
+            let t232 = t202
+                * (k(1.4907119849998598) * t14
+                    + (k(0.5962847939999439) * t9 + k(1.1925695879998879) * t4)) - t230;
             let t233 = t213
                 * (k(0.5962847939999439) * t113 + k(0.29814239699997197) * t121
                     + k(0.7453559924999299) * t101);
@@ -4009,8 +3980,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Carried<T> {
                 + t208
                     * (k(0.7453559924999299) * t99
                         - (k(0.29814239699997197) * t45 - k(0.5962847939999439) * t43));
-            let t235 = (k(1.4907119849998598) * t41
-                - (k(0.5962847939999439) * t37 + k(1.1925695879998879) * t35)) * t216
+            let t235 = t216
+                * (k(1.4907119849998598) * t41
+                    - (k(0.5962847939999439) * t37 + k(1.1925695879998879) * t35))
                 - t233;
             let t236 = t225
                 * (k(0.5962847939999439) * t116 + k(0.29814239699997197) * t124
@@ -4019,8 +3991,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Carried<T> {
                 + t220
                     * (k(0.7453559924999299) * t105
                         - (k(0.29814239699997197) * t86 - k(0.5962847939999439) * t84));
-            let t238 = (k(1.4907119849998598) * t82
-                - (k(0.5962847939999439) * t80 - k(1.1925695879998879) * t78)) * t228
+            let t238 = t228
+                * (k(1.4907119849998598) * t82
+                    - (k(0.5962847939999439) * t80 - k(1.1925695879998879) * t78))
                 + t236;
             let t239 = t79 * t221 + (t36 * t209 + t5 * t187);
             let t240 = t81 * t221 - (t38 * t209 + t10 * t187);
@@ -4299,7 +4272,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Carried<T> {
         let t127 = arm_wx * (t126 + t125)
             + (k(0.05) * (arm_wy * arm_wz) + k(0.01) * (t124 - t123));
         let t128 = t14 * t81 + (t41 * t80 - t61 * t79);
-        let t129 = k(0.6666666666666666) * (t128 + t82);
+        let t129 = k(0.6666666666666666) * (t82 + t128);
         let t130 = k(1.3333333333333333) * t117;
         let t131 = k(0.06666666666666667) * t121;
         let t132 = arm_wx * arm_wx;
@@ -4341,7 +4314,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Carried<T> {
             t149 + (t75 * t148 + t74 * t148),
         ];
     }
-    /// Solves eq. (17): 2470 operations (1096 ±, 1370 ×, 4 ÷) and 13 functions.
+    /// Solves eq. (17): 1949 operations (840 ±, 1105 ×, 4 ÷) and 13 functions.
     fn accelerations(&self, t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let arm_rx = y[0];
@@ -4372,1211 +4345,976 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Carried<T> {
         let slider_wz = y[25];
         let turn0 = y[27];
         let (
-            t6,
-            t9,
-            t12,
-            t15,
+            t2,
+            t5,
+            t7,
+            t10,
+            t13,
+            t14,
             t16,
+            t19,
+            t20,
             t22,
+            t23,
             t24,
             t25,
+            t26,
             t28,
             t29,
+            t30,
+            t31,
             t32,
+            t33,
             t34,
-            t35,
             t36,
             t37,
-            t38,
-            t39,
             t40,
             t41,
             t42,
+            t43,
             t44,
-            t45,
-            t46,
-            t47,
-            t48,
-            t49,
-            t50,
-            t51,
             t52,
-            t53,
-            t54,
-            t58,
-            t59,
-            t60,
+            t55,
             t61,
-            t62,
-            t63,
+            t64,
             t67,
-            t68,
-            t69,
             t70,
             t71,
             t72,
+            t73,
+            t74,
             t75,
             t76,
+            t77,
             t78,
+            t79,
             t80,
             t82,
-            t83,
-            t85,
             t86,
-            t88,
-            t89,
-            t91,
             t92,
-            t93,
             t94,
             t95,
-            t97,
-            t99,
-            t100,
-            t101,
-            t102,
-            t103,
-            t106,
-            t107,
-            t110,
+            t104,
+            t105,
             t112,
-            t113,
-            t114,
-            t116,
-            t117,
-            t118,
-            t120,
+            t119,
             t121,
-            t122,
-            t125,
-            t126,
-            t127,
-            t128,
-            t129,
+            t123,
+            t124,
             t130,
             t131,
             t132,
             t133,
-            t135,
-            t136,
             t137,
             t138,
+            t139,
             t140,
-            t141,
-            t142,
+            t143,
             t151,
-            t152,
-            t153,
-            t154,
             t155,
-            t156,
-            t157,
             t158,
-            t159,
-            t163,
             t164,
-            t165,
+            t166,
             t167,
-            t168,
             t169,
             t170,
             t171,
             t172,
             t173,
-            t174,
-            t175,
+            t176,
+            t177,
             t178,
             t179,
             t180,
-            t181,
-            t182,
             t183,
             t184,
             t185,
             t186,
-            t188,
+            t187,
             t189,
+            t190,
+            t191,
+            t192,
             t193,
+            t194,
+            t195,
+            t196,
             t197,
             t198,
             t199,
         ) = {
-            let t0 = slider_e0 * slider_e3;
-            let t1 = slider_e1 * slider_e2;
-            let t2 = t1 - t0;
-            let t3 = slider_e0 * slider_e2;
-            let t4 = slider_e1 * slider_e3;
-            let t5 = t4 + t3;
-            let t6 = k(0.1) * t5 + k(0.2) * t2;
-            let t7 = k(0.6) * t6;
-            let t8 = arm_e0 * arm_e0;
-            let t9 = k(0.5) - (t8 + arm_e1 * arm_e1);
-            let t10 = arm_e0 * arm_e3;
-            let t11 = arm_e1 * arm_e2;
-            let t12 = t11 - t10;
-            let t13 = arm_e0 * arm_e2;
-            let t14 = arm_e1 * arm_e3;
-            let t15 = t14 + t13;
-            let t16 = k(1.3333333333333333) * t15
-                - (k(0.6666666666666666) * t12 + k(1.3333333333333333) * t9);
-            let t17 = slider_e0 * slider_e0;
-            let t18 = k(0.5) - (t17 + slider_e2 * slider_e2);
-            let t19 = slider_e0 * slider_e1;
-            let t20 = slider_e2 * slider_e3;
-            let t21 = t20 - t19;
-            let t22 = k(0.1) * t21 - k(0.2) * t18;
-            let t23 = k(0.6) * t22;
-            let t24 = t11 + t10;
-            let t25 = k(0.5) - (t8 + arm_e2 * arm_e2);
-            let t26 = arm_e0 * arm_e1;
-            let t27 = arm_e2 * arm_e3;
-            let t28 = t27 - t26;
-            let t29 = k(1.3333333333333333) * t28
-                + (k(0.6666666666666666) * t25 + k(1.3333333333333333) * t24);
-            let t30 = t20 + t19;
-            let t31 = k(0.5) - (t17 + slider_e3 * slider_e3);
-            let t32 = k(0.1) * t31 - k(0.2) * t30;
+            let t0 = arm_e0 * arm_e3;
+            let t1 = arm_e1 * arm_e2;
+            let t2 = t1 + t0;
+            let t3 = k(0.4) * t2;
+            let t4 = arm_e0 * arm_e0;
+            let t5 = k(0.5) - (t4 + arm_e2 * arm_e2);
+            let t6 = k(0.2) * t5;
+            let t7 = t6 + t3;
+            let t8 = arm_e0 * arm_e2;
+            let t9 = arm_e1 * arm_e3;
+            let t10 = t9 - t8;
+            let t11 = arm_e0 * arm_e1;
+            let t12 = arm_e2 * arm_e3;
+            let t13 = t12 + t11;
+            let t14 = k(0.5) - (t4 + arm_e3 * arm_e3);
+            let t15 = k(1.3333333333333333) * t14;
+            let t16 = t15 - (k(1.3333333333333333) * t13 + k(0.6666666666666666) * t10);
+            let t17 = k(0.4) * t10;
+            let t18 = k(0.2) * t13;
+            let t19 = t18 - t17;
+            let t20 = t12 - t11;
+            let t21 = k(1.3333333333333333) * t20;
+            let t22 = t21 - (k(1.3333333333333333) * t5 - k(0.6666666666666666) * t2);
+            let t23 = t22 * t19 - t16 * t7;
+            let t24 = k(0.5) - (t4 + arm_e1 * arm_e1);
+            let t25 = t1 - t0;
+            let t26 = t9 + t8;
+            let t27 = k(1.3333333333333333) * t26;
+            let t28 = t27 - (k(0.6666666666666666) * t25 + k(1.3333333333333333) * t24);
+            let t29 = k(0.6) * t28;
+            let t30 = t21 + (k(0.6666666666666666) * t5 + k(1.3333333333333333) * t2);
+            let t31 = k(0.6) * t30;
+            let t32 = t15 + (k(0.6666666666666666) * t13 - k(1.3333333333333333) * t10);
             let t33 = k(0.6) * t32;
-            let t34 = t14 - t13;
-            let t35 = t27 + t26;
-            let t36 = k(0.5) - (t8 + arm_e3 * arm_e3);
-            let t37 = k(1.3333333333333333) * t36
-                + (k(0.6666666666666666) * t35 - k(1.3333333333333333) * t34);
-            let t38 = t37 * t33 + (t29 * t23 + t16 * t7);
-            let t39 = k(0.6) * t16;
-            let t40 = k(0.6) * t29;
-            let t41 = k(0.6) * t37;
-            let t42 = k(1.0) / (t37 * t41 + (t29 * t40 + t16 * t39));
-            let t43 = t42 * t38;
-            let t44 = k(0.0275) - t38 * t43;
-            let t45 = k(0.5) - (t17 + slider_e1 * slider_e1);
-            let t46 = k(2.0) * t45;
-            let t47 = k(2.0) * t9;
-            let t48 = t1 + t0;
-            let t49 = k(2.0) * t48;
-            let t50 = k(2.0) * t24;
-            let t51 = t4 - t3;
-            let t52 = k(2.0) * t51;
-            let t53 = k(2.0) * t34;
-            let t54 = t53 * t52 + (t50 * t49 + t47 * t46);
-            let t55 = k(0.12) * t45;
-            let t56 = k(0.12) * t48;
-            let t57 = k(0.12) * t51;
-            let t58 = t37 * t57 - (t29 * t56 - t16 * t55);
-            let t59 = k(0.001) - t58 * t43;
-            let t60 = k(2.0) * t2;
-            let t61 = k(2.0) * t18;
-            let t62 = k(2.0) * t30;
-            let t63 = t53 * t62 - (t50 * t61 + t47 * t60);
-            let t64 = k(0.06) * t45;
-            let t65 = k(0.06) * t48;
-            let t66 = k(0.06) * t51;
-            let t67 = t37 * t66 - (t29 * t65 - t16 * t64);
-            let t68 = k(0.002) - t67 * t43;
-            let t69 = k(2.0) * t5;
-            let t70 = k(2.0) * t21;
-            let t71 = k(2.0) * t31;
-            let t72 = t53 * t71 - (t50 * t70 - t47 * t69);
-            let t73 = t72 * t68 - (t63 * t59 + t54 * t44);
-            let t74 = t42 * t58;
-            let t75 = k(0.036) - t58 * t74;
-            let t76 = t67 * t74;
-            let t77 = t72 * t76 + (t63 * t75 + t54 * t59);
-            let t78 = k(0.0265) - t67 * (t42 * t67);
-            let t79 = t72 * t78 + (t63 * t76 - t54 * t68);
-            let t80 = slider_rx - (k(0.2) * t5 - k(0.1) * t2);
-            let t81 = arm_rx - t80;
-            let t82 = k(2.0) * t15;
-            let t83 = slider_ry - (k(0.2) * t21 + k(0.1) * t18);
-            let t84 = arm_ry - t83;
-            let t85 = k(2.0) * t28;
-            let t86 = slider_rz + (k(0.2) * t31 + k(0.1) * t30);
-            let t87 = arm_rz - t86;
-            let t88 = k(2.0) * t36;
-            let t89 = t88 * t87 - (t85 * t84 + t82 * t81);
-            let t90 = t89 * t89;
-            let t91 = k(2.0) * t12;
-            let t92 = k(2.0) * t25;
-            let t93 = k(2.0) * t35;
-            let t94 = t93 * t87 - (t92 * t84 - t91 * t81);
-            let t95 = t94 * t94;
-            let t96 = k(0.6) * (t95 + t90) + (t72 * t79 + (t63 * t77 - t54 * t73));
-            let t97 = t82 * t94 + t91 * t89;
-            let t98 = t39 * t42;
-            let t99 = t39 * t98;
-            let t100 = t85 * t94 - t92 * t89;
-            let t101 = t40 * t98;
-            let t102 = t88 * t94 - t93 * t89;
-            let t103 = t41 * t98;
-            let t104 = t103 * t102 + (t101 * t100 + t99 * t97);
-            let t105 = t40 * t42;
-            let t106 = t40 * t105;
-            let t107 = t41 * t105;
-            let t108 = t107 * t102 + (t106 * t100 + t101 * t97);
-            let t109 = t41 * t42;
-            let t110 = t41 * t109;
-            let t111 = t110 * t102 + (t107 * t100 + t103 * t97);
-            let t112 = t7 - t98 * t38;
-            let t113 = t55 - t98 * t58;
-            let t114 = t64 - t98 * t67;
-            let t115 = t72 * t114 - (t63 * t113 + t54 * t112);
-            let t116 = t23 - t105 * t38;
-            let t117 = t56 + t105 * t58;
-            let t118 = t65 + t105 * t67;
-            let t119 = t72 * t118 - (t63 * t117 - t54 * t116);
-            let t120 = t33 - t109 * t38;
-            let t121 = t57 - t109 * t58;
-            let t122 = t66 - t109 * t67;
-            let t123 = t72 * t122 - (t63 * t121 + t54 * t120);
-            let t124 = k(2.0) * (t102 * t123 - (t100 * t119 - t97 * t115))
-                + (t102 * t111 + (t100 * t108 + t97 * t104));
-            let t125 = k(0.2) * t15;
-            let t126 = k(0.2) * t28;
-            let t127 = k(0.2) * t36;
-            let t128 = t127 * t103 + (t126 * t101 + t125 * t99);
-            let t129 = t127 * t107 + (t126 * t106 + t125 * t101);
-            let t130 = t127 * t110 + (t126 * t107 + t125 * t103);
-            let t131 = t104 - k(0.6) * t97 + t115;
-            let t132 = t108 - k(0.6) * t100 - t119;
-            let t133 = t111 - k(0.6) * t102 + t123;
-            let t134 = k(2.0) * (t127 * t133 + (t126 * t132 + t125 * t131))
-                + (t127 * t130 + (t126 * t129 + t125 * t128));
-            let t135 = t93 * t52 - (t92 * t49 + t91 * t46);
-            let t136 = t93 * t62 + (t92 * t61 + t91 * t60);
-            let t137 = t93 * t71 + (t92 * t70 - t91 * t69);
-            let t138 = t53 * t87 + (t50 * t84 - t47 * t81);
-            let t139 = k(0.6) * (t138 * t94) - (t137 * t79 + (t136 * t77 - t135 * t73));
-            let t140 = t82 * t138 - t47 * t89;
-            let t141 = t85 * t138 + t50 * t89;
-            let t142 = t88 * t138 - t53 * t89;
-            let t143 = t103 * t142 + (t101 * t141 + t99 * t140);
-            let t144 = t107 * t142 + (t106 * t141 + t101 * t140);
-            let t145 = t110 * t142 + (t107 * t141 + t103 * t140);
-            let t146 = t137 * t114 - (t136 * t113 + t135 * t112);
-            let t147 = t137 * t118 - (t136 * t117 - t135 * t116);
-            let t148 = t137 * t122 - (t136 * t121 + t135 * t120);
-            let t149 = t123 * t142 - (t119 * t141 - t115 * t140)
-                - (t102 * t148 - (t100 * t147 - t97 * t146));
-            let t150 = t149 + (t102 * t145 + (t100 * t144 + t97 * t143)) - t139;
-            let t151 = k(0.4) * t15;
-            let t152 = k(0.4) * t28;
-            let t153 = k(0.4) * t36;
-            let t154 = t153 * t103 + (t152 * t101 + t151 * t99);
-            let t155 = t153 * t107 + (t152 * t106 + t151 * t101);
-            let t156 = t153 * t110 + (t152 * t107 + t151 * t103);
-            let t157 = t143 - k(0.6) * t140 - t146;
-            let t158 = t144 - k(0.6) * t141 + t147;
-            let t159 = t145 - k(0.6) * t142 - t148;
-            let t160 = t153 * t133 + (t152 * t132 + t151 * t131)
-                - (t127 * t159 + (t126 * t158 + t125 * t157));
-            let t161 = t160 + (t127 * t156 + (t126 * t155 + t125 * t154))
-                - (k(0.042) + (k(0.02) + t150));
-            let t162 = k(0.6666666666666666) * t161
-                + k(0.3333333333333333) * (t134 - (k(0.021) + (k(0.3) - (t124 - t96))));
-            let t163 = t88 * t52 - (t85 * t49 - t82 * t46);
-            let t164 = t88 * t62 + (t85 * t61 - t82 * t60);
-            let t165 = t88 * t71 + (t85 * t70 + t82 * t69);
-            let t166 = k(0.6) * (t138 * t89) - (t165 * t79 + (t164 * t77 - t163 * t73));
-            let t167 = t91 * t138 + t47 * t94;
-            let t168 = t92 * t138 + t50 * t94;
-            let t169 = t93 * t138 - t53 * t94;
-            let t170 = t169 * t103 + (t168 * t101 - t167 * t99);
-            let t171 = t169 * t107 + (t168 * t106 - t167 * t101);
-            let t172 = t169 * t110 + (t168 * t107 - t167 * t103);
-            let t173 = t165 * t114 - (t164 * t113 + t163 * t112);
-            let t174 = t165 * t118 - (t164 * t117 - t163 * t116);
-            let t175 = t165 * t122 - (t164 * t121 + t163 * t120);
-            let t176 = t169 * t123 - (t168 * t119 + t167 * t115)
-                + (t175 * t102 - (t174 * t100 - t173 * t97));
-            let t177 = t176 + (t172 * t102 + (t171 * t100 + t170 * t97)) + t166;
-            let t178 = k(0.4) * t12 - k(0.2) * t9;
-            let t179 = k(0.4) * t25 - k(0.2) * t24;
-            let t180 = k(0.4) * t35 + k(0.2) * t34;
-            let t181 = t180 * t103 + (t179 * t101 - t178 * t99);
-            let t182 = t180 * t107 + (t179 * t106 - t178 * t101);
-            let t183 = t180 * t110 + (t179 * t107 - t178 * t103);
-            let t184 = t170 + k(0.6) * t167 + t173;
-            let t185 = t171 - k(0.6) * t168 - t174;
-            let t186 = t172 - k(0.6) * t169 + t175;
-            let t187 = t180 * t133 + (t179 * t132 - t178 * t131)
-                - (t127 * t186 + (t126 * t185 + t125 * t184));
-            let t188 = t187 + (t127 * t183 + (t126 * t182 + t125 * t181))
-                + (k(0.03) - t177);
-            let t189 = k(0.6666666666666666) * t188 + t162;
-            let t190 = t137 * t68 - (t136 * t59 + t135 * t44);
-            let t191 = t137 * t76 + (t136 * t75 + t135 * t59);
-            let t192 = t137 * t78 + (t136 * t76 - t135 * t68);
-            let t193 = t138 * t138;
-            let t194 = k(0.6) * (t193 + t90)
-                + (t137 * t192 + (t136 * t191 - t135 * t190));
-            let t195 = k(2.0) * (t142 * t148 - (t141 * t147 - t140 * t146))
-                - (t142 * t145 + (t141 * t144 + t140 * t143));
-            let t196 = k(2.0) * (t153 * t159 + (t152 * t158 + t151 * t157))
-                - (t153 * t156 + (t152 * t155 + t151 * t154));
-            let t197 = k(0.6666666666666666)
-                * (t196 + (k(0.084) + (k(0.25) + (t195 + t194))))
-                - k(0.3333333333333333) * t161;
-            let t198 = k(0.6) * (t94 * t89)
-                - (t165 * t192 + (t164 * t191 - t163 * t190));
-            let t199 = t169 * t148 - (t168 * t147 + t167 * t146)
-                - (t175 * t142 - (t174 * t141 - t173 * t140));
+            let t34 = k(1.0) / (t32 * t33 + (t30 * t31 + t28 * t29));
+            let t35 = t29 * t34;
+            let t36 = t29 * t35;
+            let t37 = t27 + (k(1.3333333333333333) * t25 - k(0.6666666666666666) * t24);
+            let t38 = k(0.4) * t24;
+            let t39 = k(0.2) * t25;
+            let t40 = t39 + t38;
+            let t41 = t16 * t40 + t37 * t19;
+            let t42 = t31 * t35;
+            let t43 = t37 * t7 + t22 * t40;
+            let t44 = t33 * t35;
+            let t45 = t44 * t43 - (t42 * t41 - t36 * t23) - k(2.1) * t23;
+            let t46 = slider_e0 * slider_e3;
+            let t47 = slider_e1 * slider_e2;
+            let t48 = t47 - t46;
+            let t49 = slider_e0 * slider_e2;
+            let t50 = slider_e1 * slider_e3;
+            let t51 = t50 + t49;
+            let t52 = k(0.2) * t51 - k(0.1) * t48;
+            let t53 = slider_rx - t52;
+            let t54 = arm_rx - t53;
+            let t55 = k(2.0) * t24;
+            let t56 = slider_e0 * slider_e0;
+            let t57 = k(0.5) - (t56 + slider_e2 * slider_e2);
+            let t58 = slider_e0 * slider_e1;
+            let t59 = slider_e2 * slider_e3;
+            let t60 = t59 - t58;
+            let t61 = k(0.2) * t60 + k(0.1) * t57;
+            let t62 = slider_ry - t61;
+            let t63 = arm_ry - t62;
+            let t64 = k(2.0) * t2;
+            let t65 = t59 + t58;
+            let t66 = k(0.5) - (t56 + slider_e3 * slider_e3);
+            let t67 = k(0.2) * t66 + k(0.1) * t65;
+            let t68 = slider_rz + t67;
+            let t69 = arm_rz - t68;
+            let t70 = k(2.0) * t10;
+            let t71 = t70 * t69 + (t64 * t63 - t55 * t54);
+            let t72 = k(2.0) * t25;
+            let t73 = k(2.0) * t5;
+            let t74 = k(2.0) * t13;
+            let t75 = t74 * t69 - (t73 * t63 - t72 * t54);
+            let t76 = k(2.0) * t26;
+            let t77 = k(2.0) * t20;
+            let t78 = k(2.0) * t14;
+            let t79 = t78 * t69 - (t77 * t63 + t76 * t54);
+            let t80 = t67 + (t78 * t79 + (t74 * t75 + t70 * t71));
+            let t81 = t42 * t80;
+            let t82 = t61 + (t77 * t79 + (t73 * t75 - t64 * t71));
+            let t83 = t82 * t44;
+            let t84 = t83 - t81;
+            let t85 = k(0.6) * t80;
+            let t86 = t52 + (t76 * t79 - (t72 * t75 - t55 * t71));
+            let t87 = t86 * t44 - t36 * t80;
+            let t88 = t87 + t85;
+            let t89 = k(0.6) * t82;
+            let t90 = t86 * t42 - t82 * t36;
+            let t91 = t90 + t89;
+            let t92 = t16 * t91 - (t22 * t88 - t37 * t84) + t45;
+            let t93 = t31 * t34;
+            let t94 = t31 * t93;
+            let t95 = t33 * t93;
+            let t96 = t95 * t43 - (t94 * t41 - t42 * t23) + k(2.1) * t41;
+            let t97 = t82 * t95 - t94 * t80;
+            let t98 = t85 + t97;
+            let t99 = t86 * t95;
+            let t100 = t99 - t81;
+            let t101 = k(0.6) * t86;
+            let t102 = t86 * t94 - t82 * t42;
+            let t103 = t102 - t101;
+            let t104 = t16 * t103 - (t22 * t100 - t37 * t98) + t96;
+            let t105 = t33 * (t33 * t34);
+            let t106 = t43 * t105 - (t95 * t41 - t44 * t23) - k(2.1) * t43;
+            let t107 = t82 * t105 - t80 * t95;
+            let t108 = t89 - t107;
+            let t109 = t86 * t105 - t80 * t44;
+            let t110 = t101 - t109;
+            let t111 = t99 - t83;
+            let t112 = t16 * t111 + (t22 * t110 - t37 * t108) + t106;
+            let t113 = k(0.06) * t26 - k(0.04) * t25;
+            let t114 = k(0.02) * t26 - (k(0.1) * t25 + k(0.04) * t24);
+            let t115 = k(0.2) * t26;
+            let t116 = t115 - (k(0.02) * t25 + k(0.06) * t24);
+            let t117 = k(0.004) * t51 + k(0.002) * t48;
+            let t118 = k(0.5) - (t56 + slider_e1 * slider_e1);
+            let t119 = k(2.0) * t118;
+            let t120 = k(0.006) * t51 - (k(0.02) * t48 - k(0.002) * t118);
+            let t121 = k(2.0) * t48;
+            let t122 = k(0.01) * t51 - (k(0.006) * t48 + k(0.004) * t118);
+            let t123 = k(2.0) * t51;
+            let t124 = k(0.02) + (t123 * t122 - (t121 * t120 + t119 * t117));
+            let t125 = t80 * t80;
+            let t126 = t82 * t82;
+            let t127 = k(0.6) * (t126 + t125) + t124 - (t82 * t107 - t80 * t97);
+            let t128 = t127 + (k(0.3) - (t76 * t116 - (t72 * t114 + t55 * t113)));
+            let t129 = t47 + t46;
+            let t130 = k(2.0) * t129;
+            let t131 = k(2.0) * t57;
+            let t132 = k(2.0) * t60;
+            let t133 = t132 * t122 + (t131 * t120 + t130 * t117);
+            let t134 = k(0.6) * (t86 * t82) - t133 - (t82 * t109 - t80 * t100);
+            let t135 = t134 + (t77 * t116 + (t73 * t114 + t64 * t113));
+            let t136 = t50 - t49;
+            let t137 = k(2.0) * t136;
+            let t138 = k(2.0) * t65;
+            let t139 = k(2.0) * t66;
+            let t140 = t139 * t122 + (t138 * t120 - t137 * t117);
+            let t141 = k(0.6) * (t86 * t80) - t140 + (t82 * t111 - t102 * t80);
+            let t142 = t141 + (t78 * t116 + (t74 * t114 - t70 * t113));
+            let t143 = t16 * t142 + (t22 * t135 - t37 * t128)
+                - (t43 * t108 + (t41 * t98 - t23 * t84));
+            let t144 = k(0.06) * t20 + k(0.04) * t5;
+            let t145 = k(0.02) * t20 + (k(0.1) * t5 + k(0.04) * t2);
+            let t146 = k(0.2) * t20;
+            let t147 = t146 + (k(0.02) * t5 + k(0.06) * t2);
+            let t148 = k(0.004) * t60 - k(0.002) * t57;
+            let t149 = k(0.006) * t60 + (k(0.02) * t57 - k(0.002) * t129);
+            let t150 = k(0.01) * t60 + (k(0.006) * t57 + k(0.004) * t129);
+            let t151 = k(0.02) + (t132 * t150 + (t131 * t149 + t130 * t148));
+            let t152 = t86 * t86;
+            let t153 = k(0.6) * (t152 + t125) + t151 - (t86 * t109 - t80 * t87);
+            let t154 = t153 + (k(0.3) - (t77 * t147 + (t73 * t145 + t64 * t144)));
+            let t155 = t139 * t150 + (t138 * t149 - t137 * t148);
+            let t156 = k(0.6) * (t82 * t80) - t155 - (t86 * t111 - t90 * t80);
+            let t157 = t156 + (t78 * t147 + (t74 * t145 - t70 * t144));
+            let t158 = t16 * t157 - (t22 * t154 - t37 * t135)
+                + (t43 * t110 + (t41 * t100 - t23 * t88));
+            let t159 = t74 * (k(0.02) * t14 + (k(0.1) * t13 - k(0.04) * t10))
+                - t70 * (k(0.06) * t14 + k(0.04) * t13);
+            let t160 = k(0.2) * t14;
+            let t161 = k(0.3) - (t78 * (t160 + (k(0.02) * t13 - k(0.06) * t10)) + t159);
+            let t162 = t138 * (k(0.006) * t66 + (k(0.02) * t65 + k(0.002) * t136))
+                - t137 * (k(0.004) * t66 - k(0.002) * t65);
+            let t163 = t139 * (k(0.01) * t66 + (k(0.006) * t65 - k(0.004) * t136))
+                + t162;
+            let t164 = k(0.02) + t163;
+            let t165 = k(0.6) * (t152 + t126) + t164 - (t86 * t102 - t82 * t90);
+            let t166 = (t165 + t161) * t16 - (t157 * t22 + t142 * t37)
+                - (t111 * t43 - (t103 * t41 - t91 * t23));
+            let t167 = t16 * t166 - (t22 * t158 + t37 * t143)
+                - (t43 * t112 - (t41 * t104 - t23 * t92));
+            let t168 = k(0.05) * (t139 * slider_wx + t137 * slider_wz)
+                - k(0.1) * (t138 * slider_wx - t137 * slider_wy);
+            let t169 = t74 * arm_wx - t70 * arm_wy;
+            let t170 = t78 * arm_wx + t70 * arm_wz;
+            let t171 = t78 * arm_wy + t74 * arm_wz;
+            let t172 = arm_sz + (k(0.2) * t171 - k(0.1) * t170 - k(0.1) * t169)
+                - (slider_sz - t168);
+            let t173 = t68 - (arm_rz - (t160 - (t18 + t17)));
+            let t174 = t173
+                * (k(0.6666666666666666) * t171 + k(0.3333333333333333) * t170
+                    - k(0.6666666666666666) * t169) + t32 * t172;
+            let t175 = k(0.05) * (t132 * slider_wx - t130 * slider_wz)
+                - k(0.1) * (t131 * slider_wx + t130 * slider_wy);
+            let t176 = t73 * arm_wx + t64 * arm_wy;
+            let t177 = t77 * arm_wx - t64 * arm_wz;
+            let t178 = t77 * arm_wy + t73 * arm_wz;
+            let t179 = arm_sy - (k(0.2) * t178 - k(0.1) * t177 - k(0.1) * t176)
+                - (slider_sy + t175);
+            let t180 = t62 - (arm_ry + (t146 - (t6 - t3)));
+            let t181 = t180
+                * (k(0.6666666666666666) * t178 + k(0.3333333333333333) * t177
+                    - k(0.6666666666666666) * t176) + t30 * t179;
+            let t182 = k(0.05) * (t123 * slider_wx + t119 * slider_wz)
+                + k(0.1) * (t121 * slider_wx + t119 * slider_wy);
+            let t183 = t72 * arm_wx + t55 * arm_wy;
+            let t184 = t76 * arm_wx + t55 * arm_wz;
+            let t185 = t76 * arm_wy - t72 * arm_wz;
+            let t186 = arm_sx - (k(0.2) * t185 - k(0.1) * t184 + k(0.1) * t183)
+                - (slider_sx + t182);
+            let t187 = t53 - (arm_rx + (t115 + (t39 - t38)));
+            let t188 = t187
+                * (k(0.6666666666666666) * t185 + k(0.3333333333333333) * t184
+                    + k(0.6666666666666666) * t183) + t28 * t186;
+            let t189 = k(0.5) * (t188 + t181 - t174);
+            let t190 = k(30.0) * (k(0.1) + (t32 * t173 - (t30 * t180 + t28 * t187)));
+            let t191 = t28 * t190 + t28 * t189;
+            let t192 = k(0.6) + t191;
+            let t193 = t30 * t190 + t30 * t189;
+            let t194 = k(5.4) - t193;
+            let t195 = t32 * t190 + t32 * t189;
+            let t196 = k(1.8) - t195;
+            let t197 = t32 * t196 + (t30 * t194 - t28 * t192);
+            let t198 = t34 * t197;
+            let t199 = arm_wy * arm_wy;
             (
-                t6,
-                t9,
-                t12,
-                t15,
+                t2,
+                t5,
+                t7,
+                t10,
+                t13,
+                t14,
                 t16,
+                t19,
+                t20,
                 t22,
+                t23,
                 t24,
                 t25,
+                t26,
                 t28,
                 t29,
+                t30,
+                t31,
                 t32,
+                t33,
                 t34,
-                t35,
                 t36,
                 t37,
-                t38,
-                t39,
                 t40,
                 t41,
                 t42,
+                t43,
                 t44,
-                t45,
-                t46,
-                t47,
-                t48,
-                t49,
-                t50,
-                t51,
                 t52,
-                t53,
-                t54,
-                t58,
-                t59,
-                t60,
+                t55,
                 t61,
-                t62,
-                t63,
+                t64,
                 t67,
-                t68,
-                t69,
                 t70,
                 t71,
                 t72,
+                t73,
+                t74,
                 t75,
                 t76,
+                t77,
                 t78,
+                t79,
                 t80,
                 t82,
-                t83,
-                t85,
                 t86,
-                t88,
-                t89,
-                t91,
                 t92,
-                t93,
                 t94,
                 t95,
-                t97,
-                t99,
-                t100,
-                t101,
-                t102,
-                t103,
-                t106,
-                t107,
-                t110,
+                t104,
+                t105,
                 t112,
-                t113,
-                t114,
-                t116,
-                t117,
-                t118,
-                t120,
+                t119,
                 t121,
-                t122,
-                t125,
-                t126,
-                t127,
-                t128,
-                t129,
+                t123,
+                t124,
                 t130,
                 t131,
                 t132,
                 t133,
-                t135,
-                t136,
                 t137,
                 t138,
+                t139,
                 t140,
-                t141,
-                t142,
+                t143,
                 t151,
-                t152,
-                t153,
-                t154,
                 t155,
-                t156,
-                t157,
                 t158,
-                t159,
-                t163,
                 t164,
-                t165,
+                t166,
                 t167,
-                t168,
                 t169,
                 t170,
                 t171,
                 t172,
                 t173,
-                t174,
-                t175,
+                t176,
+                t177,
                 t178,
                 t179,
                 t180,
-                t181,
-                t182,
                 t183,
                 t184,
                 t185,
                 t186,
-                t188,
+                t187,
                 t189,
+                t190,
+                t191,
+                t192,
                 t193,
+                t194,
+                t195,
+                t196,
                 t197,
                 t198,
                 t199,
             )
         };
         let (
-            t204,
-            t210,
+            t211,
             t212,
-            t213,
-            t214,
+            t215,
+            t216,
+            t217,
             t219,
             t220,
             t221,
-            t226,
-            t227,
-            t228,
-            t232,
-            t233,
-            t234,
-            t236,
-            t238,
-            t248,
-            t250,
-            t251,
-            t253,
-            t254,
-            t255,
-            t256,
-            t258,
-            t259,
-            t261,
-            t262,
-            t264,
-            t274,
-            t275,
-            t277,
-            t278,
-            t279,
-            t284,
-            t285,
-            t287,
-            t288,
-            t289,
-            t306,
-            t307,
-            t308,
-            t365,
+            t230,
+            t231,
+            t240,
+            t241,
+            t328,
+            t329,
+            t330,
+            t331,
+            t332,
+            t333,
+            t335,
+            t337,
+            t338,
+            t340,
+            t344,
+            t346,
+            t347,
+            t348,
+            t350,
+            t352,
+            t353,
+            t354,
+            t355,
+            t356,
+            t359,
+            t362,
+            t364,
             t367,
+            t368,
             t369,
-            t371,
-            t372,
-            t373,
-            t374,
+            t378,
+            t379,
+            t380,
             t381,
             t382,
-            t383,
-            t384,
-            t389,
-            t391,
-            t393,
-            t395,
-            t396,
+            t388,
+            t394,
             t397,
             t398,
             t399,
         ) = {
-            let t200 = t199 - (t172 * t142 + (t171 * t141 + t170 * t140)) + t198;
-            let t201 = t180 * t159 + (t179 * t158 - t178 * t157)
-                + (t153 * t186 + (t152 * t185 + t151 * t184));
-            let t202 = t201 - (t153 * t183 + (t152 * t182 + t151 * t181))
-                + (k(0.01) + t200);
-            let t203 = k(0.6666666666666666) * t202;
-            let t204 = t203 + t197;
-            let t205 = t164 * (t165 * t76 + (t164 * t75 + t163 * t59))
-                - t163 * (t165 * t68 - (t164 * t59 + t163 * t44));
-            let t206 = t165 * (t165 * t78 + (t164 * t76 - t163 * t68)) + t205;
-            let t207 = k(2.0) * (t169 * t175 - (t168 * t174 + t167 * t173))
-                + (t169 * t172 + (t168 * t171 - t167 * t170));
-            let t208 = k(2.0) * (t180 * t186 + (t179 * t185 - t178 * t184))
-                - (t180 * t183 + (t179 * t182 - t178 * t181));
-            let t209 = t208
-                + (k(0.105) + (k(0.2) - (t207 - (k(0.6) * (t193 + t95) + t206))));
-            let t210 = k(0.6666666666666666) * t209
-                - (k(0.3333333333333333) * t188 - t203);
-            let t211 = k(0.05) * (t71 * slider_wx + t52 * slider_wz)
-                - k(0.1) * (t62 * slider_wx - t52 * slider_wy);
-            let t212 = t93 * arm_wx - t53 * arm_wy;
-            let t213 = t88 * arm_wx + t53 * arm_wz;
-            let t214 = t88 * arm_wy + t93 * arm_wz;
-            let t215 = arm_sz + (k(0.2) * t214 - k(0.1) * t213 - k(0.1) * t212)
-                - (slider_sz - t211);
-            let t216 = t86 - (arm_rz - (t127 - (k(0.2) * t35 + k(0.4) * t34)));
-            let t217 = t216
-                * (k(0.6666666666666666) * t214 + k(0.3333333333333333) * t213
-                    - k(0.6666666666666666) * t212) + t37 * t215;
-            let t218 = k(0.05) * (t70 * slider_wx - t49 * slider_wz)
-                - k(0.1) * (t61 * slider_wx + t49 * slider_wy);
-            let t219 = t92 * arm_wx + t50 * arm_wy;
-            let t220 = t85 * arm_wx - t50 * arm_wz;
-            let t221 = t85 * arm_wy + t92 * arm_wz;
-            let t222 = arm_sy - (k(0.2) * t221 - k(0.1) * t220 - k(0.1) * t219)
-                - (slider_sy + t218);
-            let t223 = t83 - (arm_ry + (t126 - (k(0.2) * t25 - k(0.4) * t24)));
-            let t224 = t223
-                * (k(0.6666666666666666) * t221 + k(0.3333333333333333) * t220
-                    - k(0.6666666666666666) * t219) + t29 * t222;
-            let t225 = k(0.05) * (t69 * slider_wx + t46 * slider_wz)
-                + k(0.1) * (t60 * slider_wx + t46 * slider_wy);
-            let t226 = t91 * arm_wx + t47 * arm_wy;
-            let t227 = t82 * arm_wx + t47 * arm_wz;
-            let t228 = t82 * arm_wy - t91 * arm_wz;
-            let t229 = arm_sx - (k(0.2) * t228 - k(0.1) * t227 + k(0.1) * t226)
-                - (slider_sx + t225);
-            let t230 = t80 - (arm_rx + (t125 + (k(0.2) * t12 - k(0.4) * t9)));
-            let t231 = t230
-                * (k(0.6666666666666666) * t228 + k(0.3333333333333333) * t227
-                    + k(0.6666666666666666) * t226) + t16 * t229;
-            let t232 = k(0.5) * (t231 + t224 - t217);
-            let t233 = k(30.0) * (k(0.1) + (t37 * t216 - (t29 * t223 + t16 * t230)));
-            let t234 = t16 * t233 + t16 * t232;
-            let t235 = k(0.6) + t234;
-            let t236 = t29 * t233 + t29 * t232;
-            let t237 = k(5.4) - t236;
-            let t238 = t37 * t233 + t37 * t232;
-            let t239 = k(1.8) - t238;
-            let t240 = k(0.1) * (t62 * t37 + (t61 * t29 - t60 * t16))
-                - k(0.05) * (t71 * t37 + (t70 * t29 + t69 * t16));
-            let t241 = slider_wy * slider_wy;
-            let t242 = slider_wz * slider_wz;
-            let t243 = slider_wy * slider_wz;
-            let t244 = k(0.001) * slider_wz;
-            let t245 = k(0.002) * slider_wy;
-            let t246 = slider_wx * (t245 - t244)
-                - (k(0.005) * t243 - k(0.003) * (t242 - t241));
-            let t247 = t246 + (t233 * t240 + t232 * t240)
-                - (t32 * t239 + (t22 * t237 - t6 * t235));
-            let t248 = t37 * t239 + (t29 * t237 - t16 * t235);
-            let t249 = t42 * t248;
-            let t250 = arm_wy * arm_wy;
-            let t251 = arm_wz * arm_wz;
-            let t252 = t251 + t250;
-            let t253 = arm_wx * arm_wy;
-            let t254 = arm_wx * arm_wz;
-            let t255 = t82 * t254 + (t91 * t253 + t47 * t252);
-            let t256 = arm_wx * arm_wx;
-            let t257 = t251 + t256;
-            let t258 = arm_wy * arm_wz;
-            let t259 = t82 * t258 - (t91 * t257 + t47 * t253);
-            let t260 = t229
-                * (k(0.4472135954999579) * t228 - k(0.8944271909999159) * t227);
-            let t261 = k(0.2) * t255;
-            let t262 = k(0.1) * t259;
-            let t263 = t250 + t256;
-            let t264 = t82 * t263 - (t91 * t258 - t47 * t254);
-            let t265 = slider_wx * slider_wy;
-            let t266 = slider_wx * slider_wx;
-            let t267 = t242 + t266;
-            let t268 = slider_wx * slider_wz;
-            let t269 = t241 + t266;
-            let t270 = k(0.1) * (t69 * t269 - (t60 * t243 - t46 * t268))
-                + k(0.05) * (t69 * t243 - (t60 * t267 + t46 * t265));
-            let t271 = t270 + (k(0.1) * t264 - (t262 + t261));
-            let t272 = k(1.7888543819998317) * t12 - k(0.8944271909999159) * t9;
-            let t273 = t272 * t271 + t260
-                + (t260
-                    + t230
-                        * (k(0.8944271909999159) * t259 + k(0.4472135954999579) * t255));
-            let t274 = t85 * t254 - (t92 * t253 + t50 * t252);
-            let t275 = t85 * t258 + (t92 * t257 + t50 * t253);
-            let t276 = t222
-                * (k(0.4472135954999579) * t221 - k(0.8944271909999159) * t220);
-            let t277 = k(0.2) * t274;
-            let t278 = k(0.1) * t275;
-            let t279 = t85 * t263 + (t92 * t258 - t50 * t254);
-            let t280 = k(0.1) * (t70 * t269 + (t61 * t243 - t49 * t268))
-                + k(0.05) * (t70 * t243 + (t61 * t267 + t49 * t265));
-            let t281 = t280 + (k(0.1) * t279 - (t278 + t277));
-            let t282 = k(1.7888543819998317) * t25 - k(0.8944271909999159) * t24;
-            let t283 = t282 * t281 - t276
-                - (t276
-                    + t223
-                        * (k(0.8944271909999159) * t275 + k(0.4472135954999579) * t274));
-            let t284 = t88 * t254 - (t93 * t253 - t53 * t252);
-            let t285 = t88 * t258 + (t93 * t257 - t53 * t253);
-            let t286 = t215
-                * (k(0.4472135954999579) * t214 - k(0.8944271909999159) * t213);
-            let t287 = k(0.2) * t284;
-            let t288 = k(0.1) * t285;
-            let t289 = t88 * t263 + (t93 * t258 + t53 * t254);
-            let t290 = k(0.1) * (t71 * t269 + (t62 * t243 + t52 * t268))
-                + k(0.05) * (t71 * t243 + (t62 * t267 - t52 * t265));
-            let t291 = t290 + (k(0.1) * t289 - (t288 + t287));
-            let t292 = k(1.7888543819998317) * t35 + k(0.8944271909999159) * t34;
-            let t293 = t292 * t291 + t286
-                + (t286
-                    + t216
-                        * (k(0.8944271909999159) * t285 + k(0.4472135954999579) * t284));
-            let t294 = t293 + (t283 - t273);
-            let t295 = t229
-                * (k(0.5962847939999439) * t228 + k(0.29814239699997197) * t227
-                    - k(0.7453559924999299) * t226);
-            let t296 = t295
-                + t230
-                    * (k(0.7453559924999299) * t264
-                        - (k(0.29814239699997197) * t259
-                            - k(0.5962847939999439) * t255));
-            let t297 = k(1.4907119849998598) * t15
-                + (k(0.5962847939999439) * t12 + k(1.1925695879998879) * t9);
-            let t298 = t222
-                * (k(0.5962847939999439) * t221 + k(0.29814239699997197) * t220
-                    + k(0.7453559924999299) * t219);
-            let t299 = t298
-                + t223
-                    * (k(0.7453559924999299) * t279
-                        - (k(0.29814239699997197) * t275
-                            - k(0.5962847939999439) * t274));
-            let t300 = k(1.4907119849998598) * t28
-                - (k(0.5962847939999439) * t25 + k(1.1925695879998879) * t24);
-            let t301 = t300 * t281 - t298 - t299 + (t297 * t271 - t295 - t296);
-            let t302 = t215
-                * (k(0.5962847939999439) * t214 + k(0.29814239699997197) * t213
-                    + k(0.7453559924999299) * t212);
-            let t303 = t302
-                + t216
-                    * (k(0.7453559924999299) * t289
-                        - (k(0.29814239699997197) * t285
-                            - k(0.5962847939999439) * t284));
-            let t304 = k(1.4907119849998598) * t36
-                - (k(0.5962847939999439) * t35 - k(1.1925695879998879) * t34);
-            let t305 = t304 * t291 + t302 + t303 + t301;
-            let t306 = t297 * t305 - t272 * t294;
-            let t307 = t300 * t305 + t282 * t294;
-            let t308 = t304 * t305 + t292 * t294;
-            let t309 = k(0.6666666666666666) * t164;
-            let t310 = k(0.6666666666666666) * t136;
-            let t311 = t310 + k(0.3333333333333333) * t135;
-            let t312 = k(0.6666666666666666) * t63;
-            let t313 = t312 + k(0.3333333333333333) * t54;
-            let t314 = k(0.5962847939999439) * t313 - k(0.29814239699997197) * t311
-                + k(0.7453559924999299) * (t309 + k(0.3333333333333333) * t163);
-            let t315 = t137 + t135;
-            let t316 = t72 + t54;
-            let t317 = k(0.29814239699997197) * t316 + k(0.5962847939999439) * t315;
-            let t318 = k(0.3975231959999626) * t316 - k(0.1987615979999813) * t315
-                + k(0.49690399499995325) * (t165 + t163);
-            let t319 = k(0.4472135954999579) * t313 + k(0.8944271909999159) * t311;
-            let t320 = t319 * t318 - t317 * t314;
-            let t321 = k(0.4472135954999579)
-                * (k(0.29814239699997197) * t72 + k(0.7453559924999299) * t63)
+            let t200 = arm_wz * arm_wz;
+            let t201 = t200 + t199;
+            let t202 = arm_wx * arm_wy;
+            let t203 = arm_wx * arm_wz;
+            let t204 = t76 * t203 + (t72 * t202 + t55 * t201);
+            let t205 = arm_wx * arm_wx;
+            let t206 = t200 + t205;
+            let t207 = arm_wy * arm_wz;
+            let t208 = t76 * t207 - (t72 * t206 + t55 * t202);
+            let t209 = t186
+                * (k(0.4472135954999579) * t185 - k(0.8944271909999159) * t184);
+            let t210 = k(1.7888543819998317) * t25 - k(0.8944271909999159) * t24;
+            let t211 = k(0.2) * t204;
+            let t212 = k(0.1) * t208;
+            let t213 = t199 + t205;
+            let t214 = t76 * t213 - (t72 * t207 - t55 * t203);
+            let t215 = slider_wx * slider_wy;
+            let t216 = slider_wx * slider_wx;
+            let t217 = slider_wz * slider_wz;
+            let t218 = t217 + t216;
+            let t219 = slider_wy * slider_wz;
+            let t220 = slider_wx * slider_wz;
+            let t221 = slider_wy * slider_wy;
+            let t222 = t221 + t216;
+            let t223 = k(0.1) * (t123 * t222 - (t121 * t219 - t119 * t220))
+                + k(0.05) * (t123 * t219 - (t121 * t218 + t119 * t215));
+            let t224 = t223 + (k(0.1) * t214 - (t212 + t211));
+            let t225 = t224 * t210 + t209
+                + (t209
+                    + t187
+                        * (k(0.8944271909999159) * t208 + k(0.4472135954999579) * t204));
+            let t226 = t77 * t203 - (t73 * t202 + t64 * t201);
+            let t227 = t77 * t207 + (t73 * t206 + t64 * t202);
+            let t228 = t179
+                * (k(0.4472135954999579) * t178 - k(0.8944271909999159) * t177);
+            let t229 = k(1.7888543819998317) * t5 - k(0.8944271909999159) * t2;
+            let t230 = k(0.2) * t226;
+            let t231 = k(0.1) * t227;
+            let t232 = t77 * t213 + (t73 * t207 - t64 * t203);
+            let t233 = k(0.1) * (t132 * t222 + (t131 * t219 - t130 * t220))
+                + k(0.05) * (t132 * t219 + (t131 * t218 + t130 * t215));
+            let t234 = t233 + (k(0.1) * t232 - (t231 + t230));
+            let t235 = t234 * t229 - t228
+                - (t228
+                    + t180
+                        * (k(0.8944271909999159) * t227 + k(0.4472135954999579) * t226));
+            let t236 = t78 * t203 - (t74 * t202 - t70 * t201);
+            let t237 = t78 * t207 + (t74 * t206 - t70 * t202);
+            let t238 = t172
+                * (k(0.4472135954999579) * t171 - k(0.8944271909999159) * t170);
+            let t239 = k(1.7888543819998317) * t13 + k(0.8944271909999159) * t10;
+            let t240 = k(0.2) * t236;
+            let t241 = k(0.1) * t237;
+            let t242 = t78 * t213 + (t74 * t207 + t70 * t203);
+            let t243 = k(0.1) * (t139 * t222 + (t138 * t219 + t137 * t220))
+                + k(0.05) * (t139 * t219 + (t138 * t218 - t137 * t215));
+            let t244 = t243 + (k(0.1) * t242 - (t241 + t240));
+            let t245 = t244 * t239 + t238
+                + (t238
+                    + t173
+                        * (k(0.8944271909999159) * t237 + k(0.4472135954999579) * t236));
+            let t246 = t245 + (t235 - t225);
+            let t247 = t186
+                * (k(0.5962847939999439) * t185 + k(0.29814239699997197) * t184
+                    - k(0.7453559924999299) * t183);
+            let t248 = t247
+                + t187
+                    * (k(0.7453559924999299) * t214
+                        - (k(0.29814239699997197) * t208
+                            - k(0.5962847939999439) * t204));
+            let t249 = k(1.4907119849998598) * t26
+                + (k(0.5962847939999439) * t25 + k(1.1925695879998879) * t24);
+            let t250 = t179
+                * (k(0.5962847939999439) * t178 + k(0.29814239699997197) * t177
+                    + k(0.7453559924999299) * t176);
+            let t251 = t250
+                + t180
+                    * (k(0.7453559924999299) * t232
+                        - (k(0.29814239699997197) * t227
+                            - k(0.5962847939999439) * t226));
+            let t252 = k(1.4907119849998598) * t20
+                - (k(0.5962847939999439) * t5 + k(1.1925695879998879) * t2);
+            let t253 = t234 * t252 - t250 - t251 + (t224 * t249 - t247 - t248);
+            let t254 = t172
+                * (k(0.5962847939999439) * t171 + k(0.29814239699997197) * t170
+                    + k(0.7453559924999299) * t169);
+            let t255 = t254
+                + t173
+                    * (k(0.7453559924999299) * t242
+                        - (k(0.29814239699997197) * t237
+                            - k(0.5962847939999439) * t236));
+            let t256 = k(1.4907119849998598) * t14
+                - (k(0.5962847939999439) * t13 - k(1.1925695879998879) * t10);
+            let t257 = t244 * t256 + t254 + t255 + t253;
+            let t258 = t74 * t138 + (t73 * t131 + t72 * t121);
+            let t259 = t74 * t139 + (t73 * t132 - t72 * t123);
+            let t260 = t70 * t138 - (t64 * t131 + t55 * t121);
+            let t261 = t70 * t139 - (t64 * t132 - t55 * t123);
+            let t262 = k(0.4472135954999579)
+                * (k(0.29814239699997197) * t261 + k(0.7453559924999299) * t260)
                 + k(0.8944271909999159)
-                    * (k(0.29814239699997197) * t137 + k(0.7453559924999299) * t136);
-            let t322 = k(0.3333333333333333) * t137 - t310;
-            let t323 = k(0.3333333333333333) * t72 - t312;
-            let t324 = k(0.5962847939999439) * t323 - k(0.29814239699997197) * t322
-                + k(0.7453559924999299) * (k(0.3333333333333333) * t165 - t309);
-            let t325 = k(0.4472135954999579) * t323 + k(0.8944271909999159) * t322;
-            let t326 = t325 * t314 - t319 * t324;
-            let t327 = k(0.4472135954999579)
-                * (k(0.5962847939999439) * t72 - k(0.7453559924999299) * t54)
+                    * (k(0.29814239699997197) * t259 + k(0.7453559924999299) * t258);
+            let t263 = t78 * t137 - (t77 * t130 - t76 * t119);
+            let t264 = t78 * t138 + (t77 * t131 - t76 * t121);
+            let t265 = k(0.6666666666666666) * t264;
+            let t266 = t74 * t137 - (t73 * t130 + t72 * t119);
+            let t267 = k(0.6666666666666666) * t258;
+            let t268 = t267 + k(0.3333333333333333) * t266;
+            let t269 = t70 * t137 + (t64 * t130 + t55 * t119);
+            let t270 = k(0.6666666666666666) * t260;
+            let t271 = t270 + k(0.3333333333333333) * t269;
+            let t272 = k(0.5962847939999439) * t271 - k(0.29814239699997197) * t268
+                + k(0.7453559924999299) * (t265 + k(0.3333333333333333) * t263);
+            let t273 = t259 + t266;
+            let t274 = t261 + t269;
+            let t275 = k(0.29814239699997197) * t274 + k(0.5962847939999439) * t273;
+            let t276 = k(0.4472135954999579) * t271 + k(0.8944271909999159) * t268;
+            let t277 = t78 * t139 + (t77 * t132 + t76 * t123);
+            let t278 = k(0.3975231959999626) * t274 - k(0.1987615979999813) * t273
+                + k(0.49690399499995325) * (t277 + t263);
+            let t279 = t278 * t276 - t275 * t272;
+            let t280 = k(0.4472135954999579)
+                * (k(0.5962847939999439) * t261 - k(0.7453559924999299) * t269)
                 + k(0.8944271909999159)
-                    * (k(0.5962847939999439) * t137 - k(0.7453559924999299) * t135);
-            let t328 = t317 * t324 - t325 * t318;
-            let t329 = k(0.4472135954999579)
-                * (k(0.5962847939999439) * t63 + k(0.29814239699997197) * t54)
+                    * (k(0.5962847939999439) * t259 - k(0.7453559924999299) * t266);
+            let t281 = k(0.3333333333333333) * t259 - t267;
+            let t282 = k(0.3333333333333333) * t261 - t270;
+            let t283 = k(0.5962847939999439) * t282 - k(0.29814239699997197) * t281
+                + k(0.7453559924999299) * (k(0.3333333333333333) * t277 - t265);
+            let t284 = k(0.4472135954999579) * t282 + k(0.8944271909999159) * t281;
+            let t285 = t284 * t272 - t283 * t276;
+            let t286 = k(0.4472135954999579)
+                * (k(0.5962847939999439) * t260 + k(0.29814239699997197) * t269)
                 + k(0.8944271909999159)
-                    * (k(0.5962847939999439) * t136 + k(0.29814239699997197) * t135);
-            let t330 = k(1.0) / (t329 * t328 + (t327 * t326 + t321 * t320));
-            let t331 = slider_wy * t137 + slider_wz * t136;
-            let t332 = slider_wy * t165 + slider_wz * t164;
-            let t333 = t242 + t241;
-            let t334 = t268 * t72 - (t265 * t63 - t333 * t54)
-                - k(2.0) * (arm_wy * t332 + arm_wz * t331);
-            let t335 = t334 + (t254 * t163 - (t253 * t135 - t252 * t54));
-            let t336 = slider_wx * t137 + slider_wz * t135;
-            let t337 = slider_wx * t165 + slider_wz * t163;
-            let t338 = t243 * t72 + (t267 * t63 - t265 * t54)
-                + k(2.0) * (arm_wy * t337 + arm_wz * t336);
-            let t339 = t338 + (t254 * t164 - (t253 * t136 - t252 * t63));
-            let t340 = slider_wx * t136 - slider_wy * t135;
-            let t341 = slider_wx * t164 - slider_wy * t163;
-            let t342 = t269 * t72 + (t243 * t63 + t268 * t54)
-                - k(2.0) * (arm_wy * t341 + arm_wz * t340);
-            let t343 = t342 + (t254 * t165 - (t253 * t137 - t252 * t72));
-            let t344 = slider_wy * t72 + slider_wz * t63;
-            let t345 = t268 * t137 - (t265 * t136 - t333 * t135)
-                + k(2.0) * (arm_wx * t332 + arm_wz * t344);
-            let t346 = t345 + (t258 * t163 + (t257 * t135 - t253 * t54));
-            let t347 = slider_wx * t72 + slider_wz * t54;
-            let t348 = t243 * t137 + (t267 * t136 - t265 * t135)
-                - k(2.0) * (arm_wx * t337 + arm_wz * t347);
-            let t349 = t348 + (t258 * t164 + (t257 * t136 - t253 * t63));
-            let t350 = slider_wx * t63 - slider_wy * t54;
-            let t351 = t269 * t137 + (t243 * t136 + t268 * t135)
-                + k(2.0) * (arm_wx * t341 + arm_wz * t350);
-            let t352 = t351 + (t258 * t165 + (t257 * t137 - t253 * t72));
-            let t353 = k(0.8944271909999159)
-                * (k(0.7453559924999299) * t352
-                    - (k(0.29814239699997197) * t349 - k(0.5962847939999439) * t346))
+                    * (k(0.5962847939999439) * t258 + k(0.29814239699997197) * t266);
+            let t287 = t275 * t283 - t278 * t284;
+            let t288 = k(1.0) / (t287 * t286 + (t285 * t280 + t279 * t262));
+            let t289 = slider_wy * t259 + slider_wz * t258;
+            let t290 = slider_wy * t277 + slider_wz * t264;
+            let t291 = t217 + t221;
+            let t292 = t220 * t261 - (t215 * t260 - t291 * t269)
+                - k(2.0) * (arm_wy * t290 + arm_wz * t289);
+            let t293 = t292 + (t203 * t263 - (t202 * t266 - t201 * t269));
+            let t294 = slider_wx * t259 + slider_wz * t266;
+            let t295 = slider_wx * t277 + slider_wz * t263;
+            let t296 = t219 * t261 + (t218 * t260 - t215 * t269)
+                + k(2.0) * (arm_wy * t295 + arm_wz * t294);
+            let t297 = t296 + (t203 * t264 - (t202 * t258 - t201 * t260));
+            let t298 = slider_wx * t258 - slider_wy * t266;
+            let t299 = slider_wx * t264 - slider_wy * t263;
+            let t300 = t222 * t261 + (t219 * t260 + t220 * t269)
+                - k(2.0) * (arm_wy * t299 + arm_wz * t298);
+            let t301 = t300 + (t203 * t277 - (t202 * t259 - t201 * t261));
+            let t302 = slider_wy * t261 + slider_wz * t260;
+            let t303 = t220 * t259 - (t215 * t258 - t291 * t266)
+                + k(2.0) * (arm_wx * t290 + arm_wz * t302);
+            let t304 = t303 + (t207 * t263 + (t206 * t266 - t202 * t269));
+            let t305 = slider_wx * t261 + slider_wz * t269;
+            let t306 = t219 * t259 + (t218 * t258 - t215 * t266)
+                - k(2.0) * (arm_wx * t295 + arm_wz * t305);
+            let t307 = t306 + (t207 * t264 + (t206 * t258 - t202 * t260));
+            let t308 = slider_wx * t260 - slider_wy * t269;
+            let t309 = t222 * t259 + (t219 * t258 + t220 * t266)
+                + k(2.0) * (arm_wx * t299 + arm_wz * t308);
+            let t310 = t309 + (t207 * t277 + (t206 * t259 - t202 * t261));
+            let t311 = k(0.8944271909999159)
+                * (k(0.7453559924999299) * t310
+                    - (k(0.29814239699997197) * t307 - k(0.5962847939999439) * t304))
                 + k(0.4472135954999579)
-                    * (k(0.7453559924999299) * t343
-                        - (k(0.29814239699997197) * t339
-                            - k(0.5962847939999439) * t335));
-            let t354 = k(0.6666666666666666) * t343
-                + (k(0.3333333333333333) * t339 - k(0.6666666666666666) * t335);
-            let t355 = k(0.6666666666666666) * t352
-                + (k(0.3333333333333333) * t349 - k(0.6666666666666666) * t346);
-            let t356 = k(0.8944271909999159) * t355 + k(0.4472135954999579) * t354;
-            let t357 = t268 * t165 - (t265 * t164 - t333 * t163)
-                - k(2.0) * (arm_wx * t331 - arm_wy * t344);
-            let t358 = k(0.6666666666666666)
-                * (t357 + (t263 * t163 + (t258 * t135 + t254 * t54)));
-            let t359 = t243 * t165 + (t267 * t164 - t265 * t163)
-                + k(2.0) * (arm_wx * t336 - arm_wy * t347);
-            let t360 = k(0.3333333333333333)
-                * (t359 + (t263 * t164 + (t258 * t136 + t254 * t63)));
-            let t361 = t269 * t165 + (t243 * t164 + t268 * t163)
-                - k(2.0) * (arm_wx * t340 - arm_wy * t350);
-            let t362 = k(0.6666666666666666)
-                * (t361 + (t263 * t165 + (t258 * t137 + t254 * t72)));
-            let t363 = k(0.7453559924999299) * (t362 + (t360 - t358))
-                - (k(0.29814239699997197) * t355 - k(0.5962847939999439) * t354);
-            let t364 = t363 * (t330 * (t317 * t329 - t319 * t327))
-                + t356 * (t330 * (t314 * t327 - t318 * t329));
-            let t365 = t364 - t353 * (t320 * t330);
-            let t366 = t363 * (t330 * (t319 * t321 - t325 * t329))
-                + t356 * (t330 * (t324 * t329 - t314 * t321));
-            let t367 = t366 - t353 * (t326 * t330);
-            let t368 = t363 * (t330 * (t325 * t327 - t317 * t321))
-                + t356 * (t330 * (t318 * t321 - t324 * t327));
-            let t369 = t368 - t353 * (t328 * t330);
-            let t370 = t68 * t369 + (t59 * t367 + t44 * t365)
-                - (t120 * t308 + (t116 * t307 + t112 * t306));
-            let t371 = t370 - (t38 * t249 + t247);
-            let t372 = k(0.2) * t45;
-            let t373 = k(0.2) * t48;
-            let t374 = k(0.2) * t51;
-            let t375 = t52 * t37 - (t49 * t29 - t46 * t16);
-            let t376 = k(0.1) * t375;
-            let t377 = k(0.003) * slider_wx;
-            let t378 = slider_wy * (t244 + t377)
-                - (k(0.005) * t268 - k(0.002) * (t242 - t266));
-            let t379 = t378 - (t233 * t376 + t232 * t376)
-                - (t374 * t239 - (t373 * t237 + t372 * t235));
-            let t380 = t76 * t369 - (t75 * t367 + t59 * t365)
-                + (t121 * t308 - (t117 * t307 - t113 * t306));
-            let t381 = t380 + (t58 * t249 + t379);
-            let t382 = k(0.1) * t45;
-            let t383 = k(0.1) * t48;
-            let t384 = k(0.1) * t51;
-            let t385 = k(0.05) * t375;
-            let t386 = slider_wz * (t245 + t377)
-                - (k(0.01) * t265 - k(0.001) * (t241 - t266));
-            let t387 = t386 + (t233 * t385 + t232 * t385)
-                + (t384 * t239 - (t383 * t237 + t382 * t235));
-            let t388 = t78 * t369 - (t76 * t367 - t68 * t365)
-                - (t122 * t308 - (t118 * t307 - t114 * t306));
-            let t389 = t388 - (t67 * t249 - t387);
-            let t390 = t103 * t308 + (t101 * t307 + t99 * t306) - k(0.6) * t306;
-            let t391 = t114 * t369 + (t113 * t367 + t112 * t365) + t390
-                - (t235 + t39 * t249);
-            let t392 = t107 * t308 + (t106 * t307 + t101 * t306) - k(0.6) * t307;
-            let t393 = t118 * t369 + (t117 * t367 - t116 * t365) - t392
-                - (t237 - t40 * t249);
-            let t394 = t110 * t308 + (t107 * t307 + t103 * t306) - k(0.6) * t308;
-            let t395 = t122 * t369 + (t121 * t367 + t120 * t365) + t394
-                + (t239 - t41 * t249);
-            let t396 = t102 * t395 - (t100 * t393 - t97 * t391)
-                - (t72 * t389 + (t63 * t381 - t54 * t371));
-            let t397 = k(0.6666666666666666) * t94;
-            let t398 = t397 - k(0.3333333333333333) * t89;
-            let t399 = k(6.0) * t;
+                    * (k(0.7453559924999299) * t301
+                        - (k(0.29814239699997197) * t297
+                            - k(0.5962847939999439) * t293));
+            let t312 = k(0.6666666666666666) * t301
+                + (k(0.3333333333333333) * t297 - k(0.6666666666666666) * t293);
+            let t313 = k(0.6666666666666666) * t310
+                + (k(0.3333333333333333) * t307 - k(0.6666666666666666) * t304);
+            let t314 = k(0.8944271909999159) * t313 + k(0.4472135954999579) * t312;
+            let t315 = t220 * t277 - (t215 * t264 - t291 * t263)
+                - k(2.0) * (arm_wx * t289 - arm_wy * t302);
+            let t316 = k(0.6666666666666666)
+                * (t315 + (t213 * t263 + (t207 * t266 + t203 * t269)));
+            let t317 = t219 * t277 + (t218 * t264 - t215 * t263)
+                + k(2.0) * (arm_wx * t294 - arm_wy * t305);
+            let t318 = k(0.3333333333333333)
+                * (t317 + (t213 * t264 + (t207 * t258 + t203 * t260)));
+            let t319 = t222 * t277 + (t219 * t264 + t220 * t263)
+                - k(2.0) * (arm_wx * t298 - arm_wy * t308);
+            let t320 = k(0.6666666666666666)
+                * (t319 + (t213 * t277 + (t207 * t259 + t203 * t261)));
+            let t321 = k(0.7453559924999299) * (t320 + (t318 - t316))
+                - (k(0.29814239699997197) * t313 - k(0.5962847939999439) * t312);
+            let t322 = t321 * (t288 * (t275 * t286 - t276 * t280))
+                + t314 * (t288 * (t272 * t280 - t278 * t286));
+            let t323 = t322 - t311 * (t279 * t288);
+            let t324 = t321 * (t288 * (t276 * t262 - t284 * t286))
+                + t314 * (t288 * (t283 * t286 - t272 * t262));
+            let t325 = t324 - t311 * (t285 * t288);
+            let t326 = t288 * (t284 * t280 - t275 * t262) * t321
+                + t288 * (t278 * t262 - t283 * t280) * t314;
+            let t327 = t326 - t287 * t288 * t311;
+            let t328 = t139 * t327 - (t138 * t325 + t137 * t323);
+            let t329 = t132 * t327 - (t131 * t325 - t130 * t323);
+            let t330 = t67 * t329 - t61 * t328 - (t249 * t257 - t210 * t246);
+            let t331 = t123 * t327 + (t121 * t325 - t119 * t323);
+            let t332 = t52 * t328 - t67 * t331 - (t252 * t257 + t229 * t246);
+            let t333 = t61 * t331 - t52 * t329 - (t256 * t257 + t239 * t246);
+            let t334 = t44 * t333 + (t42 * t332 + t36 * t330) - k(0.6) * t330;
+            let t335 = t334 + (t192 + t29 * t198);
+            let t336 = t95 * t333 + (t94 * t332 + t42 * t330) - k(0.6) * t332;
+            let t337 = t336 - (t194 - t31 * t198);
+            let t338 = t41 * (t337 - (k(13.5) + t193)) - t23 * (t335 + (k(1.5) - t191));
+            let t339 = t105 * t333 + (t95 * t332 + t44 * t330) - k(0.6) * t333;
+            let t340 = t339 - (t196 - t33 * t198);
+            let t341 = k(0.6666666666666666) * t75;
+            let t342 = t341 - k(0.3333333333333333) * t79;
+            let t343 = k(6.0) * t;
+            let t344 = t343.sin();
+            let t345 = k(0.5) * t344;
+            let t346 = t345.cos();
+            let t347 = t345.sin();
+            let t348 = k(0.4472135954999579) * t347;
+            let t349 = k(0.2) + k(4.0) * t;
+            let t350 = t349.sin();
+            let t351 = k(0.7) * t350;
+            let t352 = t351.sin();
+            let t353 = k(0.8944271909999159) * t347;
+            let t354 = t351.cos();
+            let t355 = t354 * t353 + t352 * t348;
+            let t356 = t352 * t353 - t354 * t348;
+            let t357 = k(0.3333333333333333) * (t356 * t74 + (t346 * t72 - t355 * t73))
+                + k(0.6666666666666666) * (t356 * t70 + (t355 * t64 - t346 * t55));
+            let t358 = k(0.6666666666666666) * (t346 * t76 + t355 * t77 - t356 * t78)
+                - t357;
+            let t359 = k(0.4) - k(0.4) * t346;
+            let t360 = t352 * t359;
+            let t361 = k(0.2) + k(0.8) * t346;
+            let t362 = t354 * t361 - t360;
+            let t363 = t354 * t359;
+            let t364 = t363 + t352 * t361;
+            let t365 = k(0.3333333333333333) * (t364 * t74 - (t353 * t72 + t362 * t73))
+                + k(0.6666666666666666) * (t364 * t70 + (t362 * t64 + t353 * t55));
+            let t366 = k(0.6666666666666666) * (t353 * t76 - t362 * t77 + t364 * t78)
+                + t365;
+            let t367 = k(0.8) + k(0.2) * t346;
+            let t368 = t363 - t352 * t367;
+            let t369 = t360 + t354 * t367;
+            let t370 = k(0.3333333333333333) * (t369 * t74 + (t348 * t72 - t368 * t73))
+                + k(0.6666666666666666) * (t369 * t70 + (t368 * t64 - t348 * t55));
+            let t371 = k(0.6666666666666666) * (t348 * t76 + t368 * t77 - t369 * t78)
+                - t370;
+            let t372 = k(0.6666666666666666) * t371
+                + (k(0.3333333333333333) * t366 - k(0.6666666666666666) * t358);
+            let t373 = turn0.cos();
+            let t374 = k(0.3333333333333333) * t371
+                + k(0.6666666666666666) * (t366 + t358);
+            let t375 = turn0.sin();
+            let t376 = (t373 * t374 - t375 * t372).atan2(t375 * t374 + t373 * t372);
+            let t377 = k(0.3) - (turn0 + t376);
+            let t378 = t343.cos();
+            let t379 = k(2.8) * t349.cos();
+            let t380 = t379 * t348 + k(2.6832815729997477) * t378;
+            let t381 = t379 * t353 - k(1.3416407864998738) * t378;
+            let t382 = t379 * t346;
+            let t383 = k(0.3333333333333333) * t382 - k(0.6666666666666666) * t381
+                + k(0.6666666666666666) * t380
+                - (k(0.3333333333333333) * arm_wx + k(0.6666666666666666) * arm_wy
+                    + k(0.6666666666666666) * arm_wz);
+            let t384 = t190 * t342
+                + (k(0.03333333333333333) * t383
+                    + (k(0.6666666666666666) * t377 + t189 * t342));
+            let t385 = k(0.02) * arm_wz;
+            let t386 = k(0.03) * arm_wy;
+            let t387 = arm_wx * (t386 + t385)
+                + (k(0.05) * t207 + k(0.01) * (t200 - t199));
+            let t388 = t387 + t384;
+            let t389 = k(0.6666666666666666) * (t79 + t71);
+            let t390 = k(1.3333333333333333) * t377;
+            let t391 = k(0.06666666666666667) * t383;
+            let t392 = k(0.01) * arm_wx;
+            let t393 = arm_wy * (t385 - t392)
+                + (k(0.1) * t203 - k(0.03) * (t200 - t205));
+            let t394 = t393 + (t190 * t389 - (t391 + (t390 - t189 * t389)));
+            let t395 = k(0.3333333333333333) * t71 + t341;
+            let t396 = arm_wz * (t386 + t392)
+                - (k(0.05) * t202 + k(0.02) * (t199 - t205));
+            let t397 = t396 + (t190 * t395 - (t391 + (t390 - t189 * t395)));
+            let t398 = k(0.1) * (t138 * t32 + (t131 * t30 - t121 * t28))
+                - k(0.05) * (t139 * t32 + (t132 * t30 + t123 * t28));
+            let t399 = k(0.001) * slider_wz;
             (
-                t204,
-                t210,
+                t211,
                 t212,
-                t213,
-                t214,
+                t215,
+                t216,
+                t217,
                 t219,
                 t220,
                 t221,
-                t226,
-                t227,
-                t228,
-                t232,
-                t233,
-                t234,
-                t236,
-                t238,
-                t248,
-                t250,
-                t251,
-                t253,
-                t254,
-                t255,
-                t256,
-                t258,
-                t259,
-                t261,
-                t262,
-                t264,
-                t274,
-                t275,
-                t277,
-                t278,
-                t279,
-                t284,
-                t285,
-                t287,
-                t288,
-                t289,
-                t306,
-                t307,
-                t308,
-                t365,
+                t230,
+                t231,
+                t240,
+                t241,
+                t328,
+                t329,
+                t330,
+                t331,
+                t332,
+                t333,
+                t335,
+                t337,
+                t338,
+                t340,
+                t344,
+                t346,
+                t347,
+                t348,
+                t350,
+                t352,
+                t353,
+                t354,
+                t355,
+                t356,
+                t359,
+                t362,
+                t364,
                 t367,
+                t368,
                 t369,
-                t371,
-                t372,
-                t373,
-                t374,
+                t378,
+                t379,
+                t380,
                 t381,
                 t382,
-                t383,
-                t384,
-                t389,
-                t391,
-                t393,
-                t395,
-                t396,
+                t388,
+                t394,
                 t397,
                 t398,
                 t399,
             )
         };
-        let (t476, t499, t509, t594, t596, t597, t599) = {
-            let t400 = t399.sin();
-            let t401 = k(0.5) * t400;
-            let t402 = t401.cos();
-            let t403 = t401.sin();
-            let t404 = k(0.4472135954999579) * t403;
-            let t405 = k(0.2) + k(4.0) * t;
-            let t406 = t405.sin();
-            let t407 = k(0.7) * t406;
-            let t408 = t407.sin();
-            let t409 = k(0.8944271909999159) * t403;
-            let t410 = t407.cos();
-            let t411 = t410 * t409 + t408 * t404;
-            let t412 = t408 * t409 - t410 * t404;
-            let t413 = k(0.6666666666666666) * (t412 * t53 + (t411 * t50 - t402 * t47));
-            let t414 = t412 * t93 + (t402 * t91 - t411 * t92);
-            let t415 = k(0.3333333333333333) * t414;
-            let t416 = t402 * t82 + t411 * t85 - t412 * t88;
-            let t417 = k(0.6666666666666666) * t416 - (t415 + t413);
-            let t418 = k(0.4) - k(0.4) * t402;
-            let t419 = t408 * t418;
-            let t420 = k(0.2) + k(0.8) * t402;
-            let t421 = t410 * t420 - t419;
-            let t422 = t410 * t418;
-            let t423 = t422 + t408 * t420;
-            let t424 = k(0.6666666666666666) * (t423 * t53 + (t421 * t50 + t409 * t47));
-            let t425 = t423 * t93 - (t409 * t91 + t421 * t92);
-            let t426 = k(0.3333333333333333) * t425;
-            let t427 = t409 * t82 - t421 * t85 + t423 * t88;
-            let t428 = k(0.6666666666666666) * t427 + (t426 + t424);
-            let t429 = k(0.8) + k(0.2) * t402;
-            let t430 = t422 - t408 * t429;
-            let t431 = t419 + t410 * t429;
-            let t432 = k(0.6666666666666666) * (t431 * t53 + (t430 * t50 - t404 * t47));
-            let t433 = t431 * t93 + (t404 * t91 - t430 * t92);
-            let t434 = k(0.3333333333333333) * t433;
-            let t435 = t404 * t82 + t430 * t85 - t431 * t88;
-            let t436 = k(0.6666666666666666) * t435 - (t434 + t432);
-            let t437 = k(0.6666666666666666) * t436
-                + (k(0.3333333333333333) * t428 - k(0.6666666666666666) * t417);
-            let t438 = turn0.cos();
-            let t439 = k(0.3333333333333333) * t436
-                + k(0.6666666666666666) * (t428 + t417);
-            let t440 = turn0.sin();
-            let t441 = (t438 * t439 - t440 * t437).atan2(t440 * t439 + t438 * t437);
-            let t442 = k(0.3) - (turn0 + t441);
-            let t443 = t399.cos();
-            let t444 = k(2.8) * t405.cos();
-            let t445 = k(0.3333333333333333) * (t444 * t402)
-                - k(0.6666666666666666) * (t444 * t409 - k(1.3416407864998738) * t443);
-            let t446 = t445
-                + k(0.6666666666666666) * (t444 * t404 + k(2.6832815729997477) * t443)
-                - (k(0.3333333333333333) * arm_wx + k(0.6666666666666666) * arm_wy
-                    + k(0.6666666666666666) * arm_wz);
-            let t447 = t233 * t398
-                + (k(0.03333333333333333) * t446
-                    + (k(0.6666666666666666) * t442 + t232 * t398));
-            let t448 = k(0.02) * arm_wz;
-            let t449 = k(0.03) * arm_wy;
-            let t450 = arm_wx * (t449 + t448)
-                + (k(0.05) * t258 + k(0.01) * (t251 - t250));
-            let t451 = k(1.5) - t234 - t391;
-            let t452 = k(13.5) + t236 - t393;
-            let t453 = k(4.5) + t238 + t395;
-            let t454 = t127 * t453 + (t126 * t452 - t125 * t451) + (t450 + t447 + t396);
-            let t455 = t142 * t395 - (t141 * t393 - t140 * t391)
-                + (t137 * t389 + (t136 * t381 - t135 * t371));
-            let t456 = k(0.6666666666666666) * (t138 + t89);
-            let t457 = k(1.3333333333333333) * t442;
-            let t458 = k(0.06666666666666667) * t446;
-            let t459 = k(0.01) * arm_wx;
-            let t460 = arm_wy * (t448 - t459)
-                + (k(0.1) * t254 - k(0.03) * (t251 - t256));
-            let t461 = t460 + (t233 * t456 - (t458 + (t457 - t232 * t456))) + t455;
-            let t462 = k(0.6666666666666666)
-                * (t153 * t453 + (t152 * t452 - t151 * t451) - t461);
-            let t463 = t169 * t395 - (t168 * t393 + t167 * t391)
-                - (t165 * t389 + (t164 * t381 - t163 * t371));
-            let t464 = k(0.3333333333333333) * t138 + t397;
-            let t465 = arm_wz * (t449 + t459)
-                - (k(0.05) * t253 + k(0.02) * (t250 - t256));
-            let t466 = t465 + (t233 * t464 - (t458 + (t457 - t232 * t464))) + t463;
-            let t467 = k(0.6666666666666666)
-                * (t180 * t453 + (t179 * t452 + t178 * t451) - t466);
-            let t468 = k(0.6666666666666666) * (t157 - (t154 - k(0.84) * t15))
-                - k(0.3333333333333333) * (t131 + (t128 - k(0.42) * t15));
-            let t469 = k(3.0) * t443;
-            let t470 = t469 * t403;
-            let t471 = k(18.0) * t400;
-            let t472 = t402 * t471 + t469 * t470;
-            let t473 = t469 * t402;
-            let t474 = t403 * t471 - t469 * t473;
-            let t475 = k(0.1) * t474 - k(0.08944271909999159) * t472
+        let (
+            t482,
+            t483,
+            t484,
+            t485,
+            t486,
+            t487,
+            t488,
+            t489,
+            t490,
+            t491,
+            t492,
+            t493,
+            t494,
+        ) = {
+            let t400 = k(0.002) * slider_wy;
+            let t401 = slider_wx * (t400 - t399)
+                - (k(0.005) * t219 - k(0.003) * (t217 - t221));
+            let t402 = t401 + (t190 * t398 + t189 * t398);
+            let t403 = t137 * t32 - (t130 * t30 - t119 * t28);
+            let t404 = k(0.1) * t403;
+            let t405 = k(0.003) * slider_wx;
+            let t406 = slider_wy * (t399 + t405)
+                - (k(0.005) * t220 - k(0.002) * (t217 - t216));
+            let t407 = t406 - (t190 * t404 + t189 * t404);
+            let t408 = k(0.05) * t403;
+            let t409 = slider_wz * (t400 + t405)
+                - (k(0.01) * t215 - k(0.001) * (t221 - t216));
+            let t410 = t409 + (t190 * t408 + t189 * t408);
+            let t411 = t140 * t328 + (t133 * t329 + t124 * t331)
+                + (t123 * t410 - (t121 * t407 - t119 * t402));
+            let t412 = t82 * t340 - t80 * t337 - t411
+                + (t76 * t397 + (t72 * t394 + t55 * t388));
+            let t413 = t155 * t328 + (t151 * t329 + t133 * t331)
+                + (t132 * t410 + (t131 * t407 - t130 * t402));
+            let t414 = t86 * t340 - t80 * t335 + t413
+                - (t77 * t397 - (t73 * t394 + t64 * t388));
+            let t415 = t164 * t328 + (t155 * t329 + t140 * t331)
+                + (t139 * t410 + (t138 * t407 + t137 * t402));
+            let t416 = t86 * t337 - t82 * t335 - t415
+                + (t78 * t397 - (t74 * t394 - t70 * t388));
+            let t417 = t16 * t416 - (t22 * t414 - t37 * t412)
+                + (t43 * (t340 - (k(4.5) + t195)) - t338);
+            let t418 = k(3.0) * t378;
+            let t419 = t418 * t347;
+            let t420 = k(18.0) * t344;
+            let t421 = t346 * t420 + t418 * t419;
+            let t422 = t418 * t346;
+            let t423 = t347 * t420 - t418 * t422;
+            let t424 = k(0.1) * t423 - k(0.08944271909999159) * t421
                 - k(0.9) * (k(0.4) + k(3.0) * t).sin();
-            let t476 = t475 - (t262 - t261);
-            let t477 = k(0.6666666666666666) * (t158 - (t155 - k(0.84) * t28))
-                - k(0.3333333333333333) * (t132 + (t129 - k(0.42) * t28));
-            let t478 = t444 * t408;
-            let t479 = k(11.2) * t406;
-            let t480 = t410 * t479 + t444 * t478;
-            let t481 = t444 * t410;
-            let t482 = k(0.2) * t470;
-            let t483 = t482 * t481;
-            let t484 = k(0.2) * t474;
-            let t485 = t408 * t479 - t444 * t481;
-            let t486 = k(0.4) * t470;
-            let t487 = t486 * t478;
-            let t488 = k(0.4) * t474;
-            let t489 = t487 + t410 * t488 + (t487 - t418 * t485);
-            let t490 = t489 - (t483 - t408 * t484 + (t483 + t429 * t480));
-            let t491 = k(0.4472135954999579) * t473;
-            let t492 = t481 * t491;
-            let t493 = k(0.4472135954999579) * t472;
-            let t494 = k(0.8944271909999159) * t473;
-            let t495 = t478 * t494;
-            let t496 = k(0.8944271909999159) * t472;
-            let t497 = t495 + t410 * t496 + (t495 - t409 * t485)
-                - (t492 - t408 * t493 + (t492 - t404 * t480));
-            let t498 = k(0.1) * t497 + k(0.2) * t490 + k(5.0) * (k(5.0) * t).sin();
-            let t499 = t498 + (t278 - t277);
-            let t500 = t499
-                * (k(0.6666666666666666) * (t185 - (t182 - k(2.1) * t179)) + t477)
-                - t476
-                    * (k(0.6666666666666666) * (t184 - (t181 + k(2.1) * t178)) + t468);
-            let t501 = k(0.6666666666666666) * (t159 - (t156 - k(0.84) * t36))
-                - k(0.3333333333333333) * (t133 + (t130 - k(0.42) * t36));
-            let t502 = t482 * t478;
-            let t503 = t481 * t486;
-            let t504 = t503 - t408 * t488 + (t503 - t418 * t480);
-            let t505 = t504 + (t502 + t410 * t484 + (t502 + t429 * t485));
-            let t506 = t478 * t491;
-            let t507 = t481 * t494;
-            let t508 = t507 - t408 * t496 + (t507 - t409 * t480)
-                + (t506 + t410 * t493 + (t506 - t404 * t485));
-            let t509 = k(0.1) * t508 + k(0.2) * t505 + (t288 - t287);
-            let t510 = t509
-                * (k(0.6666666666666666) * (t186 - (t183 - k(2.1) * t180)) + t501)
-                + t500;
-            let t511 = t434 - t432;
-            let t512 = t426 - t424;
-            let t513 = t415 - t413;
-            let t514 = k(0.6666666666666666) * (t513 - t512)
-                + k(0.3333333333333333) * t511;
-            let t515 = t432 - k(0.3333333333333333) * t435;
-            let t516 = t424 + k(0.3333333333333333) * t427;
-            let t517 = t413 - k(0.3333333333333333) * t416;
-            let t518 = k(0.6666666666666666) * (t517 - t516)
-                + k(0.3333333333333333) * t515;
-            let t519 = k(0.6666666666666666) * (t518 - t514);
-            let t520 = t435 - t433;
-            let t521 = t427 + t425;
-            let t522 = t416 - t414;
-            let t523 = k(0.4444444444444444) * t522 - k(0.2222222222222222) * t521
-                - k(0.4444444444444444) * t520;
-            let t524 = k(0.6666666666666666)
-                * (k(0.4444444444444444) * (t522 + t521) + k(0.2222222222222222) * t520);
-            let t525 = t524 - k(0.3333333333333333) * t514;
-            let t526 = k(0.6666666666666666) * t517 + k(0.3333333333333333) * t516
-                - k(0.6666666666666666) * t515;
-            let t527 = k(0.3333333333333333) * t518 - t524;
-            let t528 = k(0.6666666666666666) * t513 + k(0.3333333333333333) * t512
-                - k(0.6666666666666666) * t511;
-            let t529 = k(1.0) / (t528 * t527 + (t526 * t525 - t523 * t519));
-            let t530 = t470 * t226;
-            let t531 = t404 * t481 + t408 * t491 - (t409 * t478 - t410 * t494);
-            let t532 = t531 * t219;
-            let t533 = t85 * t497 - t532 - (t532 - t411 * t279)
-                - (t82 * t474 + t530 + (t530 - t402 * t264));
-            let t534 = t404 * t478 - t410 * t491 + (t409 * t481 + t408 * t494);
-            let t535 = t534 * t212;
-            let t536 = k(0.6666666666666666)
-                * (t88 * t508 + t535 + (t535 - t412 * t289) + t533);
-            let t537 = t470 * t228;
-            let t538 = t531 * t221;
-            let t539 = t50 * t497 + t538 + (t538 - t411 * t274)
-                + (t47 * t474 - t537 - (t537 + t402 * t255));
-            let t540 = t534 * t214;
-            let t541 = k(0.3333333333333333)
-                * (t53 * t508 + t540 + (t540 - t412 * t284) - t539);
-            let t542 = t470 * t227;
-            let t543 = t531 * t220;
-            let t544 = t92 * t497 + t543 + (t543 + t411 * t275)
-                + (t91 * t474 - t542 - (t542 - t402 * t259));
-            let t545 = t534 * t213;
-            let t546 = k(0.6666666666666666)
-                * (t93 * t508 - t545 - (t545 + t412 * t285) + t544);
-            let t547 = t546 + t541 - t536;
-            let t548 = t494 * t226;
-            let t549 = k(0.8) * t470;
-            let t550 = t418 * t481 + t408 * t486;
-            let t551 = t550 + (t420 * t478 + t410 * t549);
-            let t552 = t551 * t219;
-            let t553 = t478 * t549;
-            let t554 = k(0.8) * t474;
-            let t555 = t504 - (t553 + t410 * t554 + (t553 + t420 * t485));
-            let t556 = t85 * t555 + t552 + (t552 + t421 * t279)
-                - (t82 * t496 + t548 + (t548 + t409 * t264));
-            let t557 = t418 * t478 - t410 * t486;
-            let t558 = t557 - (t420 * t481 - t408 * t549);
-            let t559 = t558 * t212;
-            let t560 = t481 * t549;
-            let t561 = t489 + (t560 - t408 * t554 + (t560 + t420 * t480));
-            let t562 = k(0.6666666666666666)
-                * (t88 * t561 + t559 + (t559 + t423 * t289) - t556);
-            let t563 = t494 * t228;
-            let t564 = t551 * t221;
-            let t565 = t50 * t555 - t564 - (t564 + t421 * t274)
-                + (t47 * t496 - t563 - (t563 - t409 * t255));
-            let t566 = t558 * t214;
-            let t567 = k(0.3333333333333333)
-                * (t53 * t561 + t566 + (t566 + t423 * t284) + t565);
-            let t568 = t494 * t227;
-            let t569 = t551 * t220;
-            let t570 = t92 * t555 - t569 - (t569 - t421 * t275)
-                + (t91 * t496 - t568 - (t568 + t409 * t259));
-            let t571 = t558 * t213;
-            let t572 = k(0.6666666666666666)
-                * (t93 * t561 - t571 - (t571 - t423 * t285) - t570);
-            let t573 = t572 + t567 - t562;
-            let t574 = t491 * t226;
-            let t575 = t429 * t481 - t408 * t482 + t557;
-            let t576 = t575 * t219;
-            let t577 = t85 * t490 + t576 + (t576 + t430 * t279)
-                + (t82 * t493 + t574 + (t574 + t404 * t264));
-            let t578 = t429 * t478 + t410 * t482 - t550;
-            let t579 = t578 * t212;
-            let t580 = k(0.6666666666666666)
-                * (t88 * t505 - t579 - (t579 + t431 * t289) + t577);
-            let t581 = t491 * t228;
-            let t582 = t575 * t221;
-            let t583 = t50 * t490 - t582 - (t582 + t430 * t274)
-                - (t47 * t493 - t581 - (t581 - t404 * t255));
-            let t584 = t578 * t214;
-            let t585 = k(0.3333333333333333)
-                * (t53 * t505 - t584 - (t584 + t431 * t284) - t583);
-            let t586 = t491 * t227;
-            let t587 = t575 * t220;
-            let t588 = t92 * t490 - t587 - (t587 - t430 * t275)
-                - (t91 * t493 - t586 - (t586 + t404 * t259));
-            let t589 = t578 * t213;
-            let t590 = k(0.6666666666666666)
-                * (t93 * t505 + t589 + (t589 - t431 * t285) + t588);
-            let t591 = t590 + t585 - t580;
-            let t592 = k(0.6666666666666666) * t591
-                + (k(0.3333333333333333) * t573 - k(0.6666666666666666) * t547);
-            let t593 = k(0.3333333333333333) * t591
-                + k(0.6666666666666666) * (t573 + t547);
-            let t594 = t593 * (t529 * (k(0.6666666666666666) * (t526 - t528)))
-                + t592 * (t519 * t529);
-            let t595 = k(0.6666666666666666) * t523;
-            let t596 = t593 * (t529 * (t595 - k(0.3333333333333333) * t528))
-                + t592 * (t525 * t529);
-            let t597 = t593 * (t529 * (k(0.3333333333333333) * t526 - t595))
-                + t592 * (t527 * t529);
-            let t598 = t597 * t210 + (t596 * t204 + t594 * t189) + t510
-                - (t467 + (t462 + k(0.3333333333333333) * t454));
-            let t599 = t598
-                / (k(0.6666666666666666) * t210
-                    + (k(0.6666666666666666) * t204 - k(0.3333333333333333) * t189));
-            (t476, t499, t509, t594, t596, t597, t599)
-        };
-        let (t600, t602, t603, t604, t605, t606, t610, t611, t612, t615, t616, t617) = {
-            let t600 = t594 + k(0.3333333333333333) * t599;
-            let t601 = k(0.6666666666666666) * t599;
-            let t602 = t596 - t601;
-            let t603 = t597 - t601;
-            let t604 = t476 + (t178 * t603 - (t151 * t602 - t125 * t600));
-            let t605 = t499 + (t179 * t603 + (t152 * t602 - t126 * t600));
-            let t606 = t509 + (t180 * t603 + (t153 * t602 - t127 * t600));
-            let t607 = t306 - (t604 - (t167 * t603 - (t140 * t602 + t97 * t600)));
-            let t608 = t307 + (t605 - (t168 * t603 + (t141 * t602 + t100 * t600)));
-            let t609 = t308 + (t606 - (t169 * t603 + (t142 * t602 + t102 * t600)));
-            let t610 = t365 + (t163 * t603 - (t135 * t602 - t54 * t600));
-            let t611 = t367 + (t164 * t603 - (t136 * t602 - t63 * t600));
-            let t612 = t369 - (t165 * t603 - (t137 * t602 - t72 * t600));
-            let t613 = t67 * t612 + (t58 * t611 + t38 * t610)
-                - (t41 * t609 + (t40 * t608 + t39 * t607));
-            let t614 = t42 * (t248 + t613);
-            let t615 = t382 * t612 + (t372 * t611 + t6 * t610) - (t607 + t16 * t614);
-            let t616 = t383 * t612 + (t373 * t611 - t22 * t610) + (t608 + t29 * t614);
-            let t617 = t384 * t612 + (t374 * t611 + t32 * t610) - (t609 + t37 * t614);
-            (t600, t602, t603, t604, t605, t606, t610, t611, t612, t615, t616, t617)
+            let t425 = t76 * arm_wz + (t72 * arm_wy - t55 * arm_wx);
+            let t426 = t346 * t382 + t353 * t381 + t348 * t380;
+            let t427 = t426 - t425;
+            let t428 = t77 * arm_wz - (t73 * arm_wy - t64 * arm_wx);
+            let t429 = t382 * t355 - t381 * t362 + t380 * t368;
+            let t430 = t429 - t428;
+            let t431 = t78 * arm_wz - (t74 * arm_wy + t70 * arm_wx);
+            let t432 = t382 * t356 - t381 * t364 + t380 * t369;
+            let t433 = t432 + t431;
+            let t434 = t16 * t433 - (t22 * t430 + t37 * t427);
+            let t435 = t37 * t430 - t22 * t427;
+            let t436 = t22 * t433 + t16 * t430;
+            let t437 = t16 * t427 + t37 * t433;
+            let t438 = k(0.29814239699997197) * t347
+                - (k(0.5962847939999439) * t347 - k(0.3333333333333333) * t346);
+            let t439 = k(0.6666666666666666) * t368
+                + (k(0.6666666666666666) * t362 + k(0.3333333333333333) * t355);
+            let t440 = k(0.6666666666666666) * t369
+                + (k(0.6666666666666666) * t364 + k(0.3333333333333333) * t356);
+            let t441 = (t435 * t435 + (t437 * t437 + t436 * t436))
+                / (t440 * t16 - (t439 * t22 + t438 * t37));
+            let t442 = k(0.4472135954999579) * t422;
+            let t443 = k(11.2) * t350;
+            let t444 = k(16.099689437998485) * t344 + (t348 * t443 - t379 * t442);
+            let t445 = k(0.8944271909999159) * t422;
+            let t446 = k(8.049844718999243) * t344 - (t353 * t443 - t379 * t445);
+            let t447 = t346 * t443 + t379 * t419;
+            let t448 = t356 * t447 + t364 * t446 + t369 * t444
+                + (t429 * t425 - t426 * t428);
+            let t449 = t448 - ((t439 * t37 - t438 * t22) * t441 + t435 * t434);
+            let t450 = t355 * t447 + t362 * t446 + t368 * t444
+                - (t426 * t431 + t432 * t425);
+            let t451 = t450 + (t441 * (t438 * t16 + t440 * t37) + t437 * t434);
+            let t452 = t19 * t451 + t7 * t449 + (t424 - (t212 - t211));
+            let t453 = t379 * t352;
+            let t454 = t354 * t443 + t379 * t453;
+            let t455 = t379 * t354;
+            let t456 = k(0.2) * t419;
+            let t457 = t456 * t455;
+            let t458 = k(0.2) * t423;
+            let t459 = t352 * t443 - t379 * t455;
+            let t460 = k(0.4) * t419;
+            let t461 = t460 * t453;
+            let t462 = k(0.4) * t423;
+            let t463 = t461 + t354 * t462 + (t461 - t359 * t459)
+                - (t457 - t352 * t458 + (t457 + t367 * t454));
+            let t464 = t455 * t442;
+            let t465 = k(0.4472135954999579) * t421;
+            let t466 = t453 * t445;
+            let t467 = k(0.8944271909999159) * t421;
+            let t468 = t466 + t354 * t467 + (t466 - t353 * t459)
+                - (t464 - t352 * t465 + (t464 - t348 * t454));
+            let t469 = k(0.1) * t468 + k(0.2) * t463 + k(5.0) * (k(5.0) * t).sin();
+            let t470 = t346 * t447 - t353 * t446 + t348 * t444
+                + (t432 * t428 + t429 * t431);
+            let t471 = t470 - (t441 * (t440 * t22 + t439 * t16) + t436 * t434);
+            let t472 = t40 * t449 - t19 * t471 - (t469 + (t231 - t230));
+            let t473 = t456 * t453;
+            let t474 = t455 * t460;
+            let t475 = t474 - t352 * t462 + (t474 - t359 * t454)
+                + (t473 + t354 * t458 + (t473 + t367 * t459));
+            let t476 = t453 * t442;
+            let t477 = t455 * t445;
+            let t478 = t477 - t352 * t467 + (t477 - t353 * t454)
+                + (t476 + t354 * t465 + (t476 - t348 * t459));
+            let t479 = t7 * t471 + t40 * t451
+                - (k(0.1) * t478 + k(0.2) * t475 + (t241 - t240));
+            let t480 = t166 * t449 + (t158 * t451 + t143 * t471)
+                + (t112 * t479 + (t104 * t472 + t92 * t452));
+            let t481 = (t480 + t417) / t167;
+            let t482 = t452 + t23 * t481;
+            let t483 = t472 - t41 * t481;
+            let t484 = t479 + t43 * t481;
+            let t485 = t471 + t37 * t481;
+            let t486 = t451 + t22 * t481;
+            let t487 = t449 - t16 * t481;
+            let t488 = t330 + (t482 + (t82 * t487 + t80 * t486));
+            let t489 = t332 + (t483 - (t86 * t487 + t80 * t485));
+            let t490 = t333 + (t484 - (t86 * t486 - t82 * t485));
+            let t491 = t34 * (t197 + (t33 * t490 + (t31 * t489 + t29 * t488)));
+            let t492 = t331 + t485;
+            let t493 = t329 + t486;
+            let t494 = t328 - t487;
+            (
+                t482,
+                t483,
+                t484,
+                t485,
+                t486,
+                t487,
+                t488,
+                t489,
+                t490,
+                t491,
+                t492,
+                t493,
+                t494,
+            )
         };
         *out = [
-            t604,
-            -t605,
-            t606,
-            -t600,
-            t602,
-            t603,
-            t615,
-            -t616,
-            -t617,
-            -t610,
-            -t611,
-            -t612,
+            t482,
+            t483,
+            -t484,
+            -(t70 * t487 + (t64 * t486 - t55 * t485)),
+            t73 * t486 - t72 * t485 - t74 * t487,
+            t78 * t487 - (t77 * t486 + t76 * t485),
+            t488 - t28 * t491,
+            t489 - t30 * t491,
+            t32 * t491 - t490,
+            t137 * t494 - (t130 * t493 - t119 * t492),
+            t138 * t494 + (t131 * t493 - t121 * t492),
+            -(t139 * t494 + (t132 * t493 + t123 * t492)),
         ];
     }
     /// Writes λ: 958 operations (400 ±, 556 ×, 2 ÷) and 11 functions.
@@ -5663,31 +5401,31 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Carried<T> {
             t87,
             t89,
             t90,
-            t91,
-            t100,
-            t101,
-            t109,
-            t110,
-            t115,
-            t116,
-            t117,
-            t118,
-            t119,
-            t120,
-            t123,
+            t132,
+            t136,
+            t138,
+            t139,
+            t140,
+            t141,
+            t142,
+            t151,
+            t152,
+            t160,
+            t161,
             t166,
+            t167,
+            t168,
+            t169,
             t170,
+            t171,
             t172,
-            t173,
-            t174,
             t175,
-            t178,
-            t187,
+            t185,
+            t189,
             t191,
+            t192,
             t193,
             t194,
-            t195,
-            t196,
             t197,
             t198,
             t199,
@@ -5798,138 +5536,138 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Carried<T> {
             let t88 = t27 * t81 + t27 * t80;
             let t89 = k(0.6) * slider_dsz - (k(1.8) - t88);
             let t90 = t89 + (k(1.5) * arm_dsz - (k(4.5) + t88));
-            let t91 = t15 * t3 + (t44 * t35 + t66 * t59);
-            let t92 = k(0.1) * (t7 * t27 + (t37 * t53 - t61 * t75))
+            let t91 = k(6.0) * t;
+            let t92 = k(0.5) * t91.sin();
+            let t93 = t92.sin();
+            let t94 = k(0.4472135954999579) * t93;
+            let t95 = t92.cos();
+            let t96 = k(0.8) + k(0.2) * t95;
+            let t97 = k(0.2) + k(4.0) * t;
+            let t98 = k(0.7) * t97.sin();
+            let t99 = t98.sin();
+            let t100 = k(0.4) - k(0.4) * t95;
+            let t101 = t98.cos();
+            let t102 = t101 * t100;
+            let t103 = t102 - t99 * t96;
+            let t104 = t99 * t100;
+            let t105 = t104 + t101 * t96;
+            let t106 = k(0.6666666666666666) * (t105 * t15 + (t103 * t44 - t94 * t66));
+            let t107 = t105 * t19 + (t94 * t68 - t103 * t46);
+            let t108 = k(0.3333333333333333) * t107;
+            let t109 = t108 - t106;
+            let t110 = k(0.8944271909999159) * t93;
+            let t111 = k(0.2) + k(0.8) * t95;
+            let t112 = t101 * t111 - t104;
+            let t113 = t102 + t99 * t111;
+            let t114 = k(0.6666666666666666) * (t113 * t15 + (t112 * t44 + t110 * t66));
+            let t115 = t113 * t19 - (t110 * t68 + t112 * t46);
+            let t116 = k(0.3333333333333333) * t115;
+            let t117 = t116 - t114;
+            let t118 = t101 * t110 + t99 * t94;
+            let t119 = t99 * t110 - t101 * t94;
+            let t120 = k(0.6666666666666666) * (t119 * t15 + (t118 * t44 - t95 * t66));
+            let t121 = t119 * t19 + (t95 * t68 - t118 * t46);
+            let t122 = k(0.3333333333333333) * t121;
+            let t123 = t122 - t120;
+            let t124 = k(0.6666666666666666) * (t123 - t117)
+                + k(0.3333333333333333) * t109;
+            let t125 = t94 * t71 + t103 * t49 - t105 * t23;
+            let t126 = t106 - k(0.3333333333333333) * t125;
+            let t127 = t110 * t71 - t112 * t49 + t113 * t23;
+            let t128 = t114 + k(0.3333333333333333) * t127;
+            let t129 = t95 * t71 + t118 * t49 - t119 * t23;
+            let t130 = t120 - k(0.3333333333333333) * t129;
+            let t131 = k(0.6666666666666666) * (t130 - t128)
+                + k(0.3333333333333333) * t126;
+            let t132 = k(0.6666666666666666) * (t131 - t124);
+            let t133 = t125 - t107;
+            let t134 = t127 + t115;
+            let t135 = t129 - t121;
+            let t136 = k(0.4444444444444444) * t135 - k(0.2222222222222222) * t134
+                - k(0.4444444444444444) * t133;
+            let t137 = k(0.6666666666666666)
+                * (k(0.4444444444444444) * (t135 + t134) + k(0.2222222222222222) * t133);
+            let t138 = t137 - k(0.3333333333333333) * t124;
+            let t139 = k(0.6666666666666666) * t130 + k(0.3333333333333333) * t128
+                - k(0.6666666666666666) * t126;
+            let t140 = k(0.3333333333333333) * t131 - t137;
+            let t141 = k(0.6666666666666666) * t123 + k(0.3333333333333333) * t117
+                - k(0.6666666666666666) * t109;
+            let t142 = k(1.0) / (t141 * t140 + (t139 * t138 - t136 * t132));
+            let t143 = k(0.1) * (t7 * t27 + (t37 * t53 - t61 * t75))
                 - k(0.05) * (t10 * t27 + (t39 * t53 + t63 * t75));
-            let t93 = slider_wy * slider_wy;
-            let t94 = slider_wz * slider_wz;
-            let t95 = k(0.001) * slider_wz;
-            let t96 = k(0.002) * slider_wy;
-            let t97 = slider_wx * (t96 - t95)
-                - (k(0.005) * (slider_wy * slider_wz) - k(0.003) * (t94 - t93));
-            let t98 = k(0.02) * slider_dwx + k(0.001) * slider_dwy
-                + k(0.002) * slider_dwz + (t97 + (t81 * t92 + t80 * t92));
-            let t99 = (k(0.1) * t38 - k(0.2) * t36) * t86
+            let t144 = slider_wy * slider_wy;
+            let t145 = slider_wz * slider_wz;
+            let t146 = k(0.001) * slider_wz;
+            let t147 = k(0.002) * slider_wy;
+            let t148 = slider_wx * (t147 - t146)
+                - (k(0.005) * (slider_wy * slider_wz) - k(0.003) * (t145 - t144));
+            let t149 = k(0.02) * slider_dwx + k(0.001) * slider_dwy
+                + k(0.002) * slider_dwz + (t148 + (t81 * t143 + t80 * t143));
+            let t150 = (k(0.1) * t38 - k(0.2) * t36) * t86
                 + (k(0.1) * t62 + k(0.2) * t60) * t83;
-            let t100 = (k(0.1) * t9 - k(0.2) * t6) * t89 - t99 + t98;
-            let t101 = t15 * t7 - (t44 * t37 + t66 * t61);
-            let t102 = t3 * t27 - (t35 * t53 - t59 * t75);
-            let t103 = k(0.1) * t102;
-            let t104 = slider_wx * slider_wx;
-            let t105 = k(0.003) * slider_wx;
-            let t106 = slider_wy * (t95 + t105)
-                - (k(0.005) * (slider_wx * slider_wz) - k(0.002) * (t94 - t104));
-            let t107 = k(0.001) * slider_dwx + k(0.03) * slider_dwy
-                - k(0.003) * slider_dwz + (t106 - (t81 * t103 + t80 * t103));
-            let t108 = k(0.2) * t2 * t89 + (k(0.2) * t34 * t86 - k(0.2) * t58 * t83);
-            let t109 = t108 + t107;
-            let t110 = t15 * t10 - (t44 * t39 - t66 * t63);
-            let t111 = k(0.05) * t102;
-            let t112 = slider_wz * (t96 + t105)
-                - (k(0.01) * (slider_wx * slider_wy) - k(0.001) * (t93 - t104));
-            let t113 = k(0.002) * slider_dwx - k(0.003) * slider_dwy
-                + k(0.025) * slider_dwz - (t112 + (t81 * t111 + t80 * t111));
-            let t114 = k(0.1) * t2 * t89 + (k(0.1) * t34 * t86 - k(0.1) * t58 * t83);
-            let t115 = t114 + t113;
-            let t116 = arm_rx - t77;
-            let t117 = arm_ry - t55;
-            let t118 = arm_rz - t29;
-            let t119 = t23 * t118 - (t49 * t117 + t71 * t116);
-            let t120 = t19 * t118 - (t46 * t117 - t68 * t116);
-            let t121 = t86 * (t49 * t120 - t46 * t119) + t83 * (t71 * t120 + t68 * t119);
-            let t122 = t89 * (t23 * t120 - t19 * t119) - t121
-                - (t115 * t110 - (t109 * t101 + t100 * t91));
-            let t123 = k(0.6666666666666666) * t120;
-            let t124 = t123 - k(0.3333333333333333) * t119;
-            let t125 = k(6.0) * t;
-            let t126 = k(0.5) * t125.sin();
-            let t127 = t126.cos();
-            let t128 = t126.sin();
-            let t129 = k(0.4472135954999579) * t128;
-            let t130 = k(0.2) + k(4.0) * t;
-            let t131 = k(0.7) * t130.sin();
-            let t132 = t131.sin();
-            let t133 = k(0.8944271909999159) * t128;
-            let t134 = t131.cos();
-            let t135 = t134 * t133 + t132 * t129;
-            let t136 = t132 * t133 - t134 * t129;
-            let t137 = k(0.6666666666666666) * (t136 * t15 + (t135 * t44 - t127 * t66));
-            let t138 = t136 * t19 + (t127 * t68 - t135 * t46);
-            let t139 = k(0.3333333333333333) * t138;
-            let t140 = t127 * t71 + t135 * t49 - t136 * t23;
-            let t141 = k(0.6666666666666666) * t140 - (t139 + t137);
-            let t142 = k(0.4) - k(0.4) * t127;
-            let t143 = t132 * t142;
-            let t144 = k(0.2) + k(0.8) * t127;
-            let t145 = t134 * t144 - t143;
-            let t146 = t134 * t142;
-            let t147 = t146 + t132 * t144;
-            let t148 = k(0.6666666666666666) * (t147 * t15 + (t145 * t44 + t133 * t66));
-            let t149 = t147 * t19 - (t133 * t68 + t145 * t46);
-            let t150 = k(0.3333333333333333) * t149;
-            let t151 = t133 * t71 - t145 * t49 + t147 * t23;
-            let t152 = k(0.6666666666666666) * t151 + (t150 + t148);
-            let t153 = k(0.8) + k(0.2) * t127;
-            let t154 = t146 - t132 * t153;
-            let t155 = t143 + t134 * t153;
-            let t156 = k(0.6666666666666666) * (t155 * t15 + (t154 * t44 - t129 * t66));
-            let t157 = t155 * t19 + (t129 * t68 - t154 * t46);
-            let t158 = k(0.3333333333333333) * t157;
-            let t159 = t129 * t71 + t154 * t49 - t155 * t23;
-            let t160 = k(0.6666666666666666) * t159 - (t158 + t156);
-            let t161 = k(0.6666666666666666) * t160
-                + (k(0.3333333333333333) * t152 - k(0.6666666666666666) * t141);
-            let t162 = turn0.cos();
-            let t163 = k(0.3333333333333333) * t160
-                + k(0.6666666666666666) * (t152 + t141);
-            let t164 = turn0.sin();
-            let t165 = (t162 * t163 - t164 * t161).atan2(t164 * t163 + t162 * t161);
-            let t166 = k(0.3) - (turn0 + t165);
-            let t167 = t125.cos();
-            let t168 = k(2.8) * t130.cos();
-            let t169 = k(0.3333333333333333) * (t168 * t127)
-                - k(0.6666666666666666) * (t168 * t133 - k(1.3416407864998738) * t167);
-            let t170 = t169
-                + k(0.6666666666666666) * (t168 * t129 + k(2.6832815729997477) * t167)
+            let t151 = (k(0.1) * t9 - k(0.2) * t6) * t89 - t150 + t149;
+            let t152 = t15 * t3 + (t44 * t35 + t66 * t59);
+            let t153 = t3 * t27 - (t35 * t53 - t59 * t75);
+            let t154 = k(0.1) * t153;
+            let t155 = slider_wx * slider_wx;
+            let t156 = k(0.003) * slider_wx;
+            let t157 = slider_wy * (t146 + t156)
+                - (k(0.005) * (slider_wx * slider_wz) - k(0.002) * (t145 - t155));
+            let t158 = k(0.001) * slider_dwx + k(0.03) * slider_dwy
+                - k(0.003) * slider_dwz + (t157 - (t81 * t154 + t80 * t154));
+            let t159 = k(0.2) * t2 * t89 + (k(0.2) * t34 * t86 - k(0.2) * t58 * t83);
+            let t160 = t159 + t158;
+            let t161 = t15 * t7 - (t44 * t37 + t66 * t61);
+            let t162 = k(0.05) * t153;
+            let t163 = slider_wz * (t147 + t156)
+                - (k(0.01) * (slider_wx * slider_wy) - k(0.001) * (t144 - t155));
+            let t164 = k(0.002) * slider_dwx - k(0.003) * slider_dwy
+                + k(0.025) * slider_dwz - (t163 + (t81 * t162 + t80 * t162));
+            let t165 = k(0.1) * t2 * t89 + (k(0.1) * t34 * t86 - k(0.1) * t58 * t83);
+            let t166 = t165 + t164;
+            let t167 = t15 * t10 - (t44 * t39 - t66 * t63);
+            let t168 = arm_rx - t77;
+            let t169 = arm_ry - t55;
+            let t170 = arm_rz - t29;
+            let t171 = t23 * t170 - (t49 * t169 + t71 * t168);
+            let t172 = t19 * t170 - (t46 * t169 - t68 * t168);
+            let t173 = t86 * (t49 * t172 - t46 * t171) + t83 * (t71 * t172 + t68 * t171);
+            let t174 = t89 * (t23 * t172 - t19 * t171) - t173
+                - (t167 * t166 - (t161 * t160 + t152 * t151));
+            let t175 = k(0.6666666666666666) * t172;
+            let t176 = t175 - k(0.3333333333333333) * t171;
+            let t177 = k(0.6666666666666666) * t129 - (t122 + t120);
+            let t178 = k(0.6666666666666666) * t127 + (t116 + t114);
+            let t179 = k(0.6666666666666666) * t125 - (t108 + t106);
+            let t180 = k(0.6666666666666666) * t179
+                + (k(0.3333333333333333) * t178 - k(0.6666666666666666) * t177);
+            let t181 = turn0.cos();
+            let t182 = k(0.3333333333333333) * t179
+                + k(0.6666666666666666) * (t178 + t177);
+            let t183 = turn0.sin();
+            let t184 = (t181 * t182 - t183 * t180).atan2(t183 * t182 + t181 * t180);
+            let t185 = k(0.3) - (turn0 + t184);
+            let t186 = t91.cos();
+            let t187 = k(2.8) * t97.cos();
+            let t188 = k(0.3333333333333333) * (t187 * t95)
+                - k(0.6666666666666666) * (t187 * t110 - k(1.3416407864998738) * t186);
+            let t189 = t188
+                + k(0.6666666666666666) * (t187 * t94 + k(2.6832815729997477) * t186)
                 - (k(0.3333333333333333) * arm_wx + k(0.6666666666666666) * arm_wy
                     + k(0.6666666666666666) * arm_wz);
-            let t171 = t81 * t124
-                + (k(0.03333333333333333) * t170
-                    + (k(0.6666666666666666) * t166 + t80 * t124));
-            let t172 = arm_wy * arm_wy;
-            let t173 = arm_wz * arm_wz;
-            let t174 = k(0.02) * arm_wz;
-            let t175 = k(0.03) * arm_wy;
-            let t176 = arm_wx * (t175 + t174)
-                + (k(0.05) * (arm_wy * arm_wz) + k(0.01) * (t173 - t172));
-            let t177 = k(0.3) * arm_dwx + k(0.02) * arm_dwy - k(0.03) * arm_dwz
-                - (t176 + t171);
-            let t178 = t28 * t90 - (t54 * t87 + t76 * t84) + (t177 + t122);
-            let t179 = t158 - t156;
-            let t180 = t150 - t148;
-            let t181 = t139 - t137;
-            let t182 = k(0.6666666666666666) * (t181 - t180)
-                + k(0.3333333333333333) * t179;
-            let t183 = t156 - k(0.3333333333333333) * t159;
-            let t184 = t148 + k(0.3333333333333333) * t151;
-            let t185 = t137 - k(0.3333333333333333) * t140;
-            let t186 = k(0.6666666666666666) * (t185 - t184)
-                + k(0.3333333333333333) * t183;
-            let t187 = k(0.6666666666666666) * (t186 - t182);
-            let t188 = t159 - t157;
-            let t189 = t151 + t149;
-            let t190 = t140 - t138;
-            let t191 = k(0.4444444444444444) * t190 - k(0.2222222222222222) * t189
-                - k(0.4444444444444444) * t188;
-            let t192 = k(0.6666666666666666)
-                * (k(0.4444444444444444) * (t190 + t189) + k(0.2222222222222222) * t188);
-            let t193 = t192 - k(0.3333333333333333) * t182;
-            let t194 = k(0.6666666666666666) * t185 + k(0.3333333333333333) * t184
-                - k(0.6666666666666666) * t183;
-            let t195 = k(0.3333333333333333) * t186 - t192;
-            let t196 = k(0.6666666666666666) * t181 + k(0.3333333333333333) * t180
-                - k(0.6666666666666666) * t179;
-            let t197 = k(1.0) / (t196 * t195 + (t194 * t193 - t191 * t187));
+            let t190 = t81 * t176
+                + (k(0.03333333333333333) * t189
+                    + (k(0.6666666666666666) * t185 + t80 * t176));
+            let t191 = arm_wy * arm_wy;
+            let t192 = arm_wz * arm_wz;
+            let t193 = k(0.02) * arm_wz;
+            let t194 = k(0.03) * arm_wy;
+            let t195 = arm_wx * (t194 + t193)
+                + (k(0.05) * (arm_wy * arm_wz) + k(0.01) * (t192 - t191));
+            let t196 = k(0.3) * arm_dwx + k(0.02) * arm_dwy - k(0.03) * arm_dwz
+                - (t195 + t190);
+            let t197 = t28 * t90 - (t54 * t87 + t76 * t84) + (t196 + t174);
             let t198 = t19 * t3 - (t46 * t35 + t68 * t59);
             let t199 = t19 * t7 + (t46 * t37 + t68 * t61);
             (
@@ -5968,31 +5706,31 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Carried<T> {
                 t87,
                 t89,
                 t90,
-                t91,
-                t100,
-                t101,
-                t109,
-                t110,
-                t115,
-                t116,
-                t117,
-                t118,
-                t119,
-                t120,
-                t123,
+                t132,
+                t136,
+                t138,
+                t139,
+                t140,
+                t141,
+                t142,
+                t151,
+                t152,
+                t160,
+                t161,
                 t166,
+                t167,
+                t168,
+                t169,
                 t170,
+                t171,
                 t172,
-                t173,
-                t174,
                 t175,
-                t178,
-                t187,
+                t185,
+                t189,
                 t191,
+                t192,
                 t193,
                 t194,
-                t195,
-                t196,
                 t197,
                 t198,
                 t199,
@@ -6008,7 +5746,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Carried<T> {
             t232,
             t233,
             t240,
-            t243,
+            t241,
             t246,
             t247,
             t250,
@@ -6017,17 +5755,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Carried<T> {
             t253,
         ) = {
             let t200 = t19 * t10 + (t46 * t39 - t68 * t63);
-            let t201 = t15 * t118 + (t44 * t117 - t66 * t116);
-            let t202 = t86 * (t49 * t201 + t44 * t119) + t83 * (t71 * t201 - t66 * t119);
-            let t203 = t89 * (t23 * t201 - t15 * t119) - t202
-                + (t115 * t200 - (t109 * t199 + t100 * t198));
-            let t204 = k(0.6666666666666666) * (t201 + t119);
-            let t205 = k(1.3333333333333333) * t166;
-            let t206 = k(0.06666666666666667) * t170;
+            let t201 = t15 * t170 + (t44 * t169 - t66 * t168);
+            let t202 = t86 * (t49 * t201 + t44 * t171) + t83 * (t71 * t201 - t66 * t171);
+            let t203 = t89 * (t23 * t201 - t15 * t171) - t202
+                + (t200 * t166 - (t199 * t160 + t198 * t151));
+            let t204 = k(0.6666666666666666) * (t171 + t201);
+            let t205 = k(1.3333333333333333) * t185;
+            let t206 = k(0.06666666666666667) * t189;
             let t207 = arm_wx * arm_wx;
             let t208 = k(0.01) * arm_wx;
-            let t209 = arm_wy * (t174 - t208)
-                + (k(0.1) * (arm_wx * arm_wz) - k(0.03) * (t173 - t207));
+            let t209 = arm_wy * (t193 - t208)
+                + (k(0.1) * (arm_wx * arm_wz) - k(0.03) * (t192 - t207));
             let t210 = k(0.02) * arm_dwx + k(0.25) * arm_dwy + k(0.01) * arm_dwz
                 + (t209 + (t81 * t204 - (t206 + (t205 - t80 * t204))));
             let t211 = k(0.4) * t22 * t90 - (k(0.4) * t48 * t87 + k(0.4) * t70 * t84);
@@ -6035,73 +5773,70 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Carried<T> {
             let t213 = t23 * t3 - (t49 * t35 - t71 * t59);
             let t214 = t23 * t7 + (t49 * t37 - t71 * t61);
             let t215 = t23 * t10 + (t49 * t39 + t71 * t63);
-            let t216 = t86 * (t46 * t201 + t44 * t120) - t83 * (t68 * t201 + t66 * t120);
-            let t217 = t89 * (t19 * t201 - t15 * t120) - t216
-                - (t115 * t215 - (t109 * t214 + t100 * t213));
-            let t218 = k(0.3333333333333333) * t201 + t123;
-            let t219 = arm_wz * (t175 + t208)
-                - (k(0.05) * (arm_wx * arm_wy) + k(0.02) * (t172 - t207));
+            let t216 = t86 * (t46 * t201 + t44 * t172) - t83 * (t68 * t201 + t66 * t172);
+            let t217 = t89 * (t19 * t201 - t15 * t172) - t216
+                - (t215 * t166 - (t214 * t160 + t213 * t151));
+            let t218 = k(0.3333333333333333) * t201 + t175;
+            let t219 = arm_wz * (t194 + t208)
+                - (k(0.05) * (arm_wx * arm_wy) + k(0.02) * (t191 - t207));
             let t220 = k(0.03) * arm_dwx - k(0.01) * arm_dwy - k(0.2) * arm_dwz
                 - (t219 + (t81 * t218 - (t206 + (t205 - t80 * t218))));
             let t221 = (k(0.4) * t45 - k(0.2) * t43) * t87
                 - (k(0.4) * t67 - k(0.2) * t65) * t84;
             let t222 = (k(0.4) * t18 + k(0.2) * t14) * t90 - t221 - (t220 + t217);
-            let t223 = t195 * t197 * t222 + (t193 * t197 * t212 - t187 * t197 * t178);
-            let t224 = k(0.6666666666666666) * t191;
-            let t225 = t197 * (t224 - k(0.3333333333333333) * t196) * t212
-                - t197 * (k(0.6666666666666666) * (t194 - t196)) * t178;
-            let t226 = t86 * (k(1.7888543819998317) * t45 - k(0.8944271909999159) * t43)
-                - t83 * (k(1.7888543819998317) * t67 - k(0.8944271909999159) * t65);
-            let t227 = t86
-                * (k(1.4907119849998598) * t48
-                    - (k(0.5962847939999439) * t45 + k(1.1925695879998879) * t43))
-                + t83
-                    * (k(1.4907119849998598) * t70
-                        + (k(0.5962847939999439) * t67 + k(1.1925695879998879) * t65));
-            let t228 = t89
-                * (k(1.4907119849998598) * t22
-                    - (k(0.5962847939999439) * t18 - k(1.1925695879998879) * t14))
+            let t223 = t222 * (t140 * t142)
+                + (t212 * (t138 * t142) - t197 * (t132 * t142));
+            let t224 = k(0.6666666666666666) * t136;
+            let t225 = t212 * (t142 * (t224 - k(0.3333333333333333) * t141))
+                - t197 * (t142 * (k(0.6666666666666666) * (t139 - t141)));
+            let t226 = (k(1.7888543819998317) * t45 - k(0.8944271909999159) * t43) * t86
+                - (k(1.7888543819998317) * t67 - k(0.8944271909999159) * t65) * t83;
+            let t227 = (k(1.4907119849998598) * t48
+                - (k(0.5962847939999439) * t45 + k(1.1925695879998879) * t43)) * t86
+                + (k(1.4907119849998598) * t70
+                    + (k(0.5962847939999439) * t67 + k(1.1925695879998879) * t65)) * t83;
+            let t228 = (k(1.4907119849998598) * t22
+                - (k(0.5962847939999439) * t18 - k(1.1925695879998879) * t14)) * t89
                 - t227;
             let t229 = k(0.4472135954999579)
-                * (k(0.5962847939999439) * t101 + k(0.29814239699997197) * t91)
+                * (k(0.5962847939999439) * t161 + k(0.29814239699997197) * t152)
                 + k(0.8944271909999159)
                     * (k(0.5962847939999439) * t199 + k(0.29814239699997197) * t198);
             let t230 = t200 + t198;
-            let t231 = t110 + t91;
+            let t231 = t167 + t152;
             let t232 = k(0.3975231959999626) * t231 - k(0.1987615979999813) * t230
                 + k(0.49690399499995325) * (t215 + t213);
             let t233 = k(0.4472135954999579)
-                * (k(0.5962847939999439) * t110 - k(0.7453559924999299) * t91)
+                * (k(0.5962847939999439) * t167 - k(0.7453559924999299) * t152)
                 + k(0.8944271909999159)
                     * (k(0.5962847939999439) * t200 - k(0.7453559924999299) * t198);
             let t234 = k(0.6666666666666666) * t214;
             let t235 = k(0.6666666666666666) * t199;
             let t236 = t235 + k(0.3333333333333333) * t198;
-            let t237 = k(0.6666666666666666) * t101;
-            let t238 = t237 + k(0.3333333333333333) * t91;
+            let t237 = k(0.6666666666666666) * t161;
+            let t238 = t237 + k(0.3333333333333333) * t152;
             let t239 = k(0.5962847939999439) * t238 - k(0.29814239699997197) * t236
                 + k(0.7453559924999299) * (t234 + k(0.3333333333333333) * t213);
-            let t240 = k(0.29814239699997197) * t231 + k(0.5962847939999439) * t230;
-            let t241 = k(0.4472135954999579) * t238 + k(0.8944271909999159) * t236;
-            let t242 = t241 * t232 - t240 * t239;
-            let t243 = k(0.4472135954999579)
-                * (k(0.29814239699997197) * t110 + k(0.7453559924999299) * t101)
+            let t240 = k(0.4472135954999579)
+                * (k(0.29814239699997197) * t167 + k(0.7453559924999299) * t161)
                 + k(0.8944271909999159)
                     * (k(0.29814239699997197) * t200 + k(0.7453559924999299) * t199);
+            let t241 = k(0.29814239699997197) * t231 + k(0.5962847939999439) * t230;
+            let t242 = k(0.4472135954999579) * t238 + k(0.8944271909999159) * t236;
+            let t243 = t232 * t242 - t241 * t239;
             let t244 = k(0.3333333333333333) * t200 - t235;
-            let t245 = k(0.3333333333333333) * t110 - t237;
+            let t245 = k(0.3333333333333333) * t167 - t237;
             let t246 = k(0.5962847939999439) * t245 - k(0.29814239699997197) * t244
                 + k(0.7453559924999299) * (k(0.3333333333333333) * t215 - t234);
             let t247 = k(0.4472135954999579) * t245 + k(0.8944271909999159) * t244;
-            let t248 = t247 * t239 - t241 * t246;
-            let t249 = t240 * t246 - t247 * t232;
-            let t250 = k(1.0) / (t229 * t249 + (t233 * t248 + t243 * t242));
-            let t251 = t109 * (t250 * (t246 * t229 - t239 * t243))
-                + t100 * (t250 * (t239 * t233 - t232 * t229));
-            let t252 = t109 * (t250 * (t241 * t243 - t247 * t229))
-                + t100 * (t250 * (t240 * t229 - t241 * t233));
-            let t253 = t115 * (t249 * t250)
-                + (t109 * (t248 * t250) + t100 * (t242 * t250));
+            let t248 = t247 * t239 - t246 * t242;
+            let t249 = t241 * t246 - t232 * t247;
+            let t250 = k(1.0) / (t249 * t229 + (t248 * t233 + t243 * t240));
+            let t251 = t250 * (t246 * t229 - t239 * t240) * t160
+                + t250 * (t239 * t233 - t232 * t229) * t151;
+            let t252 = t250 * (t242 * t240 - t247 * t229) * t160
+                + t250 * (t241 * t229 - t242 * t233) * t151;
+            let t253 = t249 * t250 * t166 + (t248 * t250 * t160 + t243 * t250 * t151);
             (
                 t222,
                 t223,
@@ -6112,7 +5847,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Carried<T> {
                 t232,
                 t233,
                 t240,
-                t243,
+                t241,
                 t246,
                 t247,
                 t250,
@@ -6126,11 +5861,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Carried<T> {
             -t87,
             -t90,
             -t223,
-            -(t197 * (k(0.3333333333333333) * t194 - t224) * t222 + t225),
-            t226 - t89 * (k(1.7888543819998317) * t18 + k(0.8944271909999159) * t14),
+            -(t222 * (t142 * (k(0.3333333333333333) * t139 - t224)) + t225),
+            t226 - (k(1.7888543819998317) * t18 + k(0.8944271909999159) * t14) * t89,
             t228,
-            -(t115 * (t250 * (t232 * t243 - t246 * t233)) + t251),
-            t115 * (t250 * (t247 * t233 - t240 * t243)) + t252,
+            -(t250 * (t232 * t240 - t246 * t233) * t166 + t251),
+            t250 * (t247 * t233 - t241 * t240) * t166 + t252,
             t253,
         ];
     }
@@ -6138,12 +5873,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Carried<T> {
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Carried<T> {
     type Joints = [T; 5];
     type Rates = [T; 2];
+    type Solution = [T; 22];
     fn joint_start(&self) -> Self::Joints {
         let k = T::constant;
         [k(0.0), k(0.05), k(2.0), k(0.2999999999999996), k(0.0)]
     }
     fn rates(&self) -> Self::Rates {
         [T::constant(0.0); 2]
+    }
+    fn solution(&self) -> Self::Solution {
+        [T::constant(0.0); 22]
     }
     /// Writes u̇: 492 operations (200 ±, 291 ×, 1 ÷) and 12 functions.
     fn joint_accelerations(&self, t: T, x: &Self::Joints, out: &mut Self::Rates) {
@@ -8054,7 +7793,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Carried<T> {
         };
         *out = [-t206, k(1.6666666666666667) * t205 - k(0.14444444444444443) * t206];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 1060 operations (482 ±, 577 ×, 1 ÷) and 17 functions.
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 1949 operations (840 ±, 1105 ×, 4 ÷) and 13 functions.
     fn corrected_accelerations(
         &self,
         t: T,
@@ -8090,543 +7829,976 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Carried<T> {
         let slider_wz = y[25];
         let turn0 = y[27];
         let (
-            t0,
+            t2,
             t5,
+            t7,
             t10,
-            t11,
-            t12,
             t13,
             t14,
+            t16,
+            t19,
             t20,
-            t21,
             t22,
+            t23,
+            t24,
+            t25,
+            t26,
+            t28,
+            t29,
+            t30,
+            t31,
+            t32,
+            t33,
+            t34,
+            t36,
+            t37,
             t40,
             t41,
+            t42,
             t43,
-            t45,
-            t46,
-            t47,
-            t48,
-            t49,
-            t51,
-            t54,
+            t44,
+            t52,
             t55,
-            t57,
-            t58,
-            t59,
-            t60,
             t61,
-            t62,
             t64,
-            t66,
-            t68,
-            t69,
+            t67,
             t70,
             t71,
             t72,
+            t73,
+            t74,
             t75,
+            t76,
+            t77,
+            t78,
             t79,
+            t80,
             t82,
-            t87,
-            t91,
+            t86,
+            t92,
+            t94,
             t95,
             t104,
-            t106,
-            t108,
-            t113,
-            t115,
-            t118,
-            t125,
-            t127,
-            t129,
+            t105,
+            t112,
+            t119,
+            t121,
+            t123,
+            t124,
+            t130,
+            t131,
             t132,
-            t134,
+            t133,
             t137,
-            t148,
-            t149,
+            t138,
+            t139,
+            t140,
+            t143,
             t151,
-            t156,
-            t162,
+            t155,
+            t158,
+            t164,
+            t166,
+            t167,
             t169,
+            t170,
             t171,
+            t172,
+            t173,
+            t176,
+            t177,
+            t178,
+            t179,
+            t180,
+            t183,
+            t184,
+            t185,
+            t186,
+            t187,
+            t189,
+            t190,
+            t191,
+            t192,
+            t193,
+            t194,
             t195,
             t196,
+            t197,
             t198,
             t199,
         ) = {
-            let t0 = k(5.0) * (k(5.0) * t).sin();
-            let t1 = k(6.0) * t;
-            let t2 = t1.sin();
-            let t3 = k(0.5) * t2;
-            let t4 = t3.sin();
-            let t5 = k(0.4472135954999579) * t4;
-            let t6 = k(0.2) + k(4.0) * t;
-            let t7 = t6.sin();
-            let t8 = k(0.7) * t7;
-            let t9 = t8.sin();
-            let t10 = k(0.8944271909999159) * t4;
-            let t11 = t8.cos();
-            let t12 = t11 * t10 + t9 * t5;
-            let t13 = k(0.9) * (k(0.4) + k(3.0) * t).sin();
-            let t14 = t3.cos();
-            let t15 = t1.cos();
-            let t16 = k(3.0) * t15;
-            let t17 = t16 * t14;
-            let t18 = k(2.8) * t6.cos();
-            let t19 = k(11.2) * t7;
-            let t20 = k(8.049844718999243) * t2
-                - (t10 * t19 - t18 * (k(0.8944271909999159) * t17));
-            let t21 = k(0.2) * t20;
-            let t22 = t21 + (t14 * t13 + t12 * t0);
-            let t23 = k(0.25) * t2;
-            let t24 = t23.cos();
-            let t25 = k(0.35) * t7;
-            let t26 = t25.cos();
-            let t27 = t26 * t24;
-            let t28 = t25.sin();
-            let t29 = t28 * t24;
-            let t30 = t23.sin();
-            let t31 = k(0.8944271909999159) * t30;
-            let t32 = k(0.4472135954999579) * t30;
-            let t33 = t26 * t32 - t28 * t31;
-            let t34 = t28 * t32 + t26 * t31;
-            let t35 = t34 * arm_e0 - t33 * arm_e1 + t29 * arm_e2 - t27 * arm_e3;
-            let t36 = t33 * arm_e0 + t34 * arm_e1 - t27 * arm_e2 - t29 * arm_e3;
-            let t37 = t29 * arm_e0 - t27 * arm_e1 - t34 * arm_e2 + t33 * arm_e3;
-            let t38 = k(0.3333333333333333) * t37 + k(0.6666666666666666) * t36
-                + k(0.6666666666666666) * t35;
-            let t39 = k(2.0) * t38;
-            let t40 = k(1.0) - t38 * t39;
-            let t41 = k(0.1111111111111111) + k(0.8888888888888888) * t40;
-            let t42 = k(0.4) - k(0.4) * t14;
-            let t43 = t9 * t42;
-            let t44 = k(0.2) + k(0.8) * t14;
-            let t45 = t11 * t44 - t43;
-            let t46 = t14 * t19 + t18 * (t16 * t4);
-            let t47 = k(16.099689437998485) * t2
-                + (t5 * t19 - t18 * (k(0.4472135954999579) * t17));
-            let t48 = k(0.1) * t47 - k(0.2) * t46;
-            let t49 = t48 - (t10 * t13 - t45 * t0);
-            let t50 = t27 * arm_e0 + t29 * arm_e1 + t33 * arm_e2 + t34 * arm_e3;
-            let t51 = t50 * t39;
-            let t52 = k(0.6666666666666666) * t51;
-            let t53 = k(0.2222222222222222) - k(0.2222222222222222) * t40;
-            let t54 = t53 - t52;
-            let t55 = k(0.8) + k(0.2) * t14;
-            let t56 = t11 * t42;
-            let t57 = t56 - t9 * t55;
-            let t58 = k(0.1) * t20;
-            let t59 = t58 - (t5 * t13 + t57 * t0);
-            let t60 = t53 + t52;
-            let t61 = t18 * t14;
-            let t62 = t18 * t5 + k(2.6832815729997477) * t15;
-            let t63 = k(0.1) * t62 - k(0.2) * t61;
-            let t64 = t18 * t10 - k(1.3416407864998738) * t15;
-            let t65 = k(0.1) * t64;
-            let t66 = t64 * t65 + t62 * t63;
-            let t67 = k(0.2) * t64;
-            let t68 = t62 * t67 + t61 * t65;
-            let t69 = t61 * t63 - t64 * t67;
-            let t70 = k(0.2) * arm_wz;
-            let t71 = k(0.1) * arm_wx + k(0.2) * arm_wy;
-            let t72 = arm_wy * t71 + arm_wz * t70
-                - (t69 * t60 - (t68 * t54 + t66 * t41));
-            let t73 = slider_e0 * slider_e2;
-            let t74 = slider_e1 * slider_e3;
-            let t75 = k(2.0) * (t74 - t73);
-            let t76 = slider_e0 * slider_e1;
-            let t77 = slider_e2 * slider_e3;
-            let t78 = t77 + t76;
-            let t79 = k(2.0) * t78;
-            let t80 = slider_e0 * slider_e0;
-            let t81 = k(0.5) - (t80 + slider_e3 * slider_e3);
-            let t82 = k(2.0) * t81;
-            let t83 = k(0.05) * (t82 * slider_wx + t75 * slider_wz)
-                - k(0.1) * (t79 * slider_wx - t75 * slider_wy);
-            let t84 = arm_e0 * arm_e2;
-            let t85 = arm_e1 * arm_e3;
-            let t86 = t85 - t84;
-            let t87 = k(2.0) * t86;
-            let t88 = arm_e0 * arm_e1;
-            let t89 = arm_e2 * arm_e3;
-            let t90 = t89 + t88;
-            let t91 = k(2.0) * t90;
-            let t92 = t91 * arm_wx - t87 * arm_wy;
-            let t93 = arm_e0 * arm_e0;
-            let t94 = k(0.5) - (t93 + arm_e3 * arm_e3);
-            let t95 = k(2.0) * t94;
-            let t96 = t95 * arm_wx + t87 * arm_wz;
-            let t97 = t95 * arm_wy + t91 * arm_wz;
-            let t98 = arm_sz + (k(0.2) * t97 - k(0.1) * t96 - k(0.1) * t92)
-                - (slider_sz - t83);
-            let t99 = k(1.3333333333333333) * t94
-                + (k(0.6666666666666666) * t90 - k(1.3333333333333333) * t86);
-            let t100 = slider_rz + (k(0.2) * t81 + k(0.1) * t78)
-                - (arm_rz - (k(0.2) * t94 - (k(0.2) * t90 + k(0.4) * t86)));
-            let t101 = t100
-                * (k(0.6666666666666666) * t97 + k(0.3333333333333333) * t96
-                    - k(0.6666666666666666) * t92) + t99 * t98;
-            let t102 = slider_e0 * slider_e3;
-            let t103 = slider_e1 * slider_e2;
-            let t104 = k(2.0) * (t103 + t102);
-            let t105 = k(0.5) - (t80 + slider_e2 * slider_e2);
-            let t106 = k(2.0) * t105;
-            let t107 = t77 - t76;
-            let t108 = k(2.0) * t107;
-            let t109 = k(0.05) * (t108 * slider_wx - t104 * slider_wz)
-                - k(0.1) * (t106 * slider_wx + t104 * slider_wy);
-            let t110 = arm_e0 * arm_e3;
-            let t111 = arm_e1 * arm_e2;
-            let t112 = t111 + t110;
-            let t113 = k(2.0) * t112;
-            let t114 = k(0.5) - (t93 + arm_e2 * arm_e2);
-            let t115 = k(2.0) * t114;
-            let t116 = t115 * arm_wx + t113 * arm_wy;
-            let t117 = t89 - t88;
-            let t118 = k(2.0) * t117;
-            let t119 = t118 * arm_wx - t113 * arm_wz;
-            let t120 = t118 * arm_wy + t115 * arm_wz;
-            let t121 = arm_sy - (k(0.2) * t120 - k(0.1) * t119 - k(0.1) * t116)
-                - (slider_sy + t109);
-            let t122 = k(1.3333333333333333) * t117
-                + (k(0.6666666666666666) * t114 + k(1.3333333333333333) * t112);
-            let t123 = slider_ry - (k(0.2) * t107 + k(0.1) * t105)
-                - (arm_ry + (k(0.2) * t117 - (k(0.2) * t114 - k(0.4) * t112)));
-            let t124 = t123
-                * (k(0.6666666666666666) * t120 + k(0.3333333333333333) * t119
-                    - k(0.6666666666666666) * t116) + t122 * t121;
-            let t125 = k(2.0) * (k(0.5) - (t80 + slider_e1 * slider_e1));
-            let t126 = t103 - t102;
-            let t127 = k(2.0) * t126;
-            let t128 = t74 + t73;
-            let t129 = k(2.0) * t128;
-            let t130 = k(0.05) * (t129 * slider_wx + t125 * slider_wz)
-                + k(0.1) * (t127 * slider_wx + t125 * slider_wy);
-            let t131 = k(0.5) - (t93 + arm_e1 * arm_e1);
-            let t132 = k(2.0) * t131;
-            let t133 = t111 - t110;
-            let t134 = k(2.0) * t133;
-            let t135 = t134 * arm_wx + t132 * arm_wy;
-            let t136 = t85 + t84;
+            let t0 = arm_e0 * arm_e3;
+            let t1 = arm_e1 * arm_e2;
+            let t2 = t1 + t0;
+            let t3 = k(0.4) * t2;
+            let t4 = arm_e0 * arm_e0;
+            let t5 = k(0.5) - (t4 + arm_e2 * arm_e2);
+            let t6 = k(0.2) * t5;
+            let t7 = t6 + t3;
+            let t8 = arm_e0 * arm_e2;
+            let t9 = arm_e1 * arm_e3;
+            let t10 = t9 - t8;
+            let t11 = arm_e0 * arm_e1;
+            let t12 = arm_e2 * arm_e3;
+            let t13 = t12 + t11;
+            let t14 = k(0.5) - (t4 + arm_e3 * arm_e3);
+            let t15 = k(1.3333333333333333) * t14;
+            let t16 = t15 - (k(1.3333333333333333) * t13 + k(0.6666666666666666) * t10);
+            let t17 = k(0.4) * t10;
+            let t18 = k(0.2) * t13;
+            let t19 = t18 - t17;
+            let t20 = t12 - t11;
+            let t21 = k(1.3333333333333333) * t20;
+            let t22 = t21 - (k(1.3333333333333333) * t5 - k(0.6666666666666666) * t2);
+            let t23 = t22 * t19 - t16 * t7;
+            let t24 = k(0.5) - (t4 + arm_e1 * arm_e1);
+            let t25 = t1 - t0;
+            let t26 = t9 + t8;
+            let t27 = k(1.3333333333333333) * t26;
+            let t28 = t27 - (k(0.6666666666666666) * t25 + k(1.3333333333333333) * t24);
+            let t29 = k(0.6) * t28;
+            let t30 = t21 + (k(0.6666666666666666) * t5 + k(1.3333333333333333) * t2);
+            let t31 = k(0.6) * t30;
+            let t32 = t15 + (k(0.6666666666666666) * t13 - k(1.3333333333333333) * t10);
+            let t33 = k(0.6) * t32;
+            let t34 = k(1.0) / (t32 * t33 + (t30 * t31 + t28 * t29));
+            let t35 = t29 * t34;
+            let t36 = t29 * t35;
+            let t37 = t27 + (k(1.3333333333333333) * t25 - k(0.6666666666666666) * t24);
+            let t38 = k(0.4) * t24;
+            let t39 = k(0.2) * t25;
+            let t40 = t39 + t38;
+            let t41 = t16 * t40 + t37 * t19;
+            let t42 = t31 * t35;
+            let t43 = t37 * t7 + t22 * t40;
+            let t44 = t33 * t35;
+            let t45 = t44 * t43 - (t42 * t41 - t36 * t23) - k(2.1) * t23;
+            let t46 = slider_e0 * slider_e3;
+            let t47 = slider_e1 * slider_e2;
+            let t48 = t47 - t46;
+            let t49 = slider_e0 * slider_e2;
+            let t50 = slider_e1 * slider_e3;
+            let t51 = t50 + t49;
+            let t52 = k(0.2) * t51 - k(0.1) * t48;
+            let t53 = slider_rx - t52;
+            let t54 = arm_rx - t53;
+            let t55 = k(2.0) * t24;
+            let t56 = slider_e0 * slider_e0;
+            let t57 = k(0.5) - (t56 + slider_e2 * slider_e2);
+            let t58 = slider_e0 * slider_e1;
+            let t59 = slider_e2 * slider_e3;
+            let t60 = t59 - t58;
+            let t61 = k(0.2) * t60 + k(0.1) * t57;
+            let t62 = slider_ry - t61;
+            let t63 = arm_ry - t62;
+            let t64 = k(2.0) * t2;
+            let t65 = t59 + t58;
+            let t66 = k(0.5) - (t56 + slider_e3 * slider_e3);
+            let t67 = k(0.2) * t66 + k(0.1) * t65;
+            let t68 = slider_rz + t67;
+            let t69 = arm_rz - t68;
+            let t70 = k(2.0) * t10;
+            let t71 = t70 * t69 + (t64 * t63 - t55 * t54);
+            let t72 = k(2.0) * t25;
+            let t73 = k(2.0) * t5;
+            let t74 = k(2.0) * t13;
+            let t75 = t74 * t69 - (t73 * t63 - t72 * t54);
+            let t76 = k(2.0) * t26;
+            let t77 = k(2.0) * t20;
+            let t78 = k(2.0) * t14;
+            let t79 = t78 * t69 - (t77 * t63 + t76 * t54);
+            let t80 = t67 + (t78 * t79 + (t74 * t75 + t70 * t71));
+            let t81 = t42 * t80;
+            let t82 = t61 + (t77 * t79 + (t73 * t75 - t64 * t71));
+            let t83 = t82 * t44;
+            let t84 = t83 - t81;
+            let t85 = k(0.6) * t80;
+            let t86 = t52 + (t76 * t79 - (t72 * t75 - t55 * t71));
+            let t87 = t86 * t44 - t36 * t80;
+            let t88 = t87 + t85;
+            let t89 = k(0.6) * t82;
+            let t90 = t86 * t42 - t82 * t36;
+            let t91 = t90 + t89;
+            let t92 = t16 * t91 - (t22 * t88 - t37 * t84) + t45;
+            let t93 = t31 * t34;
+            let t94 = t31 * t93;
+            let t95 = t33 * t93;
+            let t96 = t95 * t43 - (t94 * t41 - t42 * t23) + k(2.1) * t41;
+            let t97 = t82 * t95 - t94 * t80;
+            let t98 = t85 + t97;
+            let t99 = t86 * t95;
+            let t100 = t99 - t81;
+            let t101 = k(0.6) * t86;
+            let t102 = t86 * t94 - t82 * t42;
+            let t103 = t102 - t101;
+            let t104 = t16 * t103 - (t22 * t100 - t37 * t98) + t96;
+            let t105 = t33 * (t33 * t34);
+            let t106 = t43 * t105 - (t95 * t41 - t44 * t23) - k(2.1) * t43;
+            let t107 = t82 * t105 - t80 * t95;
+            let t108 = t89 - t107;
+            let t109 = t86 * t105 - t80 * t44;
+            let t110 = t101 - t109;
+            let t111 = t99 - t83;
+            let t112 = t16 * t111 + (t22 * t110 - t37 * t108) + t106;
+            let t113 = k(0.06) * t26 - k(0.04) * t25;
+            let t114 = k(0.02) * t26 - (k(0.1) * t25 + k(0.04) * t24);
+            let t115 = k(0.2) * t26;
+            let t116 = t115 - (k(0.02) * t25 + k(0.06) * t24);
+            let t117 = k(0.004) * t51 + k(0.002) * t48;
+            let t118 = k(0.5) - (t56 + slider_e1 * slider_e1);
+            let t119 = k(2.0) * t118;
+            let t120 = k(0.006) * t51 - (k(0.02) * t48 - k(0.002) * t118);
+            let t121 = k(2.0) * t48;
+            let t122 = k(0.01) * t51 - (k(0.006) * t48 + k(0.004) * t118);
+            let t123 = k(2.0) * t51;
+            let t124 = k(0.02) + (t123 * t122 - (t121 * t120 + t119 * t117));
+            let t125 = t80 * t80;
+            let t126 = t82 * t82;
+            let t127 = k(0.6) * (t126 + t125) + t124 - (t82 * t107 - t80 * t97);
+            let t128 = t127 + (k(0.3) - (t76 * t116 - (t72 * t114 + t55 * t113)));
+            let t129 = t47 + t46;
+            let t130 = k(2.0) * t129;
+            let t131 = k(2.0) * t57;
+            let t132 = k(2.0) * t60;
+            let t133 = t132 * t122 + (t131 * t120 + t130 * t117);
+            let t134 = k(0.6) * (t86 * t82) - t133 - (t82 * t109 - t80 * t100);
+            let t135 = t134 + (t77 * t116 + (t73 * t114 + t64 * t113));
+            let t136 = t50 - t49;
             let t137 = k(2.0) * t136;
-            let t138 = t137 * arm_wx + t132 * arm_wz;
-            let t139 = t137 * arm_wy - t134 * arm_wz;
-            let t140 = arm_sx - (k(0.2) * t139 - k(0.1) * t138 + k(0.1) * t135)
-                - (slider_sx + t130);
-            let t141 = k(1.3333333333333333) * t136
-                - (k(0.6666666666666666) * t133 + k(1.3333333333333333) * t131);
-            let t142 = slider_rx - (k(0.2) * t128 - k(0.1) * t126)
-                - (arm_rx + (k(0.2) * t136 + (k(0.2) * t133 - k(0.4) * t131)));
-            let t143 = t142
-                * (k(0.6666666666666666) * t139 + k(0.3333333333333333) * t138
-                    + k(0.6666666666666666) * t135) + t141 * t140;
-            let t144 = t143 + t124 - t101;
-            let t145 = k(0.6666666666666666) * t144;
-            let t146 = t99 * t100 - (t122 * t123 + t141 * t142);
-            let t147 = k(0.6666666666666666) * t146;
-            let t148 = k(0.1) - t147;
-            let t149 = k(0.1) + k(0.3333333333333333) * t146;
-            let t150 = arm_wz * t149 - arm_wy * t148;
-            let t151 = k(0.2) - t147;
-            let t152 = arm_wy * t151 - arm_wx * t149;
-            let t153 = arm_wx * t152 - arm_wz * t150
-                + k(2.0) * (arm_wx * t145 - arm_wz * t145);
-            let t154 = k(0.05) * slider_wx;
-            let t155 = k(0.1) * slider_wy + k(0.05) * slider_wz;
-            let t156 = slider_wz * t155 + slider_wx * t154 + t153;
-            let t157 = arm_wy * t145;
-            let t158 = k(0.3333333333333333) * t144;
-            let t159 = arm_wx * t148 - arm_wz * t151;
-            let t160 = arm_wy * t150 - arm_wx * t159 + k(2.0) * (arm_wx * t158 + t157);
-            let t161 = k(0.1) * slider_wx;
-            let t162 = slider_wx * t161 + slider_wy * t155 - t160;
-            let t163 = slider_wy * slider_wy;
-            let t164 = slider_wz * slider_wz;
-            let t165 = k(0.001) * slider_wz;
-            let t166 = k(0.002) * slider_wy;
-            let t167 = slider_wx * (t166 - t165)
-                - (k(0.005) * (slider_wy * slider_wz) - k(0.003) * (t164 - t163));
-            let t168 = arm_wz * t159 - arm_wy * t152 - k(2.0) * (t157 + arm_wz * t158);
-            let t169 = slider_wy * t154 - slider_wz * t161 - t168;
-            let t170 = k(0.13333333333333333) * t162
-                + (k(0.06666666666666667) * t156 + k(0.13333333333333333) * t169)
-                - k(0.6) * t156;
-            let t171 = k(30.0) * (k(0.1) + t146) + k(0.5) * t144;
-            let t172 = k(0.3333333333333333) * t171 + t170;
-            let t173 = k(0.26666666666666666) * t162
-                + (k(0.13333333333333333) * t156 + k(0.26666666666666666) * t169);
-            let t174 = k(0.6666666666666666) * t171;
-            let t175 = t174 + (t173 - k(0.6) * t162);
-            let t176 = t149 * t175 + t148 * t172
-                + (t167 + (k(0.03) * t162 - k(0.06) * t156));
-            let t177 = arm_wy * arm_wy;
-            let t178 = arm_wz * arm_wz;
-            let t179 = k(0.02) * arm_wz;
-            let t180 = k(0.03) * arm_wy;
-            let t181 = arm_wx * (t180 + t179)
-                + (k(0.05) * (arm_wy * arm_wz) + k(0.01) * (t178 - t177));
-            let t182 = slider_wx * slider_wx;
-            let t183 = k(0.003) * slider_wx;
-            let t184 = slider_wy * (t165 + t183)
-                - (k(0.005) * (slider_wx * slider_wz) - k(0.002) * (t164 - t182));
-            let t185 = k(0.02666666666666667) * t162
-                + (k(0.013333333333333334) * t156 - k(0.03333333333333333) * t169)
-                + (t184 + k(0.06666666666666667) * t171);
-            let t186 = t174 + (t173 - k(0.6) * t169);
-            let t187 = arm_wx * arm_wx;
-            let t188 = k(0.01) * arm_wx;
-            let t189 = arm_wy * (t179 - t188)
-                + (k(0.1) * (arm_wx * arm_wz) - k(0.03) * (t178 - t187));
-            let t190 = k(0.2) * t175 - (t189 - (t151 * t175 - t148 * t186 - t185));
-            let t191 = slider_wz * (t166 + t183)
-                - (k(0.01) * (slider_wx * slider_wy) - k(0.001) * (t163 - t182));
-            let t192 = k(0.013333333333333334) * t162
-                + (k(0.006666666666666667) * t156 - k(0.016666666666666666) * t169)
-                - (t191 - k(0.03333333333333333) * t171);
-            let t193 = arm_wz * (t180 + t188)
-                - (k(0.05) * (arm_wx * arm_wy) + k(0.02) * (t177 - t187));
-            let t194 = k(0.2) * t172 - k(0.1) * t186
-                - (t193 - (t151 * t172 + t149 * t186 - t192));
-            let t195 = k(0.6666666666666666) * t194
-                + (k(0.6666666666666666) * t190
-                    + k(0.3333333333333333) * (k(0.1) * t175 + (t181 - t176)));
-            let t196 = t9 * t10 - t11 * t5;
-            let t197 = k(0.3333333333333333) * (t196 * t91 + (t14 * t134 - t12 * t115))
-                + k(0.6666666666666666) * (t196 * t87 + (t12 * t113 - t14 * t132));
-            let t198 = k(0.6666666666666666) * (t14 * t137 + t12 * t118 - t196 * t95)
-                - t197;
-            let t199 = t56 + t9 * t44;
+            let t138 = k(2.0) * t65;
+            let t139 = k(2.0) * t66;
+            let t140 = t139 * t122 + (t138 * t120 - t137 * t117);
+            let t141 = k(0.6) * (t86 * t80) - t140 + (t82 * t111 - t102 * t80);
+            let t142 = t141 + (t78 * t116 + (t74 * t114 - t70 * t113));
+            let t143 = t16 * t142 + (t22 * t135 - t37 * t128)
+                - (t43 * t108 + (t41 * t98 - t23 * t84));
+            let t144 = k(0.06) * t20 + k(0.04) * t5;
+            let t145 = k(0.02) * t20 + (k(0.1) * t5 + k(0.04) * t2);
+            let t146 = k(0.2) * t20;
+            let t147 = t146 + (k(0.02) * t5 + k(0.06) * t2);
+            let t148 = k(0.004) * t60 - k(0.002) * t57;
+            let t149 = k(0.006) * t60 + (k(0.02) * t57 - k(0.002) * t129);
+            let t150 = k(0.01) * t60 + (k(0.006) * t57 + k(0.004) * t129);
+            let t151 = k(0.02) + (t132 * t150 + (t131 * t149 + t130 * t148));
+            let t152 = t86 * t86;
+            let t153 = k(0.6) * (t152 + t125) + t151 - (t86 * t109 - t80 * t87);
+            let t154 = t153 + (k(0.3) - (t77 * t147 + (t73 * t145 + t64 * t144)));
+            let t155 = t139 * t150 + (t138 * t149 - t137 * t148);
+            let t156 = k(0.6) * (t82 * t80) - t155 - (t86 * t111 - t90 * t80);
+            let t157 = t156 + (t78 * t147 + (t74 * t145 - t70 * t144));
+            let t158 = t16 * t157 - (t22 * t154 - t37 * t135)
+                + (t43 * t110 + (t41 * t100 - t23 * t88));
+            let t159 = t74 * (k(0.02) * t14 + (k(0.1) * t13 - k(0.04) * t10))
+                - t70 * (k(0.06) * t14 + k(0.04) * t13);
+            let t160 = k(0.2) * t14;
+            let t161 = k(0.3) - (t78 * (t160 + (k(0.02) * t13 - k(0.06) * t10)) + t159);
+            let t162 = t138 * (k(0.006) * t66 + (k(0.02) * t65 + k(0.002) * t136))
+                - t137 * (k(0.004) * t66 - k(0.002) * t65);
+            let t163 = t139 * (k(0.01) * t66 + (k(0.006) * t65 - k(0.004) * t136))
+                + t162;
+            let t164 = k(0.02) + t163;
+            let t165 = k(0.6) * (t152 + t126) + t164 - (t86 * t102 - t82 * t90);
+            let t166 = (t165 + t161) * t16 - (t157 * t22 + t142 * t37)
+                - (t111 * t43 - (t103 * t41 - t91 * t23));
+            let t167 = t16 * t166 - (t22 * t158 + t37 * t143)
+                - (t43 * t112 - (t41 * t104 - t23 * t92));
+            let t168 = k(0.05) * (t139 * slider_wx + t137 * slider_wz)
+                - k(0.1) * (t138 * slider_wx - t137 * slider_wy);
+            let t169 = t74 * arm_wx - t70 * arm_wy;
+            let t170 = t78 * arm_wx + t70 * arm_wz;
+            let t171 = t78 * arm_wy + t74 * arm_wz;
+            let t172 = arm_sz + (k(0.2) * t171 - k(0.1) * t170 - k(0.1) * t169)
+                - (slider_sz - t168);
+            let t173 = t68 - (arm_rz - (t160 - (t18 + t17)));
+            let t174 = t173
+                * (k(0.6666666666666666) * t171 + k(0.3333333333333333) * t170
+                    - k(0.6666666666666666) * t169) + t32 * t172;
+            let t175 = k(0.05) * (t132 * slider_wx - t130 * slider_wz)
+                - k(0.1) * (t131 * slider_wx + t130 * slider_wy);
+            let t176 = t73 * arm_wx + t64 * arm_wy;
+            let t177 = t77 * arm_wx - t64 * arm_wz;
+            let t178 = t77 * arm_wy + t73 * arm_wz;
+            let t179 = arm_sy - (k(0.2) * t178 - k(0.1) * t177 - k(0.1) * t176)
+                - (slider_sy + t175);
+            let t180 = t62 - (arm_ry + (t146 - (t6 - t3)));
+            let t181 = t180
+                * (k(0.6666666666666666) * t178 + k(0.3333333333333333) * t177
+                    - k(0.6666666666666666) * t176) + t30 * t179;
+            let t182 = k(0.05) * (t123 * slider_wx + t119 * slider_wz)
+                + k(0.1) * (t121 * slider_wx + t119 * slider_wy);
+            let t183 = t72 * arm_wx + t55 * arm_wy;
+            let t184 = t76 * arm_wx + t55 * arm_wz;
+            let t185 = t76 * arm_wy - t72 * arm_wz;
+            let t186 = arm_sx - (k(0.2) * t185 - k(0.1) * t184 + k(0.1) * t183)
+                - (slider_sx + t182);
+            let t187 = t53 - (arm_rx + (t115 + (t39 - t38)));
+            let t188 = t187
+                * (k(0.6666666666666666) * t185 + k(0.3333333333333333) * t184
+                    + k(0.6666666666666666) * t183) + t28 * t186;
+            let t189 = k(0.5) * (t188 + t181 - t174);
+            let t190 = k(30.0) * (k(0.1) + (t32 * t173 - (t30 * t180 + t28 * t187)));
+            let t191 = t28 * t190 + t28 * t189;
+            let t192 = k(0.6) + t191;
+            let t193 = t30 * t190 + t30 * t189;
+            let t194 = k(5.4) - t193;
+            let t195 = t32 * t190 + t32 * t189;
+            let t196 = k(1.8) - t195;
+            let t197 = t32 * t196 + (t30 * t194 - t28 * t192);
+            let t198 = t34 * t197;
+            let t199 = arm_wy * arm_wy;
             (
-                t0,
+                t2,
                 t5,
+                t7,
                 t10,
-                t11,
-                t12,
                 t13,
                 t14,
+                t16,
+                t19,
                 t20,
-                t21,
                 t22,
+                t23,
+                t24,
+                t25,
+                t26,
+                t28,
+                t29,
+                t30,
+                t31,
+                t32,
+                t33,
+                t34,
+                t36,
+                t37,
                 t40,
                 t41,
+                t42,
                 t43,
-                t45,
-                t46,
-                t47,
-                t48,
-                t49,
-                t51,
-                t54,
+                t44,
+                t52,
                 t55,
-                t57,
-                t58,
-                t59,
-                t60,
                 t61,
-                t62,
                 t64,
-                t66,
-                t68,
-                t69,
+                t67,
                 t70,
                 t71,
                 t72,
+                t73,
+                t74,
                 t75,
+                t76,
+                t77,
+                t78,
                 t79,
+                t80,
                 t82,
-                t87,
-                t91,
+                t86,
+                t92,
+                t94,
                 t95,
                 t104,
-                t106,
-                t108,
-                t113,
-                t115,
-                t118,
-                t125,
-                t127,
-                t129,
+                t105,
+                t112,
+                t119,
+                t121,
+                t123,
+                t124,
+                t130,
+                t131,
                 t132,
-                t134,
+                t133,
                 t137,
-                t148,
-                t149,
+                t138,
+                t139,
+                t140,
+                t143,
                 t151,
-                t156,
-                t162,
+                t155,
+                t158,
+                t164,
+                t166,
+                t167,
                 t169,
+                t170,
                 t171,
+                t172,
+                t173,
+                t176,
+                t177,
+                t178,
+                t179,
+                t180,
+                t183,
+                t184,
+                t185,
+                t186,
+                t187,
+                t189,
+                t190,
+                t191,
+                t192,
+                t193,
+                t194,
                 t195,
                 t196,
+                t197,
                 t198,
                 t199,
             )
         };
-        let (t282, t284, t286, t287, t289, t291, t299, t300, t301) = {
-            let t200 = k(0.3333333333333333) * (t199 * t91 - (t10 * t134 + t45 * t115))
-                + k(0.6666666666666666) * (t199 * t87 + (t45 * t113 + t10 * t132));
-            let t201 = k(0.6666666666666666) * (t10 * t137 - t45 * t118 + t199 * t95)
-                + t200;
-            let t202 = t43 + t11 * t55;
-            let t203 = k(0.3333333333333333) * (t202 * t91 + (t5 * t134 - t57 * t115))
-                + k(0.6666666666666666) * (t202 * t87 + (t57 * t113 - t5 * t132));
-            let t204 = k(0.6666666666666666) * (t5 * t137 + t57 * t118 - t202 * t95)
-                - t203;
-            let t205 = k(0.6666666666666666) * t204
-                + (k(0.3333333333333333) * t201 - k(0.6666666666666666) * t198);
-            let t206 = turn0.cos();
-            let t207 = k(0.3333333333333333) * t204
-                + k(0.6666666666666666) * (t201 + t198);
-            let t208 = turn0.sin();
-            let t209 = (t206 * t207 - t208 * t205).atan2(t208 * t207 + t206 * t205);
-            let t210 = k(0.3333333333333333) * t61 - k(0.6666666666666666) * t64
-                + k(0.6666666666666666) * t62
+        let (
+            t211,
+            t212,
+            t215,
+            t216,
+            t217,
+            t219,
+            t220,
+            t221,
+            t230,
+            t231,
+            t240,
+            t241,
+            t328,
+            t329,
+            t330,
+            t331,
+            t332,
+            t333,
+            t335,
+            t337,
+            t338,
+            t340,
+            t344,
+            t346,
+            t347,
+            t348,
+            t350,
+            t352,
+            t353,
+            t354,
+            t355,
+            t356,
+            t359,
+            t362,
+            t364,
+            t367,
+            t368,
+            t369,
+            t378,
+            t379,
+            t380,
+            t381,
+            t382,
+            t388,
+            t394,
+            t397,
+            t398,
+            t399,
+        ) = {
+            let t200 = arm_wz * arm_wz;
+            let t201 = t200 + t199;
+            let t202 = arm_wx * arm_wy;
+            let t203 = arm_wx * arm_wz;
+            let t204 = t76 * t203 + (t72 * t202 + t55 * t201);
+            let t205 = arm_wx * arm_wx;
+            let t206 = t200 + t205;
+            let t207 = arm_wy * arm_wz;
+            let t208 = t76 * t207 - (t72 * t206 + t55 * t202);
+            let t209 = t186
+                * (k(0.4472135954999579) * t185 - k(0.8944271909999159) * t184);
+            let t210 = k(1.7888543819998317) * t25 - k(0.8944271909999159) * t24;
+            let t211 = k(0.2) * t204;
+            let t212 = k(0.1) * t208;
+            let t213 = t199 + t205;
+            let t214 = t76 * t213 - (t72 * t207 - t55 * t203);
+            let t215 = slider_wx * slider_wy;
+            let t216 = slider_wx * slider_wx;
+            let t217 = slider_wz * slider_wz;
+            let t218 = t217 + t216;
+            let t219 = slider_wy * slider_wz;
+            let t220 = slider_wx * slider_wz;
+            let t221 = slider_wy * slider_wy;
+            let t222 = t221 + t216;
+            let t223 = k(0.1) * (t123 * t222 - (t121 * t219 - t119 * t220))
+                + k(0.05) * (t123 * t219 - (t121 * t218 + t119 * t215));
+            let t224 = t223 + (k(0.1) * t214 - (t212 + t211));
+            let t225 = t224 * t210 + t209
+                + (t209
+                    + t187
+                        * (k(0.8944271909999159) * t208 + k(0.4472135954999579) * t204));
+            let t226 = t77 * t203 - (t73 * t202 + t64 * t201);
+            let t227 = t77 * t207 + (t73 * t206 + t64 * t202);
+            let t228 = t179
+                * (k(0.4472135954999579) * t178 - k(0.8944271909999159) * t177);
+            let t229 = k(1.7888543819998317) * t5 - k(0.8944271909999159) * t2;
+            let t230 = k(0.2) * t226;
+            let t231 = k(0.1) * t227;
+            let t232 = t77 * t213 + (t73 * t207 - t64 * t203);
+            let t233 = k(0.1) * (t132 * t222 + (t131 * t219 - t130 * t220))
+                + k(0.05) * (t132 * t219 + (t131 * t218 + t130 * t215));
+            let t234 = t233 + (k(0.1) * t232 - (t231 + t230));
+            let t235 = t234 * t229 - t228
+                - (t228
+                    + t180
+                        * (k(0.8944271909999159) * t227 + k(0.4472135954999579) * t226));
+            let t236 = t78 * t203 - (t74 * t202 - t70 * t201);
+            let t237 = t78 * t207 + (t74 * t206 - t70 * t202);
+            let t238 = t172
+                * (k(0.4472135954999579) * t171 - k(0.8944271909999159) * t170);
+            let t239 = k(1.7888543819998317) * t13 + k(0.8944271909999159) * t10;
+            let t240 = k(0.2) * t236;
+            let t241 = k(0.1) * t237;
+            let t242 = t78 * t213 + (t74 * t207 + t70 * t203);
+            let t243 = k(0.1) * (t139 * t222 + (t138 * t219 + t137 * t220))
+                + k(0.05) * (t139 * t219 + (t138 * t218 - t137 * t215));
+            let t244 = t243 + (k(0.1) * t242 - (t241 + t240));
+            let t245 = t244 * t239 + t238
+                + (t238
+                    + t173
+                        * (k(0.8944271909999159) * t237 + k(0.4472135954999579) * t236));
+            let t246 = t245 + (t235 - t225);
+            let t247 = t186
+                * (k(0.5962847939999439) * t185 + k(0.29814239699997197) * t184
+                    - k(0.7453559924999299) * t183);
+            let t248 = t247
+                + t187
+                    * (k(0.7453559924999299) * t214
+                        - (k(0.29814239699997197) * t208
+                            - k(0.5962847939999439) * t204));
+            let t249 = k(1.4907119849998598) * t26
+                + (k(0.5962847939999439) * t25 + k(1.1925695879998879) * t24);
+            let t250 = t179
+                * (k(0.5962847939999439) * t178 + k(0.29814239699997197) * t177
+                    + k(0.7453559924999299) * t176);
+            let t251 = t250
+                + t180
+                    * (k(0.7453559924999299) * t232
+                        - (k(0.29814239699997197) * t227
+                            - k(0.5962847939999439) * t226));
+            let t252 = k(1.4907119849998598) * t20
+                - (k(0.5962847939999439) * t5 + k(1.1925695879998879) * t2);
+            let t253 = t234 * t252 - t250 - t251 + (t224 * t249 - t247 - t248);
+            let t254 = t172
+                * (k(0.5962847939999439) * t171 + k(0.29814239699997197) * t170
+                    + k(0.7453559924999299) * t169);
+            let t255 = t254
+                + t173
+                    * (k(0.7453559924999299) * t242
+                        - (k(0.29814239699997197) * t237
+                            - k(0.5962847939999439) * t236));
+            let t256 = k(1.4907119849998598) * t14
+                - (k(0.5962847939999439) * t13 - k(1.1925695879998879) * t10);
+            let t257 = t244 * t256 + t254 + t255 + t253;
+            let t258 = t74 * t138 + (t73 * t131 + t72 * t121);
+            let t259 = t74 * t139 + (t73 * t132 - t72 * t123);
+            let t260 = t70 * t138 - (t64 * t131 + t55 * t121);
+            let t261 = t70 * t139 - (t64 * t132 - t55 * t123);
+            let t262 = k(0.4472135954999579)
+                * (k(0.29814239699997197) * t261 + k(0.7453559924999299) * t260)
+                + k(0.8944271909999159)
+                    * (k(0.29814239699997197) * t259 + k(0.7453559924999299) * t258);
+            let t263 = t78 * t137 - (t77 * t130 - t76 * t119);
+            let t264 = t78 * t138 + (t77 * t131 - t76 * t121);
+            let t265 = k(0.6666666666666666) * t264;
+            let t266 = t74 * t137 - (t73 * t130 + t72 * t119);
+            let t267 = k(0.6666666666666666) * t258;
+            let t268 = t267 + k(0.3333333333333333) * t266;
+            let t269 = t70 * t137 + (t64 * t130 + t55 * t119);
+            let t270 = k(0.6666666666666666) * t260;
+            let t271 = t270 + k(0.3333333333333333) * t269;
+            let t272 = k(0.5962847939999439) * t271 - k(0.29814239699997197) * t268
+                + k(0.7453559924999299) * (t265 + k(0.3333333333333333) * t263);
+            let t273 = t259 + t266;
+            let t274 = t261 + t269;
+            let t275 = k(0.29814239699997197) * t274 + k(0.5962847939999439) * t273;
+            let t276 = k(0.4472135954999579) * t271 + k(0.8944271909999159) * t268;
+            let t277 = t78 * t139 + (t77 * t132 + t76 * t123);
+            let t278 = k(0.3975231959999626) * t274 - k(0.1987615979999813) * t273
+                + k(0.49690399499995325) * (t277 + t263);
+            let t279 = t278 * t276 - t275 * t272;
+            let t280 = k(0.4472135954999579)
+                * (k(0.5962847939999439) * t261 - k(0.7453559924999299) * t269)
+                + k(0.8944271909999159)
+                    * (k(0.5962847939999439) * t259 - k(0.7453559924999299) * t266);
+            let t281 = k(0.3333333333333333) * t259 - t267;
+            let t282 = k(0.3333333333333333) * t261 - t270;
+            let t283 = k(0.5962847939999439) * t282 - k(0.29814239699997197) * t281
+                + k(0.7453559924999299) * (k(0.3333333333333333) * t277 - t265);
+            let t284 = k(0.4472135954999579) * t282 + k(0.8944271909999159) * t281;
+            let t285 = t284 * t272 - t283 * t276;
+            let t286 = k(0.4472135954999579)
+                * (k(0.5962847939999439) * t260 + k(0.29814239699997197) * t269)
+                + k(0.8944271909999159)
+                    * (k(0.5962847939999439) * t258 + k(0.29814239699997197) * t266);
+            let t287 = t275 * t283 - t278 * t284;
+            let t288 = k(1.0) / (t287 * t286 + (t285 * t280 + t279 * t262));
+            let t289 = slider_wy * t259 + slider_wz * t258;
+            let t290 = slider_wy * t277 + slider_wz * t264;
+            let t291 = t217 + t221;
+            let t292 = t220 * t261 - (t215 * t260 - t291 * t269)
+                - k(2.0) * (arm_wy * t290 + arm_wz * t289);
+            let t293 = t292 + (t203 * t263 - (t202 * t266 - t201 * t269));
+            let t294 = slider_wx * t259 + slider_wz * t266;
+            let t295 = slider_wx * t277 + slider_wz * t263;
+            let t296 = t219 * t261 + (t218 * t260 - t215 * t269)
+                + k(2.0) * (arm_wy * t295 + arm_wz * t294);
+            let t297 = t296 + (t203 * t264 - (t202 * t258 - t201 * t260));
+            let t298 = slider_wx * t258 - slider_wy * t266;
+            let t299 = slider_wx * t264 - slider_wy * t263;
+            let t300 = t222 * t261 + (t219 * t260 + t220 * t269)
+                - k(2.0) * (arm_wy * t299 + arm_wz * t298);
+            let t301 = t300 + (t203 * t277 - (t202 * t259 - t201 * t261));
+            let t302 = slider_wy * t261 + slider_wz * t260;
+            let t303 = t220 * t259 - (t215 * t258 - t291 * t266)
+                + k(2.0) * (arm_wx * t290 + arm_wz * t302);
+            let t304 = t303 + (t207 * t263 + (t206 * t266 - t202 * t269));
+            let t305 = slider_wx * t261 + slider_wz * t269;
+            let t306 = t219 * t259 + (t218 * t258 - t215 * t266)
+                - k(2.0) * (arm_wx * t295 + arm_wz * t305);
+            let t307 = t306 + (t207 * t264 + (t206 * t258 - t202 * t260));
+            let t308 = slider_wx * t260 - slider_wy * t269;
+            let t309 = t222 * t259 + (t219 * t258 + t220 * t266)
+                + k(2.0) * (arm_wx * t299 + arm_wz * t308);
+            let t310 = t309 + (t207 * t277 + (t206 * t259 - t202 * t261));
+            let t311 = k(0.8944271909999159)
+                * (k(0.7453559924999299) * t310
+                    - (k(0.29814239699997197) * t307 - k(0.5962847939999439) * t304))
+                + k(0.4472135954999579)
+                    * (k(0.7453559924999299) * t301
+                        - (k(0.29814239699997197) * t297
+                            - k(0.5962847939999439) * t293));
+            let t312 = k(0.6666666666666666) * t301
+                + (k(0.3333333333333333) * t297 - k(0.6666666666666666) * t293);
+            let t313 = k(0.6666666666666666) * t310
+                + (k(0.3333333333333333) * t307 - k(0.6666666666666666) * t304);
+            let t314 = k(0.8944271909999159) * t313 + k(0.4472135954999579) * t312;
+            let t315 = t220 * t277 - (t215 * t264 - t291 * t263)
+                - k(2.0) * (arm_wx * t289 - arm_wy * t302);
+            let t316 = k(0.6666666666666666)
+                * (t315 + (t213 * t263 + (t207 * t266 + t203 * t269)));
+            let t317 = t219 * t277 + (t218 * t264 - t215 * t263)
+                + k(2.0) * (arm_wx * t294 - arm_wy * t305);
+            let t318 = k(0.3333333333333333)
+                * (t317 + (t213 * t264 + (t207 * t258 + t203 * t260)));
+            let t319 = t222 * t277 + (t219 * t264 + t220 * t263)
+                - k(2.0) * (arm_wx * t298 - arm_wy * t308);
+            let t320 = k(0.6666666666666666)
+                * (t319 + (t213 * t277 + (t207 * t259 + t203 * t261)));
+            let t321 = k(0.7453559924999299) * (t320 + (t318 - t316))
+                - (k(0.29814239699997197) * t313 - k(0.5962847939999439) * t312);
+            let t322 = t321 * (t288 * (t275 * t286 - t276 * t280))
+                + t314 * (t288 * (t272 * t280 - t278 * t286));
+            let t323 = t322 - t311 * (t279 * t288);
+            let t324 = t321 * (t288 * (t276 * t262 - t284 * t286))
+                + t314 * (t288 * (t283 * t286 - t272 * t262));
+            let t325 = t324 - t311 * (t285 * t288);
+            let t326 = t288 * (t284 * t280 - t275 * t262) * t321
+                + t288 * (t278 * t262 - t283 * t280) * t314;
+            let t327 = t326 - t287 * t288 * t311;
+            let t328 = t139 * t327 - (t138 * t325 + t137 * t323);
+            let t329 = t132 * t327 - (t131 * t325 - t130 * t323);
+            let t330 = t67 * t329 - t61 * t328 - (t249 * t257 - t210 * t246);
+            let t331 = t123 * t327 + (t121 * t325 - t119 * t323);
+            let t332 = t52 * t328 - t67 * t331 - (t252 * t257 + t229 * t246);
+            let t333 = t61 * t331 - t52 * t329 - (t256 * t257 + t239 * t246);
+            let t334 = t44 * t333 + (t42 * t332 + t36 * t330) - k(0.6) * t330;
+            let t335 = t334 + (t192 + t29 * t198);
+            let t336 = t95 * t333 + (t94 * t332 + t42 * t330) - k(0.6) * t332;
+            let t337 = t336 - (t194 - t31 * t198);
+            let t338 = t41 * (t337 - (k(13.5) + t193)) - t23 * (t335 + (k(1.5) - t191));
+            let t339 = t105 * t333 + (t95 * t332 + t44 * t330) - k(0.6) * t333;
+            let t340 = t339 - (t196 - t33 * t198);
+            let t341 = k(0.6666666666666666) * t75;
+            let t342 = t341 - k(0.3333333333333333) * t79;
+            let t343 = k(6.0) * t;
+            let t344 = t343.sin();
+            let t345 = k(0.5) * t344;
+            let t346 = t345.cos();
+            let t347 = t345.sin();
+            let t348 = k(0.4472135954999579) * t347;
+            let t349 = k(0.2) + k(4.0) * t;
+            let t350 = t349.sin();
+            let t351 = k(0.7) * t350;
+            let t352 = t351.sin();
+            let t353 = k(0.8944271909999159) * t347;
+            let t354 = t351.cos();
+            let t355 = t354 * t353 + t352 * t348;
+            let t356 = t352 * t353 - t354 * t348;
+            let t357 = k(0.3333333333333333) * (t356 * t74 + (t346 * t72 - t355 * t73))
+                + k(0.6666666666666666) * (t356 * t70 + (t355 * t64 - t346 * t55));
+            let t358 = k(0.6666666666666666) * (t346 * t76 + t355 * t77 - t356 * t78)
+                - t357;
+            let t359 = k(0.4) - k(0.4) * t346;
+            let t360 = t352 * t359;
+            let t361 = k(0.2) + k(0.8) * t346;
+            let t362 = t354 * t361 - t360;
+            let t363 = t354 * t359;
+            let t364 = t363 + t352 * t361;
+            let t365 = k(0.3333333333333333) * (t364 * t74 - (t353 * t72 + t362 * t73))
+                + k(0.6666666666666666) * (t364 * t70 + (t362 * t64 + t353 * t55));
+            let t366 = k(0.6666666666666666) * (t353 * t76 - t362 * t77 + t364 * t78)
+                + t365;
+            let t367 = k(0.8) + k(0.2) * t346;
+            let t368 = t363 - t352 * t367;
+            let t369 = t360 + t354 * t367;
+            let t370 = k(0.3333333333333333) * (t369 * t74 + (t348 * t72 - t368 * t73))
+                + k(0.6666666666666666) * (t369 * t70 + (t368 * t64 - t348 * t55));
+            let t371 = k(0.6666666666666666) * (t348 * t76 + t368 * t77 - t369 * t78)
+                - t370;
+            let t372 = k(0.6666666666666666) * t371
+                + (k(0.3333333333333333) * t366 - k(0.6666666666666666) * t358);
+            let t373 = turn0.cos();
+            let t374 = k(0.3333333333333333) * t371
+                + k(0.6666666666666666) * (t366 + t358);
+            let t375 = turn0.sin();
+            let t376 = (t373 * t374 - t375 * t372).atan2(t375 * t374 + t373 * t372);
+            let t377 = k(0.3) - (turn0 + t376);
+            let t378 = t343.cos();
+            let t379 = k(2.8) * t349.cos();
+            let t380 = t379 * t348 + k(2.6832815729997477) * t378;
+            let t381 = t379 * t353 - k(1.3416407864998738) * t378;
+            let t382 = t379 * t346;
+            let t383 = k(0.3333333333333333) * t382 - k(0.6666666666666666) * t381
+                + k(0.6666666666666666) * t380
                 - (k(0.3333333333333333) * arm_wx + k(0.6666666666666666) * arm_wy
                     + k(0.6666666666666666) * arm_wz);
-            let t211 = k(9.0) - t0;
-            let t212 = k(1.0) + t13;
-            let t213 = t14 * t212 - t12 * t211 + k(3.0) * t196 + t21;
-            let t214 = t10 * t212 + t45 * t211 - k(3.0) * t199 - t48;
-            let t215 = t5 * t212 - t57 * t211 + k(3.0) * t202 - t58;
-            let t216 = t215 * t60 - (t214 * t54 - t213 * t41) + t72;
-            let t217 = k(0.26666666666666666) * t149;
-            let t218 = t217 + k(0.13333333333333333) * t148;
-            let t219 = t151 - t148;
-            let t220 = k(0.26666666666666666) * t219;
-            let t221 = k(0.6) * t148;
-            let t222 = k(0.03333333333333333) + (t221 + t220);
-            let t223 = k(0.6) * t149;
-            let t224 = k(0.13333333333333333) * t151 + t217;
-            let t225 = k(0.016666666666666666) + (t224 - t223);
-            let t226 = k(0.6666666666666666) * (k(0.21) + t225)
-                + (k(0.6666666666666666) * (k(0.05333333333333334) + t222)
-                    + k(0.3333333333333333) * (k(0.02666666666666667) - t218));
-            let t227 = k(0.4444444444444444) + k(0.5555555555555556) * t40;
-            let t228 = k(0.3333333333333333) * t51;
-            let t229 = k(0.4444444444444444) - k(0.4444444444444444) * t40;
-            let t230 = t229 - t228;
-            let t231 = k(0.1) * arm_wz;
-            let t232 = arm_wz * t231 + arm_wx * t71
-                + (t69 * t230 - (t68 * t227 + t66 * t60));
-            let t233 = t215 * t230 - (t214 * t227 - t213 * t60) - t232;
-            let t234 = k(0.13333333333333333) * t149;
-            let t235 = t234 + k(0.06666666666666667) * t148;
-            let t236 = k(0.06) - (t235 - t221);
-            let t237 = k(0.13333333333333333) * t219;
-            let t238 = k(0.013333333333333334) - t237;
-            let t239 = k(0.6) * t151;
-            let t240 = k(0.06666666666666667) * t151 + t234;
-            let t241 = k(0.006666666666666667) - (t240 - t239);
-            let t242 = k(0.6666666666666666) * (k(0.42) + t241)
-                - (k(0.6666666666666666) * (k(0.02666666666666667) - t238)
-                    + k(0.3333333333333333) * (k(0.013333333333333334) + t236));
-            let t243 = t229 + t228;
-            let t244 = arm_wx * t70 - arm_wy * t231
-                + (t69 * t227 - (t68 * t243 + t66 * t54));
-            let t245 = t215 * t227 - (t214 * t243 - t213 * t54) - t244;
-            let t246 = k(0.03) - (t223 - t218);
-            let t247 = k(0.02666666666666667) + (t239 - t220);
-            let t248 = k(0.013333333333333334) - t224;
-            let t249 = k(0.6666666666666666) * t248
-                + (k(0.6666666666666666) * (k(0.36666666666666664) + t247)
-                    + k(0.3333333333333333) * (k(0.18333333333333332) + t246));
-            let t250 = k(0.6666666666666666) * t210;
-            let t251 = t47 * t60 + (t20 * t54 + t46 * t41)
-                - (arm_wz * t250 - arm_wy * t250);
-            let t252 = t148 * t148;
-            let t253 = t149 * t149;
-            let t254 = k(2.0) * (k(0.03) * t149 - k(0.06) * t148)
-                + (t149 * t218 + t148 * t235);
-            let t255 = k(0.2) * t246;
-            let t256 = k(0.0026666666666666666) - t255
-                - (k(0.021) + (k(0.3) - (t254 - (k(0.0275) + k(0.6) * (t253 + t252)))));
-            let t257 = k(0.03) * t151
-                - (k(0.02666666666666667) * t149 + k(0.013333333333333334) * t148)
-                + (t149 * t220 + t148 * t237);
-            let t258 = k(0.005333333333333333) - (t255 + k(0.1) * t247)
-                - (k(0.042) + (k(0.02) + (t257 + (k(0.001) - k(0.6) * (t151 * t149)))));
-            let t259 = t149 * t224;
-            let t260 = k(0.06) * t151
-                + (k(0.013333333333333334) * t149 + k(0.006666666666666667) * t148)
-                - (t259 + t240 * t148);
-            let t261 = k(0.2) * t236 + k(0.1) * t218 - k(0.1) * t248
-                + (k(0.03) + (t260 - (k(0.002) - k(0.6) * (t151 * t148))));
-            let t262 = k(0.6666666666666666) * t261
-                + (k(0.6666666666666666) * t258 + k(0.3333333333333333) * t256);
-            let t263 = k(0.3333333333333333) * t210;
-            let t264 = arm_wx * t250;
-            let t265 = t47 * t230 + (t20 * t227 + t46 * t60) - (t264 - arm_wz * t263);
-            let t266 = t151 * t151;
-            let t267 = k(2.0)
-                * (k(0.02666666666666667) * t151 + k(0.03333333333333333) * t148)
-                - (t151 * t220 - t148 * t220);
-            let t268 = k(0.010666666666666666) - k(0.4) * t247
-                - (k(0.084)
-                    + (k(0.25)
-                        + (t267 + (k(0.03333333333333333) + k(0.6) * (t266 + t252)))));
-            let t269 = k(0.013333333333333334) * t151;
-            let t270 = k(0.03333333333333333) * t149 - t269
-                - (t269 + k(0.016666666666666666) * t148) + (t151 * t224 - t224 * t148);
-            let t271 = k(0.2) * t238 + k(0.1) * t222 + k(0.2) * t248
-                + (k(0.01)
-                    - (t270 + (k(0.0013333333333333333) + k(0.6) * (t149 * t148))));
-            let t272 = k(0.6666666666666666) * t271;
-            let t273 = t272
-                - (k(0.6666666666666666) * t268 + k(0.3333333333333333) * t258);
-            let t274 = t47 * t227 + (t20 * t243 + t46 * t54) - (arm_wy * t263 - t264);
-            let t275 = k(2.0)
-                * (k(0.006666666666666667) * t151 - k(0.016666666666666666) * t149)
-                - (t151 * t240 + t259);
-            let t276 = k(0.105)
-                + (k(0.2) + (t275 + (k(0.025833333333333333) + k(0.6) * (t266 + t253))))
-                + k(2.0) * (k(0.2) * t241 + k(0.1) * t225);
-            let t277 = k(0.6666666666666666) * t276
-                - (k(0.3333333333333333) * t261 - t272);
-            let t278 = t277 * t274 + (t273 * t265 - t262 * t251)
-                - (t249 * t245 - (t242 * t233 + t226 * t216));
-            let t279 = t278
-                + (k(0.1) * t210 + k(2.0) * (k(0.3) - (turn0 + t209)) + t195);
-            let t280 = t279
-                / (k(0.6666666666666666) * t277
-                    + (k(0.6666666666666666) * t273 - k(0.3333333333333333) * t262));
-            let t281 = k(0.6666666666666666) * t280;
-            let t282 = t274 - t281;
-            let t283 = k(0.1) * t282;
-            let t284 = t283 + (t72 - (t60 * t59 - (t54 * t49 + t41 * t22)));
-            let t285 = k(0.2) * t282;
-            let t286 = t285 - (t232 + (t230 * t59 - (t227 * t49 + t60 * t22)));
-            let t287 = t251 - k(0.3333333333333333) * t280;
-            let t288 = k(0.1) * t287;
-            let t289 = t265 - t281;
-            let t290 = k(0.2) * t289 + t288;
-            let t291 = t290 + (t244 + (t227 * t59 - (t243 * t49 + t54 * t22)));
-            let t292 = t149 * t282 - t148 * t289;
-            let t293 = t151 * t282 - t148 * t287;
-            let t294 = k(0.2) * (t156 - (t293 + (t233 + t285)))
-                + k(0.4) * (t169 - (t292 - (t216 + t283)));
-            let t295 = t151 * t289 - t149 * t287;
-            let t296 = k(0.02) * t282 + k(0.04) * t289
-                + (k(0.4) * (t162 - (t295 - (t245 - t290))) + t294);
-            let t297 = t171 + t296;
-            let t298 = k(1.1111111111111112) * t297;
-            let t299 = k(0.05) * t282 + k(0.1) * t289 - (t298 - (t169 - (t292 - t284)));
-            let t300 = t288 - (k(0.5555555555555556) * t297 - (t156 - (t293 + t286)));
-            let t301 = k(0.05) * t287 + (t298 - (t162 - (t295 + t291)));
-            (t282, t284, t286, t287, t289, t291, t299, t300, t301)
+            let t384 = t190 * t342
+                + (k(0.03333333333333333) * t383
+                    + (k(0.6666666666666666) * t377 + t189 * t342));
+            let t385 = k(0.02) * arm_wz;
+            let t386 = k(0.03) * arm_wy;
+            let t387 = arm_wx * (t386 + t385)
+                + (k(0.05) * t207 + k(0.01) * (t200 - t199));
+            let t388 = t387 + t384;
+            let t389 = k(0.6666666666666666) * (t79 + t71);
+            let t390 = k(1.3333333333333333) * t377;
+            let t391 = k(0.06666666666666667) * t383;
+            let t392 = k(0.01) * arm_wx;
+            let t393 = arm_wy * (t385 - t392)
+                + (k(0.1) * t203 - k(0.03) * (t200 - t205));
+            let t394 = t393 + (t190 * t389 - (t391 + (t390 - t189 * t389)));
+            let t395 = k(0.3333333333333333) * t71 + t341;
+            let t396 = arm_wz * (t386 + t392)
+                - (k(0.05) * t202 + k(0.02) * (t199 - t205));
+            let t397 = t396 + (t190 * t395 - (t391 + (t390 - t189 * t395)));
+            let t398 = k(0.1) * (t138 * t32 + (t131 * t30 - t121 * t28))
+                - k(0.05) * (t139 * t32 + (t132 * t30 + t123 * t28));
+            let t399 = k(0.001) * slider_wz;
+            (
+                t211,
+                t212,
+                t215,
+                t216,
+                t217,
+                t219,
+                t220,
+                t221,
+                t230,
+                t231,
+                t240,
+                t241,
+                t328,
+                t329,
+                t330,
+                t331,
+                t332,
+                t333,
+                t335,
+                t337,
+                t338,
+                t340,
+                t344,
+                t346,
+                t347,
+                t348,
+                t350,
+                t352,
+                t353,
+                t354,
+                t355,
+                t356,
+                t359,
+                t362,
+                t364,
+                t367,
+                t368,
+                t369,
+                t378,
+                t379,
+                t380,
+                t381,
+                t382,
+                t388,
+                t394,
+                t397,
+                t398,
+                t399,
+            )
+        };
+        let (
+            t482,
+            t483,
+            t484,
+            t485,
+            t486,
+            t487,
+            t488,
+            t489,
+            t490,
+            t491,
+            t492,
+            t493,
+            t494,
+        ) = {
+            let t400 = k(0.002) * slider_wy;
+            let t401 = slider_wx * (t400 - t399)
+                - (k(0.005) * t219 - k(0.003) * (t217 - t221));
+            let t402 = t401 + (t190 * t398 + t189 * t398);
+            let t403 = t137 * t32 - (t130 * t30 - t119 * t28);
+            let t404 = k(0.1) * t403;
+            let t405 = k(0.003) * slider_wx;
+            let t406 = slider_wy * (t399 + t405)
+                - (k(0.005) * t220 - k(0.002) * (t217 - t216));
+            let t407 = t406 - (t190 * t404 + t189 * t404);
+            let t408 = k(0.05) * t403;
+            let t409 = slider_wz * (t400 + t405)
+                - (k(0.01) * t215 - k(0.001) * (t221 - t216));
+            let t410 = t409 + (t190 * t408 + t189 * t408);
+            let t411 = t140 * t328 + (t133 * t329 + t124 * t331)
+                + (t123 * t410 - (t121 * t407 - t119 * t402));
+            let t412 = t82 * t340 - t80 * t337 - t411
+                + (t76 * t397 + (t72 * t394 + t55 * t388));
+            let t413 = t155 * t328 + (t151 * t329 + t133 * t331)
+                + (t132 * t410 + (t131 * t407 - t130 * t402));
+            let t414 = t86 * t340 - t80 * t335 + t413
+                - (t77 * t397 - (t73 * t394 + t64 * t388));
+            let t415 = t164 * t328 + (t155 * t329 + t140 * t331)
+                + (t139 * t410 + (t138 * t407 + t137 * t402));
+            let t416 = t86 * t337 - t82 * t335 - t415
+                + (t78 * t397 - (t74 * t394 - t70 * t388));
+            let t417 = t16 * t416 - (t22 * t414 - t37 * t412)
+                + (t43 * (t340 - (k(4.5) + t195)) - t338);
+            let t418 = k(3.0) * t378;
+            let t419 = t418 * t347;
+            let t420 = k(18.0) * t344;
+            let t421 = t346 * t420 + t418 * t419;
+            let t422 = t418 * t346;
+            let t423 = t347 * t420 - t418 * t422;
+            let t424 = k(0.1) * t423 - k(0.08944271909999159) * t421
+                - k(0.9) * (k(0.4) + k(3.0) * t).sin();
+            let t425 = t76 * arm_wz + (t72 * arm_wy - t55 * arm_wx);
+            let t426 = t346 * t382 + t353 * t381 + t348 * t380;
+            let t427 = t426 - t425;
+            let t428 = t77 * arm_wz - (t73 * arm_wy - t64 * arm_wx);
+            let t429 = t382 * t355 - t381 * t362 + t380 * t368;
+            let t430 = t429 - t428;
+            let t431 = t78 * arm_wz - (t74 * arm_wy + t70 * arm_wx);
+            let t432 = t382 * t356 - t381 * t364 + t380 * t369;
+            let t433 = t432 + t431;
+            let t434 = t16 * t433 - (t22 * t430 + t37 * t427);
+            let t435 = t37 * t430 - t22 * t427;
+            let t436 = t22 * t433 + t16 * t430;
+            let t437 = t16 * t427 + t37 * t433;
+            let t438 = k(0.29814239699997197) * t347
+                - (k(0.5962847939999439) * t347 - k(0.3333333333333333) * t346);
+            let t439 = k(0.6666666666666666) * t368
+                + (k(0.6666666666666666) * t362 + k(0.3333333333333333) * t355);
+            let t440 = k(0.6666666666666666) * t369
+                + (k(0.6666666666666666) * t364 + k(0.3333333333333333) * t356);
+            let t441 = (t435 * t435 + (t437 * t437 + t436 * t436))
+                / (t440 * t16 - (t439 * t22 + t438 * t37));
+            let t442 = k(0.4472135954999579) * t422;
+            let t443 = k(11.2) * t350;
+            let t444 = k(16.099689437998485) * t344 + (t348 * t443 - t379 * t442);
+            let t445 = k(0.8944271909999159) * t422;
+            let t446 = k(8.049844718999243) * t344 - (t353 * t443 - t379 * t445);
+            let t447 = t346 * t443 + t379 * t419;
+            let t448 = t356 * t447 + t364 * t446 + t369 * t444
+                + (t429 * t425 - t426 * t428);
+            let t449 = t448 - ((t439 * t37 - t438 * t22) * t441 + t435 * t434);
+            let t450 = t355 * t447 + t362 * t446 + t368 * t444
+                - (t426 * t431 + t432 * t425);
+            let t451 = t450 + (t441 * (t438 * t16 + t440 * t37) + t437 * t434);
+            let t452 = t19 * t451 + t7 * t449 + (t424 - (t212 - t211));
+            let t453 = t379 * t352;
+            let t454 = t354 * t443 + t379 * t453;
+            let t455 = t379 * t354;
+            let t456 = k(0.2) * t419;
+            let t457 = t456 * t455;
+            let t458 = k(0.2) * t423;
+            let t459 = t352 * t443 - t379 * t455;
+            let t460 = k(0.4) * t419;
+            let t461 = t460 * t453;
+            let t462 = k(0.4) * t423;
+            let t463 = t461 + t354 * t462 + (t461 - t359 * t459)
+                - (t457 - t352 * t458 + (t457 + t367 * t454));
+            let t464 = t455 * t442;
+            let t465 = k(0.4472135954999579) * t421;
+            let t466 = t453 * t445;
+            let t467 = k(0.8944271909999159) * t421;
+            let t468 = t466 + t354 * t467 + (t466 - t353 * t459)
+                - (t464 - t352 * t465 + (t464 - t348 * t454));
+            let t469 = k(0.1) * t468 + k(0.2) * t463 + k(5.0) * (k(5.0) * t).sin();
+            let t470 = t346 * t447 - t353 * t446 + t348 * t444
+                + (t432 * t428 + t429 * t431);
+            let t471 = t470 - (t441 * (t440 * t22 + t439 * t16) + t436 * t434);
+            let t472 = t40 * t449 - t19 * t471 - (t469 + (t231 - t230));
+            let t473 = t456 * t453;
+            let t474 = t455 * t460;
+            let t475 = t474 - t352 * t462 + (t474 - t359 * t454)
+                + (t473 + t354 * t458 + (t473 + t367 * t459));
+            let t476 = t453 * t442;
+            let t477 = t455 * t445;
+            let t478 = t477 - t352 * t467 + (t477 - t353 * t454)
+                + (t476 + t354 * t465 + (t476 - t348 * t459));
+            let t479 = t7 * t471 + t40 * t451
+                - (k(0.1) * t478 + k(0.2) * t475 + (t241 - t240));
+            let t480 = t166 * t449 + (t158 * t451 + t143 * t471)
+                + (t112 * t479 + (t104 * t472 + t92 * t452));
+            let t481 = (t480 + t417) / t167;
+            let t482 = t452 + t23 * t481;
+            let t483 = t472 - t41 * t481;
+            let t484 = t479 + t43 * t481;
+            let t485 = t471 + t37 * t481;
+            let t486 = t451 + t22 * t481;
+            let t487 = t449 - t16 * t481;
+            let t488 = t330 + (t482 + (t82 * t487 + t80 * t486));
+            let t489 = t332 + (t483 - (t86 * t487 + t80 * t485));
+            let t490 = t333 + (t484 - (t86 * t486 - t82 * t485));
+            let t491 = t34 * (t197 + (t33 * t490 + (t31 * t489 + t29 * t488)));
+            let t492 = t331 + t485;
+            let t493 = t329 + t486;
+            let t494 = t328 - t487;
+            (
+                t482,
+                t483,
+                t484,
+                t485,
+                t486,
+                t487,
+                t488,
+                t489,
+                t490,
+                t491,
+                t492,
+                t493,
+                t494,
+            )
         };
         *out = [
-            t137 * t291 - (t134 * t286 - t132 * t284),
-            t118 * t291 + (t115 * t286 - t113 * t284),
-            -(t95 * t291 + (t91 * t286 + t87 * t284)),
-            -t287,
-            -t289,
-            -t282,
-            t129 * t301 + (t127 * t300 + t125 * t299),
-            t108 * t301 - (t106 * t300 + t104 * t299),
-            t79 * t300 - t75 * t299 - t82 * t301,
-            -t287,
-            -t289,
-            -t282,
+            t482,
+            t483,
+            -t484,
+            -(t70 * t487 + (t64 * t486 - t55 * t485)),
+            t73 * t486 - t72 * t485 - t74 * t487,
+            t78 * t487 - (t77 * t486 + t76 * t485),
+            t488 - t28 * t491,
+            t489 - t30 * t491,
+            t32 * t491 - t490,
+            t137 * t494 - (t130 * t493 - t119 * t492),
+            t138 * t494 + (t131 * t493 - t121 * t492),
+            -(t139 * t494 + (t132 * t493 + t123 * t492)),
         ];
     }
     /// Writes λ: 802 operations (342 ±, 460 ×, 0 ÷) and 15 functions.
@@ -8941,7 +9113,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Carried<T> {
             let t176 = k(1.0) - t174 * t175;
             let t177 = k(0.4) * t22 * t91 - (k(0.4) * t48 * t88 + k(0.4) * t70 * t85);
             let t178 = t15 * t94 + (t44 * t93 - t66 * t92);
-            let t179 = k(0.6666666666666666) * (t178 + t95);
+            let t179 = k(0.6666666666666666) * (t95 + t178);
             let t180 = k(1.3333333333333333) * t132;
             let t181 = k(0.06666666666666667) * t136;
             let t182 = arm_wx * arm_wx;
@@ -9046,17 +9218,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Carried<T> {
             let t219 = k(0.4444444444444444) - k(0.4444444444444444) * t176;
             let t220 = (t219 + t218) * t214 + (t217 * t197 - t215 * t158);
             let t221 = t217 * t214 + ((t219 - t218) * t197 - t202 * t158);
-            let t222 = t87 * (k(1.7888543819998317) * t45 - k(0.8944271909999159) * t43)
-                - t84 * (k(1.7888543819998317) * t67 - k(0.8944271909999159) * t65);
-            let t223 = t87
-                * (k(1.4907119849998598) * t48
-                    - (k(0.5962847939999439) * t45 + k(1.1925695879998879) * t43))
-                + t84
-                    * (k(1.4907119849998598) * t70
-                        + (k(0.5962847939999439) * t67 + k(1.1925695879998879) * t65));
-            let t224 = t90
-                * (k(1.4907119849998598) * t22
-                    - (k(0.5962847939999439) * t18 - k(1.1925695879998879) * t14))
+            let t222 = (k(1.7888543819998317) * t45 - k(0.8944271909999159) * t43) * t87
+                - (k(1.7888543819998317) * t67 - k(0.8944271909999159) * t65) * t84;
+            let t223 = (k(1.4907119849998598) * t48
+                - (k(0.5962847939999439) * t45 + k(1.1925695879998879) * t43)) * t87
+                + (k(1.4907119849998598) * t70
+                    + (k(0.5962847939999439) * t67 + k(1.1925695879998879) * t65)) * t84;
+            let t224 = (k(1.4907119849998598) * t22
+                - (k(0.5962847939999439) * t18 - k(1.1925695879998879) * t14)) * t90
                 - t223;
             (t211, t216, t220, t221, t222, t224)
         };
@@ -9067,13 +9236,1183 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Carried<T> {
             k(0.3333333333333333) * t221 - k(0.6666666666666666) * (t220 - t216),
             k(0.3333333333333333) * t220 + k(0.6666666666666666) * t216
                 - k(0.6666666666666666) * t221,
-            t222 - t90 * (k(1.7888543819998317) * t18 + k(0.8944271909999159) * t14),
+            t222 - (k(1.7888543819998317) * t18 + k(0.8944271909999159) * t14) * t90,
             t224,
             -(k(0.7453559924999299) * t211
                 + (k(0.29814239699997197) * t193 - k(0.5962847939999439) * t152)),
             k(0.8944271909999159) * t193 + k(0.4472135954999579) * t152,
             k(0.6666666666666666) * t211
                 - (k(0.3333333333333333) * t193 - k(0.6666666666666666) * t152),
+        ];
+    }
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 2226 operations (959 ±, 1263 ×, 4 ÷) and 17 functions.
+    fn corrected_solution(&self, t: T, y: &Self::State, out: &mut Self::Solution) {
+        let k = T::constant;
+        let arm_rx = y[0];
+        let arm_ry = y[1];
+        let arm_rz = y[2];
+        let slider_rx = y[7];
+        let slider_ry = y[8];
+        let slider_rz = y[9];
+        let arm_e0 = y[3];
+        let arm_e1 = y[4];
+        let arm_e2 = y[5];
+        let arm_e3 = y[6];
+        let slider_e0 = y[10];
+        let slider_e1 = y[11];
+        let slider_e2 = y[12];
+        let slider_e3 = y[13];
+        let arm_sx = y[14];
+        let arm_sy = y[15];
+        let arm_sz = y[16];
+        let slider_sx = y[20];
+        let slider_sy = y[21];
+        let slider_sz = y[22];
+        let arm_wx = y[17];
+        let arm_wy = y[18];
+        let arm_wz = y[19];
+        let slider_wx = y[23];
+        let slider_wy = y[24];
+        let slider_wz = y[25];
+        let turn0 = y[27];
+        let (
+            t2,
+            t5,
+            t7,
+            t10,
+            t13,
+            t14,
+            t16,
+            t19,
+            t20,
+            t22,
+            t23,
+            t24,
+            t25,
+            t26,
+            t28,
+            t29,
+            t30,
+            t31,
+            t32,
+            t33,
+            t34,
+            t36,
+            t37,
+            t40,
+            t41,
+            t42,
+            t43,
+            t44,
+            t48,
+            t51,
+            t52,
+            t55,
+            t57,
+            t60,
+            t61,
+            t64,
+            t65,
+            t66,
+            t67,
+            t70,
+            t71,
+            t72,
+            t73,
+            t74,
+            t75,
+            t76,
+            t77,
+            t78,
+            t79,
+            t80,
+            t82,
+            t86,
+            t92,
+            t94,
+            t95,
+            t104,
+            t105,
+            t112,
+            t115,
+            t118,
+            t119,
+            t121,
+            t123,
+            t124,
+            t129,
+            t130,
+            t131,
+            t132,
+            t133,
+            t136,
+            t137,
+            t138,
+            t139,
+            t140,
+            t143,
+            t146,
+            t151,
+            t155,
+            t158,
+            t160,
+            t164,
+            t166,
+            t167,
+            t169,
+            t170,
+            t171,
+            t172,
+            t173,
+            t176,
+            t177,
+            t178,
+            t179,
+            t180,
+            t183,
+            t184,
+            t185,
+            t186,
+            t187,
+            t189,
+            t190,
+            t191,
+            t193,
+            t194,
+            t195,
+            t196,
+            t197,
+            t198,
+            t199,
+        ) = {
+            let t0 = arm_e0 * arm_e3;
+            let t1 = arm_e1 * arm_e2;
+            let t2 = t1 + t0;
+            let t3 = k(0.4) * t2;
+            let t4 = arm_e0 * arm_e0;
+            let t5 = k(0.5) - (t4 + arm_e2 * arm_e2);
+            let t6 = k(0.2) * t5;
+            let t7 = t6 + t3;
+            let t8 = arm_e0 * arm_e2;
+            let t9 = arm_e1 * arm_e3;
+            let t10 = t9 - t8;
+            let t11 = arm_e0 * arm_e1;
+            let t12 = arm_e2 * arm_e3;
+            let t13 = t12 + t11;
+            let t14 = k(0.5) - (t4 + arm_e3 * arm_e3);
+            let t15 = k(1.3333333333333333) * t14;
+            let t16 = t15 - (k(1.3333333333333333) * t13 + k(0.6666666666666666) * t10);
+            let t17 = k(0.4) * t10;
+            let t18 = k(0.2) * t13;
+            let t19 = t18 - t17;
+            let t20 = t12 - t11;
+            let t21 = k(1.3333333333333333) * t20;
+            let t22 = t21 - (k(1.3333333333333333) * t5 - k(0.6666666666666666) * t2);
+            let t23 = t22 * t19 - t16 * t7;
+            let t24 = k(0.5) - (t4 + arm_e1 * arm_e1);
+            let t25 = t1 - t0;
+            let t26 = t9 + t8;
+            let t27 = k(1.3333333333333333) * t26;
+            let t28 = t27 - (k(0.6666666666666666) * t25 + k(1.3333333333333333) * t24);
+            let t29 = k(0.6) * t28;
+            let t30 = t21 + (k(0.6666666666666666) * t5 + k(1.3333333333333333) * t2);
+            let t31 = k(0.6) * t30;
+            let t32 = t15 + (k(0.6666666666666666) * t13 - k(1.3333333333333333) * t10);
+            let t33 = k(0.6) * t32;
+            let t34 = k(1.0) / (t32 * t33 + (t30 * t31 + t28 * t29));
+            let t35 = t29 * t34;
+            let t36 = t29 * t35;
+            let t37 = t27 + (k(1.3333333333333333) * t25 - k(0.6666666666666666) * t24);
+            let t38 = k(0.4) * t24;
+            let t39 = k(0.2) * t25;
+            let t40 = t39 + t38;
+            let t41 = t16 * t40 + t37 * t19;
+            let t42 = t31 * t35;
+            let t43 = t37 * t7 + t22 * t40;
+            let t44 = t33 * t35;
+            let t45 = t44 * t43 - (t42 * t41 - t36 * t23) - k(2.1) * t23;
+            let t46 = slider_e0 * slider_e3;
+            let t47 = slider_e1 * slider_e2;
+            let t48 = t47 - t46;
+            let t49 = slider_e0 * slider_e2;
+            let t50 = slider_e1 * slider_e3;
+            let t51 = t50 + t49;
+            let t52 = k(0.2) * t51 - k(0.1) * t48;
+            let t53 = slider_rx - t52;
+            let t54 = arm_rx - t53;
+            let t55 = k(2.0) * t24;
+            let t56 = slider_e0 * slider_e0;
+            let t57 = k(0.5) - (t56 + slider_e2 * slider_e2);
+            let t58 = slider_e0 * slider_e1;
+            let t59 = slider_e2 * slider_e3;
+            let t60 = t59 - t58;
+            let t61 = k(0.2) * t60 + k(0.1) * t57;
+            let t62 = slider_ry - t61;
+            let t63 = arm_ry - t62;
+            let t64 = k(2.0) * t2;
+            let t65 = t59 + t58;
+            let t66 = k(0.5) - (t56 + slider_e3 * slider_e3);
+            let t67 = k(0.2) * t66 + k(0.1) * t65;
+            let t68 = slider_rz + t67;
+            let t69 = arm_rz - t68;
+            let t70 = k(2.0) * t10;
+            let t71 = t70 * t69 + (t64 * t63 - t55 * t54);
+            let t72 = k(2.0) * t25;
+            let t73 = k(2.0) * t5;
+            let t74 = k(2.0) * t13;
+            let t75 = t74 * t69 - (t73 * t63 - t72 * t54);
+            let t76 = k(2.0) * t26;
+            let t77 = k(2.0) * t20;
+            let t78 = k(2.0) * t14;
+            let t79 = t78 * t69 - (t77 * t63 + t76 * t54);
+            let t80 = t67 + (t78 * t79 + (t74 * t75 + t70 * t71));
+            let t81 = t42 * t80;
+            let t82 = t61 + (t77 * t79 + (t73 * t75 - t64 * t71));
+            let t83 = t82 * t44;
+            let t84 = t83 - t81;
+            let t85 = k(0.6) * t80;
+            let t86 = t52 + (t76 * t79 - (t72 * t75 - t55 * t71));
+            let t87 = t86 * t44 - t36 * t80;
+            let t88 = t87 + t85;
+            let t89 = k(0.6) * t82;
+            let t90 = t86 * t42 - t82 * t36;
+            let t91 = t90 + t89;
+            let t92 = t16 * t91 - (t22 * t88 - t37 * t84) + t45;
+            let t93 = t31 * t34;
+            let t94 = t31 * t93;
+            let t95 = t33 * t93;
+            let t96 = t95 * t43 - (t94 * t41 - t42 * t23) + k(2.1) * t41;
+            let t97 = t82 * t95 - t94 * t80;
+            let t98 = t85 + t97;
+            let t99 = t86 * t95;
+            let t100 = t99 - t81;
+            let t101 = k(0.6) * t86;
+            let t102 = t86 * t94 - t82 * t42;
+            let t103 = t102 - t101;
+            let t104 = t16 * t103 - (t22 * t100 - t37 * t98) + t96;
+            let t105 = t33 * (t33 * t34);
+            let t106 = t43 * t105 - (t95 * t41 - t44 * t23) - k(2.1) * t43;
+            let t107 = t82 * t105 - t80 * t95;
+            let t108 = t89 - t107;
+            let t109 = t86 * t105 - t80 * t44;
+            let t110 = t101 - t109;
+            let t111 = t99 - t83;
+            let t112 = t16 * t111 + (t22 * t110 - t37 * t108) + t106;
+            let t113 = k(0.06) * t26 - k(0.04) * t25;
+            let t114 = k(0.02) * t26 - (k(0.1) * t25 + k(0.04) * t24);
+            let t115 = k(0.2) * t26;
+            let t116 = t115 - (k(0.02) * t25 + k(0.06) * t24);
+            let t117 = k(0.004) * t51 + k(0.002) * t48;
+            let t118 = k(0.5) - (t56 + slider_e1 * slider_e1);
+            let t119 = k(2.0) * t118;
+            let t120 = k(0.006) * t51 - (k(0.02) * t48 - k(0.002) * t118);
+            let t121 = k(2.0) * t48;
+            let t122 = k(0.01) * t51 - (k(0.006) * t48 + k(0.004) * t118);
+            let t123 = k(2.0) * t51;
+            let t124 = k(0.02) + (t123 * t122 - (t121 * t120 + t119 * t117));
+            let t125 = t80 * t80;
+            let t126 = t82 * t82;
+            let t127 = k(0.6) * (t126 + t125) + t124 - (t82 * t107 - t80 * t97);
+            let t128 = t127 + (k(0.3) - (t76 * t116 - (t72 * t114 + t55 * t113)));
+            let t129 = t47 + t46;
+            let t130 = k(2.0) * t129;
+            let t131 = k(2.0) * t57;
+            let t132 = k(2.0) * t60;
+            let t133 = t132 * t122 + (t131 * t120 + t130 * t117);
+            let t134 = k(0.6) * (t86 * t82) - t133 - (t82 * t109 - t80 * t100);
+            let t135 = t134 + (t77 * t116 + (t73 * t114 + t64 * t113));
+            let t136 = t50 - t49;
+            let t137 = k(2.0) * t136;
+            let t138 = k(2.0) * t65;
+            let t139 = k(2.0) * t66;
+            let t140 = t139 * t122 + (t138 * t120 - t137 * t117);
+            let t141 = k(0.6) * (t86 * t80) - t140 + (t82 * t111 - t102 * t80);
+            let t142 = t141 + (t78 * t116 + (t74 * t114 - t70 * t113));
+            let t143 = t16 * t142 + (t22 * t135 - t37 * t128)
+                - (t43 * t108 + (t41 * t98 - t23 * t84));
+            let t144 = k(0.06) * t20 + k(0.04) * t5;
+            let t145 = k(0.02) * t20 + (k(0.1) * t5 + k(0.04) * t2);
+            let t146 = k(0.2) * t20;
+            let t147 = t146 + (k(0.02) * t5 + k(0.06) * t2);
+            let t148 = k(0.004) * t60 - k(0.002) * t57;
+            let t149 = k(0.006) * t60 + (k(0.02) * t57 - k(0.002) * t129);
+            let t150 = k(0.01) * t60 + (k(0.006) * t57 + k(0.004) * t129);
+            let t151 = k(0.02) + (t132 * t150 + (t131 * t149 + t130 * t148));
+            let t152 = t86 * t86;
+            let t153 = k(0.6) * (t152 + t125) + t151 - (t86 * t109 - t80 * t87);
+            let t154 = t153 + (k(0.3) - (t77 * t147 + (t73 * t145 + t64 * t144)));
+            let t155 = t139 * t150 + (t138 * t149 - t137 * t148);
+            let t156 = k(0.6) * (t82 * t80) - t155 - (t86 * t111 - t90 * t80);
+            let t157 = t156 + (t78 * t147 + (t74 * t145 - t70 * t144));
+            let t158 = t16 * t157 - (t22 * t154 - t37 * t135)
+                + (t43 * t110 + (t41 * t100 - t23 * t88));
+            let t159 = t74 * (k(0.02) * t14 + (k(0.1) * t13 - k(0.04) * t10))
+                - t70 * (k(0.06) * t14 + k(0.04) * t13);
+            let t160 = k(0.2) * t14;
+            let t161 = k(0.3) - (t78 * (t160 + (k(0.02) * t13 - k(0.06) * t10)) + t159);
+            let t162 = t138 * (k(0.006) * t66 + (k(0.02) * t65 + k(0.002) * t136))
+                - t137 * (k(0.004) * t66 - k(0.002) * t65);
+            let t163 = t139 * (k(0.01) * t66 + (k(0.006) * t65 - k(0.004) * t136))
+                + t162;
+            let t164 = k(0.02) + t163;
+            let t165 = k(0.6) * (t152 + t126) + t164 - (t86 * t102 - t82 * t90);
+            let t166 = (t165 + t161) * t16 - (t157 * t22 + t142 * t37)
+                - (t111 * t43 - (t103 * t41 - t91 * t23));
+            let t167 = t16 * t166 - (t22 * t158 + t37 * t143)
+                - (t43 * t112 - (t41 * t104 - t23 * t92));
+            let t168 = k(0.05) * (t139 * slider_wx + t137 * slider_wz)
+                - k(0.1) * (t138 * slider_wx - t137 * slider_wy);
+            let t169 = t74 * arm_wx - t70 * arm_wy;
+            let t170 = t78 * arm_wx + t70 * arm_wz;
+            let t171 = t78 * arm_wy + t74 * arm_wz;
+            let t172 = arm_sz + (k(0.2) * t171 - k(0.1) * t170 - k(0.1) * t169)
+                - (slider_sz - t168);
+            let t173 = t68 - (arm_rz - (t160 - (t18 + t17)));
+            let t174 = t173
+                * (k(0.6666666666666666) * t171 + k(0.3333333333333333) * t170
+                    - k(0.6666666666666666) * t169) + t32 * t172;
+            let t175 = k(0.05) * (t132 * slider_wx - t130 * slider_wz)
+                - k(0.1) * (t131 * slider_wx + t130 * slider_wy);
+            let t176 = t73 * arm_wx + t64 * arm_wy;
+            let t177 = t77 * arm_wx - t64 * arm_wz;
+            let t178 = t77 * arm_wy + t73 * arm_wz;
+            let t179 = arm_sy - (k(0.2) * t178 - k(0.1) * t177 - k(0.1) * t176)
+                - (slider_sy + t175);
+            let t180 = t62 - (arm_ry + (t146 - (t6 - t3)));
+            let t181 = t180
+                * (k(0.6666666666666666) * t178 + k(0.3333333333333333) * t177
+                    - k(0.6666666666666666) * t176) + t30 * t179;
+            let t182 = k(0.05) * (t123 * slider_wx + t119 * slider_wz)
+                + k(0.1) * (t121 * slider_wx + t119 * slider_wy);
+            let t183 = t72 * arm_wx + t55 * arm_wy;
+            let t184 = t76 * arm_wx + t55 * arm_wz;
+            let t185 = t76 * arm_wy - t72 * arm_wz;
+            let t186 = arm_sx - (k(0.2) * t185 - k(0.1) * t184 + k(0.1) * t183)
+                - (slider_sx + t182);
+            let t187 = t53 - (arm_rx + (t115 + (t39 - t38)));
+            let t188 = t187
+                * (k(0.6666666666666666) * t185 + k(0.3333333333333333) * t184
+                    + k(0.6666666666666666) * t183) + t28 * t186;
+            let t189 = k(0.5) * (t188 + t181 - t174);
+            let t190 = t32 * t173 - (t30 * t180 + t28 * t187);
+            let t191 = k(30.0) * (k(0.1) + t190);
+            let t192 = t28 * t191 + t28 * t189;
+            let t193 = k(1.5) - t192;
+            let t194 = k(0.6) + t192;
+            let t195 = t30 * t191 + t30 * t189;
+            let t196 = k(5.4) - t195;
+            let t197 = t32 * t191 + t32 * t189;
+            let t198 = k(1.8) - t197;
+            let t199 = t32 * t198 + (t30 * t196 - t28 * t194);
+            (
+                t2,
+                t5,
+                t7,
+                t10,
+                t13,
+                t14,
+                t16,
+                t19,
+                t20,
+                t22,
+                t23,
+                t24,
+                t25,
+                t26,
+                t28,
+                t29,
+                t30,
+                t31,
+                t32,
+                t33,
+                t34,
+                t36,
+                t37,
+                t40,
+                t41,
+                t42,
+                t43,
+                t44,
+                t48,
+                t51,
+                t52,
+                t55,
+                t57,
+                t60,
+                t61,
+                t64,
+                t65,
+                t66,
+                t67,
+                t70,
+                t71,
+                t72,
+                t73,
+                t74,
+                t75,
+                t76,
+                t77,
+                t78,
+                t79,
+                t80,
+                t82,
+                t86,
+                t92,
+                t94,
+                t95,
+                t104,
+                t105,
+                t112,
+                t115,
+                t118,
+                t119,
+                t121,
+                t123,
+                t124,
+                t129,
+                t130,
+                t131,
+                t132,
+                t133,
+                t136,
+                t137,
+                t138,
+                t139,
+                t140,
+                t143,
+                t146,
+                t151,
+                t155,
+                t158,
+                t160,
+                t164,
+                t166,
+                t167,
+                t169,
+                t170,
+                t171,
+                t172,
+                t173,
+                t176,
+                t177,
+                t178,
+                t179,
+                t180,
+                t183,
+                t184,
+                t185,
+                t186,
+                t187,
+                t189,
+                t190,
+                t191,
+                t193,
+                t194,
+                t195,
+                t196,
+                t197,
+                t198,
+                t199,
+            )
+        };
+        let (
+            t201,
+            t204,
+            t207,
+            t212,
+            t213,
+            t214,
+            t217,
+            t218,
+            t219,
+            t221,
+            t222,
+            t223,
+            t231,
+            t232,
+            t233,
+            t241,
+            t242,
+            t243,
+            t251,
+            t254,
+            t258,
+            t330,
+            t331,
+            t332,
+            t333,
+            t334,
+            t335,
+            t337,
+            t338,
+            t340,
+            t341,
+            t343,
+            t344,
+            t348,
+            t350,
+            t351,
+            t352,
+            t354,
+            t356,
+            t357,
+            t358,
+            t359,
+            t360,
+            t363,
+            t366,
+            t368,
+            t371,
+            t372,
+            t373,
+            t382,
+            t383,
+            t384,
+            t385,
+            t386,
+            t390,
+            t392,
+            t394,
+            t395,
+            t396,
+            t398,
+            t399,
+        ) = {
+            let t200 = t34 * t199;
+            let t201 = arm_wy * arm_wy;
+            let t202 = arm_wz * arm_wz;
+            let t203 = t202 + t201;
+            let t204 = arm_wx * arm_wy;
+            let t205 = arm_wx * arm_wz;
+            let t206 = t76 * t205 + (t72 * t204 + t55 * t203);
+            let t207 = arm_wx * arm_wx;
+            let t208 = t202 + t207;
+            let t209 = arm_wy * arm_wz;
+            let t210 = t76 * t209 - (t72 * t208 + t55 * t204);
+            let t211 = t186
+                * (k(0.4472135954999579) * t185 - k(0.8944271909999159) * t184);
+            let t212 = k(1.7888543819998317) * t25 - k(0.8944271909999159) * t24;
+            let t213 = k(0.2) * t206;
+            let t214 = k(0.1) * t210;
+            let t215 = t201 + t207;
+            let t216 = t76 * t215 - (t72 * t209 - t55 * t205);
+            let t217 = slider_wx * slider_wy;
+            let t218 = slider_wx * slider_wx;
+            let t219 = slider_wz * slider_wz;
+            let t220 = t219 + t218;
+            let t221 = slider_wy * slider_wz;
+            let t222 = slider_wx * slider_wz;
+            let t223 = slider_wy * slider_wy;
+            let t224 = t223 + t218;
+            let t225 = k(0.1) * (t123 * t224 - (t121 * t221 - t119 * t222))
+                + k(0.05) * (t123 * t221 - (t121 * t220 + t119 * t217));
+            let t226 = t225 + (k(0.1) * t216 - (t214 + t213));
+            let t227 = t226 * t212 + t211
+                + (t211
+                    + t187
+                        * (k(0.8944271909999159) * t210 + k(0.4472135954999579) * t206));
+            let t228 = t77 * t205 - (t73 * t204 + t64 * t203);
+            let t229 = t77 * t209 + (t73 * t208 + t64 * t204);
+            let t230 = t179
+                * (k(0.4472135954999579) * t178 - k(0.8944271909999159) * t177);
+            let t231 = k(1.7888543819998317) * t5 - k(0.8944271909999159) * t2;
+            let t232 = k(0.2) * t228;
+            let t233 = k(0.1) * t229;
+            let t234 = t77 * t215 + (t73 * t209 - t64 * t205);
+            let t235 = k(0.1) * (t132 * t224 + (t131 * t221 - t130 * t222))
+                + k(0.05) * (t132 * t221 + (t131 * t220 + t130 * t217));
+            let t236 = t235 + (k(0.1) * t234 - (t233 + t232));
+            let t237 = t236 * t231 - t230
+                - (t230
+                    + t180
+                        * (k(0.8944271909999159) * t229 + k(0.4472135954999579) * t228));
+            let t238 = t78 * t205 - (t74 * t204 - t70 * t203);
+            let t239 = t78 * t209 + (t74 * t208 - t70 * t204);
+            let t240 = t172
+                * (k(0.4472135954999579) * t171 - k(0.8944271909999159) * t170);
+            let t241 = k(1.7888543819998317) * t13 + k(0.8944271909999159) * t10;
+            let t242 = k(0.2) * t238;
+            let t243 = k(0.1) * t239;
+            let t244 = t78 * t215 + (t74 * t209 + t70 * t205);
+            let t245 = k(0.1) * (t139 * t224 + (t138 * t221 + t137 * t222))
+                + k(0.05) * (t139 * t221 + (t138 * t220 - t137 * t217));
+            let t246 = t245 + (k(0.1) * t244 - (t243 + t242));
+            let t247 = t246 * t241 + t240
+                + (t240
+                    + t173
+                        * (k(0.8944271909999159) * t239 + k(0.4472135954999579) * t238));
+            let t248 = t247 + (t237 - t227);
+            let t249 = t186
+                * (k(0.5962847939999439) * t185 + k(0.29814239699997197) * t184
+                    - k(0.7453559924999299) * t183);
+            let t250 = t249
+                + t187
+                    * (k(0.7453559924999299) * t216
+                        - (k(0.29814239699997197) * t210
+                            - k(0.5962847939999439) * t206));
+            let t251 = k(1.4907119849998598) * t26
+                + (k(0.5962847939999439) * t25 + k(1.1925695879998879) * t24);
+            let t252 = t179
+                * (k(0.5962847939999439) * t178 + k(0.29814239699997197) * t177
+                    + k(0.7453559924999299) * t176);
+            let t253 = t252
+                + t180
+                    * (k(0.7453559924999299) * t234
+                        - (k(0.29814239699997197) * t229
+                            - k(0.5962847939999439) * t228));
+            let t254 = k(1.4907119849998598) * t20
+                - (k(0.5962847939999439) * t5 + k(1.1925695879998879) * t2);
+            let t255 = t236 * t254 - t252 - t253 + (t226 * t251 - t249 - t250);
+            let t256 = t172
+                * (k(0.5962847939999439) * t171 + k(0.29814239699997197) * t170
+                    + k(0.7453559924999299) * t169);
+            let t257 = t256
+                + t173
+                    * (k(0.7453559924999299) * t244
+                        - (k(0.29814239699997197) * t239
+                            - k(0.5962847939999439) * t238));
+            let t258 = k(1.4907119849998598) * t14
+                - (k(0.5962847939999439) * t13 - k(1.1925695879998879) * t10);
+            let t259 = t246 * t258 + t256 + t257 + t255;
+            let t260 = t74 * t138 + (t73 * t131 + t72 * t121);
+            let t261 = t74 * t139 + (t73 * t132 - t72 * t123);
+            let t262 = t70 * t138 - (t64 * t131 + t55 * t121);
+            let t263 = t70 * t139 - (t64 * t132 - t55 * t123);
+            let t264 = k(0.4472135954999579)
+                * (k(0.29814239699997197) * t263 + k(0.7453559924999299) * t262)
+                + k(0.8944271909999159)
+                    * (k(0.29814239699997197) * t261 + k(0.7453559924999299) * t260);
+            let t265 = t78 * t137 - (t77 * t130 - t76 * t119);
+            let t266 = t78 * t138 + (t77 * t131 - t76 * t121);
+            let t267 = k(0.6666666666666666) * t266;
+            let t268 = t74 * t137 - (t73 * t130 + t72 * t119);
+            let t269 = k(0.6666666666666666) * t260;
+            let t270 = t269 + k(0.3333333333333333) * t268;
+            let t271 = t70 * t137 + (t64 * t130 + t55 * t119);
+            let t272 = k(0.6666666666666666) * t262;
+            let t273 = t272 + k(0.3333333333333333) * t271;
+            let t274 = k(0.5962847939999439) * t273 - k(0.29814239699997197) * t270
+                + k(0.7453559924999299) * (t267 + k(0.3333333333333333) * t265);
+            let t275 = t261 + t268;
+            let t276 = t263 + t271;
+            let t277 = k(0.29814239699997197) * t276 + k(0.5962847939999439) * t275;
+            let t278 = k(0.4472135954999579) * t273 + k(0.8944271909999159) * t270;
+            let t279 = t78 * t139 + (t77 * t132 + t76 * t123);
+            let t280 = k(0.3975231959999626) * t276 - k(0.1987615979999813) * t275
+                + k(0.49690399499995325) * (t279 + t265);
+            let t281 = t280 * t278 - t277 * t274;
+            let t282 = k(0.4472135954999579)
+                * (k(0.5962847939999439) * t263 - k(0.7453559924999299) * t271)
+                + k(0.8944271909999159)
+                    * (k(0.5962847939999439) * t261 - k(0.7453559924999299) * t268);
+            let t283 = k(0.3333333333333333) * t261 - t269;
+            let t284 = k(0.3333333333333333) * t263 - t272;
+            let t285 = k(0.5962847939999439) * t284 - k(0.29814239699997197) * t283
+                + k(0.7453559924999299) * (k(0.3333333333333333) * t279 - t267);
+            let t286 = k(0.4472135954999579) * t284 + k(0.8944271909999159) * t283;
+            let t287 = t286 * t274 - t285 * t278;
+            let t288 = k(0.4472135954999579)
+                * (k(0.5962847939999439) * t262 + k(0.29814239699997197) * t271)
+                + k(0.8944271909999159)
+                    * (k(0.5962847939999439) * t260 + k(0.29814239699997197) * t268);
+            let t289 = t277 * t285 - t280 * t286;
+            let t290 = k(1.0) / (t289 * t288 + (t287 * t282 + t281 * t264));
+            let t291 = slider_wy * t261 + slider_wz * t260;
+            let t292 = slider_wy * t279 + slider_wz * t266;
+            let t293 = t219 + t223;
+            let t294 = t222 * t263 - (t217 * t262 - t293 * t271)
+                - k(2.0) * (arm_wy * t292 + arm_wz * t291);
+            let t295 = t294 + (t205 * t265 - (t204 * t268 - t203 * t271));
+            let t296 = slider_wx * t261 + slider_wz * t268;
+            let t297 = slider_wx * t279 + slider_wz * t265;
+            let t298 = t221 * t263 + (t220 * t262 - t217 * t271)
+                + k(2.0) * (arm_wy * t297 + arm_wz * t296);
+            let t299 = t298 + (t205 * t266 - (t204 * t260 - t203 * t262));
+            let t300 = slider_wx * t260 - slider_wy * t268;
+            let t301 = slider_wx * t266 - slider_wy * t265;
+            let t302 = t224 * t263 + (t221 * t262 + t222 * t271)
+                - k(2.0) * (arm_wy * t301 + arm_wz * t300);
+            let t303 = t302 + (t205 * t279 - (t204 * t261 - t203 * t263));
+            let t304 = slider_wy * t263 + slider_wz * t262;
+            let t305 = t222 * t261 - (t217 * t260 - t293 * t268)
+                + k(2.0) * (arm_wx * t292 + arm_wz * t304);
+            let t306 = t305 + (t209 * t265 + (t208 * t268 - t204 * t271));
+            let t307 = slider_wx * t263 + slider_wz * t271;
+            let t308 = t221 * t261 + (t220 * t260 - t217 * t268)
+                - k(2.0) * (arm_wx * t297 + arm_wz * t307);
+            let t309 = t308 + (t209 * t266 + (t208 * t260 - t204 * t262));
+            let t310 = slider_wx * t262 - slider_wy * t271;
+            let t311 = t224 * t261 + (t221 * t260 + t222 * t268)
+                + k(2.0) * (arm_wx * t301 + arm_wz * t310);
+            let t312 = t311 + (t209 * t279 + (t208 * t261 - t204 * t263));
+            let t313 = k(0.8944271909999159)
+                * (k(0.7453559924999299) * t312
+                    - (k(0.29814239699997197) * t309 - k(0.5962847939999439) * t306))
+                + k(0.4472135954999579)
+                    * (k(0.7453559924999299) * t303
+                        - (k(0.29814239699997197) * t299
+                            - k(0.5962847939999439) * t295));
+            let t314 = k(0.6666666666666666) * t303
+                + (k(0.3333333333333333) * t299 - k(0.6666666666666666) * t295);
+            let t315 = k(0.6666666666666666) * t312
+                + (k(0.3333333333333333) * t309 - k(0.6666666666666666) * t306);
+            let t316 = k(0.8944271909999159) * t315 + k(0.4472135954999579) * t314;
+            let t317 = t222 * t279 - (t217 * t266 - t293 * t265)
+                - k(2.0) * (arm_wx * t291 - arm_wy * t304);
+            let t318 = k(0.6666666666666666)
+                * (t317 + (t215 * t265 + (t209 * t268 + t205 * t271)));
+            let t319 = t221 * t279 + (t220 * t266 - t217 * t265)
+                + k(2.0) * (arm_wx * t296 - arm_wy * t307);
+            let t320 = k(0.3333333333333333)
+                * (t319 + (t215 * t266 + (t209 * t260 + t205 * t262)));
+            let t321 = t224 * t279 + (t221 * t266 + t222 * t265)
+                - k(2.0) * (arm_wx * t300 - arm_wy * t310);
+            let t322 = k(0.6666666666666666)
+                * (t321 + (t215 * t279 + (t209 * t261 + t205 * t263)));
+            let t323 = k(0.7453559924999299) * (t322 + (t320 - t318))
+                - (k(0.29814239699997197) * t315 - k(0.5962847939999439) * t314);
+            let t324 = t323 * (t290 * (t277 * t288 - t278 * t282))
+                + t316 * (t290 * (t274 * t282 - t280 * t288));
+            let t325 = t324 - t313 * (t281 * t290);
+            let t326 = t323 * (t290 * (t278 * t264 - t286 * t288))
+                + t316 * (t290 * (t285 * t288 - t274 * t264));
+            let t327 = t326 - t313 * (t287 * t290);
+            let t328 = t290 * (t286 * t282 - t277 * t264) * t323
+                + t290 * (t280 * t264 - t285 * t282) * t316;
+            let t329 = t328 - t289 * t290 * t313;
+            let t330 = t139 * t329 - (t138 * t327 + t137 * t325);
+            let t331 = t132 * t329 - (t131 * t327 - t130 * t325);
+            let t332 = t67 * t331 - t61 * t330 - (t251 * t259 - t212 * t248);
+            let t333 = t123 * t329 + (t121 * t327 - t119 * t325);
+            let t334 = t52 * t330 - t67 * t333 - (t254 * t259 + t231 * t248);
+            let t335 = t61 * t333 - t52 * t331 - (t258 * t259 + t241 * t248);
+            let t336 = t44 * t335 + (t42 * t334 + t36 * t332) - k(0.6) * t332;
+            let t337 = t336 + (t194 + t29 * t200);
+            let t338 = k(13.5) + t195;
+            let t339 = t95 * t335 + (t94 * t334 + t42 * t332) - k(0.6) * t334;
+            let t340 = t339 - (t196 - t31 * t200);
+            let t341 = k(4.5) + t197;
+            let t342 = t105 * t335 + (t95 * t334 + t44 * t332) - k(0.6) * t335;
+            let t343 = t342 - (t198 - t33 * t200);
+            let t344 = t43 * (t343 - t341) - (t41 * (t340 - t338) - t23 * (t337 + t193));
+            let t345 = k(0.6666666666666666) * t75;
+            let t346 = t345 - k(0.3333333333333333) * t79;
+            let t347 = k(6.0) * t;
+            let t348 = t347.sin();
+            let t349 = k(0.5) * t348;
+            let t350 = t349.cos();
+            let t351 = t349.sin();
+            let t352 = k(0.4472135954999579) * t351;
+            let t353 = k(0.2) + k(4.0) * t;
+            let t354 = t353.sin();
+            let t355 = k(0.7) * t354;
+            let t356 = t355.sin();
+            let t357 = k(0.8944271909999159) * t351;
+            let t358 = t355.cos();
+            let t359 = t358 * t357 + t356 * t352;
+            let t360 = t356 * t357 - t358 * t352;
+            let t361 = k(0.3333333333333333) * (t360 * t74 + (t350 * t72 - t359 * t73))
+                + k(0.6666666666666666) * (t360 * t70 + (t359 * t64 - t350 * t55));
+            let t362 = k(0.6666666666666666) * (t350 * t76 + t359 * t77 - t360 * t78)
+                - t361;
+            let t363 = k(0.4) - k(0.4) * t350;
+            let t364 = t356 * t363;
+            let t365 = k(0.2) + k(0.8) * t350;
+            let t366 = t358 * t365 - t364;
+            let t367 = t358 * t363;
+            let t368 = t367 + t356 * t365;
+            let t369 = k(0.3333333333333333) * (t368 * t74 - (t357 * t72 + t366 * t73))
+                + k(0.6666666666666666) * (t368 * t70 + (t366 * t64 + t357 * t55));
+            let t370 = k(0.6666666666666666) * (t357 * t76 - t366 * t77 + t368 * t78)
+                + t369;
+            let t371 = k(0.8) + k(0.2) * t350;
+            let t372 = t367 - t356 * t371;
+            let t373 = t364 + t358 * t371;
+            let t374 = k(0.3333333333333333) * (t373 * t74 + (t352 * t72 - t372 * t73))
+                + k(0.6666666666666666) * (t373 * t70 + (t372 * t64 - t352 * t55));
+            let t375 = k(0.6666666666666666) * (t352 * t76 + t372 * t77 - t373 * t78)
+                - t374;
+            let t376 = k(0.6666666666666666) * t375
+                + (k(0.3333333333333333) * t370 - k(0.6666666666666666) * t362);
+            let t377 = turn0.cos();
+            let t378 = k(0.3333333333333333) * t375
+                + k(0.6666666666666666) * (t370 + t362);
+            let t379 = turn0.sin();
+            let t380 = (t377 * t378 - t379 * t376).atan2(t379 * t378 + t377 * t376);
+            let t381 = k(0.3) - (turn0 + t380);
+            let t382 = t347.cos();
+            let t383 = k(2.8) * t353.cos();
+            let t384 = t383 * t352 + k(2.6832815729997477) * t382;
+            let t385 = t383 * t357 - k(1.3416407864998738) * t382;
+            let t386 = t383 * t350;
+            let t387 = k(0.3333333333333333) * t386 - k(0.6666666666666666) * t385
+                + k(0.6666666666666666) * t384
+                - (k(0.3333333333333333) * arm_wx + k(0.6666666666666666) * arm_wy
+                    + k(0.6666666666666666) * arm_wz);
+            let t388 = t191 * t346
+                + (k(0.03333333333333333) * t387
+                    + (k(0.6666666666666666) * t381 + t189 * t346));
+            let t389 = k(0.02) * arm_wz;
+            let t390 = k(0.03) * arm_wy;
+            let t391 = arm_wx * (t390 + t389)
+                + (k(0.05) * t209 + k(0.01) * (t202 - t201));
+            let t392 = t391 + t388;
+            let t393 = k(0.6666666666666666) * (t79 + t71);
+            let t394 = k(1.3333333333333333) * t381;
+            let t395 = k(0.06666666666666667) * t387;
+            let t396 = k(0.01) * arm_wx;
+            let t397 = arm_wy * (t389 - t396)
+                + (k(0.1) * t205 - k(0.03) * (t202 - t207));
+            let t398 = t397 + (t191 * t393 - (t395 + (t394 - t189 * t393)));
+            let t399 = k(0.3333333333333333) * t71 + t345;
+            (
+                t201,
+                t204,
+                t207,
+                t212,
+                t213,
+                t214,
+                t217,
+                t218,
+                t219,
+                t221,
+                t222,
+                t223,
+                t231,
+                t232,
+                t233,
+                t241,
+                t242,
+                t243,
+                t251,
+                t254,
+                t258,
+                t330,
+                t331,
+                t332,
+                t333,
+                t334,
+                t335,
+                t337,
+                t338,
+                t340,
+                t341,
+                t343,
+                t344,
+                t348,
+                t350,
+                t351,
+                t352,
+                t354,
+                t356,
+                t357,
+                t358,
+                t359,
+                t360,
+                t363,
+                t366,
+                t368,
+                t371,
+                t372,
+                t373,
+                t382,
+                t383,
+                t384,
+                t385,
+                t386,
+                t390,
+                t392,
+                t394,
+                t395,
+                t396,
+                t398,
+                t399,
+            )
+        };
+        let (
+            t486,
+            t487,
+            t488,
+            t492,
+            t493,
+            t494,
+            t499,
+            t500,
+            t501,
+            t505,
+            t506,
+            t507,
+            t508,
+            t509,
+            t510,
+            t511,
+            t512,
+            t513,
+            t519,
+            t545,
+            t555,
+            t561,
+            t563,
+            t564,
+        ) = {
+            let t400 = arm_wz * (t390 + t396)
+                - (k(0.05) * t204 + k(0.02) * (t201 - t207));
+            let t401 = t400 + (t191 * t399 - (t395 + (t394 - t189 * t399)));
+            let t402 = k(0.1) * (t138 * t32 + (t131 * t30 - t121 * t28))
+                - k(0.05) * (t139 * t32 + (t132 * t30 + t123 * t28));
+            let t403 = k(0.001) * slider_wz;
+            let t404 = k(0.002) * slider_wy;
+            let t405 = slider_wx * (t404 - t403)
+                - (k(0.005) * t221 - k(0.003) * (t219 - t223));
+            let t406 = t405 + (t191 * t402 + t189 * t402);
+            let t407 = t137 * t32 - (t130 * t30 - t119 * t28);
+            let t408 = k(0.1) * t407;
+            let t409 = k(0.003) * slider_wx;
+            let t410 = slider_wy * (t403 + t409)
+                - (k(0.005) * t222 - k(0.002) * (t219 - t218));
+            let t411 = t410 - (t191 * t408 + t189 * t408);
+            let t412 = k(0.05) * t407;
+            let t413 = slider_wz * (t404 + t409)
+                - (k(0.01) * t217 - k(0.001) * (t223 - t218));
+            let t414 = t413 + (t191 * t412 + t189 * t412);
+            let t415 = t140 * t330 + (t133 * t331 + t124 * t333)
+                + (t123 * t414 - (t121 * t411 - t119 * t406));
+            let t416 = t82 * t343 - t80 * t340 - t415
+                + (t76 * t401 + (t72 * t398 + t55 * t392));
+            let t417 = t155 * t330 + (t151 * t331 + t133 * t333)
+                + (t132 * t414 + (t131 * t411 - t130 * t406));
+            let t418 = t86 * t343 - t80 * t337 + t417
+                - (t77 * t401 - (t73 * t398 + t64 * t392));
+            let t419 = t164 * t330 + (t155 * t331 + t140 * t333)
+                + (t139 * t414 + (t138 * t411 + t137 * t406));
+            let t420 = t86 * t340 - t82 * t337 - t419
+                + (t78 * t401 - (t74 * t398 - t70 * t392));
+            let t421 = k(3.0) * t382;
+            let t422 = t421 * t351;
+            let t423 = k(18.0) * t348;
+            let t424 = t350 * t423 + t421 * t422;
+            let t425 = t421 * t350;
+            let t426 = t351 * t423 - t421 * t425;
+            let t427 = k(0.1) * t426 - k(0.08944271909999159) * t424
+                - k(0.9) * (k(0.4) + k(3.0) * t).sin();
+            let t428 = t76 * arm_wz + (t72 * arm_wy - t55 * arm_wx);
+            let t429 = t350 * t386 + t357 * t385 + t352 * t384;
+            let t430 = t429 - t428;
+            let t431 = t77 * arm_wz - (t73 * arm_wy - t64 * arm_wx);
+            let t432 = t386 * t359 - t385 * t366 + t384 * t372;
+            let t433 = t432 - t431;
+            let t434 = t78 * arm_wz - (t74 * arm_wy + t70 * arm_wx);
+            let t435 = t386 * t360 - t385 * t368 + t384 * t373;
+            let t436 = t435 + t434;
+            let t437 = t16 * t436 - (t22 * t433 + t37 * t430);
+            let t438 = t37 * t433 - t22 * t430;
+            let t439 = t22 * t436 + t16 * t433;
+            let t440 = t16 * t430 + t37 * t436;
+            let t441 = k(0.29814239699997197) * t351
+                - (k(0.5962847939999439) * t351 - k(0.3333333333333333) * t350);
+            let t442 = k(0.6666666666666666) * t372
+                + (k(0.6666666666666666) * t366 + k(0.3333333333333333) * t359);
+            let t443 = k(0.6666666666666666) * t373
+                + (k(0.6666666666666666) * t368 + k(0.3333333333333333) * t360);
+            let t444 = (t438 * t438 + (t440 * t440 + t439 * t439))
+                / (t443 * t16 - (t442 * t22 + t441 * t37));
+            let t445 = k(0.4472135954999579) * t425;
+            let t446 = k(11.2) * t354;
+            let t447 = k(16.099689437998485) * t348 + (t352 * t446 - t383 * t445);
+            let t448 = k(0.8944271909999159) * t425;
+            let t449 = k(8.049844718999243) * t348 - (t357 * t446 - t383 * t448);
+            let t450 = t350 * t446 + t383 * t422;
+            let t451 = t360 * t450 + t368 * t449 + t373 * t447
+                + (t432 * t428 - t429 * t431);
+            let t452 = t451 - ((t442 * t37 - t441 * t22) * t444 + t438 * t437);
+            let t453 = t359 * t450 + t366 * t449 + t372 * t447
+                - (t429 * t434 + t435 * t428);
+            let t454 = t453 + (t444 * (t441 * t16 + t443 * t37) + t440 * t437);
+            let t455 = t19 * t454 + t7 * t452 + (t427 - (t214 - t213));
+            let t456 = t383 * t356;
+            let t457 = t358 * t446 + t383 * t456;
+            let t458 = t383 * t358;
+            let t459 = k(0.2) * t422;
+            let t460 = t459 * t458;
+            let t461 = k(0.2) * t426;
+            let t462 = t356 * t446 - t383 * t458;
+            let t463 = k(0.4) * t422;
+            let t464 = t463 * t456;
+            let t465 = k(0.4) * t426;
+            let t466 = t464 + t358 * t465 + (t464 - t363 * t462)
+                - (t460 - t356 * t461 + (t460 + t371 * t457));
+            let t467 = t458 * t445;
+            let t468 = k(0.4472135954999579) * t424;
+            let t469 = t456 * t448;
+            let t470 = k(0.8944271909999159) * t424;
+            let t471 = t469 + t358 * t470 + (t469 - t357 * t462)
+                - (t467 - t356 * t468 + (t467 - t352 * t457));
+            let t472 = k(0.1) * t471 + k(0.2) * t466 + k(5.0) * (k(5.0) * t).sin();
+            let t473 = t350 * t450 - t357 * t449 + t352 * t447
+                + (t435 * t431 + t432 * t434);
+            let t474 = t473 - (t444 * (t443 * t22 + t442 * t16) + t439 * t437);
+            let t475 = t40 * t452 - t19 * t474 - (t472 + (t233 - t232));
+            let t476 = t459 * t456;
+            let t477 = t458 * t463;
+            let t478 = t477 - t356 * t465 + (t477 - t363 * t457)
+                + (t476 + t358 * t461 + (t476 + t371 * t462));
+            let t479 = t456 * t445;
+            let t480 = t458 * t448;
+            let t481 = t480 - t356 * t470 + (t480 - t357 * t457)
+                + (t479 + t358 * t468 + (t479 - t352 * t462));
+            let t482 = t7 * t474 + t40 * t454
+                - (k(0.1) * t481 + k(0.2) * t478 + (t243 - t242));
+            let t483 = t166 * t452 + (t158 * t454 + t143 * t474)
+                + (t112 * t482 + (t104 * t475 + t92 * t455));
+            let t484 = t483 + (t16 * t420 - (t22 * t418 - t37 * t416) + t344);
+            let t485 = t484 / t167;
+            let t486 = t455 + t23 * t485;
+            let t487 = t475 - t41 * t485;
+            let t488 = t482 + t43 * t485;
+            let t489 = t474 + t37 * t485;
+            let t490 = t454 + t22 * t485;
+            let t491 = t452 - t16 * t485;
+            let t492 = t70 * t491 + (t64 * t490 - t55 * t489);
+            let t493 = t74 * t491 - (t73 * t490 - t72 * t489);
+            let t494 = t78 * t491 - (t77 * t490 + t76 * t489);
+            let t495 = t332 + (t486 + (t82 * t491 + t80 * t490));
+            let t496 = t334 + (t487 - (t86 * t491 + t80 * t489));
+            let t497 = t335 + (t488 - (t86 * t490 - t82 * t489));
+            let t498 = t34 * (t199 + (t33 * t497 + (t31 * t496 + t29 * t495)));
+            let t499 = t495 - t28 * t498;
+            let t500 = t496 - t30 * t498;
+            let t501 = t497 - t32 * t498;
+            let t502 = t333 + t489;
+            let t503 = t331 + t490;
+            let t504 = t330 - t491;
+            let t505 = t137 * t504 - (t130 * t503 - t119 * t502);
+            let t506 = t138 * t504 + (t131 * t503 - t121 * t502);
+            let t507 = t139 * t504 + (t132 * t503 + t123 * t502);
+            let t508 = t194 - k(0.6) * t499;
+            let t509 = t193 - k(1.5) * t486 + t508;
+            let t510 = t196 + k(0.6) * t500;
+            let t511 = t338 + k(1.5) * t487 + t510;
+            let t512 = t198 + k(0.6) * t501;
+            let t513 = t341 + k(1.5) * t488 + t512;
+            let t514 = k(0.1) + k(0.3333333333333333) * t190;
+            let t515 = k(0.6666666666666666) * t190;
+            let t516 = k(0.2) - t515;
+            let t517 = (t72 * t516 + t55 * t514) * t508
+                + (t73 * t516 + t64 * t514) * t510;
+            let t518 = k(0.1) * t118 * t508 + k(0.1) * t129 * t510
+                - k(0.1) * t136 * t512;
+            let t519 = t414 + (k(0.025) * t507 + (k(0.003) * t506 - k(0.002) * t505))
+                - t518;
+            let t520 = t401 + (k(0.2) * t494 - (k(0.01) * t493 - k(0.03) * t492))
+                - (t519 + (t517 + (t74 * t516 - t70 * t514) * t512));
+            let t521 = (k(0.4) * t25 - k(0.2) * t24) * t509
+                + (k(0.4) * t5 - k(0.2) * t2) * t511;
+            let t522 = t521 + (k(0.4) * t13 + k(0.2) * t10) * t513 - t520;
+            let t523 = k(0.25) * t348;
+            let t524 = t523.cos();
+            let t525 = k(0.35) * t354;
+            let t526 = t525.cos();
+            let t527 = t526 * t524;
+            let t528 = t525.sin();
+            let t529 = t528 * t524;
+            let t530 = t523.sin();
+            let t531 = k(0.8944271909999159) * t530;
+            let t532 = k(0.4472135954999579) * t530;
+            let t533 = t526 * t532 - t528 * t531;
+            let t534 = t528 * t532 + t526 * t531;
+            let t535 = t534 * arm_e0 - t533 * arm_e1 + t529 * arm_e2 - t527 * arm_e3;
+            let t536 = t533 * arm_e0 + t534 * arm_e1 - t527 * arm_e2 - t529 * arm_e3;
+            let t537 = t529 * arm_e0 - t527 * arm_e1 - t534 * arm_e2 + t533 * arm_e3;
+            let t538 = k(0.3333333333333333) * t537 + k(0.6666666666666666) * t536
+                + k(0.6666666666666666) * t535;
+            let t539 = k(2.0) * t538;
+            let t540 = k(1.0) - t538 * t539;
+            let t541 = k(0.4444444444444444) + k(0.5555555555555556) * t540;
+            let t542 = k(0.1) - t515;
+            let t543 = (t76 * t516 + t55 * t542) * t508
+                - (t77 * t516 - t64 * t542) * t510;
+            let t544 = k(0.2) * t118 * t508 + k(0.2) * t129 * t510
+                - k(0.2) * t136 * t512;
+            let t545 = t411 + (k(0.003) * t507 + (k(0.03) * t506 + k(0.001) * t505))
+                + t544;
+            let t546 = t398 + (k(0.01) * t494 - (k(0.25) * t493 + k(0.02) * t492))
+                + (t545 + (t543 - (t78 * t516 + t70 * t542) * t512));
+            let t547 = k(0.4) * t26 * t509 - k(0.4) * t20 * t511 - k(0.4) * t14 * t513;
+            let t548 = t547 + t546;
+            let t549 = t527 * arm_e0 + t529 * arm_e1 + t533 * arm_e2 + t534 * arm_e3;
+            let t550 = t549 * t539;
+            let t551 = k(0.3333333333333333) * t550;
+            let t552 = k(0.4444444444444444) - k(0.4444444444444444) * t540;
+            let t553 = (t76 * t514 - t72 * t542) * t508
+                - (t77 * t514 + t73 * t542) * t510;
+            let t554 = (k(0.1) * t51 + k(0.2) * t48) * t508
+                - (k(0.1) * t60 - k(0.2) * t57) * t510;
+            let t555 = t406 - (k(0.002) * t507 - (k(0.001) * t506 + k(0.02) * t505))
+                + (t554 - (k(0.1) * t66 - k(0.2) * t65) * t512);
+            let t556 = t392 + (k(0.03) * t494 + (k(0.02) * t493 + k(0.3) * t492))
+                - (t555 - (t553 - (t78 * t514 + t74 * t542) * t512));
+            let t557 = t115 * t509 - t146 * t511 - t160 * t513 - t556;
+            let t558 = k(0.6666666666666666) * t550;
+            let t559 = k(0.2222222222222222) - k(0.2222222222222222) * t540;
+            let t560 = t559 + t558;
+            let t561 = t560 * t557 + (t552 - t551) * t548 - t541 * t522;
+            let t562 = t559 - t558;
+            let t563 = t562 * t557 + t541 * t548 - (t552 + t551) * t522;
+            let t564 = (k(0.1111111111111111) + k(0.8888888888888888) * t540) * t557
+                + t560 * t548 - t562 * t522;
+            (
+                t486,
+                t487,
+                t488,
+                t492,
+                t493,
+                t494,
+                t499,
+                t500,
+                t501,
+                t505,
+                t506,
+                t507,
+                t508,
+                t509,
+                t510,
+                t511,
+                t512,
+                t513,
+                t519,
+                t545,
+                t555,
+                t561,
+                t563,
+                t564,
+            )
+        };
+        *out = [
+            t486,
+            t487,
+            -t488,
+            -t492,
+            -t493,
+            t494,
+            t499,
+            t500,
+            -t501,
+            t505,
+            t506,
+            -t507,
+            t509,
+            -t511,
+            t513,
+            k(0.6666666666666666) * (t564 - t563) + k(0.3333333333333333) * t561,
+            k(0.6666666666666666) * t564 + k(0.3333333333333333) * t563
+                - k(0.6666666666666666) * t561,
+            t212 * t508 + t231 * t510 + t241 * t512,
+            t251 * t508 - t254 * t510 - t258 * t512,
+            k(0.5962847939999439) * t555 - k(0.29814239699997197) * t545
+                + k(0.7453559924999299) * t519,
+            k(0.4472135954999579) * t555 + k(0.8944271909999159) * t545,
+            k(0.6666666666666666) * t555 - k(0.3333333333333333) * t545
+                - k(0.6666666666666666) * t519,
         ];
     }
 }
@@ -9174,12 +10513,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Carried<T> {
             t88,
             t90,
             t91,
+            t92,
             t94,
             t96,
             t98,
             t100,
             t101,
             t102,
+            t103,
             t105,
             t106,
             t107,
@@ -9197,41 +10538,37 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Carried<T> {
             t131,
             t132,
             t133,
-            t140,
-            t142,
+            t135,
+            t137,
+            t139,
+            t141,
             t143,
-            t144,
             t145,
             t146,
+            t148,
+            t150,
+            t152,
             t153,
-            t154,
-            t155,
-            t156,
             t157,
+            t158,
+            t160,
             t161,
             t162,
             t163,
             t164,
-            t165,
-            t166,
-            t167,
-            t168,
-            t169,
             t171,
-            t172,
             t173,
             t174,
             t175,
             t176,
             t177,
-            t179,
-            t180,
-            t181,
-            t182,
             t184,
             t185,
             t186,
             t187,
+            t188,
+            t192,
+            t193,
             t194,
             t195,
             t196,
@@ -9393,84 +10730,86 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Carried<T> {
                 + (k(0.6666666666666666) * t113 + k(0.3333333333333333) * t116);
             let t132 = t122
                 + (k(0.6666666666666666) * t123 + k(0.3333333333333333) * t124);
-            let t133 = t15 * t3 + (t46 * t37 + t70 * t63);
-            let t134 = k(0.1) * (t7 * t27 + (t39 * t55 - t65 * t79))
+            let t133 = k(0.6666666666666666) * (t121 * t15 + (t109 * t46 - t114 * t70));
+            let t134 = t121 * t19 + (t114 * t72 - t109 * t48);
+            let t135 = k(0.3333333333333333) * t134;
+            let t136 = t135 - t133;
+            let t137 = k(0.6666666666666666) * (t123 * t15 + (t113 * t46 + t115 * t70));
+            let t138 = t123 * t19 - (t115 * t72 + t113 * t48);
+            let t139 = k(0.3333333333333333) * t138;
+            let t140 = t139 - t137;
+            let t141 = k(0.6666666666666666) * (t124 * t15 + (t116 * t46 - t96 * t70));
+            let t142 = t124 * t19 + (t96 * t72 - t116 * t48);
+            let t143 = k(0.3333333333333333) * t142;
+            let t144 = t143 - t141;
+            let t145 = k(0.6666666666666666) * (t144 - t140)
+                + k(0.3333333333333333) * t136;
+            let t146 = t114 * t75 + t109 * t51 - t121 * t23;
+            let t147 = t133 - k(0.3333333333333333) * t146;
+            let t148 = t115 * t75 - t113 * t51 + t123 * t23;
+            let t149 = t137 + k(0.3333333333333333) * t148;
+            let t150 = t96 * t75 + t116 * t51 - t124 * t23;
+            let t151 = t141 - k(0.3333333333333333) * t150;
+            let t152 = k(0.6666666666666666) * (t151 - t149)
+                + k(0.3333333333333333) * t147;
+            let t153 = k(0.6666666666666666) * (t152 - t145);
+            let t154 = t146 - t134;
+            let t155 = t148 + t138;
+            let t156 = t150 - t142;
+            let t157 = k(0.4444444444444444) * t156 - k(0.2222222222222222) * t155
+                - k(0.4444444444444444) * t154;
+            let t158 = k(0.4444444444444444) * (t156 + t155)
+                + k(0.2222222222222222) * t154;
+            let t159 = k(0.6666666666666666) * t158;
+            let t160 = t159 - k(0.3333333333333333) * t145;
+            let t161 = k(0.6666666666666666) * t151 + k(0.3333333333333333) * t149
+                - k(0.6666666666666666) * t147;
+            let t162 = k(0.3333333333333333) * t152 - t159;
+            let t163 = k(0.6666666666666666) * t144 + k(0.3333333333333333) * t140
+                - k(0.6666666666666666) * t136;
+            let t164 = k(1.0) / (t163 * t162 + (t161 * t160 - t157 * t153));
+            let t165 = k(0.1) * (t7 * t27 + (t39 * t55 - t65 * t79))
                 - k(0.05) * (t10 * t27 + (t41 * t55 + t67 * t79));
-            let t135 = slider_wy * slider_wy;
-            let t136 = slider_wz * slider_wz;
-            let t137 = k(0.001) * slider_wz;
-            let t138 = k(0.002) * slider_wy;
-            let t139 = slider_wx * (t138 - t137)
-                - (k(0.005) * (slider_wy * slider_wz) - k(0.003) * (t136 - t135));
-            let t140 = k(0.02) * slider_dwx;
-            let t141 = t140 + k(0.001) * slider_dwy + k(0.002) * slider_dwz
-                + (t139 + (t88 * t134 + t87 * t134));
-            let t142 = k(0.1) * t66 + k(0.2) * t64;
-            let t143 = k(0.1) * t40 - k(0.2) * t38;
-            let t144 = k(0.1) * t9 - k(0.2) * t6;
-            let t145 = t144 * t119 - (t143 * t100 + t142 * t90) + t141;
-            let t146 = t15 * t7 - (t46 * t39 + t70 * t65);
-            let t147 = t3 * t27 - (t37 * t55 - t63 * t79);
-            let t148 = k(0.1) * t147;
-            let t149 = slider_wx * slider_wx;
-            let t150 = k(0.003) * slider_wx;
-            let t151 = slider_wy * (t137 + t150)
-                - (k(0.005) * (slider_wx * slider_wz) - k(0.002) * (t136 - t149));
-            let t152 = k(0.001) * slider_dwx + k(0.03) * slider_dwy
-                - k(0.003) * slider_dwz + (t151 - (t88 * t148 + t87 * t148));
-            let t153 = k(0.2) * t62;
-            let t154 = k(0.2) * t36;
-            let t155 = k(0.2) * t2;
-            let t156 = t155 * t119 + (t154 * t100 - t153 * t90) + t152;
-            let t157 = t15 * t10 - (t46 * t41 - t70 * t67);
-            let t158 = k(0.05) * t147;
-            let t159 = slider_wz * (t138 + t150)
-                - (k(0.01) * (slider_wx * slider_wy) - k(0.001) * (t135 - t149));
-            let t160 = k(0.002) * slider_dwx - k(0.003) * slider_dwy
-                + k(0.025) * slider_dwz - (t159 + (t88 * t158 + t87 * t158));
-            let t161 = k(0.1) * t62;
-            let t162 = k(0.1) * t36;
-            let t163 = k(0.1) * t2;
-            let t164 = t163 * t119 + (t162 * t100 - t161 * t90) + t160;
-            let t165 = arm_rx - t83;
-            let t166 = arm_ry - t59;
-            let t167 = arm_rz - t31;
-            let t168 = t23 * t167 - (t51 * t166 + t75 * t165);
-            let t169 = t19 * t167 - (t48 * t166 - t72 * t165);
-            let t170 = t100 * (t51 * t169 - t48 * t168)
-                + t90 * (t75 * t169 + t72 * t168);
-            let t171 = t119 * (t23 * t169 - t19 * t168) - t170
-                - (t164 * t157 - (t156 * t146 + t145 * t133));
-            let t172 = k(0.6666666666666666) * t169;
-            let t173 = t172 - k(0.3333333333333333) * t168;
-            let t174 = k(0.6666666666666666) * (t124 * t15 + (t116 * t46 - t96 * t70));
-            let t175 = t124 * t19 + (t96 * t72 - t116 * t48);
-            let t176 = k(0.3333333333333333) * t175;
-            let t177 = t96 * t75 + t116 * t51 - t124 * t23;
-            let t178 = k(0.6666666666666666) * t177 - (t176 + t174);
-            let t179 = k(0.6666666666666666) * (t123 * t15 + (t113 * t46 + t115 * t70));
-            let t180 = t123 * t19 - (t115 * t72 + t113 * t48);
-            let t181 = k(0.3333333333333333) * t180;
-            let t182 = t115 * t75 - t113 * t51 + t123 * t23;
-            let t183 = k(0.6666666666666666) * t182 + (t181 + t179);
-            let t184 = k(0.6666666666666666) * (t121 * t15 + (t109 * t46 - t114 * t70));
-            let t185 = t121 * t19 + (t114 * t72 - t109 * t48);
-            let t186 = k(0.3333333333333333) * t185;
-            let t187 = t114 * t75 + t109 * t51 - t121 * t23;
-            let t188 = k(0.6666666666666666) * t187 - (t186 + t184);
-            let t189 = k(0.6666666666666666) * t188
-                + (k(0.3333333333333333) * t183 - k(0.6666666666666666) * t178);
-            let t190 = turn0.cos();
-            let t191 = k(0.3333333333333333) * t188
-                + k(0.6666666666666666) * (t183 + t178);
-            let t192 = turn0.sin();
-            let t193 = (t190 * t191 - t192 * t189).atan2(t192 * t191 + t190 * t189);
-            let t194 = k(0.3) - (turn0 + t193);
-            let t195 = k(0.6666666666666666) * t194;
-            let t196 = t92.cos();
-            let t197 = k(2.8) * t103.cos();
-            let t198 = t197 * t114 + k(2.6832815729997477) * t196;
-            let t199 = t197 * t115 - k(1.3416407864998738) * t196;
+            let t166 = slider_wy * slider_wy;
+            let t167 = slider_wz * slider_wz;
+            let t168 = k(0.001) * slider_wz;
+            let t169 = k(0.002) * slider_wy;
+            let t170 = slider_wx * (t169 - t168)
+                - (k(0.005) * (slider_wy * slider_wz) - k(0.003) * (t167 - t166));
+            let t171 = k(0.02) * slider_dwx;
+            let t172 = t171 + k(0.001) * slider_dwy + k(0.002) * slider_dwz
+                + (t170 + (t88 * t165 + t87 * t165));
+            let t173 = k(0.1) * t66 + k(0.2) * t64;
+            let t174 = k(0.1) * t40 - k(0.2) * t38;
+            let t175 = k(0.1) * t9 - k(0.2) * t6;
+            let t176 = t175 * t119 - (t174 * t100 + t173 * t90) + t172;
+            let t177 = t15 * t3 + (t46 * t37 + t70 * t63);
+            let t178 = t3 * t27 - (t37 * t55 - t63 * t79);
+            let t179 = k(0.1) * t178;
+            let t180 = slider_wx * slider_wx;
+            let t181 = k(0.003) * slider_wx;
+            let t182 = slider_wy * (t168 + t181)
+                - (k(0.005) * (slider_wx * slider_wz) - k(0.002) * (t167 - t180));
+            let t183 = k(0.001) * slider_dwx + k(0.03) * slider_dwy
+                - k(0.003) * slider_dwz + (t182 - (t88 * t179 + t87 * t179));
+            let t184 = k(0.2) * t62;
+            let t185 = k(0.2) * t36;
+            let t186 = k(0.2) * t2;
+            let t187 = t186 * t119 + (t185 * t100 - t184 * t90) + t183;
+            let t188 = t15 * t7 - (t46 * t39 + t70 * t65);
+            let t189 = k(0.05) * t178;
+            let t190 = slider_wz * (t169 + t181)
+                - (k(0.01) * (slider_wx * slider_wy) - k(0.001) * (t166 - t180));
+            let t191 = k(0.002) * slider_dwx - k(0.003) * slider_dwy
+                + k(0.025) * slider_dwz - (t190 + (t88 * t189 + t87 * t189));
+            let t192 = k(0.1) * t62;
+            let t193 = k(0.1) * t36;
+            let t194 = k(0.1) * t2;
+            let t195 = t194 * t119 + (t193 * t100 - t192 * t90) + t191;
+            let t196 = t15 * t10 - (t46 * t41 - t70 * t67);
+            let t197 = arm_rx - t83;
+            let t198 = arm_ry - t59;
+            let t199 = arm_rz - t31;
             (
                 t3,
                 t7,
@@ -9519,12 +10858,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Carried<T> {
                 t88,
                 t90,
                 t91,
+                t92,
                 t94,
                 t96,
                 t98,
                 t100,
                 t101,
                 t102,
+                t103,
                 t105,
                 t106,
                 t107,
@@ -9542,41 +10883,37 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Carried<T> {
                 t131,
                 t132,
                 t133,
-                t140,
-                t142,
+                t135,
+                t137,
+                t139,
+                t141,
                 t143,
-                t144,
                 t145,
                 t146,
+                t148,
+                t150,
+                t152,
                 t153,
-                t154,
-                t155,
-                t156,
                 t157,
+                t158,
+                t160,
                 t161,
                 t162,
                 t163,
                 t164,
-                t165,
-                t166,
-                t167,
-                t168,
-                t169,
                 t171,
-                t172,
                 t173,
                 t174,
                 t175,
                 t176,
                 t177,
-                t179,
-                t180,
-                t181,
-                t182,
                 t184,
                 t185,
                 t186,
                 t187,
+                t188,
+                t192,
+                t193,
                 t194,
                 t195,
                 t196,
@@ -9586,7 +10923,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Carried<T> {
             )
         };
         let (
-            t201,
+            t221,
             t260,
             t266,
             t268,
@@ -9611,63 +10948,61 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Carried<T> {
             t356,
             t357,
         ) = {
-            let t200 = t197 * t96;
-            let t201 = k(0.3333333333333333) * t200 - k(0.6666666666666666) * t199
-                + k(0.6666666666666666) * t198
+            let t200 = t23 * t199 - (t51 * t198 + t75 * t197);
+            let t201 = t19 * t199 - (t48 * t198 - t72 * t197);
+            let t202 = t100 * (t51 * t201 - t48 * t200)
+                + t90 * (t75 * t201 + t72 * t200);
+            let t203 = t119 * (t23 * t201 - t19 * t200) - t202
+                - (t196 * t195 - (t188 * t187 + t177 * t176));
+            let t204 = k(0.6666666666666666) * t201;
+            let t205 = t204 - k(0.3333333333333333) * t200;
+            let t206 = k(0.6666666666666666) * t150 - (t143 + t141);
+            let t207 = k(0.6666666666666666) * t148 + (t139 + t137);
+            let t208 = k(0.6666666666666666) * t146 - (t135 + t133);
+            let t209 = k(0.6666666666666666) * t208
+                + (k(0.3333333333333333) * t207 - k(0.6666666666666666) * t206);
+            let t210 = turn0.cos();
+            let t211 = k(0.3333333333333333) * t208
+                + k(0.6666666666666666) * (t207 + t206);
+            let t212 = turn0.sin();
+            let t213 = (t210 * t211 - t212 * t209).atan2(t212 * t211 + t210 * t209);
+            let t214 = k(0.3) - (turn0 + t213);
+            let t215 = k(0.6666666666666666) * t214;
+            let t216 = t92.cos();
+            let t217 = k(2.8) * t103.cos();
+            let t218 = t217 * t114 + k(2.6832815729997477) * t216;
+            let t219 = t217 * t115 - k(1.3416407864998738) * t216;
+            let t220 = t217 * t96;
+            let t221 = k(0.3333333333333333) * t220 - k(0.6666666666666666) * t219
+                + k(0.6666666666666666) * t218
                 - (k(0.3333333333333333) * arm_wx + k(0.6666666666666666) * arm_wy
                     + k(0.6666666666666666) * arm_wz);
-            let t202 = k(0.03333333333333333) * t201;
-            let t203 = arm_wy * arm_wy;
-            let t204 = arm_wz * arm_wz;
-            let t205 = k(0.02) * arm_wz;
-            let t206 = k(0.03) * arm_wy;
-            let t207 = arm_wx * (t206 + t205)
-                + (k(0.05) * (arm_wy * arm_wz) + k(0.01) * (t204 - t203));
-            let t208 = k(0.3) * arm_dwx + k(0.02) * arm_dwy - k(0.03) * arm_dwz
-                - (t207 + (t88 * t173 + (t202 + (t195 + t87 * t173))));
-            let t209 = t30 * t120 - (t58 * t101 + t82 * t91);
-            let t210 = t209 + (t208 + t171);
-            let t211 = t186 - t184;
-            let t212 = t181 - t179;
-            let t213 = t176 - t174;
-            let t214 = k(0.6666666666666666) * (t213 - t212)
-                + k(0.3333333333333333) * t211;
-            let t215 = t184 - k(0.3333333333333333) * t187;
-            let t216 = t179 + k(0.3333333333333333) * t182;
-            let t217 = t174 - k(0.3333333333333333) * t177;
-            let t218 = k(0.6666666666666666) * (t217 - t216)
-                + k(0.3333333333333333) * t215;
-            let t219 = k(0.6666666666666666) * (t218 - t214);
-            let t220 = t187 - t185;
-            let t221 = t182 + t180;
-            let t222 = t177 - t175;
-            let t223 = k(0.4444444444444444) * t222 - k(0.2222222222222222) * t221
-                - k(0.4444444444444444) * t220;
-            let t224 = k(0.4444444444444444) * (t222 + t221)
-                + k(0.2222222222222222) * t220;
-            let t225 = k(0.6666666666666666) * t224;
-            let t226 = t225 - k(0.3333333333333333) * t214;
-            let t227 = k(0.6666666666666666) * t217 + k(0.3333333333333333) * t216
-                - k(0.6666666666666666) * t215;
-            let t228 = k(0.3333333333333333) * t218 - t225;
-            let t229 = k(0.6666666666666666) * t213 + k(0.3333333333333333) * t212
-                - k(0.6666666666666666) * t211;
-            let t230 = k(1.0) / (t229 * t228 + (t227 * t226 - t223 * t219));
+            let t222 = k(0.03333333333333333) * t221;
+            let t223 = arm_wy * arm_wy;
+            let t224 = arm_wz * arm_wz;
+            let t225 = k(0.02) * arm_wz;
+            let t226 = k(0.03) * arm_wy;
+            let t227 = arm_wx * (t226 + t225)
+                + (k(0.05) * (arm_wy * arm_wz) + k(0.01) * (t224 - t223));
+            let t228 = k(0.3) * arm_dwx + k(0.02) * arm_dwy - k(0.03) * arm_dwz
+                - (t227 + (t88 * t205 + (t222 + (t215 + t87 * t205))));
+            let t229 = t30 * t120 - (t58 * t101 + t82 * t91);
+            let t230 = t229 + (t228 + t203);
             let t231 = t19 * t3 - (t48 * t37 + t72 * t63);
             let t232 = t19 * t7 + (t48 * t39 + t72 * t65);
             let t233 = t19 * t10 + (t48 * t41 - t72 * t67);
-            let t234 = t15 * t167 + (t46 * t166 - t70 * t165);
-            let t235 = t100 * (t51 * t234 + t46 * t168)
-                + t90 * (t75 * t234 - t70 * t168);
-            let t236 = t119 * (t23 * t234 - t15 * t168) - t235
-                + (t164 * t233 - (t156 * t232 + t145 * t231));
-            let t237 = k(0.6666666666666666) * (t234 + t168);
-            let t238 = k(1.3333333333333333) * t194;
-            let t239 = k(0.06666666666666667) * t201;
+            let t234 = t15 * t199 + (t46 * t198 - t70 * t197);
+            let t235 = t100 * (t51 * t234 + t46 * t200)
+                + t90 * (t75 * t234 - t70 * t200);
+            let t236 = t119 * (t23 * t234 - t15 * t200) - t235
+                + (t233 * t195 - (t232 * t187 + t231 * t176));
+            let t237 = k(0.6666666666666666) * (t200 + t234);
+            let t238 = k(1.3333333333333333) * t214;
+            let t239 = k(0.06666666666666667) * t221;
             let t240 = arm_wx * arm_wx;
             let t241 = k(0.01) * arm_wx;
-            let t242 = arm_wy * (t205 - t241)
-                + (k(0.1) * (arm_wx * arm_wz) - k(0.03) * (t204 - t240));
+            let t242 = arm_wy * (t225 - t241)
+                + (k(0.1) * (arm_wx * arm_wz) - k(0.03) * (t224 - t240));
             let t243 = k(0.02) * arm_dwx + k(0.25) * arm_dwy + k(0.01) * arm_dwz
                 + (t242 + (t88 * t237 - (t239 + (t238 - t87 * t237))));
             let t244 = k(0.4) * t22 * t120 - (k(0.4) * t50 * t101 + k(0.4) * t74 * t91);
@@ -9675,27 +11010,28 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Carried<T> {
             let t246 = t23 * t3 - (t51 * t37 - t75 * t63);
             let t247 = t23 * t7 + (t51 * t39 - t75 * t65);
             let t248 = t23 * t10 + (t51 * t41 + t75 * t67);
-            let t249 = t100 * (t48 * t234 + t46 * t169)
-                - t90 * (t72 * t234 + t70 * t169);
-            let t250 = t119 * (t19 * t234 - t15 * t169) - t249
-                - (t164 * t248 - (t156 * t247 + t145 * t246));
-            let t251 = k(0.3333333333333333) * t234 + t172;
-            let t252 = arm_wz * (t206 + t241)
-                - (k(0.05) * (arm_wx * arm_wy) + k(0.02) * (t203 - t240));
+            let t249 = t100 * (t48 * t234 + t46 * t201)
+                - t90 * (t72 * t234 + t70 * t201);
+            let t250 = t119 * (t19 * t234 - t15 * t201) - t249
+                - (t248 * t195 - (t247 * t187 + t246 * t176));
+            let t251 = k(0.3333333333333333) * t234 + t204;
+            let t252 = arm_wz * (t226 + t241)
+                - (k(0.05) * (arm_wx * arm_wy) + k(0.02) * (t223 - t240));
             let t253 = k(0.03) * arm_dwx - k(0.01) * arm_dwy - k(0.2) * arm_dwz
                 - (t252 + (t88 * t251 - (t239 + (t238 - t87 * t251))));
             let t254 = (k(0.4) * t47 - k(0.2) * t45) * t101
                 - (k(0.4) * t71 - k(0.2) * t69) * t91;
             let t255 = (k(0.4) * t18 + k(0.2) * t14) * t120 - t254;
             let t256 = t255 - (t253 + t250);
-            let t257 = t228 * t230 * t256 + (t226 * t230 * t245 - t219 * t230 * t210);
-            let t258 = k(0.6666666666666666) * t223;
-            let t259 = t230 * (t258 - k(0.3333333333333333) * t229) * t245
-                - t230 * (k(0.6666666666666666) * (t227 - t229)) * t210;
-            let t260 = t230 * (k(0.3333333333333333) * t227 - t258) * t256 + t259;
-            let t261 = t224 * t260 + (t209 - t223 * t257);
-            let t262 = t218 * t260 + (t244 - t227 * t257);
-            let t263 = t214 * t260 + (t255 - t229 * t257);
+            let t257 = t256 * (t162 * t164)
+                + (t245 * (t160 * t164) - t230 * (t153 * t164));
+            let t258 = k(0.6666666666666666) * t157;
+            let t259 = t245 * (t164 * (t258 - k(0.3333333333333333) * t163))
+                - t230 * (t164 * (k(0.6666666666666666) * (t161 - t163)));
+            let t260 = t256 * (t164 * (k(0.3333333333333333) * t161 - t258)) + t259;
+            let t261 = t158 * t260 + (t229 - t157 * t257);
+            let t262 = t152 * t260 + (t244 - t161 * t257);
+            let t263 = t145 * t260 + (t255 - t163 * t257);
             let t264 = arm_ry - (arm_ry - (t57 + t56));
             let t265 = arm_rz - (arm_rz + (t29 - t28));
             let t266 = t101 * t265 - t120 * t264
@@ -9708,68 +11044,67 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Carried<T> {
             let t270 = k(1.7888543819998317) * t71 - k(0.8944271909999159) * t69;
             let t271 = k(1.7888543819998317) * t47 - k(0.8944271909999159) * t45;
             let t272 = k(1.7888543819998317) * t18 + k(0.8944271909999159) * t14;
-            let t273 = t119 * t272 - (t100 * t271 - t90 * t270);
+            let t273 = t272 * t119 - (t271 * t100 - t270 * t90);
             let t274 = k(1.4907119849998598) * t74
                 + (k(0.5962847939999439) * t71 + k(1.1925695879998879) * t69);
             let t275 = k(1.4907119849998598) * t50
                 - (k(0.5962847939999439) * t47 + k(1.1925695879998879) * t45);
             let t276 = k(1.4907119849998598) * t22
                 - (k(0.5962847939999439) * t18 - k(1.1925695879998879) * t14);
-            let t277 = t119 * t276 - (t100 * t275 + t90 * t274);
+            let t277 = t276 * t119 - (t275 * t100 + t274 * t90);
             let t278 = t274 * t277 - t270 * t273;
             let t279 = t275 * t277 + t271 * t273;
             let t280 = t276 * t277 + t272 * t273;
-            let t281 = t277 * (t142 * t274 + t143 * t275 + t144 * t276)
-                - t273 * (t142 * t270 - t143 * t271 - t144 * t272);
+            let t281 = t277 * (t173 * t274 + t174 * t275 + t175 * t276)
+                - t273 * (t173 * t270 - t174 * t271 - t175 * t272);
             let t282 = k(0.4472135954999579)
-                * (k(0.5962847939999439) * t146 + k(0.29814239699997197) * t133)
+                * (k(0.5962847939999439) * t188 + k(0.29814239699997197) * t177)
                 + k(0.8944271909999159)
                     * (k(0.5962847939999439) * t232 + k(0.29814239699997197) * t231);
             let t283 = t233 + t231;
-            let t284 = t157 + t133;
+            let t284 = t196 + t177;
             let t285 = k(0.3975231959999626) * t284 - k(0.1987615979999813) * t283
                 + k(0.49690399499995325) * (t248 + t246);
             let t286 = k(0.4472135954999579)
-                * (k(0.5962847939999439) * t157 - k(0.7453559924999299) * t133)
+                * (k(0.5962847939999439) * t196 - k(0.7453559924999299) * t177)
                 + k(0.8944271909999159)
                     * (k(0.5962847939999439) * t233 - k(0.7453559924999299) * t231);
             let t287 = k(0.6666666666666666) * t247;
             let t288 = k(0.6666666666666666) * t232;
             let t289 = t288 + k(0.3333333333333333) * t231;
-            let t290 = k(0.6666666666666666) * t146;
-            let t291 = t290 + k(0.3333333333333333) * t133;
+            let t290 = k(0.6666666666666666) * t188;
+            let t291 = t290 + k(0.3333333333333333) * t177;
             let t292 = k(0.5962847939999439) * t291 - k(0.29814239699997197) * t289
                 + k(0.7453559924999299) * (t287 + k(0.3333333333333333) * t246);
-            let t293 = k(0.29814239699997197) * t284 + k(0.5962847939999439) * t283;
-            let t294 = k(0.4472135954999579) * t291 + k(0.8944271909999159) * t289;
-            let t295 = t294 * t285 - t293 * t292;
-            let t296 = k(0.4472135954999579)
-                * (k(0.29814239699997197) * t157 + k(0.7453559924999299) * t146)
+            let t293 = k(0.4472135954999579)
+                * (k(0.29814239699997197) * t196 + k(0.7453559924999299) * t188)
                 + k(0.8944271909999159)
                     * (k(0.29814239699997197) * t233 + k(0.7453559924999299) * t232);
+            let t294 = k(0.29814239699997197) * t284 + k(0.5962847939999439) * t283;
+            let t295 = k(0.4472135954999579) * t291 + k(0.8944271909999159) * t289;
+            let t296 = t285 * t295 - t294 * t292;
             let t297 = k(0.3333333333333333) * t233 - t288;
-            let t298 = k(0.3333333333333333) * t157 - t290;
+            let t298 = k(0.3333333333333333) * t196 - t290;
             let t299 = k(0.5962847939999439) * t298 - k(0.29814239699997197) * t297
                 + k(0.7453559924999299) * (k(0.3333333333333333) * t248 - t287);
             let t300 = k(0.4472135954999579) * t298 + k(0.8944271909999159) * t297;
-            let t301 = t300 * t292 - t294 * t299;
-            let t302 = t293 * t299 - t300 * t285;
-            let t303 = k(1.0) / (t282 * t302 + (t286 * t301 + t296 * t295));
-            let t304 = t156 * (t303 * (t299 * t282 - t292 * t296))
-                + t145 * (t303 * (t292 * t286 - t285 * t282));
-            let t305 = t164 * (t303 * (t285 * t296 - t299 * t286)) + t304;
-            let t306 = t156 * (t303 * (t294 * t296 - t300 * t282))
-                + t145 * (t303 * (t293 * t282 - t294 * t286));
-            let t307 = t164 * (t303 * (t300 * t286 - t293 * t296)) + t306;
-            let t308 = t164 * (t302 * t303)
-                + (t156 * (t301 * t303) + t145 * (t295 * t303));
-            let t309 = t296 * t308 + (t299 * t307 + (t300 * t305 - t281));
-            let t310 = t277 * (t153 * t274 - t154 * t275 + t155 * t276)
-                - t273 * (t153 * t270 + t154 * t271 - t155 * t272);
-            let t311 = t286 * t308 + (t285 * t307 + (t293 * t305 - t310));
-            let t312 = t277 * (t161 * t274 - t162 * t275 + t163 * t276)
-                - t273 * (t161 * t270 + t162 * t271 - t163 * t272);
-            let t313 = t282 * t308 + (t292 * t307 + (t294 * t305 - t312));
+            let t301 = t300 * t292 - t299 * t295;
+            let t302 = t294 * t299 - t285 * t300;
+            let t303 = k(1.0) / (t302 * t282 + (t301 * t286 + t296 * t293));
+            let t304 = t303 * (t299 * t282 - t292 * t293) * t187
+                + t303 * (t292 * t286 - t285 * t282) * t176;
+            let t305 = t303 * (t285 * t293 - t299 * t286) * t195 + t304;
+            let t306 = t303 * (t295 * t293 - t300 * t282) * t187
+                + t303 * (t294 * t282 - t295 * t286) * t176;
+            let t307 = t303 * (t300 * t286 - t294 * t293) * t195 + t306;
+            let t308 = t302 * t303 * t195 + (t301 * t303 * t187 + t296 * t303 * t176);
+            let t309 = t293 * t308 + (t299 * t307 + (t300 * t305 - t281));
+            let t310 = t277 * (t184 * t274 - t185 * t275 + t186 * t276)
+                - t273 * (t184 * t270 + t185 * t271 - t186 * t272);
+            let t311 = t286 * t308 + (t285 * t307 + (t294 * t305 - t310));
+            let t312 = t277 * (t192 * t274 - t193 * t275 + t194 * t276)
+                - t273 * (t192 * t270 + t193 * t271 - t194 * t272);
+            let t313 = t282 * t308 + (t292 * t307 + (t295 * t305 - t312));
             let t314 = slider_ry - t59;
             let t315 = slider_rz - t31;
             let t316 = t279 * t315 + t280 * t314
@@ -9786,22 +11121,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Carried<T> {
             let t323 = k(0.1) * slider_wy + k(0.02) * slider_wz;
             let t324 = k(0.05) * slider_dwz - k(0.1) * slider_dwx
                 + (slider_wz * t323 + slider_wx * t321);
-            let t325 = t140 + k(0.05) * slider_dwy
+            let t325 = t171 + k(0.05) * slider_dwy
                 - (slider_wx * t320 - slider_wy * t323);
             let t326 = k(1.0) - (slider_dsx - (t67 * t325 - (t65 * t324 - t63 * t322)));
             let t327 = k(9.0) + (slider_dsy - (t41 * t325 + (t39 * t324 - t37 * t322)));
             let t328 = k(3.0) - (slider_dsz + (t10 * t325 + (t7 * t324 + t3 * t322)));
             let t329 = t239 + t238;
-            let t330 = k(3.0) * t196;
+            let t330 = k(3.0) * t216;
             let t331 = t330 * t94;
             let t332 = t330 * t96;
             let t333 = k(0.3) * (k(0.4) + k(3.0) * t).cos()
                 + (k(0.08944271909999159) * t332 - k(0.1) * t331);
-            let t334 = t333 * t91 + (t198 * t329 - (t199 * t329 - t200 * (t202 + t195)));
+            let t334 = t333 * t91 + (t218 * t329 - (t219 * t329 - t220 * (t222 + t215)));
             let t335 = k(0.8944271909999159) * t332;
-            let t336 = t197 * t105;
+            let t336 = t217 * t105;
             let t337 = k(0.4472135954999579) * t332;
-            let t338 = t197 * t107;
+            let t338 = t217 * t107;
             let t339 = t114 * t338 + t105 * t337 - (t115 * t336 - t107 * t335);
             let t340 = k(0.4) * t331;
             let t341 = t106 * t336 - t107 * t340;
@@ -9830,7 +11165,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Carried<T> {
                 + k(0.6666666666666666) * t349) * t257
                 - ((k(0.2) * t347 - k(0.1) * t345) * t120 - (t344 + t334));
             (
-                t201,
+                t221,
                 t260,
                 t266,
                 t268,
@@ -9875,7 +11210,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Carried<T> {
             slider_wx,
             slider_wy,
             slider_wz,
-            -(t201 * (k(0.1) * t201) + t86 * t87),
+            -(t221 * (k(0.1) * t221) + t86 * t87),
             t357
                 - (k(0.6666666666666666) * (t356 - t354) - k(0.3333333333333333) * t349)
                     * t260,

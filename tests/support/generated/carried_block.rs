@@ -18,7 +18,7 @@
 //! | gamma | γ | 282 | 381 | 0 | 663 | 0 of 8 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 171 | 222 | 0 | 393 | 0 of 8 |
 //! | applied_force | (f, n' − w̃'J'w') | 247 | 313 | 0 | 560 | 0 of 12 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 1023 | 1268 | 6 | 2297 | 0 of 12 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 796 | 977 | 6 | 1779 | 0 of 12 |
 //! | multipliers | λ, the accelerations being known | 399 | 506 | 2 | 907 | 0 of 8 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 123 | 176 | 0 | 299 | 0 of 16 |
 //! | energy | T and V | 124 | 168 | 0 | 292 | 0 of 2 |
@@ -31,6 +31,7 @@
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 273 | 358 | 3 | 634 | 0 of 4 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 397 | 514 | 3 | 914 | 0 of 12 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 392 | 490 | 0 | 882 | 0 of 8 |
+//! | corrected_solution | both | 610 | 765 | 3 | 1378 | 0 of 20 |
 //!
 //! # Proof
 //!
@@ -45,9 +46,9 @@
 //! * joint_derivative: eqs. (14) and (16) on the constraints
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
-//! * corrected_multipliers: eq. (17) on the constraints
+//! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //!
-//! All of it holds but with a probability below 1e-148.
+//! All of it holds but with a probability below 1e-149.
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
 
 /// The mechanism `carried_block`.
@@ -2190,9 +2191,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
             * (t83 + (k(0.1) * t46 - (t22 + t17)));
         let t85 = t84 + t72
             + (t72
-                - t63
-                    * (t47
-                        - (k(0.6666666666666666) * t21 + k(0.3333333333333333) * t16)));
+                + t63
+                    * (k(0.6666666666666666) * t21 + k(0.3333333333333333) * t16 - t47));
         let t86 = t58 + t57;
         let t87 = k(0.5) - (t55 + block_e2 * block_e2);
         let t88 = block_e0 * block_e1;
@@ -2221,9 +2221,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
             * (t102 + (k(0.1) * t49 - (t34 + t32)));
         let t104 = t103 - t100
             - (t100
-                + t91
-                    * (t50
-                        - (k(0.6666666666666666) * t33 + k(0.3333333333333333) * t31)));
+                - t91
+                    * (k(0.6666666666666666) * t33 + k(0.3333333333333333) * t31 - t50));
         let t105 = t61 - t60;
         let t106 = t89 + t88;
         let t107 = k(0.5) - (t55 + block_e3 * block_e3);
@@ -2250,9 +2249,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
             * (t119 + (k(0.1) * t52 - (t44 + t42)));
         let t121 = t120 + t117
             + (t117
-                + t108
-                    * (t53
-                        - (k(0.6666666666666666) * t43 + k(0.3333333333333333) * t41)));
+                - t108
+                    * (k(0.6666666666666666) * t43 + k(0.3333333333333333) * t41 - t53));
         let t122 = t36 * t114 - (t24 * t97 - t5 * t69);
         let t123 = t38 * t114 - (t10 * t69 - t26 * t97);
         let t124 = t15 * t69 + t30 * t97 + t40 * t114;
@@ -2491,10 +2489,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
         let t114 = arm_wx * (t113 + t112)
             + (k(0.05) * (arm_wy * arm_wz) + k(0.01) * (t111 - t110));
         let t115 = t15 * t88 + (t43 * t87 - t64 * t86);
-        let t116 = k(0.6666666666666666) * (t115 - t89);
+        let t116 = k(0.6666666666666666) * (t89 - t115);
         let t117 = k(0.3333333333333333) * t115;
         let t118 = k(0.4) * t106;
-        let t119 = t118 - (t82 * t116 - (t81 * (t117 + t93) + t77 * t116));
+        let t119 = t118 + (t82 * t116 + (t81 * (t117 + t93) - t77 * t116));
         let t120 = k(0.013333333333333334) * t108;
         let t121 = arm_wx * arm_wx;
         let t122 = k(0.01) * arm_wx;
@@ -2502,7 +2500,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
             + (k(0.1) * (arm_wx * arm_wz) - k(0.03) * (t111 - t121));
         let t124 = t117 - t91;
         let t125 = t82 * t124
-            - (t81 * (k(0.6666666666666666) * (t115 + t90)) + t77 * t124);
+            - (t81 * (k(0.6666666666666666) * (t90 + t115)) + t77 * t124);
         let t126 = arm_wz * (t113 + t122)
             - (k(0.05) * (arm_wx * arm_wy) + k(0.02) * (t110 - t121));
         let t127 = t10 * t27 + (t38 * t52 - t61 * t73);
@@ -2544,7 +2542,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
             t147 + (t120 - (t118 - t146)),
         ];
     }
-    /// Solves eq. (17): 2297 operations (1023 ±, 1268 ×, 6 ÷) and 3 functions.
+    /// Solves eq. (17): 1779 operations (796 ±, 977 ×, 6 ÷) and 3 functions.
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let arm_rx = y[0];
@@ -2575,65 +2573,70 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
         let block_wz = y[25];
         let turn0 = y[27];
         let (
+            t2,
+            t3,
+            t5,
             t6,
+            t7,
             t10,
-            t11,
-            t13,
+            t14,
             t16,
             t17,
-            t23,
+            t18,
+            t19,
+            t20,
+            t21,
+            t24,
+            t25,
+            t26,
             t27,
-            t28,
-            t29,
-            t30,
-            t31,
-            t34,
             t36,
-            t37,
-            t38,
-            t39,
-            t40,
-            t41,
             t42,
             t43,
             t44,
             t45,
+            t47,
+            t48,
             t49,
             t50,
             t53,
             t54,
+            t55,
+            t56,
             t57,
             t58,
             t59,
             t63,
+            t65,
             t66,
-            t68,
-            t69,
+            t70,
+            t72,
             t73,
-            t76,
-            t79,
+            t80,
             t81,
+            t82,
+            t84,
             t85,
-            t87,
             t89,
             t91,
             t93,
+            t95,
             t97,
             t99,
+            t100,
+            t101,
+            t102,
+            t103,
+            t104,
             t105,
+            t106,
             t107,
-            t108,
-            t110,
             t111,
             t112,
             t113,
-            t114,
-            t115,
             t116,
             t117,
-            t118,
             t119,
-            t120,
             t121,
             t122,
             t123,
@@ -2642,15 +2645,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
             t126,
             t127,
             t128,
-            t130,
+            t129,
             t131,
-            t132,
             t133,
             t134,
-            t135,
             t136,
             t137,
-            t138,
             t139,
             t140,
             t141,
@@ -2662,25 +2662,30 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
             t147,
             t148,
             t149,
-            t150,
             t151,
-            t152,
+            t153,
+            t154,
+            t156,
             t157,
+            t158,
             t159,
-            t160,
-            t165,
+            t161,
+            t162,
+            t163,
+            t164,
             t166,
             t167,
-            t172,
+            t169,
+            t170,
+            t171,
             t173,
             t174,
-            t176,
+            t175,
             t177,
             t178,
+            t179,
             t180,
-            t181,
             t182,
-            t183,
             t184,
             t185,
             t186,
@@ -2698,276 +2703,276 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
             t198,
             t199,
         ) = {
-            let t0 = block_e0 * block_e3;
-            let t1 = block_e1 * block_e2;
-            let t2 = t1 - t0;
-            let t3 = block_e0 * block_e2;
-            let t4 = block_e1 * block_e3;
-            let t5 = t4 + t3;
-            let t6 = k(0.1) * t5 + k(0.2) * t2;
-            let t7 = k(0.6) * t6;
+            let t0 = arm_e0 * arm_e3;
+            let t1 = arm_e1 * arm_e2;
+            let t2 = t1 + t0;
+            let t3 = k(0.4) * t2;
+            let t4 = arm_e0 * arm_e0;
+            let t5 = k(0.5) - (t4 + arm_e2 * arm_e2);
+            let t6 = k(0.2) * t5;
+            let t7 = t6 + t3;
             let t8 = arm_e0 * arm_e2;
             let t9 = arm_e1 * arm_e3;
-            let t10 = t9 + t8;
+            let t10 = t9 - t8;
             let t11 = k(1.3333333333333333) * t10;
-            let t12 = arm_e0 * arm_e0;
-            let t13 = k(0.5) - (t12 + arm_e1 * arm_e1);
-            let t14 = arm_e0 * arm_e3;
-            let t15 = arm_e1 * arm_e2;
-            let t16 = t15 - t14;
-            let t17 = k(0.6666666666666666) * t16 - k(1.3333333333333333) * t13 - t11;
-            let t18 = block_e0 * block_e0;
-            let t19 = k(0.5) - (t18 + block_e2 * block_e2);
-            let t20 = block_e0 * block_e1;
-            let t21 = block_e2 * block_e3;
-            let t22 = t21 - t20;
-            let t23 = k(0.1) * t22 - k(0.2) * t19;
-            let t24 = k(0.6) * t23;
-            let t25 = arm_e0 * arm_e1;
-            let t26 = arm_e2 * arm_e3;
-            let t27 = t26 - t25;
-            let t28 = k(1.3333333333333333) * t27;
-            let t29 = t15 + t14;
-            let t30 = k(0.5) - (t12 + arm_e2 * arm_e2);
-            let t31 = k(0.6666666666666666) * t30 - k(1.3333333333333333) * t29 + t28;
-            let t32 = t21 + t20;
-            let t33 = k(0.5) - (t18 + block_e3 * block_e3);
-            let t34 = k(0.1) * t33 - k(0.2) * t32;
-            let t35 = k(0.6) * t34;
-            let t36 = k(0.5) - (t12 + arm_e3 * arm_e3);
-            let t37 = k(1.3333333333333333) * t36;
-            let t38 = t9 - t8;
-            let t39 = t26 + t25;
-            let t40 = k(0.6666666666666666) * t39 + k(1.3333333333333333) * t38 + t37;
-            let t41 = t40 * t35 + (t31 * t24 - t17 * t7);
-            let t42 = k(0.6) * t17;
-            let t43 = k(0.6) * t31;
-            let t44 = k(0.6) * t40;
-            let t45 = k(1.0) / (t40 * t44 + (t31 * t43 + t17 * t42));
-            let t46 = t45 * t41;
-            let t47 = t42 * t45;
-            let t48 = t7 + t47 * t41;
-            let t49 = k(0.6666666666666666) * t10;
-            let t50 = k(1.3333333333333333) * (t13 + t16) - t49;
-            let t51 = t43 * t45;
-            let t52 = t24 - t51 * t41;
-            let t53 = k(0.6666666666666666) * t27;
-            let t54 = k(1.3333333333333333) * (t29 + t30) + t53;
-            let t55 = t44 * t45;
-            let t56 = t35 - t55 * t41;
-            let t57 = k(0.6666666666666666) * t36;
-            let t58 = k(1.3333333333333333) * (t38 - t39) - t57;
-            let t59 = t58 * t56 - (t54 * t52 - t50 * t48);
-            let t60 = t42 * t47;
-            let t61 = t43 * t47;
-            let t62 = t44 * t47;
-            let t63 = t58 * t62 - (t54 * t61 + t50 * t60) + k(0.6) * t50;
-            let t64 = t43 * t51;
-            let t65 = t44 * t51;
-            let t66 = t58 * t65 - (t54 * t64 + t50 * t61) + k(0.6) * t54;
-            let t67 = t44 * t55;
-            let t68 = t58 * t67 - (t54 * t65 + t50 * t62) - k(0.6) * t58;
-            let t69 = k(1.0) / (t58 * t68 - (t54 * t66 + t50 * t63));
-            let t70 = t69 * t59;
-            let t71 = t59 * t70 + (k(0.0275) - t41 * t46);
-            let t72 = k(0.5) - (t18 + block_e1 * block_e1);
-            let t73 = k(0.06) * t5 - k(0.2) * t72;
-            let t74 = k(0.6) * t73;
-            let t75 = t1 + t0;
-            let t76 = k(0.06) * t22 + k(0.2) * t75;
-            let t77 = k(0.6) * t76;
-            let t78 = t4 - t3;
-            let t79 = k(0.06) * t33 - k(0.2) * t78;
-            let t80 = k(0.6) * t79;
-            let t81 = t40 * t80 + (t31 * t77 - t17 * t74);
-            let t82 = t74 + t47 * t81;
-            let t83 = t77 - t51 * t81;
-            let t84 = t80 - t55 * t81;
-            let t85 = t58 * t84 - (t54 * t83 - t50 * t82);
-            let t86 = t70 * t85 - (k(0.0001) + t46 * t81);
-            let t87 = k(0.06) * t2 + k(0.1) * t72;
-            let t88 = k(0.6) * t87;
-            let t89 = k(0.06) * t19 + k(0.1) * t75;
-            let t90 = k(0.6) * t89;
-            let t91 = k(0.06) * t32 - k(0.1) * t78;
-            let t92 = k(0.6) * t91;
-            let t93 = t40 * t92 + (t31 * t90 + t17 * t88);
-            let t94 = t88 - t47 * t93;
-            let t95 = t90 - t51 * t93;
-            let t96 = t92 - t55 * t93;
-            let t97 = t58 * t96 - (t54 * t95 + t50 * t94);
-            let t98 = t97 * t70 - (k(0.0038) + t93 * t46);
-            let t99 = k(0.6666666666666666) * t98
-                + (k(0.6666666666666666) * t86 - k(0.3333333333333333) * t71);
-            let t100 = t45 * t81;
-            let t101 = t69 * t85;
-            let t102 = t85 * t101 + (k(0.03654) - t81 * t100);
-            let t103 = t97 * t101 - t93 * t100;
-            let t104 = k(0.6666666666666666) * t103;
-            let t105 = t104
-                + (k(0.6666666666666666) * t102 - k(0.3333333333333333) * t86);
-            let t106 = t97 * (t69 * t97) + (k(0.02704) - t93 * (t45 * t93));
-            let t107 = k(0.6666666666666666) * t106
-                - (k(0.3333333333333333) * t98 - t104);
-            let t108 = k(1.0)
-                / (k(0.6666666666666666) * t107
-                    + (k(0.6666666666666666) * t105 - k(0.3333333333333333) * t99));
-            let t109 = t99 * t108;
-            let t110 = t71 - t99 * t109;
-            let t111 = k(2.0) * t72;
-            let t112 = k(2.0) * t13;
-            let t113 = k(2.0) * t75;
-            let t114 = k(2.0) * t29;
-            let t115 = k(2.0) * t78;
-            let t116 = k(2.0) * t38;
-            let t117 = t116 * t115 + (t114 * t113 + t112 * t111);
-            let t118 = t86 - t105 * t109;
-            let t119 = k(2.0) * t2;
-            let t120 = k(2.0) * t19;
-            let t121 = k(2.0) * t32;
-            let t122 = t116 * t121 - (t114 * t120 + t112 * t119);
-            let t123 = t98 - t107 * t109;
-            let t124 = k(2.0) * t5;
-            let t125 = k(2.0) * t22;
-            let t126 = k(2.0) * t33;
-            let t127 = t116 * t126 - (t114 * t125 - t112 * t124);
-            let t128 = t127 * t123 - (t122 * t118 - t117 * t110);
-            let t129 = t105 * t108;
-            let t130 = t102 - t105 * t129;
-            let t131 = t103 - t107 * t129;
-            let t132 = t127 * t131 - (t122 * t130 - t117 * t118);
-            let t133 = t106 - t107 * (t107 * t108);
-            let t134 = t127 * t133 - (t122 * t131 - t117 * t123);
-            let t135 = block_rx - (k(0.2) * t5 - (k(0.1) * t2 - k(0.06) * t72));
-            let t136 = arm_rx - t135;
-            let t137 = k(2.0) * t10;
-            let t138 = block_ry - (k(0.2) * t22 + (k(0.1) * t19 - k(0.06) * t75));
-            let t139 = arm_ry - t138;
-            let t140 = k(2.0) * t27;
-            let t141 = block_rz + (k(0.2) * t33 + (k(0.1) * t32 + k(0.06) * t78));
-            let t142 = arm_rz - t141;
-            let t143 = k(2.0) * t36;
-            let t144 = t143 * t142 - (t140 * t139 + t137 * t136);
-            let t145 = t144 * t144;
-            let t146 = k(2.0) * t16;
-            let t147 = k(2.0) * t30;
-            let t148 = k(2.0) * t39;
-            let t149 = t148 * t142 - (t147 * t139 - t146 * t136);
-            let t150 = t149 * t149;
-            let t151 = k(0.6) * (t150 + t145)
-                + (t127 * t134 - (t122 * t132 - t117 * t128));
-            let t152 = t137 * t149 + t146 * t144;
-            let t153 = t63 * t69;
-            let t154 = t48 + t59 * t153;
-            let t155 = t82 + t85 * t153;
-            let t156 = t94 - t97 * t153;
-            let t157 = k(0.6666666666666666) * t156
-                - (k(0.6666666666666666) * t155 - k(0.3333333333333333) * t154);
-            let t158 = t108 * t157;
-            let t159 = t157 * t158 + (t60 - t63 * t153);
-            let t160 = t140 * t149 - t147 * t144;
-            let t161 = t66 * t69;
-            let t162 = t52 - t59 * t161;
-            let t163 = t83 - t85 * t161;
-            let t164 = t95 - t97 * t161;
-            let t165 = k(0.6666666666666666) * t164
-                + (k(0.6666666666666666) * t163 - k(0.3333333333333333) * t162);
-            let t166 = t165 * t158 + (t61 - t66 * t153);
-            let t167 = t143 * t149 - t148 * t144;
-            let t168 = t68 * t69;
-            let t169 = t56 - t59 * t168;
-            let t170 = t84 - t85 * t168;
-            let t171 = t96 - t97 * t168;
-            let t172 = k(0.6666666666666666) * t171
-                + (k(0.6666666666666666) * t170 - k(0.3333333333333333) * t169);
-            let t173 = t172 * t158 + (t62 - t68 * t153);
-            let t174 = t173 * t167 + (t166 * t160 - t159 * t152);
-            let t175 = t108 * t165;
-            let t176 = t165 * t175 + (t64 - t66 * t161);
-            let t177 = t172 * t175 + (t65 - t68 * t161);
-            let t178 = t177 * t167 + (t176 * t160 - t166 * t152);
-            let t179 = t108 * t172;
-            let t180 = t172 * t179 + (t67 - t68 * t168);
-            let t181 = t180 * t167 + (t177 * t160 - t173 * t152);
-            let t182 = t154 + t99 * t158;
-            let t183 = t155 + t105 * t158;
-            let t184 = t156 - t107 * t158;
-            let t185 = t127 * t184 + (t122 * t183 - t117 * t182);
-            let t186 = t162 - t99 * t175;
-            let t187 = t163 - t105 * t175;
-            let t188 = t164 - t107 * t175;
-            let t189 = t127 * t188 - (t122 * t187 - t117 * t186);
-            let t190 = t169 - t99 * t179;
-            let t191 = t170 - t105 * t179;
-            let t192 = t171 - t107 * t179;
-            let t193 = t127 * t192 - (t122 * t191 - t117 * t190);
-            let t194 = k(2.0) * (t167 * t193 + (t160 * t189 - t152 * t185))
-                - (t167 * t181 + (t160 * t178 - t152 * t174));
-            let t195 = k(0.2) * t10;
-            let t196 = k(0.2) * t27;
-            let t197 = k(0.2) * t36;
-            let t198 = t197 * t173 + (t196 * t166 - t195 * t159);
-            let t199 = t197 * t177 + (t196 * t176 - t195 * t166);
+            let t12 = arm_e0 * arm_e1;
+            let t13 = arm_e2 * arm_e3;
+            let t14 = t13 + t12;
+            let t15 = k(0.6666666666666666) * t14;
+            let t16 = k(0.5) - (t4 + arm_e3 * arm_e3);
+            let t17 = k(1.3333333333333333) * t16;
+            let t18 = t17 + (t15 - t11);
+            let t19 = k(0.4) * t10;
+            let t20 = k(0.2) * t14;
+            let t21 = t20 - t19;
+            let t22 = k(1.3333333333333333) * t2;
+            let t23 = k(0.6666666666666666) * t5;
+            let t24 = t13 - t12;
+            let t25 = k(1.3333333333333333) * t24;
+            let t26 = t25 + (t23 + t22);
+            let t27 = t26 * t21 - t18 * t7;
+            let t28 = block_e0 * block_e2;
+            let t29 = block_e1 * block_e3;
+            let t30 = t29 - t28;
+            let t31 = block_e0 * block_e1;
+            let t32 = block_e2 * block_e3;
+            let t33 = t32 + t31;
+            let t34 = block_e0 * block_e0;
+            let t35 = k(0.5) - (t34 + block_e3 * block_e3);
+            let t36 = k(1.3333333333333333) * t35
+                - (k(1.3333333333333333) * t33 + k(0.6666666666666666) * t30);
+            let t37 = block_e0 * block_e3;
+            let t38 = block_e1 * block_e2;
+            let t39 = t38 + t37;
+            let t40 = k(0.5) - (t34 + block_e2 * block_e2);
+            let t41 = t32 - t31;
+            let t42 = k(0.2) * t41 + (k(0.1) * t40 - k(0.06) * t39);
+            let t43 = k(1.3333333333333333) * t41
+                - (k(1.3333333333333333) * t40 - k(0.6666666666666666) * t39);
+            let t44 = k(0.2) * t35 + (k(0.1) * t33 + k(0.06) * t30);
+            let t45 = t44 * t43 - t42 * t36;
+            let t46 = t9 + t8;
+            let t47 = t1 - t0;
+            let t48 = k(0.5) - (t4 + arm_e1 * arm_e1);
+            let t49 = k(1.3333333333333333) * (t48 + t47) - k(0.6666666666666666) * t46;
+            let t50 = k(1.3333333333333333) * t46;
+            let t51 = k(1.3333333333333333) * t48;
+            let t52 = k(0.6666666666666666) * t47;
+            let t53 = t52 - t51 - t50;
+            let t54 = k(0.6) * t53;
+            let t55 = t23 - t22 + t25;
+            let t56 = k(0.6) * t55;
+            let t57 = t15 + t11 + t17;
+            let t58 = k(0.6) * t57;
+            let t59 = k(1.0) / (t57 * t58 + (t55 * t56 + t53 * t54));
+            let t60 = t54 * t59;
+            let t61 = t54 * t60;
+            let t62 = t56 * t60;
+            let t63 = k(1.3333333333333333) * (t2 + t5) + k(0.6666666666666666) * t24;
+            let t64 = t58 * t60;
+            let t65 = k(1.3333333333333333) * (t10 - t14) - k(0.6666666666666666) * t16;
+            let t66 = t65 * t64 - (t63 * t62 + t49 * t61) + k(0.6) * t49;
+            let t67 = t56 * t59;
+            let t68 = t56 * t67;
+            let t69 = t58 * t67;
+            let t70 = t65 * t69 - (t63 * t68 + t49 * t62) + k(0.6) * t63;
+            let t71 = t58 * (t58 * t59);
+            let t72 = t65 * t71 - (t63 * t69 + t49 * t64) - k(0.6) * t65;
+            let t73 = k(1.0) / (t65 * t72 - (t63 * t70 + t49 * t66));
+            let t74 = t66 * t73;
+            let t75 = t61 - t66 * t74;
+            let t76 = t62 - t70 * t74;
+            let t77 = k(0.5) - (t34 + block_e1 * block_e1);
+            let t78 = t38 - t37;
+            let t79 = t29 + t28;
+            let t80 = k(1.3333333333333333) * t79
+                + (k(1.3333333333333333) * t78 - k(0.6666666666666666) * t77);
+            let t81 = k(0.2) * t79 - (k(0.1) * t78 - k(0.06) * t77);
+            let t82 = t81 * t36 - t44 * t80;
+            let t83 = t64 - t72 * t74;
+            let t84 = t42 * t80 - t81 * t43;
+            let t85 = t84 * t83 + (t82 * t76 - t45 * t75) + k(0.6) * t45;
+            let t86 = t70 * t73;
+            let t87 = t68 - t70 * t86;
+            let t88 = t69 - t72 * t86;
+            let t89 = t84 * t88 + (t82 * t87 - t45 * t76) - k(0.6) * t82;
+            let t90 = t71 - t72 * (t72 * t73);
+            let t91 = t90 * t84 + (t88 * t82 - t83 * t45) - k(0.6) * t84;
+            let t92 = k(0.004) * t79 + k(0.002) * t78;
+            let t93 = k(2.0) * t77;
+            let t94 = k(0.006) * t79 - (k(0.02) * t78 - k(0.002) * t77);
+            let t95 = k(2.0) * t78;
+            let t96 = k(0.01) * t79 - (k(0.006) * t78 + k(0.004) * t77);
+            let t97 = k(2.0) * t79;
+            let t98 = k(0.02) + (t97 * t96 - (t95 * t94 + t93 * t92));
+            let t99 = k(2.0) * t39;
+            let t100 = k(2.0) * t40;
+            let t101 = k(2.0) * t41;
+            let t102 = t101 * t96 + (t100 * t94 + t99 * t92);
+            let t103 = k(2.0) * t30;
+            let t104 = k(2.0) * t33;
+            let t105 = k(2.0) * t35;
+            let t106 = t105 * t96 + (t104 * t94 - t103 * t92);
+            let t107 = t36 * t106 + (t43 * t102 + t80 * t98);
+            let t108 = k(0.004) * t41 - k(0.002) * t40;
+            let t109 = k(0.006) * t41 + (k(0.02) * t40 - k(0.002) * t39);
+            let t110 = k(0.01) * t41 + (k(0.006) * t40 + k(0.004) * t39);
+            let t111 = k(0.02) + (t101 * t110 + (t100 * t109 + t99 * t108));
+            let t112 = t105 * t110 + (t104 * t109 - t103 * t108);
+            let t113 = t36 * t112 + (t43 * t111 + t80 * t102);
+            let t114 = t104 * (k(0.006) * t35 + (k(0.02) * t33 + k(0.002) * t30))
+                - t103 * (k(0.004) * t35 - k(0.002) * t33);
+            let t115 = t105 * (k(0.01) * t35 + (k(0.006) * t33 - k(0.004) * t30)) + t114;
+            let t116 = k(0.02) + t115;
+            let t117 = t116 * t36 + (t112 * t43 + t106 * t80);
+            let t118 = t36 * t117 + (t43 * t113 + t80 * t107)
+                - (t84 * t91 + (t82 * t89 - t45 * t85));
+            let t119 = k(1.0) / t118;
+            let t120 = t85 * t119;
+            let t121 = t75 + t85 * t120;
+            let t122 = t50 - (t52 + t51);
+            let t123 = k(0.4) * t48;
+            let t124 = k(0.2) * t47;
+            let t125 = t124 + t123;
+            let t126 = t18 * t125 + t122 * t21;
+            let t127 = t76 + t89 * t120;
+            let t128 = t122 * t7 + t26 * t125;
+            let t129 = t83 + t91 * t120;
+            let t130 = t129 * t128 - (t127 * t126 + t121 * t27) + k(2.1) * t27;
+            let t131 = block_rx - t81;
+            let t132 = arm_rx - t131;
+            let t133 = k(2.0) * t48;
+            let t134 = block_ry - t42;
+            let t135 = arm_ry - t134;
+            let t136 = k(2.0) * t2;
+            let t137 = block_rz + t44;
+            let t138 = arm_rz - t137;
+            let t139 = k(2.0) * t10;
+            let t140 = t139 * t138 + (t136 * t135 - t133 * t132);
+            let t141 = k(2.0) * t47;
+            let t142 = k(2.0) * t5;
+            let t143 = k(2.0) * t14;
+            let t144 = t143 * t138 - (t142 * t135 - t141 * t132);
+            let t145 = k(2.0) * t46;
+            let t146 = k(2.0) * t24;
+            let t147 = k(2.0) * t16;
+            let t148 = t147 * t138 - (t146 * t135 + t145 * t132);
+            let t149 = t44 + (t147 * t148 + (t143 * t144 + t139 * t140));
+            let t150 = t127 * t149;
+            let t151 = t42 + (t146 * t148 + (t142 * t144 - t136 * t140));
+            let t152 = t151 * t129;
+            let t153 = t107 * t120;
+            let t154 = t153 - (t152 - t150);
+            let t155 = k(0.6) * t149;
+            let t156 = t81 + (t145 * t148 - (t141 * t144 - t133 * t140));
+            let t157 = t156 * t129 + t121 * t149;
+            let t158 = t113 * t120;
+            let t159 = t158 + (t157 - t155);
+            let t160 = k(0.6) * t151;
+            let t161 = t156 * t127 + t151 * t121;
+            let t162 = t117 * t120;
+            let t163 = t162 - (t161 - t160);
+            let t164 = t18 * t163 + (t26 * t159 + t122 * t154) - t130;
+            let t165 = t89 * t119;
+            let t166 = t87 + t89 * t165;
+            let t167 = t88 + t91 * t165;
+            let t168 = t167 * t128 - (t166 * t126 + t127 * t27) + k(2.1) * t126;
+            let t169 = t151 * t167 - t166 * t149;
+            let t170 = t107 * t165;
+            let t171 = t170 - (t155 + t169);
+            let t172 = t156 * t167;
+            let t173 = t172 + t150;
+            let t174 = t113 * t165;
+            let t175 = t174 + t173;
+            let t176 = k(0.6) * t156;
+            let t177 = t156 * t166 + t151 * t127;
+            let t178 = t117 * t165;
+            let t179 = t178 - (t177 - t176);
+            let t180 = t18 * t179 + (t26 * t175 + t122 * t171) - t168;
+            let t181 = t91 * t119;
+            let t182 = t90 + t91 * t181;
+            let t183 = t128 * t182 - (t167 * t126 + t129 * t27) - k(2.1) * t128;
+            let t184 = t151 * t182 - t149 * t167;
+            let t185 = t107 * t181;
+            let t186 = t185 + (t160 - t184);
+            let t187 = t156 * t182 + t149 * t129;
+            let t188 = t113 * t181;
+            let t189 = t188 - (t176 - t187);
+            let t190 = t172 + t152;
+            let t191 = t117 * t181;
+            let t192 = t191 - t190;
+            let t193 = t18 * t192 + (t26 * t189 + t122 * t186) - t183;
+            let t194 = k(0.06) * t46 - k(0.04) * t47;
+            let t195 = k(0.02) * t46 - (k(0.1) * t47 + k(0.04) * t48);
+            let t196 = k(0.2) * t46;
+            let t197 = t196 - (k(0.02) * t47 + k(0.06) * t48);
+            let t198 = t107 * t119;
+            let t199 = t98 - t107 * t198;
             (
+                t2,
+                t3,
+                t5,
                 t6,
+                t7,
                 t10,
-                t11,
-                t13,
+                t14,
                 t16,
                 t17,
-                t23,
+                t18,
+                t19,
+                t20,
+                t21,
+                t24,
+                t25,
+                t26,
                 t27,
-                t28,
-                t29,
-                t30,
-                t31,
-                t34,
                 t36,
-                t37,
-                t38,
-                t39,
-                t40,
-                t41,
                 t42,
                 t43,
                 t44,
                 t45,
+                t47,
+                t48,
                 t49,
                 t50,
                 t53,
                 t54,
+                t55,
+                t56,
                 t57,
                 t58,
                 t59,
                 t63,
+                t65,
                 t66,
-                t68,
-                t69,
+                t70,
+                t72,
                 t73,
-                t76,
-                t79,
+                t80,
                 t81,
+                t82,
+                t84,
                 t85,
-                t87,
                 t89,
                 t91,
                 t93,
+                t95,
                 t97,
                 t99,
+                t100,
+                t101,
+                t102,
+                t103,
+                t104,
                 t105,
+                t106,
                 t107,
-                t108,
-                t110,
                 t111,
                 t112,
                 t113,
-                t114,
-                t115,
                 t116,
                 t117,
-                t118,
                 t119,
-                t120,
                 t121,
                 t122,
                 t123,
@@ -2976,15 +2981,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
                 t126,
                 t127,
                 t128,
-                t130,
+                t129,
                 t131,
-                t132,
                 t133,
                 t134,
-                t135,
                 t136,
                 t137,
-                t138,
                 t139,
                 t140,
                 t141,
@@ -2996,25 +2998,30 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
                 t147,
                 t148,
                 t149,
-                t150,
                 t151,
-                t152,
+                t153,
+                t154,
+                t156,
                 t157,
+                t158,
                 t159,
-                t160,
-                t165,
+                t161,
+                t162,
+                t163,
+                t164,
                 t166,
                 t167,
-                t172,
+                t169,
+                t170,
+                t171,
                 t173,
                 t174,
-                t176,
+                t175,
                 t177,
                 t178,
+                t179,
                 t180,
-                t181,
                 t182,
-                t183,
                 t184,
                 t185,
                 t186,
@@ -3034,752 +3041,496 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
             )
         };
         let (
-            t200,
-            t201,
-            t202,
-            t203,
-            t205,
-            t206,
-            t207,
+            t204,
             t208,
-            t210,
-            t211,
             t212,
-            t221,
+            t218,
             t222,
-            t223,
-            t224,
-            t225,
             t226,
-            t227,
-            t228,
-            t229,
+            t230,
             t233,
             t234,
-            t235,
-            t237,
-            t238,
-            t239,
-            t248,
-            t249,
-            t250,
-            t251,
-            t252,
-            t253,
-            t254,
-            t255,
-            t256,
+            t259,
             t260,
-            t274,
-            t280,
-            t283,
-            t284,
-            t285,
-            t286,
-            t287,
-            t291,
-            t292,
-            t293,
-            t294,
-            t295,
-            t305,
-            t306,
-            t307,
-            t308,
+            t261,
+            t266,
+            t268,
+            t273,
+            t296,
+            t298,
             t310,
-            t312,
-            t320,
-            t321,
+            t311,
+            t322,
             t323,
             t324,
+            t325,
             t326,
             t327,
+            t328,
+            t329,
+            t330,
+            t333,
             t335,
-            t337,
-            t340,
-            t345,
-            t347,
-            t348,
-            t349,
-            t350,
-            t351,
-            t352,
-            t357,
-            t358,
-            t360,
-            t364,
+            t341,
+            t342,
+            t355,
+            t356,
+            t366,
             t367,
-            t370,
-            t371,
-            t372,
-            t373,
             t374,
-            t375,
-            t376,
             t377,
-            t378,
-            t379,
             t380,
-            t381,
-            t382,
-            t383,
-            t385,
             t387,
             t388,
             t389,
             t390,
+            t391,
             t392,
             t394,
-            t395,
             t396,
             t397,
-            t398,
             t399,
         ) = {
-            let t200 = t197 * t180 + (t196 * t177 - t195 * t173);
-            let t201 = t174 + k(0.6) * t152 - t185;
-            let t202 = t178 - k(0.6) * t160 - t189;
-            let t203 = t181 - k(0.6) * t167 - t193;
-            let t204 = k(2.0) * (t197 * t203 + (t196 * t202 - t195 * t201))
-                + (t197 * t200 + (t196 * t199 - t195 * t198));
-            let t205 = t148 * t115 - (t147 * t113 + t146 * t111);
-            let t206 = t148 * t121 + (t146 * t119 + t147 * t120);
-            let t207 = t148 * t126 - (t146 * t124 - t147 * t125);
-            let t208 = t116 * t142 + (t114 * t139 - t112 * t136);
-            let t209 = k(0.6) * (t208 * t149)
-                - (t207 * t134 - (t206 * t132 - t205 * t128));
-            let t210 = t137 * t208 - t112 * t144;
-            let t211 = t140 * t208 + t114 * t144;
-            let t212 = t143 * t208 - t116 * t144;
-            let t213 = t173 * t212 + (t166 * t211 - t159 * t210);
-            let t214 = t177 * t212 + (t176 * t211 - t166 * t210);
-            let t215 = t180 * t212 + (t177 * t211 - t173 * t210);
-            let t216 = t207 * t184 + (t206 * t183 - t205 * t182);
-            let t217 = t207 * t188 - (t206 * t187 - t205 * t186);
-            let t218 = t207 * t192 - (t206 * t191 - t205 * t190);
-            let t219 = t212 * t193 + (t211 * t189 - t210 * t185)
-                - (t218 * t167 + (t217 * t160 - t216 * t152));
-            let t220 = t219 - (t215 * t167 + (t214 * t160 - t213 * t152)) + t209;
-            let t221 = k(0.4) * t10;
-            let t222 = k(0.4) * t27;
-            let t223 = k(0.4) * t36;
-            let t224 = t223 * t173 + (t222 * t166 - t221 * t159);
-            let t225 = t223 * t177 + (t222 * t176 - t221 * t166);
-            let t226 = t223 * t180 + (t222 * t177 - t221 * t173);
-            let t227 = t213 + k(0.6) * t210 + t216;
-            let t228 = t214 - k(0.6) * t211 + t217;
-            let t229 = t215 - k(0.6) * t212 + t218;
-            let t230 = t223 * t203 + (t222 * t202 - t221 * t201)
-                - (t197 * t229 + (t196 * t228 - t195 * t227));
-            let t231 = t230 + (t197 * t226 + (t196 * t225 - t195 * t224))
-                - (k(0.042) + (k(0.02) - t220));
-            let t232 = k(0.3333333333333333) * t231
-                - k(0.6666666666666666) * (t204 - (k(0.021) + (k(0.3) + (t194 + t151))));
-            let t233 = t143 * t115 - (t140 * t113 - t137 * t111);
-            let t234 = t143 * t121 - (t137 * t119 - t140 * t120);
-            let t235 = t137 * t124 + t140 * t125 + t143 * t126;
-            let t236 = k(0.6) * (t208 * t144)
-                - (t235 * t134 - (t234 * t132 - t233 * t128));
-            let t237 = t146 * t208 + t112 * t149;
-            let t238 = t147 * t208 + t114 * t149;
-            let t239 = t148 * t208 - t116 * t149;
-            let t240 = t239 * t173 + (t238 * t166 + t237 * t159);
-            let t241 = t239 * t177 + (t238 * t176 + t237 * t166);
-            let t242 = t239 * t180 + (t238 * t177 + t237 * t173);
-            let t243 = t235 * t184 + (t234 * t183 - t233 * t182);
-            let t244 = t235 * t188 - (t234 * t187 - t233 * t186);
-            let t245 = t235 * t192 - (t234 * t191 - t233 * t190);
-            let t246 = t239 * t193 + (t238 * t189 + t237 * t185)
-                + (t245 * t167 + (t244 * t160 - t243 * t152));
-            let t247 = t246 - (t242 * t167 + (t241 * t160 - t240 * t152)) - t236;
-            let t248 = k(0.4) * t16 - k(0.2) * t13;
-            let t249 = k(0.4) * t30 - k(0.2) * t29;
-            let t250 = k(0.4) * t39 + k(0.2) * t38;
-            let t251 = t250 * t173 + (t249 * t166 + t248 * t159);
-            let t252 = t250 * t177 + (t249 * t176 + t248 * t166);
-            let t253 = t250 * t180 + (t249 * t177 + t248 * t173);
-            let t254 = t240 - k(0.6) * t237 - t243;
-            let t255 = t241 - k(0.6) * t238 - t244;
-            let t256 = t242 - k(0.6) * t239 - t245;
-            let t257 = t250 * t203 + (t249 * t202 + t248 * t201)
-                - (t197 * t256 + (t196 * t255 - t195 * t254));
-            let t258 = t257 + (t197 * t253 + (t196 * t252 - t195 * t251))
-                + (k(0.03) + t247);
-            let t259 = k(0.6666666666666666) * t258;
-            let t260 = t259 - t232;
-            let t261 = t207 * t123 - (t206 * t118 - t205 * t110);
-            let t262 = t207 * t131 - (t206 * t130 - t205 * t118);
-            let t263 = t207 * t133 - (t206 * t131 - t205 * t123);
-            let t264 = t208 * t208;
-            let t265 = k(0.6) * (t264 + t145)
-                + (t207 * t263 - (t206 * t262 - t205 * t261));
-            let t266 = k(2.0) * (t212 * t218 + (t211 * t217 - t210 * t216))
-                + (t212 * t215 + (t211 * t214 - t210 * t213));
-            let t267 = k(2.0) * (t223 * t229 + (t222 * t228 - t221 * t227))
-                - (t223 * t226 + (t222 * t225 - t221 * t224));
-            let t268 = k(0.3333333333333333)
-                * (t267 + (k(0.084) + (k(0.25) - (t266 - t265))))
-                + k(0.6666666666666666) * t231;
-            let t269 = k(0.6) * (t149 * t144)
-                - (t235 * t263 - (t234 * t262 - t233 * t261));
-            let t270 = t239 * t218 + (t238 * t217 + t237 * t216)
-                - (t245 * t212 + (t244 * t211 - t243 * t210));
-            let t271 = t270 + (t242 * t212 + (t241 * t211 - t240 * t210)) - t269;
-            let t272 = t250 * t229 + (t249 * t228 + t248 * t227)
-                + (t223 * t256 + (t222 * t255 - t221 * t254));
-            let t273 = t272 - (t223 * t253 + (t222 * t252 - t221 * t251))
-                + (k(0.01) - t271);
-            let t274 = k(0.6666666666666666) * t273 - t268;
-            let t275 = t234 * (t235 * t131 - (t234 * t130 - t233 * t118))
-                - t233 * (t235 * t123 - (t234 * t118 - t233 * t110));
-            let t276 = t235 * (t235 * t133 - (t234 * t131 - t233 * t123)) - t275;
-            let t277 = k(2.0) * (t239 * t245 + (t238 * t244 + t237 * t243))
-                - (t239 * t242 + (t238 * t241 + t237 * t240));
-            let t278 = k(2.0) * (t250 * t256 + (t249 * t255 + t248 * t254))
-                - (t250 * t253 + (t249 * t252 + t248 * t251));
-            let t279 = t278
-                + (k(0.105) + (k(0.2) + (t277 + (k(0.6) * (t264 + t150) + t276))));
-            let t280 = k(0.6666666666666666) * t279
-                - (k(0.3333333333333333) * t273 + t259);
-            let t281 = k(0.03) * (t126 * block_wy + t121 * block_wz)
-                - k(0.05) * (t126 * block_wx + t115 * block_wz);
-            let t282 = t148 * arm_wx - t116 * arm_wy;
-            let t283 = t143 * arm_wx + t116 * arm_wz;
-            let t284 = t143 * arm_wy + t148 * arm_wz;
-            let t285 = arm_sz + (k(0.2) * t284 - k(0.1) * t283 - k(0.1) * t282)
-                - (block_sz + (t281 + k(0.1) * (t121 * block_wx - t115 * block_wy)));
-            let t286 = k(0.6666666666666666) * t282;
-            let t287 = t141 - (arm_rz - (t197 - (k(0.2) * t39 + k(0.4) * t38)));
-            let t288 = t287
-                * (k(0.6666666666666666) * t284 - k(0.3333333333333333) * t283 + t286)
-                - t40 * t285;
-            let t289 = k(0.03) * (t125 * block_wy + t120 * block_wz)
-                - k(0.05) * (t125 * block_wx - t113 * block_wz);
-            let t290 = t147 * arm_wx + t114 * arm_wy;
-            let t291 = t140 * arm_wx - t114 * arm_wz;
-            let t292 = t140 * arm_wy + t147 * arm_wz;
-            let t293 = arm_sy - (k(0.2) * t292 - k(0.1) * t291 - k(0.1) * t290)
-                - (block_sy - (t289 + k(0.1) * (t120 * block_wx + t113 * block_wy)));
-            let t294 = k(0.6666666666666666) * t290;
-            let t295 = t138 - (arm_ry + (t196 - (k(0.2) * t30 - k(0.4) * t29)));
-            let t296 = t295
-                * (k(0.6666666666666666) * t292 - k(0.3333333333333333) * t291 + t294)
-                - t31 * t293;
-            let t297 = k(0.03) * (t124 * block_wy - t119 * block_wz)
-                - k(0.05) * (t124 * block_wx + t111 * block_wz);
-            let t298 = t146 * arm_wx + t112 * arm_wy;
-            let t299 = t137 * arm_wx + t112 * arm_wz;
-            let t300 = t137 * arm_wy - t146 * arm_wz;
-            let t301 = arm_sx - (k(0.2) * t300 - k(0.1) * t299 + k(0.1) * t298)
-                - (block_sx - (t297 - k(0.1) * (t119 * block_wx + t111 * block_wy)));
-            let t302 = k(0.6666666666666666) * t298;
-            let t303 = t135 - (arm_rx + (t195 + (k(0.2) * t16 - k(0.4) * t13)));
-            let t304 = t303
-                * (k(0.6666666666666666) * t300 - k(0.3333333333333333) * t299 - t302)
-                + t17 * t301;
-            let t305 = k(0.8) * (t304 + t296 - t288);
-            let t306 = k(40.0) * (k(0.05) + (t287 * t58 + (t295 * t54 - t303 * t50)));
-            let t307 = k(25.0) * (t40 * t287 - (t31 * t295 - t17 * t303));
-            let t308 = t17 * t307 - (t50 * t306 + t17 * t305);
-            let t309 = k(0.6) - t308;
-            let t310 = t31 * t307 - (t54 * t306 + t31 * t305);
-            let t311 = k(5.4) - t310;
-            let t312 = t40 * t307 + (t58 * t306 - t40 * t305);
-            let t313 = k(1.8) - t312;
-            let t314 = t126 * t40 + (t125 * t31 - t124 * t17);
-            let t315 = t121 * t40 + (t120 * t31 + t119 * t17);
-            let t316 = k(0.1) * t315 - k(0.05) * t314;
-            let t317 = t126 * t58 - (t125 * t54 - t124 * t50);
-            let t318 = t121 * t58 - (t120 * t54 + t119 * t50);
-            let t319 = t307 * t316
-                + (t306 * (k(0.1) * t318 - k(0.05) * t317) - t305 * t316);
-            let t320 = k(0.6666666666666666) * t117;
-            let t321 = k(0.3333333333333333) * t122;
-            let t322 = k(0.6666666666666666) * t127 + (t321 + t320);
-            let t323 = k(0.6666666666666666) * t205;
-            let t324 = k(0.3333333333333333) * t206;
-            let t325 = k(0.6666666666666666) * t207 + (t324 + t323);
-            let t326 = k(0.6666666666666666) * t233;
-            let t327 = k(0.3333333333333333) * t234;
-            let t328 = k(0.6666666666666666) * t235 + (t327 + t326);
-            let t329 = k(0.6666666666666666) * t328
-                + (k(0.3333333333333333) * t325 + k(0.6666666666666666) * t322);
-            let t330 = turn0.cos();
-            let t331 = k(0.3333333333333333) * t328
-                + k(0.6666666666666666) * (t325 - t322);
-            let t332 = turn0.sin();
-            let t333 = (t330 * t331 - t332 * t329).atan2(t332 * t331 + t330 * t329);
-            let t334 = turn0 + t333;
-            let t335 = k(0.2) * t334;
-            let t336 = k(0.3333333333333333) * arm_wx + k(0.6666666666666666) * arm_wy
+            let t200 = t149 * t149;
+            let t201 = t151 * t151;
+            let t202 = k(2.0) * (t151 * t185 - t149 * t170)
+                - (t151 * t184 - t149 * t169);
+            let t203 = t202 + (k(0.6) * (t201 + t200) + t199)
+                + (k(0.3) - (t145 * t197 - (t141 * t195 + t133 * t194)));
+            let t204 = t102 - t113 * t198;
+            let t205 = t156 * t185 + t149 * t153 - (t151 * t188 - t174 * t149);
+            let t206 = t205 - (t151 * t187 - t149 * t173)
+                + (k(0.6) * (t156 * t151) - t204);
+            let t207 = t206 + (t146 * t197 + (t142 * t195 + t136 * t194));
+            let t208 = t106 - t117 * t198;
+            let t209 = t156 * t170 + t151 * t153 + (t151 * t191 - t178 * t149);
+            let t210 = t209 - (t151 * t190 - t177 * t149)
+                - (k(0.6) * (t156 * t149) - t208);
+            let t211 = t210 - (t147 * t197 + (t143 * t195 - t139 * t194));
+            let t212 = t18 * t211 - (t26 * t207 - t122 * t203)
+                + (t128 * t186 - (t126 * t171 + t27 * t154));
+            let t213 = k(0.06) * t24 + k(0.04) * t5;
+            let t214 = k(0.02) * t24 + (k(0.1) * t5 + k(0.04) * t2);
+            let t215 = k(0.2) * t24;
+            let t216 = t215 + (k(0.02) * t5 + k(0.06) * t2);
+            let t217 = t113 * t119;
+            let t218 = t111 - t113 * t217;
+            let t219 = t156 * t156;
+            let t220 = k(2.0) * (t156 * t188 + t158 * t149)
+                + (t156 * t187 + t149 * t157);
+            let t221 = t220 - (k(0.6) * (t219 + t200) + t218)
+                - (k(0.3) - (t146 * t216 + (t142 * t214 + t136 * t213)));
+            let t222 = t112 - t117 * t217;
+            let t223 = t156 * t174 + t151 * t158 - (t156 * t191 + t162 * t149);
+            let t224 = t223 + (t156 * t190 + t161 * t149)
+                - (k(0.6) * (t151 * t149) - t222);
+            let t225 = t224 - (t147 * t216 + (t143 * t214 - t139 * t213));
+            let t226 = t18 * t225 - (t26 * t221 + t122 * t207)
+                + (t128 * t189 - (t126 * t175 + t27 * t159));
+            let t227 = t143 * (k(0.02) * t16 + (k(0.1) * t14 - k(0.04) * t10))
+                - t139 * (k(0.06) * t16 + k(0.04) * t14);
+            let t228 = k(0.2) * t16;
+            let t229 = k(0.3) - (t147 * (t228 + (k(0.02) * t14 - k(0.06) * t10)) + t227);
+            let t230 = t116 - t117 * (t117 * t119);
+            let t231 = k(2.0) * (t178 * t156 + t162 * t151)
+                - (t156 * t177 + t151 * t161);
+            let t232 = (t231 + (k(0.6) * (t219 + t201) + t230) + t229) * t18
+                + (t225 * t26 + t211 * t122);
+            let t233 = t232 + (t192 * t128 - (t179 * t126 + t163 * t27));
+            let t234 = t18 * t233 + (t26 * t226 + t122 * t212)
+                + (t128 * t193 - (t126 * t180 + t27 * t164));
+            let t235 = k(0.03) * (t105 * block_wy + t104 * block_wz)
+                - k(0.05) * (t105 * block_wx + t103 * block_wz);
+            let t236 = t143 * arm_wx - t139 * arm_wy;
+            let t237 = t147 * arm_wx + t139 * arm_wz;
+            let t238 = t147 * arm_wy + t143 * arm_wz;
+            let t239 = arm_sz + (k(0.2) * t238 - k(0.1) * t237 - k(0.1) * t236)
+                - (block_sz + (t235 + k(0.1) * (t104 * block_wx - t103 * block_wy)));
+            let t240 = k(0.6666666666666666) * t236;
+            let t241 = t137 - (arm_rz - (t228 - (t20 + t19)));
+            let t242 = t241
+                * (k(0.6666666666666666) * t238 - k(0.3333333333333333) * t237 + t240)
+                - t57 * t239;
+            let t243 = k(0.03) * (t101 * block_wy + t100 * block_wz)
+                - k(0.05) * (t101 * block_wx - t99 * block_wz);
+            let t244 = t142 * arm_wx + t136 * arm_wy;
+            let t245 = t146 * arm_wx - t136 * arm_wz;
+            let t246 = t146 * arm_wy + t142 * arm_wz;
+            let t247 = arm_sy - (k(0.2) * t246 - k(0.1) * t245 - k(0.1) * t244)
+                - (block_sy - (t243 + k(0.1) * (t100 * block_wx + t99 * block_wy)));
+            let t248 = k(0.6666666666666666) * t244;
+            let t249 = t134 - (arm_ry + (t215 - (t6 - t3)));
+            let t250 = t249
+                * (k(0.6666666666666666) * t246 - k(0.3333333333333333) * t245 + t248)
+                - t55 * t247;
+            let t251 = k(0.03) * (t97 * block_wy - t95 * block_wz)
+                - k(0.05) * (t97 * block_wx + t93 * block_wz);
+            let t252 = t141 * arm_wx + t133 * arm_wy;
+            let t253 = t145 * arm_wx + t133 * arm_wz;
+            let t254 = t145 * arm_wy - t141 * arm_wz;
+            let t255 = arm_sx - (k(0.2) * t254 - k(0.1) * t253 + k(0.1) * t252)
+                - (block_sx - (t251 - k(0.1) * (t95 * block_wx + t93 * block_wy)));
+            let t256 = k(0.6666666666666666) * t252;
+            let t257 = t131 - (arm_rx + (t196 + (t124 - t123)));
+            let t258 = t257
+                * (k(0.6666666666666666) * t254 - k(0.3333333333333333) * t253 - t256)
+                + t53 * t255;
+            let t259 = k(0.8) * (t258 + t250 - t242);
+            let t260 = k(40.0) * (k(0.05) + (t241 * t65 + (t249 * t63 - t257 * t49)));
+            let t261 = k(25.0) * (t57 * t241 - (t55 * t249 - t53 * t257));
+            let t262 = t53 * t261 - (t49 * t260 + t53 * t259);
+            let t263 = k(0.6) - t262;
+            let t264 = t55 * t261 - (t63 * t260 + t55 * t259);
+            let t265 = k(5.4) - t264;
+            let t266 = t57 * t261 + (t65 * t260 - t57 * t259);
+            let t267 = k(1.8) - t266;
+            let t268 = t57 * t267 + (t55 * t265 + t53 * t263);
+            let t269 = t59 * t268;
+            let t270 = t263 - t54 * t269;
+            let t271 = t265 - t56 * t269;
+            let t272 = t267 - t58 * t269;
+            let t273 = t65 * t272 - (t63 * t271 + t49 * t270);
+            let t274 = t73 * t273;
+            let t275 = t270 - t66 * t274;
+            let t276 = t271 - t70 * t274;
+            let t277 = t272 - t72 * t274;
+            let t278 = t105 * t57 + (t101 * t55 - t97 * t53);
+            let t279 = t104 * t57 + (t100 * t55 + t95 * t53);
+            let t280 = k(0.1) * t279 - k(0.05) * t278;
+            let t281 = t105 * t65 - (t101 * t63 - t97 * t49);
+            let t282 = t104 * t65 - (t100 * t63 + t95 * t49);
+            let t283 = t261 * t280
+                + (t260 * (k(0.1) * t282 - k(0.05) * t281) - t259 * t280);
+            let t284 = k(0.3333333333333333) * (t139 * t104 - (t136 * t100 + t133 * t95))
+                + k(0.6666666666666666) * (t139 * t103 + (t136 * t99 + t133 * t93));
+            let t285 = k(0.6666666666666666) * (t139 * t105 - (t136 * t101 - t133 * t97))
+                + t284;
+            let t286 = k(0.3333333333333333) * (t143 * t104 + (t141 * t95 + t142 * t100))
+                + k(0.6666666666666666) * (t143 * t103 - (t142 * t99 + t141 * t93));
+            let t287 = k(0.6666666666666666) * (t143 * t105 - (t141 * t97 - t142 * t101))
+                + t286;
+            let t288 = k(0.3333333333333333) * (t147 * t104 - (t145 * t95 - t146 * t100))
+                + k(0.6666666666666666) * (t147 * t103 - (t146 * t99 - t145 * t93));
+            let t289 = k(0.6666666666666666) * (t145 * t97 + t146 * t101 + t147 * t105)
+                + t288;
+            let t290 = k(0.6666666666666666) * t289
+                + (k(0.3333333333333333) * t287 + k(0.6666666666666666) * t285);
+            let t291 = turn0.cos();
+            let t292 = k(0.3333333333333333) * t289
+                + k(0.6666666666666666) * (t287 - t285);
+            let t293 = turn0.sin();
+            let t294 = (t291 * t292 - t293 * t290).atan2(t293 * t292 + t291 * t290);
+            let t295 = turn0 + t294;
+            let t296 = k(0.2) * t295;
+            let t297 = k(0.3333333333333333) * arm_wx + k(0.6666666666666666) * arm_wy
                 + k(0.6666666666666666) * arm_wz
                 - (k(0.3333333333333333) * block_wx + k(0.6666666666666666) * block_wy
                     + k(0.6666666666666666) * block_wz);
-            let t337 = k(0.006666666666666667) * t336;
-            let t338 = block_wy * block_wy;
-            let t339 = block_wz * block_wz;
-            let t340 = block_wy * block_wz;
-            let t341 = k(0.001) * block_wz;
-            let t342 = k(0.002) * block_wy;
-            let t343 = block_wx * (t342 - t341)
-                - (k(0.005) * t340 - k(0.003) * (t339 - t338));
-            let t344 = t343 - (t337 - (t335 + t319))
-                - (t34 * t313 + (t23 * t311 - t6 * t309));
-            let t345 = t40 * t313 + (t31 * t311 + t17 * t309);
-            let t346 = t45 * t345;
-            let t347 = t309 - t42 * t346;
-            let t348 = t311 - t43 * t346;
-            let t349 = t313 - t44 * t346;
-            let t350 = t58 * t349 - (t54 * t348 + t50 * t347);
-            let t351 = t69 * t350;
-            let t352 = t59 * t351 - (t41 * t346 + t344);
-            let t353 = t115 * t40 - (t113 * t31 + t111 * t17);
-            let t354 = k(0.03) * t314 - k(0.1) * t353;
-            let t355 = t115 * t58 + (t113 * t54 + t111 * t50);
-            let t356 = t307 * t354
-                + (t306 * (k(0.03) * t317 - k(0.1) * t355) - t305 * t354);
-            let t357 = k(0.4) * t334;
-            let t358 = k(0.013333333333333334) * t336;
-            let t359 = block_wx * block_wx;
-            let t360 = block_wx * block_wz;
-            let t361 = k(0.003) * block_wx;
-            let t362 = block_wy * (t341 + t361)
-                - (k(0.005) * t360 - k(0.002) * (t339 - t359));
-            let t363 = t362 - (t358 - (t357 + t356))
-                + (t79 * t313 + (t76 * t311 - t73 * t309));
-            let t364 = t85 * t351 - (t81 * t346 - t363);
-            let t365 = k(0.05) * t353 - k(0.03) * t315;
-            let t366 = t307 * t365
-                + (t306 * (k(0.05) * t355 - k(0.03) * t318) - t305 * t365);
-            let t367 = block_wx * block_wy;
-            let t368 = block_wz * (t342 + t361)
-                - (k(0.01) * t367 - k(0.001) * (t338 - t359));
-            let t369 = t368 + (t358 - (t357 - t366))
-                - (t91 * t313 + (t89 * t311 + t87 * t309));
-            let t370 = t97 * t351 - (t93 * t346 + t369);
-            let t371 = k(0.6666666666666666) * t370
-                + (k(0.6666666666666666) * t364 - k(0.3333333333333333) * t352);
-            let t372 = t108 * t371;
-            let t373 = arm_wy * arm_wy;
-            let t374 = arm_wz * arm_wz;
-            let t375 = t374 + t373;
-            let t376 = arm_wx * arm_wy;
-            let t377 = arm_wx * arm_wz;
-            let t378 = t137 * t377 + (t146 * t376 + t112 * t375);
-            let t379 = arm_wx * arm_wx;
-            let t380 = t374 + t379;
-            let t381 = arm_wy * arm_wz;
-            let t382 = t137 * t381 - (t146 * t380 + t112 * t376);
-            let t383 = t373 + t379;
-            let t384 = t137 * t383 - (t146 * t381 - t112 * t377);
-            let t385 = k(0.6666666666666666) * t384;
-            let t386 = t301
-                * (t302 + (k(0.3333333333333333) * t300 - k(0.6666666666666666) * t299));
-            let t387 = k(0.2) * t378;
-            let t388 = k(0.1) * t382;
-            let t389 = t339 + t338;
-            let t390 = t339 + t359;
-            let t391 = k(0.05) * (t124 * t340 - (t119 * t390 + t111 * t367))
-                + k(0.03) * (t124 * t360 + (t119 * t367 + t111 * t389));
-            let t392 = t338 + t359;
-            let t393 = k(0.1) * (t124 * t392 - (t119 * t340 - t111 * t360)) + t391;
-            let t394 = k(1.3333333333333333) * t16;
-            let t395 = t394 - k(0.6666666666666666) * t13;
-            let t396 = t11 + t395;
-            let t397 = t396 * (t393 + (k(0.1) * t384 - (t388 + t387))) + t386
-                + (t386
-                    - t303
-                        * (t385
-                            - (k(0.6666666666666666) * t382
-                                + k(0.3333333333333333) * t378)));
-            let t398 = t140 * t377 - (t147 * t376 + t114 * t375);
-            let t399 = t140 * t381 + (t147 * t380 + t114 * t376);
+            let t298 = k(0.006666666666666667) * t297;
+            let t299 = block_wy * block_wy;
+            let t300 = block_wz * block_wz;
+            let t301 = block_wy * block_wz;
+            let t302 = k(0.001) * block_wz;
+            let t303 = k(0.002) * block_wy;
+            let t304 = block_wx * (t303 - t302)
+                - (k(0.005) * t301 - k(0.003) * (t300 - t299));
+            let t305 = t304 - (t298 - (t296 + t283));
+            let t306 = t103 * t57 - (t99 * t55 + t93 * t53);
+            let t307 = k(0.03) * t278 - k(0.1) * t306;
+            let t308 = t103 * t65 + (t99 * t63 + t93 * t49);
+            let t309 = t261 * t307
+                + (t260 * (k(0.03) * t281 - k(0.1) * t308) - t259 * t307);
+            let t310 = k(0.4) * t295;
+            let t311 = k(0.013333333333333334) * t297;
+            let t312 = block_wx * block_wx;
+            let t313 = block_wx * block_wz;
+            let t314 = k(0.003) * block_wx;
+            let t315 = block_wy * (t302 + t314)
+                - (k(0.005) * t313 - k(0.002) * (t300 - t312));
+            let t316 = t315 - (t311 - (t310 + t309));
+            let t317 = k(0.05) * t306 - k(0.03) * t279;
+            let t318 = t261 * t317
+                + (t260 * (k(0.05) * t308 - k(0.03) * t282) - t259 * t317);
+            let t319 = block_wx * block_wy;
+            let t320 = block_wz * (t303 + t314)
+                - (k(0.01) * t319 - k(0.001) * (t299 - t312));
+            let t321 = t320 + (t311 - (t310 - t318));
+            let t322 = t97 * t321 - (t95 * t316 - t93 * t305);
+            let t323 = t101 * t321 + (t100 * t316 - t99 * t305);
+            let t324 = t105 * t321 + (t104 * t316 + t103 * t305);
+            let t325 = t36 * t324 + (t43 * t323 + t80 * t322)
+                + (t84 * t277 + (t82 * t276 - t45 * t275));
+            let t326 = t119 * t325;
+            let t327 = arm_wx * arm_wz;
+            let t328 = arm_wy * arm_wz;
+            let t329 = arm_wx * arm_wx;
+            let t330 = arm_wy * arm_wy;
+            let t331 = t330 + t329;
+            let t332 = t145 * t331 - (t141 * t328 - t133 * t327);
+            let t333 = arm_wz * arm_wz;
+            let t334 = t333 + t330;
+            let t335 = arm_wx * arm_wy;
+            let t336 = t145 * t327 + (t141 * t335 + t133 * t334);
+            let t337 = t333 + t329;
+            let t338 = t145 * t328 - (t141 * t337 + t133 * t335);
+            let t339 = t255
+                * (t256 + (k(0.3333333333333333) * t254 - k(0.6666666666666666) * t253));
+            let t340 = t339
+                + t257
+                    * (k(0.6666666666666666) * t338 + k(0.3333333333333333) * t336
+                        - k(0.6666666666666666) * t332);
+            let t341 = k(0.2) * t336;
+            let t342 = k(0.1) * t338;
+            let t343 = t300 + t299;
+            let t344 = t300 + t312;
+            let t345 = k(0.05) * (t97 * t301 - (t95 * t344 + t93 * t319))
+                + k(0.03) * (t97 * t313 + (t95 * t319 + t93 * t343));
+            let t346 = t299 + t312;
+            let t347 = k(0.1) * (t97 * t346 - (t95 * t301 - t93 * t313)) + t345;
+            let t348 = t50 + (k(1.3333333333333333) * t47 - k(0.6666666666666666) * t48);
+            let t349 = t348 * (t347 + (k(0.1) * t332 - (t342 + t341))) + t339 + t340;
+            let t350 = t146 * t331 + (t142 * t328 - t136 * t327);
+            let t351 = t146 * t327 - (t142 * t335 + t136 * t334);
+            let t352 = t146 * t328 + (t142 * t337 + t136 * t335);
+            let t353 = t247
+                * (t248 - (k(0.3333333333333333) * t246 - k(0.6666666666666666) * t245));
+            let t354 = t353
+                - t249
+                    * (k(0.6666666666666666) * t352 + k(0.3333333333333333) * t351
+                        - k(0.6666666666666666) * t350);
+            let t355 = k(0.2) * t351;
+            let t356 = k(0.1) * t352;
+            let t357 = k(0.05) * (t101 * t301 + (t100 * t344 + t99 * t319))
+                + k(0.03) * (t101 * t313 - (t100 * t319 + t99 * t343));
+            let t358 = k(0.1) * (t101 * t346 + (t100 * t301 - t99 * t313)) + t357;
+            let t359 = t25 - (k(1.3333333333333333) * t5 - k(0.6666666666666666) * t2);
+            let t360 = t359 * (t358 + (k(0.1) * t350 - (t356 + t355))) - t353 - t354;
+            let t361 = t147 * t331 + (t143 * t328 + t139 * t327);
+            let t362 = t147 * t327 - (t143 * t335 - t139 * t334);
+            let t363 = t147 * t328 + (t143 * t337 - t139 * t335);
+            let t364 = t239
+                * (t240 - (k(0.3333333333333333) * t238 - k(0.6666666666666666) * t237));
+            let t365 = t364
+                - t241
+                    * (k(0.6666666666666666) * t363 + k(0.3333333333333333) * t362
+                        - k(0.6666666666666666) * t361);
+            let t366 = k(0.2) * t362;
+            let t367 = k(0.1) * t363;
+            let t368 = k(0.05) * (t105 * t301 + (t104 * t344 - t103 * t319))
+                + k(0.03) * (t105 * t313 - (t104 * t319 - t103 * t343));
+            let t369 = k(0.1) * (t105 * t346 + (t104 * t301 + t103 * t313)) + t368;
+            let t370 = t17 - (k(1.3333333333333333) * t14 + k(0.6666666666666666) * t10);
+            let t371 = t370 * (t369 + (k(0.1) * t361 - (t367 + t366))) + t364 + t365;
+            let t372 = t371 + (t360 + t349);
+            let t373 = t97 * block_wz + (t95 * block_wy - t93 * block_wx);
+            let t374 = t145 * arm_wz + (t141 * arm_wy - t133 * arm_wx);
+            let t375 = t374 - t373;
+            let t376 = t101 * block_wz - (t100 * block_wy - t99 * block_wx);
+            let t377 = t146 * arm_wz - (t142 * arm_wy - t136 * arm_wx);
+            let t378 = t377 - t376;
+            let t379 = t105 * block_wz - (t104 * block_wy + t103 * block_wx);
+            let t380 = t147 * arm_wz - (t143 * arm_wy + t139 * arm_wx);
+            let t381 = t380 - t379;
+            let t382 = t36 * t381 + (t43 * t378 + t80 * t375);
+            let t383 = t80 * t378 - t43 * t375;
+            let t384 = t43 * t381 - t36 * t378;
+            let t385 = t36 * t375 - t80 * t381;
+            let t386 = (t383 * t383 + (t385 * t385 + t384 * t384))
+                / (t36 * t370 + (t43 * t359 + t80 * t348));
+            let t387 = t377 * t373 - t374 * t376
+                + ((t80 * t359 - t43 * t348) * t386 + t383 * t382);
+            let t388 = t374 * t379 - t380 * t373
+                + (t386 * (t36 * t348 - t80 * t370) + t385 * t382);
+            let t389 = t44 * t388 - t42 * t387 + t348 * t372;
+            let t390 = t380 * t376 - t377 * t379
+                + (t386 * (t43 * t370 - t36 * t359) + t384 * t382);
+            let t391 = t81 * t387 - t44 * t390 + t359 * t372;
+            let t392 = t42 * t390 - t81 * t388 + t370 * t372;
+            let t393 = t129 * t392 + (t127 * t391 - t121 * t389) + k(0.6) * t389;
+            let t394 = t162 * t387 + (t158 * t388 + t153 * t390) - t393
+                - (t275 + t85 * t326);
+            let t395 = t167 * t392 + (t166 * t391 - t127 * t389) - k(0.6) * t391;
+            let t396 = t178 * t387 + (t174 * t388 + t170 * t390) - t395
+                - (t276 + t89 * t326);
+            let t397 = t126 * (t396 - (k(13.5) + t264)) + t27 * (t394 - (k(1.5) + t262));
+            let t398 = t182 * t392 + (t167 * t391 - t129 * t389) - k(0.6) * t392;
+            let t399 = t191 * t387 + (t188 * t388 + t185 * t390) - t398
+                - (t277 + t91 * t326);
             (
-                t200,
-                t201,
-                t202,
-                t203,
-                t205,
-                t206,
-                t207,
+                t204,
                 t208,
-                t210,
-                t211,
                 t212,
-                t221,
+                t218,
                 t222,
-                t223,
-                t224,
-                t225,
                 t226,
-                t227,
-                t228,
-                t229,
+                t230,
                 t233,
                 t234,
-                t235,
-                t237,
-                t238,
-                t239,
-                t248,
-                t249,
-                t250,
-                t251,
-                t252,
-                t253,
-                t254,
-                t255,
-                t256,
+                t259,
                 t260,
-                t274,
-                t280,
-                t283,
-                t284,
-                t285,
-                t286,
-                t287,
-                t291,
-                t292,
-                t293,
-                t294,
-                t295,
-                t305,
-                t306,
-                t307,
-                t308,
+                t261,
+                t266,
+                t268,
+                t273,
+                t296,
+                t298,
                 t310,
-                t312,
-                t320,
-                t321,
+                t311,
+                t322,
                 t323,
                 t324,
+                t325,
                 t326,
                 t327,
+                t328,
+                t329,
+                t330,
+                t333,
                 t335,
-                t337,
-                t340,
-                t345,
-                t347,
-                t348,
-                t349,
-                t350,
-                t351,
-                t352,
-                t357,
-                t358,
-                t360,
-                t364,
+                t341,
+                t342,
+                t355,
+                t356,
+                t366,
                 t367,
-                t370,
-                t371,
-                t372,
-                t373,
                 t374,
-                t375,
-                t376,
                 t377,
-                t378,
-                t379,
                 t380,
-                t381,
-                t382,
-                t383,
-                t385,
                 t387,
                 t388,
                 t389,
                 t390,
+                t391,
                 t392,
                 t394,
-                t395,
                 t396,
                 t397,
-                t398,
                 t399,
             )
         };
-        let (t552, t553, t554, t555, t556, t557, t566, t568, t569, t577, t578, t579) = {
-            let t400 = t140 * t383 + (t147 * t381 - t114 * t377);
-            let t401 = k(0.6666666666666666) * t400;
-            let t402 = t293
-                * (t294 - (k(0.3333333333333333) * t292 - k(0.6666666666666666) * t291));
-            let t403 = k(0.2) * t398;
-            let t404 = k(0.1) * t399;
-            let t405 = k(0.05) * (t125 * t340 + (t120 * t390 + t113 * t367))
-                + k(0.03) * (t125 * t360 - (t120 * t367 + t113 * t389));
-            let t406 = k(0.1) * (t125 * t392 + (t120 * t340 - t113 * t360)) + t405;
-            let t407 = k(1.3333333333333333) * t30;
-            let t408 = t407 - k(0.6666666666666666) * t29;
-            let t409 = t28 - t408;
-            let t410 = t409 * (t406 + (k(0.1) * t400 - (t404 + t403))) - t402
-                - (t402
-                    + t295
-                        * (t401
-                            - (k(0.6666666666666666) * t399
-                                + k(0.3333333333333333) * t398)));
-            let t411 = t143 * t377 - (t148 * t376 - t116 * t375);
-            let t412 = t143 * t381 + (t148 * t380 - t116 * t376);
-            let t413 = t143 * t383 + (t148 * t381 + t116 * t377);
-            let t414 = k(0.6666666666666666) * t413;
-            let t415 = t285
-                * (t286 - (k(0.3333333333333333) * t284 - k(0.6666666666666666) * t283));
-            let t416 = k(0.2) * t411;
-            let t417 = k(0.1) * t412;
-            let t418 = k(0.05) * (t126 * t340 + (t121 * t390 - t115 * t367))
-                + k(0.03) * (t126 * t360 - (t121 * t367 - t115 * t389));
-            let t419 = k(0.1) * (t126 * t392 + (t121 * t340 + t115 * t360)) + t418;
-            let t420 = k(1.3333333333333333) * t39;
-            let t421 = t420 + k(0.6666666666666666) * t38;
-            let t422 = t37 - t421;
-            let t423 = t422 * (t419 + (k(0.1) * t413 - (t417 + t416))) + t415
-                + (t415
-                    + t287
-                        * (t414
-                            - (k(0.6666666666666666) * t412
-                                + k(0.3333333333333333) * t411)));
-            let t424 = t423 + (t410 + t397);
-            let t425 = t396 * t424;
-            let t426 = t409 * t424;
-            let t427 = t422 * t424;
-            let t428 = t327 - t326;
-            let t429 = t324 - t323;
-            let t430 = t321 - t320;
-            let t431 = k(0.6666666666666666) * (t430 - t429)
-                - k(0.3333333333333333) * t428;
-            let t432 = t326 + k(0.3333333333333333) * t235;
-            let t433 = t323 + k(0.3333333333333333) * t207;
-            let t434 = t320 + k(0.3333333333333333) * t127;
-            let t435 = k(0.6666666666666666) * (t434 - t433)
-                - k(0.3333333333333333) * t432;
-            let t436 = k(0.6666666666666666) * (t435 - t431);
-            let t437 = t235 + t234;
-            let t438 = t207 + t206;
-            let t439 = t127 + t122;
-            let t440 = k(0.4444444444444444) * t439 + k(0.2222222222222222) * t438
-                + k(0.4444444444444444) * t437;
-            let t441 = k(0.6666666666666666)
-                * (k(0.4444444444444444) * (t439 - t438) - k(0.2222222222222222) * t437);
-            let t442 = t441 + k(0.3333333333333333) * t431;
-            let t443 = k(0.6666666666666666) * t434 + k(0.3333333333333333) * t433
-                + k(0.6666666666666666) * t432;
-            let t444 = k(0.3333333333333333) * t435 + t441;
-            let t445 = k(0.6666666666666666) * t430 + k(0.3333333333333333) * t429
-                + k(0.6666666666666666) * t428;
-            let t446 = k(1.0) / (t445 * t444 - (t443 * t442 - t440 * t436));
-            let t447 = block_wx * t206 - block_wy * t205;
-            let t448 = block_wx * t234 - block_wy * t233;
-            let t449 = t392 * t127 + (t340 * t122 + t360 * t117)
-                - k(2.0) * (arm_wy * t448 + arm_wz * t447);
-            let t450 = k(0.6666666666666666)
-                * (t449 + (t377 * t235 - (t376 * t207 - t375 * t127)));
-            let t451 = block_wy * t207 + block_wz * t206;
-            let t452 = block_wy * t235 + block_wz * t234;
-            let t453 = t360 * t127 - (t367 * t122 - t389 * t117)
-                - k(2.0) * (arm_wy * t452 + arm_wz * t451);
-            let t454 = k(0.3333333333333333)
-                * (t453 + (t377 * t233 - (t376 * t205 - t375 * t117)));
-            let t455 = block_wx * t207 + block_wz * t205;
-            let t456 = block_wx * t235 + block_wz * t233;
-            let t457 = t340 * t127 + (t390 * t122 - t367 * t117)
-                + k(2.0) * (arm_wy * t456 + arm_wz * t455);
-            let t458 = k(0.6666666666666666)
-                * (t457 + (t377 * t234 - (t376 * t206 - t375 * t122)));
-            let t459 = t458 + t454 - t450;
-            let t460 = block_wx * t122 - block_wy * t117;
-            let t461 = t392 * t207 + (t340 * t206 + t360 * t205)
-                + k(2.0) * (arm_wx * t448 + arm_wz * t460);
-            let t462 = k(0.6666666666666666)
-                * (t461 + (t381 * t235 + (t380 * t207 - t376 * t127)));
-            let t463 = block_wy * t127 + block_wz * t122;
-            let t464 = t360 * t207 - (t367 * t206 - t389 * t205)
-                + k(2.0) * (arm_wx * t452 + arm_wz * t463);
-            let t465 = k(0.3333333333333333)
-                * (t464 + (t381 * t233 + (t380 * t205 - t376 * t117)));
-            let t466 = block_wx * t127 + block_wz * t117;
-            let t467 = t340 * t207 + (t390 * t206 - t367 * t205)
-                - k(2.0) * (arm_wx * t456 + arm_wz * t466);
-            let t468 = k(0.6666666666666666)
-                * (t467 + (t381 * t234 + (t380 * t206 - t376 * t122)));
-            let t469 = t468 + t465 - t462;
-            let t470 = t392 * t235 + (t340 * t234 + t360 * t233)
-                - k(2.0) * (arm_wx * t447 - arm_wy * t460);
-            let t471 = k(0.6666666666666666)
-                * (t470 + (t383 * t235 + (t381 * t207 + t377 * t127)));
-            let t472 = t360 * t235 - (t367 * t234 - t389 * t233)
-                - k(2.0) * (arm_wx * t451 - arm_wy * t463);
-            let t473 = k(0.3333333333333333)
-                * (t472 + (t383 * t233 + (t381 * t205 + t377 * t117)));
-            let t474 = t340 * t235 + (t390 * t234 - t367 * t233)
-                + k(2.0) * (arm_wx * t455 - arm_wy * t466);
-            let t475 = k(0.6666666666666666)
-                * (t474 + (t383 * t234 + (t381 * t206 + t377 * t122)));
-            let t476 = t475 + t473 - t471;
-            let t477 = k(0.6666666666666666) * t476
-                + (k(0.3333333333333333) * t469 + k(0.6666666666666666) * t459);
-            let t478 = k(0.3333333333333333) * t476
-                + k(0.6666666666666666) * (t469 - t459);
-            let t479 = t478 * (t446 * (k(0.6666666666666666) * (t443 - t445)))
-                + t477 * (t436 * t446);
-            let t480 = k(0.6666666666666666) * t440;
-            let t481 = t478 * (t446 * (t480 + k(0.3333333333333333) * t445))
-                + t477 * (t442 * t446);
-            let t482 = t478 * (t446 * (k(0.3333333333333333) * t443 + t480))
-                + t477 * (t444 * t446);
-            let t483 = t123 * t482 - (t118 * t481 - t110 * t479)
-                - (t190 * t427 + (t186 * t426 + t182 * t425));
-            let t484 = t483 + (t352 - t99 * t372);
-            let t485 = t131 * t482 - (t130 * t481 - t118 * t479)
-                - (t191 * t427 + (t187 * t426 + t183 * t425));
-            let t486 = t485 + (t364 - t105 * t372);
-            let t487 = t133 * t482 - (t131 * t481 - t123 * t479)
-                - (t192 * t427 + (t188 * t426 - t184 * t425));
-            let t488 = t487 + (t370 - t107 * t372);
-            let t489 = t173 * t427 + (t166 * t426 - t159 * t425) + k(0.6) * t425;
-            let t490 = t184 * t482 + (t183 * t481 - t182 * t479) + t489
-                - (t157 * t372 - (t347 - t63 * t351));
-            let t491 = t177 * t427 + (t176 * t426 - t166 * t425) - k(0.6) * t426;
-            let t492 = t188 * t482 - (t187 * t481 - t186 * t479) + t491
-                - (t165 * t372 - (t348 - t66 * t351));
-            let t493 = t180 * t427 + (t177 * t426 - t173 * t425) - k(0.6) * t427;
-            let t494 = t192 * t482 - (t191 * t481 - t190 * t479) + t493
-                - (t172 * t372 - (t349 - t68 * t351));
-            let t495 = t167 * t494 + (t160 * t492 - t152 * t490)
-                + (t127 * t488 - (t122 * t486 - t117 * t484));
-            let t496 = k(0.6666666666666666) * t149;
-            let t497 = t496 - k(0.3333333333333333) * t144;
-            let t498 = k(0.6666666666666666) * t144;
-            let t499 = t307 * t497
-                + (t306 * (t498 - k(0.3333333333333333) * t149) - t305 * t497);
-            let t500 = k(0.02) * arm_wz;
-            let t501 = k(0.03) * arm_wy;
-            let t502 = arm_wx * (t501 + t500)
-                + (k(0.05) * t381 + k(0.01) * (t374 - t373));
-            let t503 = k(1.5) + t308 + t490;
-            let t504 = k(13.5) + t310 + t492;
-            let t505 = k(4.5) + t312 + t494;
-            let t506 = t197 * t505 + (t196 * t504 - t195 * t503)
-                + (t502 - (t337 - (t335 + t499)) + t495);
-            let t507 = t212 * t494 + (t211 * t492 - t210 * t490)
-                - (t207 * t488 - (t206 * t486 - t205 * t484));
-            let t508 = k(0.6666666666666666) * (t208 - t144);
-            let t509 = k(0.3333333333333333) * t208;
-            let t510 = t357 - (t307 * t508 - (t306 * (t509 + t498) + t305 * t508));
-            let t511 = k(0.01) * arm_wx;
-            let t512 = arm_wy * (t500 - t511)
-                + (k(0.1) * t377 - k(0.03) * (t374 - t379));
-            let t513 = t223 * t505 + (t222 * t504 - t221 * t503)
-                - (t512 + (t358 - t510) + t507);
-            let t514 = t239 * t494 + (t238 * t492 + t237 * t490)
-                + (t235 * t488 - (t234 * t486 - t233 * t484));
-            let t515 = t509 - t496;
-            let t516 = t307 * t515
-                - (t306 * (k(0.6666666666666666) * (t208 + t149)) + t305 * t515);
-            let t517 = arm_wz * (t501 + t511)
-                - (k(0.05) * t376 + k(0.02) * (t373 - t379));
-            let t518 = t250 * t505 + (t249 * t504 + t248 * t503)
-                - (t517 + (t358 - (t357 - t516)) + t514);
-            let t519 = k(0.3333333333333333) * (t227 - (t224 + k(0.84) * t10))
-                + k(0.6666666666666666) * (t201 + (t198 + k(0.42) * t10));
-            let t520 = t388 - t387;
-            let t521 = k(0.3333333333333333) * (t228 - (t225 - k(0.84) * t27))
-                + k(0.6666666666666666) * (t202 + (t199 - k(0.42) * t27));
-            let t522 = t404 - t403;
-            let t523 = t522
-                * (k(0.6666666666666666) * (t255 - (t252 - k(2.1) * t249)) - t521)
-                - t520
-                    * (k(0.6666666666666666) * (t254 - (t251 - k(2.1) * t248)) - t519);
-            let t524 = k(0.3333333333333333) * (t229 - (t226 - k(0.84) * t36))
-                + k(0.6666666666666666) * (t203 + (t200 - k(0.42) * t36));
-            let t525 = t417 - t416;
-            let t526 = t525
-                * (k(0.6666666666666666) * (t256 - (t253 - k(2.1) * t250)) - t524)
-                + t523;
-            let t527 = k(0.5962847939999439) * t395 + k(0.29814239699997197) * t408
-                - k(0.7453559924999299) * t421;
-            let t528 = t29 - t27;
-            let t529 = t13 + t10;
-            let t530 = k(0.6666666666666666)
-                * (k(0.7950463919999252) * t529 + k(0.3975231959999626) * t528
-                    + k(0.9938079899999065) * (t38 + t36));
-            let t531 = t530 - k(0.3333333333333333) * t527;
-            let t532 = t53 - t407;
-            let t533 = t49 + t394;
-            let t534 = k(0.4472135954999579) * t533 + k(0.8944271909999159) * t532;
-            let t535 = k(0.5962847939999439) * t533 - k(0.29814239699997197) * t532
-                + k(0.7453559924999299) * (t57 - t420);
-            let t536 = k(0.6666666666666666) * (t535 + t527);
-            let t537 = k(0.5962847939999439) * t529 - k(1.1925695879998879) * t528;
-            let t538 = k(0.3333333333333333) * t535 + t530;
-            let t539 = k(0.4472135954999579) * t395 - k(0.8944271909999159) * t408;
-            let t540 = k(1.0) / (t539 * t538 - (t537 * t536 - t534 * t531));
-            let t541 = t385
-                + (k(0.3333333333333333) * t382 - k(0.6666666666666666) * t378);
-            let t542 = t401
-                + (k(0.3333333333333333) * t399 - k(0.6666666666666666) * t398);
-            let t543 = k(0.8944271909999159) * t542 + k(0.4472135954999579) * t541;
-            let t544 = k(0.6666666666666666) * t537;
-            let t545 = k(0.7453559924999299)
-                * (t414 + (k(0.3333333333333333) * t412 - k(0.6666666666666666) * t411))
-                - (k(0.29814239699997197) * t542 - k(0.5962847939999439) * t541);
-            let t546 = t545 * (t540 * (t544 - k(0.3333333333333333) * t539))
-                - t543 * (t531 * t540);
-            let t547 = t545 * (t540 * (k(0.6666666666666666) * (t534 + t539)))
-                - t543 * (t536 * t540);
-            let t548 = t545 * (t540 * (k(0.3333333333333333) * t534 + t544))
-                - t543 * (t538 * t540);
-            let t549 = t548 * t280 + (t547 * t274 + t546 * t260) - t526
-                + (k(0.6666666666666666) * t518
-                    - (k(0.3333333333333333) * t513 - k(0.6666666666666666) * t506));
-            let t550 = t549
-                / (k(0.6666666666666666) * t280
-                    - (k(0.3333333333333333) * t274 + k(0.6666666666666666) * t260));
-            let t551 = k(0.6666666666666666) * t550;
-            let t552 = t546 + t551;
-            let t553 = t547 + k(0.3333333333333333) * t550;
-            let t554 = t548 - t551;
-            let t555 = t520 + (t248 * t554 - (t221 * t553 - t195 * t552));
-            let t556 = t522 - (t249 * t554 + (t222 * t553 - t196 * t552));
-            let t557 = t525 - (t250 * t554 + (t223 * t553 - t197 * t552));
-            let t558 = t425 + (t555 - (t237 * t554 - (t210 * t553 + t152 * t552)));
-            let t559 = t426 + (t556 + (t238 * t554 + (t211 * t553 + t160 * t552)));
-            let t560 = t427 + (t557 + (t239 * t554 + (t212 * t553 + t167 * t552)));
-            let t561 = t479 - (t233 * t554 - (t205 * t553 - t117 * t552));
-            let t562 = t481 - (t234 * t554 - (t206 * t553 - t122 * t552));
-            let t563 = t482 - (t235 * t554 - (t207 * t553 - t127 * t552));
-            let t564 = t107 * t563 - (t105 * t562 - t99 * t561)
-                - (t172 * t560 + (t165 * t559 - t157 * t558));
-            let t565 = t108 * (t371 + t564);
-            let t566 = t561 + k(0.3333333333333333) * t565;
-            let t567 = k(0.6666666666666666) * t565;
-            let t568 = t562 + t567;
-            let t569 = t563 - t567;
-            let t570 = t97 * t569 - (t85 * t568 - t59 * t566)
-                + (t68 * t560 + (t66 * t559 - t63 * t558));
-            let t571 = t69 * (t350 + t570);
-            let t572 = t558 - t50 * t571;
-            let t573 = t559 + t54 * t571;
-            let t574 = t560 - t58 * t571;
-            let t575 = t93 * t569 - (t81 * t568 - t41 * t566)
-                - (t44 * t574 + (t43 * t573 - t42 * t572));
-            let t576 = t45 * (t345 + t575);
-            let t577 = t87 * t569 + (t73 * t568 - t6 * t566) + (t572 - t17 * t576);
-            let t578 = t89 * t569 - (t76 * t568 - t23 * t566) - (t573 + t31 * t576);
-            let t579 = t91 * t569 - (t79 * t568 - t34 * t566) - (t574 + t40 * t576);
-            (t552, t553, t554, t555, t556, t557, t566, t568, t569, t577, t578, t579)
+        let (
+            t442,
+            t443,
+            t444,
+            t445,
+            t446,
+            t447,
+            t460,
+            t461,
+            t462,
+            t463,
+            t464,
+            t465,
+            t466,
+        ) = {
+            let t400 = k(0.6666666666666666) * t144;
+            let t401 = t400 - k(0.3333333333333333) * t148;
+            let t402 = k(0.6666666666666666) * t148;
+            let t403 = t261 * t401
+                + (t260 * (t402 - k(0.3333333333333333) * t144) - t259 * t401);
+            let t404 = k(0.02) * arm_wz;
+            let t405 = k(0.03) * arm_wy;
+            let t406 = arm_wx * (t405 + t404)
+                + (k(0.05) * t328 + k(0.01) * (t333 - t330));
+            let t407 = t406 - (t298 - (t296 + t403));
+            let t408 = k(0.6666666666666666) * (t148 - t140);
+            let t409 = k(0.3333333333333333) * t140;
+            let t410 = t310 + (t261 * t408 + (t260 * (t409 + t402) - t259 * t408));
+            let t411 = k(0.01) * arm_wx;
+            let t412 = arm_wy * (t404 - t411)
+                + (k(0.1) * t327 - k(0.03) * (t333 - t329));
+            let t413 = t412 + (t311 - t410);
+            let t414 = t409 - t400;
+            let t415 = t261 * t414
+                - (t260 * (k(0.6666666666666666) * (t144 + t140)) + t259 * t414);
+            let t416 = arm_wz * (t405 + t411)
+                - (k(0.05) * t335 + k(0.02) * (t330 - t329));
+            let t417 = t416 + (t311 - (t310 - t415));
+            let t418 = t208 * t387 + (t204 * t388 + t199 * t390)
+                + (t185 * t392 + (t170 * t391 - t153 * t389));
+            let t419 = t151 * t399 - t149 * t396 + (t418 - (t322 - t107 * t326));
+            let t420 = t122 * (t419 + (t145 * t417 + (t141 * t413 + t133 * t407)));
+            let t421 = t222 * t387 + (t218 * t388 + t204 * t390)
+                + (t188 * t392 + (t174 * t391 - t158 * t389));
+            let t422 = t156 * t399 + t149 * t394 - (t421 - (t323 - t113 * t326));
+            let t423 = t26 * (t422 - (t146 * t417 - (t142 * t413 + t136 * t407)));
+            let t424 = t230 * t387 + (t222 * t388 + t208 * t390)
+                + (t191 * t392 + (t178 * t391 - t162 * t389));
+            let t425 = t156 * t396 + t151 * t394 + (t424 - (t324 - t117 * t326));
+            let t426 = t18 * (t425 + (t147 * t417 - (t143 * t413 - t139 * t407)));
+            let t427 = t426 - (t423 - t420) + (t128 * (t399 - (k(4.5) + t266)) - t397);
+            let t428 = t18 * t380 + (t26 * t377 + t122 * t374);
+            let t429 = t122 * t377 - t26 * t374;
+            let t430 = t26 * t380 - t18 * t377;
+            let t431 = t18 * t374 - t122 * t380;
+            let t432 = (t429 * t429 + (t431 * t431 + t430 * t430))
+                / (k(0.6666666666666666) * t18
+                    + (k(0.3333333333333333) * t26 - k(0.6666666666666666) * t122));
+            let t433 = k(0.6666666666666666) * t26;
+            let t434 = (k(0.3333333333333333) * t122 + t433) * t432 + t429 * t428;
+            let t435 = t432 * (k(0.6666666666666666) * (t18 + t122)) - t431 * t428;
+            let t436 = t21 * t435 + t7 * t434 - (t342 - t341);
+            let t437 = t432 * (t433 - k(0.3333333333333333) * t18) + t430 * t428;
+            let t438 = t125 * t434 + t21 * t437 - (t356 - t355);
+            let t439 = t7 * t437 - t125 * t435 + (t367 - t366);
+            let t440 = t233 * t434 - (t226 * t435 - t212 * t437)
+                + (t193 * t439 - (t180 * t438 - t164 * t436));
+            let t441 = (t440 + t427) / t234;
+            let t442 = t436 + t27 * t441;
+            let t443 = t438 - t126 * t441;
+            let t444 = t439 - t128 * t441;
+            let t445 = t437 - t122 * t441;
+            let t446 = t435 + t26 * t441;
+            let t447 = t434 - t18 * t441;
+            let t448 = t389 - (t442 + (t151 * t447 + t149 * t446));
+            let t449 = t391 - (t443 - (t156 * t447 - t149 * t445));
+            let t450 = t392 + (t444 + (t156 * t446 + t151 * t445));
+            let t451 = t390 + t445;
+            let t452 = t388 - t446;
+            let t453 = t387 + t447;
+            let t454 = t117 * t453 + (t113 * t452 + t107 * t451)
+                - (t91 * t450 + (t89 * t449 - t85 * t448));
+            let t455 = t119 * (t325 - t454);
+            let t456 = t448 + t45 * t455;
+            let t457 = t449 + t82 * t455;
+            let t458 = t450 + t84 * t455;
+            let t459 = t73 * (t273 + (t72 * t458 + (t70 * t457 - t66 * t456)));
+            let t460 = t456 - t49 * t459;
+            let t461 = t457 + t63 * t459;
+            let t462 = t458 - t65 * t459;
+            let t463 = t59 * (t268 - (t58 * t462 + (t56 * t461 - t54 * t460)));
+            let t464 = t451 + t80 * t455;
+            let t465 = t452 + t43 * t455;
+            let t466 = t453 + t36 * t455;
+            (
+                t442,
+                t443,
+                t444,
+                t445,
+                t446,
+                t447,
+                t460,
+                t461,
+                t462,
+                t463,
+                t464,
+                t465,
+                t466,
+            )
         };
         *out = [
-            -t555,
-            -t556,
-            t557,
-            t552,
-            -t553,
-            -t554,
-            -t577,
-            t578,
-            -t579,
-            -t566,
-            -t568,
-            t569,
+            t442,
+            t443,
+            t444,
+            -(t139 * t447 + (t136 * t446 + t133 * t445)),
+            t142 * t446 + t141 * t445 - t143 * t447,
+            t147 * t447 - (t146 * t446 - t145 * t445),
+            t53 * t463 - t460,
+            -(t461 + t55 * t463),
+            t462 + t57 * t463,
+            t99 * t465 - t93 * t464 - t103 * t466,
+            -(t104 * t466 + (t100 * t465 - t95 * t464)),
+            t105 * t466 + (t101 * t465 + t97 * t464),
         ];
     }
     /// Writes λ: 907 operations (399 ±, 506 ×, 2 ÷) and 3 functions.
@@ -3859,43 +3610,43 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
             t97,
             t99,
             t100,
-            t108,
-            t109,
-            t110,
+            t102,
+            t104,
+            t106,
             t111,
-            t113,
             t114,
-            t115,
             t116,
             t117,
+            t118,
             t119,
             t120,
-            t121,
-            t122,
-            t123,
+            t128,
+            t129,
+            t130,
+            t131,
+            t133,
+            t134,
+            t135,
+            t136,
+            t137,
+            t139,
+            t140,
             t141,
-            t146,
-            t147,
-            t153,
-            t159,
-            t163,
-            t164,
+            t142,
+            t143,
+            t161,
+            t166,
             t167,
-            t169,
-            t171,
-            t172,
             t173,
-            t174,
-            t177,
             t179,
-            t181,
             t183,
-            t188,
+            t184,
+            t187,
+            t189,
             t191,
+            t192,
             t193,
             t194,
-            t195,
-            t196,
             t197,
             t198,
             t199,
@@ -4013,130 +3764,130 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
             let t98 = t28 * t91 + (t89 * t90 - t28 * t83);
             let t99 = k(0.6) * block_dsz - (k(1.8) - t98);
             let t100 = t99 + (k(1.5) * arm_dsz - (k(4.5) + t98));
-            let t101 = t10 * t28 + (t40 * t55 - t65 * t78);
-            let t102 = t7 * t28 + (t38 * t55 + t63 * t78);
-            let t103 = k(0.1) * t102 - k(0.05) * t101;
-            let t104 = t10 * t89 - (t40 * t87 - t65 * t85);
-            let t105 = t7 * t89 - (t38 * t87 + t63 * t85);
-            let t106 = t91 * t103
-                + (t90 * (k(0.1) * t105 - k(0.05) * t104) - t83 * t103);
-            let t107 = t15 * t3 + (t45 * t36 + t68 * t61);
-            let t108 = k(0.6666666666666666) * t107;
-            let t109 = t15 * t7 - (t45 * t38 + t68 * t63);
-            let t110 = k(0.3333333333333333) * t109;
-            let t111 = t15 * t10 - (t45 * t40 - t68 * t65);
-            let t112 = k(0.6666666666666666) * t111 + (t110 + t108);
-            let t113 = t19 * t3 - (t47 * t36 + t70 * t61);
-            let t114 = k(0.6666666666666666) * t113;
-            let t115 = t19 * t7 + (t70 * t63 + t47 * t38);
-            let t116 = k(0.3333333333333333) * t115;
-            let t117 = t19 * t10 - (t70 * t65 - t47 * t40);
-            let t118 = k(0.6666666666666666) * t117 + (t116 + t114);
-            let t119 = t23 * t3 - (t50 * t36 - t73 * t61);
-            let t120 = k(0.6666666666666666) * t119;
-            let t121 = t23 * t7 - (t73 * t63 - t50 * t38);
-            let t122 = k(0.3333333333333333) * t121;
-            let t123 = t73 * t65 + t50 * t40 + t23 * t10;
-            let t124 = k(0.6666666666666666) * t123 + (t122 + t120);
-            let t125 = k(0.6666666666666666) * t124
-                + (k(0.3333333333333333) * t118 + k(0.6666666666666666) * t112);
-            let t126 = turn0.cos();
-            let t127 = k(0.3333333333333333) * t124
-                + k(0.6666666666666666) * (t118 - t112);
-            let t128 = turn0.sin();
-            let t129 = (t126 * t127 - t128 * t125).atan2(t128 * t127 + t126 * t125);
-            let t130 = turn0 + t129;
-            let t131 = k(0.2) * t130;
-            let t132 = k(0.3333333333333333) * arm_wx + k(0.6666666666666666) * arm_wy
+            let t101 = k(1.3333333333333333) * t18;
+            let t102 = t101 + k(0.6666666666666666) * t14;
+            let t103 = k(1.3333333333333333) * t46;
+            let t104 = t103 - k(0.6666666666666666) * t44;
+            let t105 = k(1.3333333333333333) * t69;
+            let t106 = t105 - k(0.6666666666666666) * t67;
+            let t107 = k(0.5962847939999439) * t106 + k(0.29814239699997197) * t104
+                - k(0.7453559924999299) * t102;
+            let t108 = t44 - t49;
+            let t109 = t67 + t72;
+            let t110 = k(0.6666666666666666)
+                * (k(0.7950463919999252) * t109 + k(0.3975231959999626) * t108
+                    + k(0.9938079899999065) * (t14 + t22));
+            let t111 = t110 - k(0.3333333333333333) * t107;
+            let t112 = t86 - t103;
+            let t113 = t84 + t105;
+            let t114 = k(0.4472135954999579) * t113 + k(0.8944271909999159) * t112;
+            let t115 = k(0.5962847939999439) * t113 - k(0.29814239699997197) * t112
+                + k(0.7453559924999299) * (t88 - t101);
+            let t116 = k(0.6666666666666666) * (t115 + t107);
+            let t117 = k(0.5962847939999439) * t109 - k(1.1925695879998879) * t108;
+            let t118 = k(0.3333333333333333) * t115 + t110;
+            let t119 = k(0.4472135954999579) * t106 - k(0.8944271909999159) * t104;
+            let t120 = k(1.0) / (t119 * t118 - (t117 * t116 - t114 * t111));
+            let t121 = t10 * t28 + (t40 * t55 - t65 * t78);
+            let t122 = t7 * t28 + (t38 * t55 + t63 * t78);
+            let t123 = k(0.1) * t122 - k(0.05) * t121;
+            let t124 = t10 * t89 - (t40 * t87 - t65 * t85);
+            let t125 = t7 * t89 - (t38 * t87 + t63 * t85);
+            let t126 = t91 * t123
+                + (t90 * (k(0.1) * t125 - k(0.05) * t124) - t83 * t123);
+            let t127 = t15 * t3 + (t45 * t36 + t68 * t61);
+            let t128 = k(0.6666666666666666) * t127;
+            let t129 = t15 * t7 - (t45 * t38 + t68 * t63);
+            let t130 = k(0.3333333333333333) * t129;
+            let t131 = t15 * t10 - (t45 * t40 - t68 * t65);
+            let t132 = k(0.6666666666666666) * t131 + (t130 + t128);
+            let t133 = t19 * t3 - (t47 * t36 + t70 * t61);
+            let t134 = k(0.6666666666666666) * t133;
+            let t135 = t19 * t7 + (t70 * t63 + t47 * t38);
+            let t136 = k(0.3333333333333333) * t135;
+            let t137 = t19 * t10 - (t70 * t65 - t47 * t40);
+            let t138 = k(0.6666666666666666) * t137 + (t136 + t134);
+            let t139 = t23 * t3 - (t50 * t36 - t73 * t61);
+            let t140 = k(0.6666666666666666) * t139;
+            let t141 = t23 * t7 - (t73 * t63 - t50 * t38);
+            let t142 = k(0.3333333333333333) * t141;
+            let t143 = t73 * t65 + t50 * t40 + t23 * t10;
+            let t144 = k(0.6666666666666666) * t143 + (t142 + t140);
+            let t145 = k(0.6666666666666666) * t144
+                + (k(0.3333333333333333) * t138 + k(0.6666666666666666) * t132);
+            let t146 = turn0.cos();
+            let t147 = k(0.3333333333333333) * t144
+                + k(0.6666666666666666) * (t138 - t132);
+            let t148 = turn0.sin();
+            let t149 = (t146 * t147 - t148 * t145).atan2(t148 * t147 + t146 * t145);
+            let t150 = turn0 + t149;
+            let t151 = k(0.2) * t150;
+            let t152 = k(0.3333333333333333) * arm_wx + k(0.6666666666666666) * arm_wy
                 + k(0.6666666666666666) * arm_wz
                 - (k(0.3333333333333333) * block_wx + k(0.6666666666666666) * block_wy
                     + k(0.6666666666666666) * block_wz);
-            let t133 = k(0.006666666666666667) * t132;
-            let t134 = block_wy * block_wy;
-            let t135 = block_wz * block_wz;
-            let t136 = k(0.001) * block_wz;
-            let t137 = k(0.002) * block_wy;
-            let t138 = block_wx * (t137 - t136)
-                - (k(0.005) * (block_wy * block_wz) - k(0.003) * (t135 - t134));
-            let t139 = k(0.02) * block_dwx + k(0.001) * block_dwy + k(0.002) * block_dwz
-                + (t138 - (t133 - (t131 + t106)));
-            let t140 = (k(0.1) * t39 - k(0.2) * t37) * t96
+            let t153 = k(0.006666666666666667) * t152;
+            let t154 = block_wy * block_wy;
+            let t155 = block_wz * block_wz;
+            let t156 = k(0.001) * block_wz;
+            let t157 = k(0.002) * block_wy;
+            let t158 = block_wx * (t157 - t156)
+                - (k(0.005) * (block_wy * block_wz) - k(0.003) * (t155 - t154));
+            let t159 = k(0.02) * block_dwx + k(0.001) * block_dwy + k(0.002) * block_dwz
+                + (t158 - (t153 - (t151 + t126)));
+            let t160 = (k(0.1) * t39 - k(0.2) * t37) * t96
                 + (k(0.1) * t64 + k(0.2) * t62) * t93;
-            let t141 = (k(0.1) * t9 - k(0.2) * t6) * t99 - t140 + t139;
-            let t142 = t3 * t28 - (t36 * t55 + t61 * t78);
-            let t143 = k(0.03) * t101 - k(0.1) * t142;
-            let t144 = t3 * t89 + (t36 * t87 + t61 * t85);
-            let t145 = t91 * t143
-                + (t90 * (k(0.03) * t104 - k(0.1) * t144) - t83 * t143);
-            let t146 = k(0.4) * t130;
-            let t147 = k(0.013333333333333334) * t132;
-            let t148 = block_wx * block_wx;
-            let t149 = k(0.003) * block_wx;
-            let t150 = block_wy * (t136 + t149)
-                - (k(0.005) * (block_wx * block_wz) - k(0.002) * (t135 - t148));
-            let t151 = k(0.001) * block_dwx + k(0.03) * block_dwy - k(0.003) * block_dwz
-                + (t150 - (t147 - (t146 + t145)));
-            let t152 = (k(0.06) * t39 + k(0.2) * t35) * t96
+            let t161 = (k(0.1) * t9 - k(0.2) * t6) * t99 - t160 + t159;
+            let t162 = t3 * t28 - (t36 * t55 + t61 * t78);
+            let t163 = k(0.03) * t121 - k(0.1) * t162;
+            let t164 = t3 * t89 + (t36 * t87 + t61 * t85);
+            let t165 = t91 * t163
+                + (t90 * (k(0.03) * t124 - k(0.1) * t164) - t83 * t163);
+            let t166 = k(0.4) * t150;
+            let t167 = k(0.013333333333333334) * t152;
+            let t168 = block_wx * block_wx;
+            let t169 = k(0.003) * block_wx;
+            let t170 = block_wy * (t156 + t169)
+                - (k(0.005) * (block_wx * block_wz) - k(0.002) * (t155 - t168));
+            let t171 = k(0.001) * block_dwx + k(0.03) * block_dwy - k(0.003) * block_dwz
+                + (t170 - (t167 - (t166 + t165)));
+            let t172 = (k(0.06) * t39 + k(0.2) * t35) * t96
                 + (k(0.06) * t64 - k(0.2) * t60) * t93;
-            let t153 = (k(0.06) * t9 - k(0.2) * t2) * t99 - t152 - t151;
-            let t154 = k(0.05) * t142 - k(0.03) * t102;
-            let t155 = t91 * t154
-                + (t90 * (k(0.05) * t144 - k(0.03) * t105) - t83 * t154);
-            let t156 = block_wz * (t137 + t149)
-                - (k(0.01) * (block_wx * block_wy) - k(0.001) * (t134 - t148));
-            let t157 = k(0.002) * block_dwx - k(0.003) * block_dwy + k(0.025) * block_dwz
-                - (t156 + (t147 - (t146 - t155)));
-            let t158 = (k(0.06) * t37 + k(0.1) * t35) * t96
+            let t173 = (k(0.06) * t9 - k(0.2) * t2) * t99 - t172 - t171;
+            let t174 = k(0.05) * t162 - k(0.03) * t122;
+            let t175 = t91 * t174
+                + (t90 * (k(0.05) * t164 - k(0.03) * t125) - t83 * t174);
+            let t176 = block_wz * (t157 + t169)
+                - (k(0.01) * (block_wx * block_wy) - k(0.001) * (t154 - t168));
+            let t177 = k(0.002) * block_dwx - k(0.003) * block_dwy + k(0.025) * block_dwz
+                - (t176 + (t167 - (t166 - t175)));
+            let t178 = (k(0.06) * t37 + k(0.1) * t35) * t96
                 - (k(0.06) * t62 + k(0.1) * t60) * t93;
-            let t159 = (k(0.06) * t6 - k(0.1) * t2) * t99 - t158 - t157;
-            let t160 = arm_rx - t80;
-            let t161 = arm_ry - t57;
-            let t162 = arm_rz - t30;
-            let t163 = t23 * t162 - (t50 * t161 + t73 * t160);
-            let t164 = t19 * t162 - (t47 * t161 - t70 * t160);
-            let t165 = t96 * (t50 * t164 - t47 * t163) + t93 * (t73 * t164 + t70 * t163);
-            let t166 = t99 * (t23 * t164 - t19 * t163) - t165
-                + (t111 * t159 - (t109 * t153 - t107 * t141));
-            let t167 = k(0.6666666666666666) * t164;
-            let t168 = t167 - k(0.3333333333333333) * t163;
-            let t169 = k(0.6666666666666666) * t163;
-            let t170 = t91 * t168
-                + (t90 * (t169 - k(0.3333333333333333) * t164) - t83 * t168);
-            let t171 = arm_wy * arm_wy;
-            let t172 = arm_wz * arm_wz;
-            let t173 = k(0.02) * arm_wz;
-            let t174 = k(0.03) * arm_wy;
-            let t175 = arm_wx * (t174 + t173)
-                + (k(0.05) * (arm_wy * arm_wz) + k(0.01) * (t172 - t171));
-            let t176 = k(0.3) * arm_dwx + k(0.02) * arm_dwy - k(0.03) * arm_dwz
-                - (t175 - (t133 - (t131 + t170)));
-            let t177 = t29 * t100 - (t56 * t97 + t79 * t94) + (t176 + t166);
-            let t178 = k(1.3333333333333333) * t18;
-            let t179 = t178 + k(0.6666666666666666) * t14;
-            let t180 = k(1.3333333333333333) * t46;
-            let t181 = t180 - k(0.6666666666666666) * t44;
-            let t182 = k(1.3333333333333333) * t69;
-            let t183 = t182 - k(0.6666666666666666) * t67;
-            let t184 = k(0.5962847939999439) * t183 + k(0.29814239699997197) * t181
-                - k(0.7453559924999299) * t179;
-            let t185 = t44 - t49;
-            let t186 = t67 + t72;
-            let t187 = k(0.6666666666666666)
-                * (k(0.7950463919999252) * t186 + k(0.3975231959999626) * t185
-                    + k(0.9938079899999065) * (t14 + t22));
-            let t188 = t187 - k(0.3333333333333333) * t184;
-            let t189 = t86 - t180;
-            let t190 = t84 + t182;
-            let t191 = k(0.4472135954999579) * t190 + k(0.8944271909999159) * t189;
-            let t192 = k(0.5962847939999439) * t190 - k(0.29814239699997197) * t189
-                + k(0.7453559924999299) * (t88 - t178);
-            let t193 = k(0.6666666666666666) * (t192 + t184);
-            let t194 = k(0.5962847939999439) * t186 - k(1.1925695879998879) * t185;
-            let t195 = k(0.3333333333333333) * t192 + t187;
-            let t196 = k(0.4472135954999579) * t183 - k(0.8944271909999159) * t181;
-            let t197 = k(1.0) / (t196 * t195 - (t194 * t193 - t191 * t188));
-            let t198 = t15 * t162 + (t45 * t161 - t68 * t160);
-            let t199 = t96 * (t50 * t198 + t45 * t163) + t93 * (t73 * t198 - t68 * t163);
+            let t179 = (k(0.06) * t6 - k(0.1) * t2) * t99 - t178 - t177;
+            let t180 = arm_rx - t80;
+            let t181 = arm_ry - t57;
+            let t182 = arm_rz - t30;
+            let t183 = t23 * t182 - (t50 * t181 + t73 * t180);
+            let t184 = t19 * t182 - (t47 * t181 - t70 * t180);
+            let t185 = t96 * (t50 * t184 - t47 * t183) + t93 * (t73 * t184 + t70 * t183);
+            let t186 = t99 * (t23 * t184 - t19 * t183) - t185
+                + (t131 * t179 - (t129 * t173 - t127 * t161));
+            let t187 = k(0.6666666666666666) * t184;
+            let t188 = t187 - k(0.3333333333333333) * t183;
+            let t189 = k(0.6666666666666666) * t183;
+            let t190 = t91 * t188
+                + (t90 * (t189 - k(0.3333333333333333) * t184) - t83 * t188);
+            let t191 = arm_wy * arm_wy;
+            let t192 = arm_wz * arm_wz;
+            let t193 = k(0.02) * arm_wz;
+            let t194 = k(0.03) * arm_wy;
+            let t195 = arm_wx * (t194 + t193)
+                + (k(0.05) * (arm_wy * arm_wz) + k(0.01) * (t192 - t191));
+            let t196 = k(0.3) * arm_dwx + k(0.02) * arm_dwy - k(0.03) * arm_dwz
+                - (t195 - (t153 - (t151 + t190)));
+            let t197 = t29 * t100 - (t56 * t97 + t79 * t94) + (t196 + t186);
+            let t198 = t15 * t182 + (t45 * t181 - t68 * t180);
+            let t199 = t96 * (t50 * t198 + t45 * t183) + t93 * (t73 * t198 - t68 * t183);
             (
                 t14,
                 t15,
@@ -4166,94 +3917,95 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
                 t97,
                 t99,
                 t100,
-                t108,
-                t109,
-                t110,
+                t102,
+                t104,
+                t106,
                 t111,
-                t113,
                 t114,
-                t115,
                 t116,
                 t117,
+                t118,
                 t119,
                 t120,
-                t121,
-                t122,
-                t123,
+                t128,
+                t129,
+                t130,
+                t131,
+                t133,
+                t134,
+                t135,
+                t136,
+                t137,
+                t139,
+                t140,
                 t141,
-                t146,
-                t147,
-                t153,
-                t159,
-                t163,
-                t164,
+                t142,
+                t143,
+                t161,
+                t166,
                 t167,
-                t169,
-                t171,
-                t172,
                 t173,
-                t174,
-                t177,
                 t179,
-                t181,
                 t183,
-                t188,
+                t184,
+                t187,
+                t189,
                 t191,
+                t192,
                 t193,
                 t194,
-                t195,
-                t196,
                 t197,
                 t198,
                 t199,
             )
         };
         let (t217, t218, t219, t220, t221, t237, t240, t241, t242, t243) = {
-            let t200 = t99 * (t23 * t198 - t15 * t163) - t199
-                - (t117 * t159 - (t115 * t153 - t113 * t141));
-            let t201 = k(0.6666666666666666) * (t198 - t163);
+            let t200 = t99 * (t23 * t198 - t15 * t183) - t199
+                - (t137 * t179 - (t135 * t173 - t133 * t161));
+            let t201 = k(0.6666666666666666) * (t183 - t198);
             let t202 = k(0.3333333333333333) * t198;
-            let t203 = t146 - (t91 * t201 - (t90 * (t202 + t169) + t83 * t201));
+            let t203 = t166 + (t91 * t201 + (t90 * (t202 + t189) - t83 * t201));
             let t204 = arm_wx * arm_wx;
             let t205 = k(0.01) * arm_wx;
-            let t206 = arm_wy * (t173 - t205)
-                + (k(0.1) * (arm_wx * arm_wz) - k(0.03) * (t172 - t204));
+            let t206 = arm_wy * (t193 - t205)
+                + (k(0.1) * (arm_wx * arm_wz) - k(0.03) * (t192 - t204));
             let t207 = k(0.02) * arm_dwx + k(0.25) * arm_dwy + k(0.01) * arm_dwz
-                + (t206 + (t147 - t203));
+                + (t206 + (t167 - t203));
             let t208 = k(0.4) * t22 * t100 - (k(0.4) * t49 * t97 + k(0.4) * t72 * t94);
             let t209 = t208 + (t207 - t200);
-            let t210 = t96 * (t47 * t198 + t45 * t164) - t93 * (t70 * t198 + t68 * t164);
-            let t211 = t99 * (t19 * t198 - t15 * t164) - t210
-                + (t123 * t159 - (t121 * t153 - t119 * t141));
-            let t212 = t202 - t167;
+            let t210 = t96 * (t47 * t198 + t45 * t184) - t93 * (t70 * t198 + t68 * t184);
+            let t211 = t99 * (t19 * t198 - t15 * t184) - t210
+                + (t143 * t179 - (t141 * t173 - t139 * t161));
+            let t212 = t202 - t187;
             let t213 = t91 * t212
-                - (t90 * (k(0.6666666666666666) * (t198 + t164)) + t83 * t212);
-            let t214 = arm_wz * (t174 + t205)
-                - (k(0.05) * (arm_wx * arm_wy) + k(0.02) * (t171 - t204));
+                - (t90 * (k(0.6666666666666666) * (t184 + t198)) + t83 * t212);
+            let t214 = arm_wz * (t194 + t205)
+                - (k(0.05) * (arm_wx * arm_wy) + k(0.02) * (t191 - t204));
             let t215 = k(0.03) * arm_dwx - k(0.01) * arm_dwy - k(0.2) * arm_dwz
-                - (t214 + (t147 - (t146 - t213)));
+                - (t214 + (t167 - (t166 - t213)));
             let t216 = (k(0.4) * t46 - k(0.2) * t44) * t97
                 - (k(0.4) * t69 - k(0.2) * t67) * t94;
             let t217 = (k(0.4) * t18 + k(0.2) * t14) * t100 - t216 - (t215 + t211);
-            let t218 = t195 * t197 * t217 + (t193 * t197 * t209 - t188 * t197 * t177);
-            let t219 = k(0.6666666666666666) * t194;
-            let t220 = t197 * (k(0.6666666666666666) * (t191 + t196)) * t209
-                - t197 * (t219 - k(0.3333333333333333) * t196) * t177;
-            let t221 = t99 * (t27 - t179) - (t96 * (t54 - t181) + t93 * (t77 + t183));
-            let t222 = t122 - t120;
-            let t223 = t116 - t114;
-            let t224 = t110 - t108;
+            let t218 = t217 * (t118 * t120)
+                + (t209 * (t116 * t120) - t197 * (t111 * t120));
+            let t219 = k(0.6666666666666666) * t117;
+            let t220 = t209 * (t120 * (k(0.6666666666666666) * (t114 + t119)))
+                - t197 * (t120 * (t219 - k(0.3333333333333333) * t119));
+            let t221 = (t27 - t102) * t99 - ((t54 - t104) * t96 + (t77 + t106) * t93);
+            let t222 = t142 - t140;
+            let t223 = t136 - t134;
+            let t224 = t130 - t128;
             let t225 = k(0.6666666666666666) * (t224 - t223)
                 - k(0.3333333333333333) * t222;
-            let t226 = t120 + k(0.3333333333333333) * t123;
-            let t227 = t114 + k(0.3333333333333333) * t117;
-            let t228 = t108 + k(0.3333333333333333) * t111;
+            let t226 = t140 + k(0.3333333333333333) * t143;
+            let t227 = t134 + k(0.3333333333333333) * t137;
+            let t228 = t128 + k(0.3333333333333333) * t131;
             let t229 = k(0.6666666666666666) * (t228 - t227)
                 - k(0.3333333333333333) * t226;
             let t230 = k(0.6666666666666666) * (t229 - t225);
-            let t231 = t123 + t121;
-            let t232 = t117 + t115;
-            let t233 = t111 + t109;
+            let t231 = t143 + t141;
+            let t232 = t137 + t135;
+            let t233 = t131 + t129;
             let t234 = k(0.4444444444444444) * t233 + k(0.2222222222222222) * t232
                 + k(0.4444444444444444) * t231;
             let t235 = k(0.6666666666666666)
@@ -4265,11 +4017,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
             let t239 = k(0.6666666666666666) * t224 + k(0.3333333333333333) * t223
                 + k(0.6666666666666666) * t222;
             let t240 = k(1.0) / (t239 * t238 - (t237 * t236 - t234 * t230));
-            let t241 = t159 * (t238 * t240)
-                - (t153 * (t236 * t240) - t141 * (t230 * t240));
+            let t241 = t179 * (t238 * t240)
+                - (t173 * (t236 * t240) - t161 * (t230 * t240));
             let t242 = k(0.6666666666666666) * t234;
-            let t243 = t153 * (t240 * (t242 + k(0.3333333333333333) * t239))
-                - t141 * (t240 * (k(0.6666666666666666) * (t237 - t239)));
+            let t243 = t173 * (t240 * (t242 + k(0.3333333333333333) * t239))
+                - t161 * (t240 * (k(0.6666666666666666) * (t237 - t239)));
             (t217, t218, t219, t220, t221, t237, t240, t241, t242, t243)
         };
         *lambda = [
@@ -4277,16 +4029,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
             -t97,
             -t100,
             -t218,
-            -(t197 * (k(0.3333333333333333) * t191 + t219) * t217 + t220),
+            -(t217 * (t120 * (k(0.3333333333333333) * t114 + t219)) + t220),
             t221,
             t241,
-            t159 * (t240 * (k(0.3333333333333333) * t237 + t242)) - t243,
+            t179 * (t240 * (k(0.3333333333333333) * t237 + t242)) - t243,
         ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
     type Joints = [T; 9];
     type Rates = [T; 4];
+    type Solution = [T; 20];
     fn joint_start(&self) -> Self::Joints {
         let k = T::constant;
         [
@@ -4303,6 +4056,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
     }
     fn rates(&self) -> Self::Rates {
         [T::constant(0.0); 4]
+    }
+    fn solution(&self) -> Self::Solution {
+        [T::constant(0.0); 20]
     }
     /// Writes u̇: 217 operations (95 ±, 119 ×, 3 ÷) and 4 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
@@ -5984,9 +5740,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             let t185 = k(0.4444444444444444) + k(0.5555555555555556) * t184;
             let t186 = k(0.4) * t22 * t99 - (k(0.4) * t49 * t96 + k(0.4) * t72 * t93);
             let t187 = t15 * t102 + (t45 * t101 - t68 * t100);
-            let t188 = k(0.6666666666666666) * (t187 - t103);
+            let t188 = k(0.6666666666666666) * (t103 - t187);
             let t189 = k(0.3333333333333333) * t187;
-            let t190 = t154 - (t90 * t188 - (t88 * (t189 + t107) + t83 * t188));
+            let t190 = t154 + (t90 * t188 + (t88 * (t189 + t107) - t83 * t188));
             let t191 = arm_wx * arm_wx;
             let t192 = k(0.01) * arm_wx;
             let t193 = arm_wy * (t126 - t192)
@@ -6068,7 +5824,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 - (k(0.4) * t69 - k(0.2) * t67) * t93;
             let t208 = t189 - t105;
             let t209 = t90 * t208
-                - (t88 * (k(0.6666666666666666) * (t187 + t104)) + t83 * t208);
+                - (t88 * (k(0.6666666666666666) * (t104 + t187)) + t83 * t208);
             let t210 = arm_wz * (t127 + t192)
                 - (k(0.05) * (arm_wx * arm_wy) + k(0.02) * (t124 - t191));
             let t211 = k(0.03) * arm_dwx - k(0.01) * arm_dwy - k(0.2) * arm_dwz
@@ -6086,11 +5842,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                     - t219 * t181);
             let t221 = k(0.7453559924999299)
                 * (t185 * t215 - (t219 * t202 - (t217 + t216) * t181));
-            let t222 = t95
-                * (t54 - (k(1.3333333333333333) * t46 - k(0.6666666666666666) * t44))
-                + t92
-                    * (t77
-                        + (k(1.3333333333333333) * t69 - k(0.6666666666666666) * t67));
+            let t222 = (t54
+                - (k(1.3333333333333333) * t46 - k(0.6666666666666666) * t44)) * t95
+                + (t77 + (k(1.3333333333333333) * t69 - k(0.6666666666666666) * t67))
+                    * t92;
             (t212, t218, t220, t221, t222)
         };
         *lambda = [
@@ -6099,11 +5854,753 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             -t99,
             k(0.29814239699997197) * t220 + k(0.5962847939999439) * t218 - t221,
             k(0.4472135954999579) * t218 - k(0.8944271909999159) * t220,
-            t98 * (t27 - (k(1.3333333333333333) * t18 + k(0.6666666666666666) * t14))
+            (t27 - (k(1.3333333333333333) * t18 + k(0.6666666666666666) * t14)) * t98
                 - t222,
             k(0.6666666666666666) * (t198 - t174) - k(0.3333333333333333) * t212,
             k(0.6666666666666666) * t212
                 - (k(0.3333333333333333) * t198 + k(0.6666666666666666) * t174),
+        ];
+    }
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 1378 operations (610 ±, 765 ×, 3 ÷) and 3 functions.
+    fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
+        let k = T::constant;
+        let arm_rx = y[0];
+        let arm_ry = y[1];
+        let arm_rz = y[2];
+        let block_rx = y[7];
+        let block_ry = y[8];
+        let block_rz = y[9];
+        let arm_e0 = y[3];
+        let arm_e1 = y[4];
+        let arm_e2 = y[5];
+        let arm_e3 = y[6];
+        let block_e0 = y[10];
+        let block_e1 = y[11];
+        let block_e2 = y[12];
+        let block_e3 = y[13];
+        let arm_sx = y[14];
+        let arm_sy = y[15];
+        let arm_sz = y[16];
+        let block_sx = y[20];
+        let block_sy = y[21];
+        let block_sz = y[22];
+        let arm_wx = y[17];
+        let arm_wy = y[18];
+        let arm_wz = y[19];
+        let block_wx = y[23];
+        let block_wy = y[24];
+        let block_wz = y[25];
+        let turn0 = y[27];
+        let (
+            t2,
+            t5,
+            t7,
+            t8,
+            t9,
+            t11,
+            t14,
+            t17,
+            t18,
+            t22,
+            t23,
+            t24,
+            t25,
+            t26,
+            t27,
+            t28,
+            t31,
+            t32,
+            t34,
+            t35,
+            t36,
+            t37,
+            t38,
+            t39,
+            t40,
+            t41,
+            t42,
+            t44,
+            t51,
+            t52,
+            t53,
+            t54,
+            t55,
+            t56,
+            t57,
+            t59,
+            t63,
+            t65,
+            t67,
+            t72,
+            t73,
+            t74,
+            t76,
+            t77,
+            t79,
+            t84,
+            t85,
+            t86,
+            t88,
+            t89,
+            t91,
+            t96,
+            t97,
+            t98,
+            t100,
+            t101,
+            t103,
+            t135,
+            t137,
+            t139,
+            t143,
+            t144,
+            t146,
+            t147,
+            t148,
+            t149,
+            t151,
+            t154,
+            t155,
+            t157,
+            t158,
+            t161,
+            t166,
+            t170,
+            t173,
+            t174,
+            t176,
+            t177,
+            t178,
+            t180,
+            t182,
+            t183,
+            t184,
+            t185,
+            t186,
+            t189,
+            t190,
+            t191,
+            t193,
+            t195,
+            t196,
+            t197,
+            t198,
+            t199,
+        ) = {
+            let t0 = arm_e0 * arm_e2;
+            let t1 = arm_e1 * arm_e3;
+            let t2 = t1 + t0;
+            let t3 = arm_e0 * arm_e3;
+            let t4 = arm_e1 * arm_e2;
+            let t5 = t4 - t3;
+            let t6 = arm_e0 * arm_e0;
+            let t7 = k(0.5) - (t6 + arm_e1 * arm_e1);
+            let t8 = k(1.3333333333333333) * (t7 + t5) - k(0.6666666666666666) * t2;
+            let t9 = k(0.2) * t2;
+            let t10 = block_e0 * block_e0;
+            let t11 = k(0.5) - (t10 + block_e1 * block_e1);
+            let t12 = block_e0 * block_e3;
+            let t13 = block_e1 * block_e2;
+            let t14 = t13 - t12;
+            let t15 = block_e0 * block_e2;
+            let t16 = block_e1 * block_e3;
+            let t17 = t16 + t15;
+            let t18 = block_rx - (k(0.2) * t17 - (k(0.1) * t14 - k(0.06) * t11));
+            let t19 = t18 - (arm_rx + (t9 + (k(0.2) * t5 - k(0.4) * t7)));
+            let t20 = arm_e0 * arm_e1;
+            let t21 = arm_e2 * arm_e3;
+            let t22 = t21 - t20;
+            let t23 = k(0.5) - (t6 + arm_e2 * arm_e2);
+            let t24 = t4 + t3;
+            let t25 = k(1.3333333333333333) * (t24 + t23) + k(0.6666666666666666) * t22;
+            let t26 = k(0.2) * t22;
+            let t27 = t13 + t12;
+            let t28 = k(0.5) - (t10 + block_e2 * block_e2);
+            let t29 = block_e0 * block_e1;
+            let t30 = block_e2 * block_e3;
+            let t31 = t30 - t29;
+            let t32 = block_ry - (k(0.2) * t31 + (k(0.1) * t28 - k(0.06) * t27));
+            let t33 = t32 - (arm_ry + (t26 - (k(0.2) * t23 - k(0.4) * t24)));
+            let t34 = k(0.5) - (t6 + arm_e3 * arm_e3);
+            let t35 = t21 + t20;
+            let t36 = t1 - t0;
+            let t37 = k(1.3333333333333333) * (t36 - t35) - k(0.6666666666666666) * t34;
+            let t38 = k(0.2) * t34;
+            let t39 = t16 - t15;
+            let t40 = t30 + t29;
+            let t41 = k(0.5) - (t10 + block_e3 * block_e3);
+            let t42 = block_rz + (k(0.2) * t41 + (k(0.1) * t40 + k(0.06) * t39));
+            let t43 = t42 - (arm_rz - (t38 - (k(0.2) * t35 + k(0.4) * t36)));
+            let t44 = t43 * t37 + (t33 * t25 - t19 * t8);
+            let t45 = arm_e3 * block_e0 - arm_e2 * block_e1 + arm_e1 * block_e2
+                - arm_e0 * block_e3;
+            let t46 = arm_e2 * block_e0 + arm_e3 * block_e1 - arm_e0 * block_e2
+                - arm_e1 * block_e3;
+            let t47 = arm_e1 * block_e0 - arm_e0 * block_e1 - arm_e3 * block_e2
+                + arm_e2 * block_e3;
+            let t48 = k(0.3333333333333333) * t47 + k(0.6666666666666666) * t46
+                + k(0.6666666666666666) * t45;
+            let t49 = k(2.0) * t48;
+            let t50 = arm_e0 * block_e0 + arm_e1 * block_e1 + arm_e2 * block_e2
+                + arm_e3 * block_e3;
+            let t51 = t50 * t49;
+            let t52 = k(1.3333333333333333) * t2;
+            let t53 = k(0.6666666666666666) * t5 - k(1.3333333333333333) * t7 - t52;
+            let t54 = k(1.3333333333333333) * t22;
+            let t55 = k(0.6666666666666666) * t23 - k(1.3333333333333333) * t24 + t54;
+            let t56 = k(1.3333333333333333) * t34;
+            let t57 = k(0.6666666666666666) * t35 + k(1.3333333333333333) * t36 + t56;
+            let t58 = t57 * t43 - (t55 * t33 - t53 * t19);
+            let t59 = k(1.0) - t48 * t49;
+            let t60 = k(1.0503018108651911) * (t59 - k(11.494252873563218) * t58)
+                + (t51 - k(4.225352112676056) * (t44 + k(1.7985714285714285)));
+            let t61 = k(0.6666666666666666) * arm_e3
+                + (k(0.6666666666666666) * arm_e1 - k(0.3333333333333333) * arm_e2);
+            let t62 = k(2.0) * t61;
+            let t63 = k(1.0) - t61 * t62;
+            let t64 = k(26.591760299625467) * t44
+                - (k(37.453183520599254) * t58
+                    + (t51 - k(5.111111111111111) * (t59 - k(1.868343917928676))));
+            let t65 = arm_e0 * t62;
+            let t66 = k(0.6666666666666666) * arm_wz;
+            let t67 = k(0.3333333333333333) * arm_wx + k(0.6666666666666666) * arm_wy
+                + t66
+                - (k(0.3333333333333333) * block_wx + k(0.6666666666666666) * block_wy
+                    + k(0.6666666666666666) * block_wz);
+            let t68 = k(0.027555555555555555) * t59 + k(0.012444444444444444) * t51;
+            let t69 = k(0.012444444444444444) * t59 - k(0.027555555555555555) * t51;
+            let t70 = k(0.002191111111111111) * t59
+                - (t58 * t69 - k(0.010245185185185185) * t51) - t44 * t68;
+            let t71 = k(4.230994152046784)
+                - (k(1.7309941520467835) * t59
+                    - (k(1.7543859649122806) * t44
+                        - (t51 - k(17.54385964912281) * t58)));
+            let t72 = k(2.0) * t39;
+            let t73 = k(2.0) * t40;
+            let t74 = k(2.0) * t41;
+            let t75 = k(0.03) * (t74 * block_wy + t73 * block_wz)
+                - k(0.05) * (t74 * block_wx + t72 * block_wz);
+            let t76 = k(2.0) * t36;
+            let t77 = k(2.0) * t35;
+            let t78 = t77 * arm_wx - t76 * arm_wy;
+            let t79 = k(2.0) * t34;
+            let t80 = t79 * arm_wx + t76 * arm_wz;
+            let t81 = t79 * arm_wy + t77 * arm_wz;
+            let t82 = arm_sz + (k(0.2) * t81 - k(0.1) * t80 - k(0.1) * t78)
+                - (block_sz + (t75 + k(0.1) * (t73 * block_wx - t72 * block_wy)));
+            let t83 = t43
+                * (k(0.6666666666666666) * t81 - k(0.3333333333333333) * t80
+                    + k(0.6666666666666666) * t78) - t57 * t82;
+            let t84 = k(2.0) * t27;
+            let t85 = k(2.0) * t28;
+            let t86 = k(2.0) * t31;
+            let t87 = k(0.03) * (t86 * block_wy + t85 * block_wz)
+                - k(0.05) * (t86 * block_wx - t84 * block_wz);
+            let t88 = k(2.0) * t24;
+            let t89 = k(2.0) * t23;
+            let t90 = t89 * arm_wx + t88 * arm_wy;
+            let t91 = k(2.0) * t22;
+            let t92 = t91 * arm_wx - t88 * arm_wz;
+            let t93 = t91 * arm_wy + t89 * arm_wz;
+            let t94 = arm_sy - (k(0.2) * t93 - k(0.1) * t92 - k(0.1) * t90)
+                - (block_sy - (t87 + k(0.1) * (t85 * block_wx + t84 * block_wy)));
+            let t95 = t33
+                * (k(0.6666666666666666) * t93 - k(0.3333333333333333) * t92
+                    + k(0.6666666666666666) * t90) - t55 * t94;
+            let t96 = k(2.0) * t11;
+            let t97 = k(2.0) * t14;
+            let t98 = k(2.0) * t17;
+            let t99 = k(0.03) * (t98 * block_wy - t97 * block_wz)
+                - k(0.05) * (t98 * block_wx + t96 * block_wz);
+            let t100 = k(2.0) * t7;
+            let t101 = k(2.0) * t5;
+            let t102 = t101 * arm_wx + t100 * arm_wy;
+            let t103 = k(2.0) * t2;
+            let t104 = t103 * arm_wx + t100 * arm_wz;
+            let t105 = t103 * arm_wy - t101 * arm_wz;
+            let t106 = arm_sx - (k(0.2) * t105 - k(0.1) * t104 + k(0.1) * t102)
+                - (block_sx - (t99 - k(0.1) * (t97 * block_wx + t96 * block_wy)));
+            let t107 = t19
+                * (k(0.6666666666666666) * t105 - k(0.3333333333333333) * t104
+                    - k(0.6666666666666666) * t102) + t53 * t106;
+            let t108 = t107 + t95 - t83;
+            let t109 = k(0.01146962962962963)
+                + (k(0.06755555555555555) * t58 + k(0.03155555555555556) * t44);
+            let t110 = k(0.03106238683127572)
+                + (k(0.11693827160493828) * t58 + k(0.0004938271604938272) * t44);
+            let t111 = t51
+                * (t110 + k(0.005428148148148148) * (t51 - k(2.7249211547792336) * t59))
+                - t59 * t109;
+            let t112 = k(0.002714074074074074) - t111;
+            let t113 = k(0.0066172839506172835) - k(0.11851851851851852) * t58;
+            let t114 = k(0.2518518518518518) * t44
+                - (t113 + k(0.0004938271604938272) * t59 + k(0.03155555555555556) * t51);
+            let t115 = t43
+                * (k(0.3333333333333333) * t78 - k(0.6666666666666666) * (t81 + t80))
+                + t37 * t82;
+            let t116 = t33
+                * (k(0.3333333333333333) * t90 - k(0.6666666666666666) * (t93 + t92))
+                - t25 * t94;
+            let t117 = t19
+                * (k(0.3333333333333333) * t102 + k(0.6666666666666666) * (t105 + t104))
+                - t8 * t106;
+            let t118 = t117 - t116 + t115;
+            let t119 = t66
+                + (k(0.6666666666666666) * arm_wx - k(0.3333333333333333) * arm_wy);
+            let t120 = t119
+                * (t118 * t114 + t67 * t112 + k(0.06755555555555555) * (t108 * t71));
+            let t121 = t120 + t70 * (t67 * t67) - k(0.059333333333333335) * (t65 * t64)
+                + k(0.3313333333333333) * (t63 * t60);
+            let t122 = k(2.0) * t119;
+            let t123 = (k(0.25) * (t119 * t112) - (t108 * t68 - t118 * t69)) * t122;
+            let t124 = k(0.3333333333333333) * (t76 * t73 - (t88 * t85 + t100 * t97))
+                + k(0.6666666666666666) * (t76 * t72 + (t88 * t84 + t100 * t96));
+            let t125 = k(0.6666666666666666) * (t76 * t74 - (t88 * t86 - t100 * t98))
+                + t124;
+            let t126 = k(0.3333333333333333) * (t77 * t73 + (t101 * t97 + t89 * t85))
+                + k(0.6666666666666666) * (t77 * t72 - (t89 * t84 + t101 * t96));
+            let t127 = k(0.6666666666666666) * (t77 * t74 - (t101 * t98 - t89 * t86))
+                + t126;
+            let t128 = k(0.3333333333333333) * (t79 * t73 - (t103 * t97 - t91 * t85))
+                + k(0.6666666666666666) * (t79 * t72 - (t91 * t84 - t103 * t96));
+            let t129 = k(0.6666666666666666) * (t103 * t98 + t91 * t86 + t79 * t74)
+                + t128;
+            let t130 = k(0.6666666666666666) * t129
+                + (k(0.3333333333333333) * t127 + k(0.6666666666666666) * t125);
+            let t131 = turn0.cos();
+            let t132 = k(0.3333333333333333) * t129
+                + k(0.6666666666666666) * (t127 - t125);
+            let t133 = turn0.sin();
+            let t134 = (t131 * t132 - t133 * t130).atan2(t133 * t132 + t131 * t130);
+            let t135 = turn0 + t134;
+            let t136 = k(0.02) * t67 - k(0.6) * t135
+                - k(0.3313333333333333)
+                    * (t59
+                        * (t65 - k(0.1790744466800805) * (t63 + k(4.966292134831461))));
+            let t137 = t136
+                + k(0.348)
+                    * (t51
+                        * (k(0.8714346530438485) * t63 + (t65 + k(0.5174542358450405))))
+                + t123;
+            let t138 = k(0.014687407407407408) + k(0.002191111111111111) * t51
+                - k(0.010245185185185185) * t59 + t44 * t69 - t58 * t68;
+            let t139 = k(30.26023804720597) * t138;
+            let t140 = t67 * (t122 - k(2.25) * t67);
+            let t141 = k(0.5333333333333333) * t119;
+            let t142 = k(1.0222222222222221) - k(1.4) * t65 + k(1.5777777777777777) * t63
+                - k(40.0) * t44 - (t108 - k(0.9375) * (t119 * t114)) * t141;
+            let t143 = k(68.08553560621344) * t68;
+            let t144 = t143 * t137 - (t142 - t69 * t140);
+            let t145 = t143 * t138
+                - (t68 - (k(0.06822222222222223) + k(0.26666666666666666) * t58));
+            let t146 = k(1.0) / (k(0.6) - t143 * (k(2.25) * t68));
+            let t147 = t146 * t145;
+            let t148 = k(25.0) * t58;
+            let t149 = k(0.8) * t108;
+            let t150 = t149
+                - (t148
+                    + (k(0.37777777777777777) + k(4.0) * t65
+                        + k(2.2222222222222223) * t63))
+                + t141 * (t118 + k(0.06333333333333334) * (t119 * t71));
+            let t151 = k(68.08553560621344) * t69;
+            let t152 = k(2.25) * t69;
+            let t153 = t143 * t152;
+            let t154 = t146 * t153;
+            let t155 = t154 * t144 + (t151 * t137 - (t150 + t68 * t140));
+            let t156 = t154 * t145
+                + (t151 * t138
+                    - (t69 - (k(0.03911111111111111) - k(0.26666666666666666) * t44)));
+            let t157 = k(1.0) / (t153 * t154 - (k(0.6) - t152 * t151));
+            let t158 = t157 * t156;
+            let t159 = k(0.3136290534979424)
+                - t59 * (t110 + k(0.002714074074074074) * t51)
+                + k(0.5925925925925926) * (t58 * (t58 + k(0.48233333333333334)));
+            let t160 = t159 + t44 * (k(0.1259259259259259) * t44 - t113)
+                - t51 * (t109 + k(0.007395637860082305) * t51);
+            let t161 = (t158 * t155 - (t147 * t144 + (t139 * t137 - t121)))
+                / (t156 * t158 - (t145 * t147 + (t138 * t139 - t160)));
+            let t162 = k(0.6666666666666666) * t161;
+            let t163 = k(0.6666666666666666) * t119;
+            let t164 = arm_wy * t163;
+            let t165 = k(0.3333333333333333) * t119;
+            let t166 = arm_wx * t165 + t164 - t162;
+            let t167 = k(0.2) * arm_wz;
+            let t168 = k(0.1) * arm_wx + k(0.2) * arm_wy;
+            let t169 = arm_wy * t168 + arm_wz * t167 + k(0.1) * t166;
+            let t170 = k(0.2) * t166;
+            let t171 = k(0.1) * arm_wz;
+            let t172 = arm_wz * t171 + arm_wx * t168 - t170;
+            let t173 = t164 + arm_wz * t165 + t162;
+            let t174 = arm_wx * t163 - arm_wz * t163 + k(0.3333333333333333) * t161;
+            let t175 = arm_wx * t167 - arm_wy * t171 + (k(0.2) * t174 - k(0.1) * t173);
+            let t176 = t103 * t175 + (t101 * t172 + t100 * t169);
+            let t177 = t91 * t175 - (t89 * t172 + t88 * t169);
+            let t178 = t79 * t175 - (t77 * t172 - t76 * t169);
+            let t179 = k(0.6666666666666666) * t58;
+            let t180 = k(0.3333333333333333) * t44 + (k(0.1) - t179);
+            let t181 = k(0.6666666666666666) * t44;
+            let t182 = t181 - (k(0.1) + k(0.3333333333333333) * t58);
+            let t183 = t169 + (t182 * t166 + t180 * t174);
+            let t184 = k(0.1111111111111111) + k(0.8888888888888888) * t59;
+            let t185 = t181 + (k(0.2) + t179);
+            let t186 = t172 - (t185 * t166 + t180 * t173);
+            let t187 = k(0.6666666666666666) * t51;
+            let t188 = k(0.2222222222222222) - k(0.2222222222222222) * t59;
+            let t189 = t188 - t187;
+            let t190 = t175 + (t185 * t174 - t182 * t173);
+            let t191 = t188 + t187;
+            let t192 = k(0.3333333333333333) * t118 - k(0.6666666666666666) * t108;
+            let t193 = k(0.6666666666666666) * t118 - k(0.3333333333333333) * t108;
+            let t194 = arm_wy * t185 + arm_wx * t182;
+            let t195 = arm_wx * t180 - arm_wz * t185;
+            let t196 = arm_wz * t195 - arm_wy * t194
+                - k(2.0) * (arm_wz * t193 + arm_wy * t192);
+            let t197 = k(0.6666666666666666) * (t108 + t118);
+            let t198 = arm_wz * t182 + arm_wy * t180;
+            let t199 = arm_wx * t194 + arm_wz * t198
+                + k(2.0) * (arm_wx * t192 - arm_wz * t197);
+            (
+                t2,
+                t5,
+                t7,
+                t8,
+                t9,
+                t11,
+                t14,
+                t17,
+                t18,
+                t22,
+                t23,
+                t24,
+                t25,
+                t26,
+                t27,
+                t28,
+                t31,
+                t32,
+                t34,
+                t35,
+                t36,
+                t37,
+                t38,
+                t39,
+                t40,
+                t41,
+                t42,
+                t44,
+                t51,
+                t52,
+                t53,
+                t54,
+                t55,
+                t56,
+                t57,
+                t59,
+                t63,
+                t65,
+                t67,
+                t72,
+                t73,
+                t74,
+                t76,
+                t77,
+                t79,
+                t84,
+                t85,
+                t86,
+                t88,
+                t89,
+                t91,
+                t96,
+                t97,
+                t98,
+                t100,
+                t101,
+                t103,
+                t135,
+                t137,
+                t139,
+                t143,
+                t144,
+                t146,
+                t147,
+                t148,
+                t149,
+                t151,
+                t154,
+                t155,
+                t157,
+                t158,
+                t161,
+                t166,
+                t170,
+                t173,
+                t174,
+                t176,
+                t177,
+                t178,
+                t180,
+                t182,
+                t183,
+                t184,
+                t185,
+                t186,
+                t189,
+                t190,
+                t191,
+                t193,
+                t195,
+                t196,
+                t197,
+                t198,
+                t199,
+            )
+        };
+        let (
+            t218,
+            t221,
+            t228,
+            t235,
+            t236,
+            t237,
+            t241,
+            t244,
+            t246,
+            t247,
+            t283,
+            t304,
+            t320,
+            t329,
+            t331,
+            t332,
+            t333,
+        ) = {
+            let t200 = arm_wy * t198 + arm_wx * t195
+                - k(2.0) * (arm_wy * t197 + arm_wx * t193);
+            let t201 = k(0.03) * block_wz + k(0.1) * block_wx;
+            let t202 = k(0.03) * block_wy - k(0.05) * block_wx;
+            let t203 = block_wy * t202 + block_wz * t201
+                - (t191 * t200 - (t189 * t199 + t184 * t196));
+            let t204 = t158 * t161 - t157 * t155;
+            let t205 = t154 * t204 - (t147 * t161 - t146 * t144);
+            let t206 = (k(0.3333333333333333) * t191
+                - k(0.6666666666666666) * (t189 - t184)) * t205
+                - (t203 + (t191 * t190 + (t189 * t186 - t184 * t183)));
+            let t207 = k(0.6666666666666666) * t191;
+            let t208 = k(0.4444444444444444) + k(0.5555555555555556) * t59;
+            let t209 = k(0.3333333333333333) * t51;
+            let t210 = k(0.4444444444444444) - k(0.4444444444444444) * t59;
+            let t211 = t210 - t209;
+            let t212 = k(0.3333333333333333) * t67;
+            let t213 = k(0.6666666666666666) * t67;
+            let t214 = block_wx * t213;
+            let t215 = t214 - block_wz * t212
+                - (t211 * t166 + (t208 * t174 - t191 * t173));
+            let t216 = t143 * t205
+                + (t151 * t204 - (t139 * t161 - k(30.26023804720597) * t137));
+            let t217 = k(0.6666666666666666) * t216;
+            let t218 = t217 + t215;
+            let t219 = t210 + t209;
+            let t220 = block_wy * t212 - t214
+                - (t208 * t166 + (t219 * t174 - t189 * t173));
+            let t221 = t217 + t220;
+            let t222 = k(0.05) * t221 + k(0.1) * t218
+                + ((t207 - (k(0.3333333333333333) * t189 + k(0.6666666666666666) * t184))
+                    * t204 - t206);
+            let t223 = k(0.1) * block_wy + k(0.05) * block_wz;
+            let t224 = block_wz * t223 - block_wx * t202
+                - (t211 * t200 - (t208 * t199 + t191 * t196));
+            let t225 = (k(0.3333333333333333) * t211
+                - k(0.6666666666666666) * (t208 - t191)) * t205
+                - (t224 + (t211 * t190 + (t208 * t186 - t191 * t183)));
+            let t226 = k(0.3333333333333333) * t208;
+            let t227 = block_wz * t213 - block_wy * t213
+                - (t191 * t166 + (t189 * t174 - t184 * t173));
+            let t228 = k(0.3333333333333333) * t216 + t227;
+            let t229 = k(0.03) * t221 + k(0.1) * t228
+                - ((k(0.6666666666666666) * t211 - (t226 + t207)) * t204 - t225);
+            let t230 = block_wx * t201 + block_wy * t223
+                + (t208 * t200 - (t219 * t199 + t189 * t196));
+            let t231 = (t226 - k(0.6666666666666666) * (t219 - t189)) * t205
+                + (t230 - (t208 * t190 + (t219 * t186 - t189 * t183)));
+            let t232 = (k(0.6666666666666666) * t208
+                - (k(0.3333333333333333) * t219 + k(0.6666666666666666) * t189)) * t204
+                - t231;
+            let t233 = k(0.03) * t218;
+            let t234 = t233 - k(0.05) * t228 + t232;
+            let t235 = t98 * t234 - (t97 * t229 + t96 * t222);
+            let t236 = t86 * t234 + (t85 * t229 + t84 * t222);
+            let t237 = t74 * t234 + (t73 * t229 - t72 * t222);
+            let t238 = k(40.0) * (k(0.05) + t44);
+            let t239 = t53 * t148 - (t8 * t238 + t53 * t149);
+            let t240 = k(0.6) - t239 - k(0.6) * t235;
+            let t241 = k(1.5) + t239 - k(1.5) * t176 + t240;
+            let t242 = t55 * t148 - (t25 * t238 + t55 * t149);
+            let t243 = k(5.4) - t242 + k(0.6) * t236;
+            let t244 = k(13.5) + t242 + k(1.5) * t177 + t243;
+            let t245 = t57 * t148 + (t37 * t238 - t57 * t149);
+            let t246 = k(1.8) - t245 + k(0.6) * t237;
+            let t247 = k(4.5) + t245 + k(1.5) * t178 + t246;
+            let t248 = (t101 * t185 - t100 * t182) * t240
+                + (t89 * t185 - t88 * t182) * t243;
+            let t249 = (k(0.06) * t14 + k(0.1) * t11) * t240
+                + (k(0.06) * t28 + k(0.1) * t27) * t243;
+            let t250 = t73 * t57 + (t85 * t55 + t97 * t53);
+            let t251 = t72 * t57 - (t84 * t55 + t96 * t53);
+            let t252 = k(0.05) * t251 - k(0.03) * t250;
+            let t253 = t73 * t37 - (t85 * t25 + t97 * t8);
+            let t254 = t72 * t37 + (t84 * t25 + t96 * t8);
+            let t255 = t148 * t252
+                + (t238 * (k(0.05) * t254 - k(0.03) * t253) - t149 * t252);
+            let t256 = k(0.4) * t135;
+            let t257 = k(0.013333333333333334) * t67;
+            let t258 = block_wx * block_wx;
+            let t259 = block_wy * block_wy;
+            let t260 = k(0.003) * block_wx;
+            let t261 = k(0.002) * block_wy;
+            let t262 = block_wz * (t261 + t260)
+                - (k(0.01) * (block_wx * block_wy) - k(0.001) * (t259 - t258));
+            let t263 = t262 + (t257 - (t256 - t255))
+                - (k(0.025) * t221 - (k(0.003) * t218 - k(0.002) * t228));
+            let t264 = t263 - (t249 + (k(0.06) * t40 - k(0.1) * t39) * t246);
+            let t265 = (k(0.06) * t17 - k(0.2) * t11) * t240
+                - (k(0.06) * t31 + k(0.2) * t27) * t243;
+            let t266 = t74 * t57 + (t86 * t55 - t98 * t53);
+            let t267 = k(0.03) * t266 - k(0.1) * t251;
+            let t268 = t74 * t37 - (t86 * t25 - t98 * t8);
+            let t269 = t148 * t267
+                + (t238 * (k(0.03) * t268 - k(0.1) * t254) - t149 * t267);
+            let t270 = block_wz * block_wz;
+            let t271 = k(0.001) * block_wz;
+            let t272 = block_wy * (t271 + t260)
+                - (k(0.005) * (block_wx * block_wz) - k(0.002) * (t270 - t258));
+            let t273 = t272 - (t257 - (t256 + t269))
+                - (k(0.003) * t221 - (t233 + k(0.001) * t228));
+            let t274 = t273 - (t265 - (k(0.06) * t41 - k(0.2) * t39) * t246);
+            let t275 = (k(0.1) * t17 + k(0.2) * t14) * t240
+                - (k(0.1) * t31 - k(0.2) * t28) * t243;
+            let t276 = k(0.1) * t250 - k(0.05) * t266;
+            let t277 = t148 * t276
+                + (t238 * (k(0.1) * t253 - k(0.05) * t268) - t149 * t276);
+            let t278 = k(0.2) * t135;
+            let t279 = k(0.006666666666666667) * t67;
+            let t280 = block_wx * (t261 - t271)
+                - (k(0.005) * (block_wy * block_wz) - k(0.003) * (t270 - t259));
+            let t281 = t280 - (t279 - (t278 + t277))
+                + (k(0.002) * t221 + (k(0.001) * t218 + k(0.02) * t228));
+            let t282 = t281 + (t275 - (k(0.1) * t41 - k(0.2) * t40) * t246);
+            let t283 = t191 * t282 + t211 * t274 - t208 * t264;
+            let t284 = arm_rx - t18;
+            let t285 = arm_ry - t32;
+            let t286 = arm_rz - t42;
+            let t287 = t77 * t286 - (t89 * t285 - t101 * t284);
+            let t288 = k(0.6666666666666666) * t287;
+            let t289 = t76 * t286 + (t88 * t285 - t100 * t284);
+            let t290 = k(0.3333333333333333) * t289;
+            let t291 = t290 - t288;
+            let t292 = t148 * t291
+                - (t238 * (k(0.6666666666666666) * (t287 + t289)) + t149 * t291);
+            let t293 = arm_wx * arm_wx;
+            let t294 = arm_wy * arm_wy;
+            let t295 = k(0.01) * arm_wx;
+            let t296 = k(0.03) * arm_wy;
+            let t297 = arm_wz * (t296 + t295)
+                - (k(0.05) * (arm_wx * arm_wy) + k(0.02) * (t294 - t293));
+            let t298 = t297 + (t257 - (t256 - t292))
+                - (t170 + (k(0.01) * t174 + k(0.03) * t173));
+            let t299 = t298 + (t283 - (t248 + (t77 * t185 + t76 * t182) * t246));
+            let t300 = (k(0.4) * t5 - k(0.2) * t7) * t241
+                + (k(0.4) * t23 - k(0.2) * t24) * t244;
+            let t301 = t300 + (k(0.4) * t35 + k(0.2) * t36) * t247 - t299;
+            let t302 = k(0.4444444444444444) + k(0.5555555555555556) * t63;
+            let t303 = (t103 * t185 + t100 * t180) * t240
+                - (t91 * t185 - t88 * t180) * t243;
+            let t304 = t189 * t282 + t208 * t274 - t219 * t264;
+            let t305 = t79 * t286 - (t91 * t285 + t103 * t284);
+            let t306 = k(0.6666666666666666) * (t305 - t289);
+            let t307 = k(0.6666666666666666) * t305;
+            let t308 = t256 + (t148 * t306 + (t238 * (t290 + t307) - t149 * t306));
+            let t309 = arm_wz * arm_wz;
+            let t310 = k(0.02) * arm_wz;
+            let t311 = arm_wy * (t310 - t295)
+                + (k(0.1) * (arm_wx * arm_wz) - k(0.03) * (t309 - t293));
+            let t312 = t311 + (t257 - t308)
+                - (k(0.01) * t166 + (k(0.25) * t174 - k(0.02) * t173));
+            let t313 = t312 + (t304 + (t303 - (t79 * t185 + t76 * t180) * t246));
+            let t314 = k(0.4) * t2 * t241 - k(0.4) * t22 * t244 - k(0.4) * t34 * t247;
+            let t315 = t314 + t313;
+            let t316 = k(0.6666666666666666) * t65;
+            let t317 = k(0.2222222222222222) - k(0.2222222222222222) * t63;
+            let t318 = t317 - t316;
+            let t319 = (t103 * t182 + t101 * t180) * t240
+                - (t91 * t182 - t89 * t180) * t243;
+            let t320 = t184 * t282 + t191 * t274 - t189 * t264;
+            let t321 = t288 - k(0.3333333333333333) * t305;
+            let t322 = t148 * t321
+                + (t238 * (t307 - k(0.3333333333333333) * t287) - t149 * t321);
+            let t323 = arm_wx * (t296 + t310)
+                + (k(0.05) * (arm_wy * arm_wz) + k(0.01) * (t309 - t294));
+            let t324 = t323 - (t279 - (t278 + t322))
+                - (k(0.03) * t166 - (k(0.02) * t174 - k(0.3) * t173));
+            let t325 = t324 - (t320 + (t319 - (t79 * t182 - t77 * t180) * t246));
+            let t326 = t9 * t241 - t26 * t244 - t38 * t247 - t325;
+            let t327 = k(0.3333333333333333) * t65;
+            let t328 = k(0.4444444444444444) - k(0.4444444444444444) * t63;
+            let t329 = k(0.7453559924999299)
+                * ((t328 + t327) * t326 - t318 * t315 - t302 * t301);
+            let t330 = t317 + t316;
+            let t331 = t318 * t326
+                - (k(0.1111111111111111) + k(0.8888888888888888) * t63) * t315
+                - t330 * t301;
+            let t332 = t302 * t326 - t330 * t315 - (t328 - t327) * t301;
+            let t333 = (t52 + (k(1.3333333333333333) * t5 - k(0.6666666666666666) * t7))
+                * t240
+                - (t54 - (k(1.3333333333333333) * t23 - k(0.6666666666666666) * t24))
+                    * t243;
+            (
+                t218,
+                t221,
+                t228,
+                t235,
+                t236,
+                t237,
+                t241,
+                t244,
+                t246,
+                t247,
+                t283,
+                t304,
+                t320,
+                t329,
+                t331,
+                t332,
+                t333,
+            )
+        };
+        *out = [
+            t176,
+            t177,
+            -t178,
+            t173,
+            -t174,
+            -t166,
+            t235,
+            t236,
+            -t237,
+            t228,
+            t218,
+            t221,
+            t241,
+            -t244,
+            t247,
+            k(0.5962847939999439) * t332 + k(0.29814239699997197) * t331 - t329,
+            k(0.4472135954999579) * t332 - k(0.8944271909999159) * t331,
+            t333
+                - (t56 - (k(1.3333333333333333) * t35 + k(0.6666666666666666) * t36))
+                    * t246,
+            k(0.6666666666666666) * (t320 - t304) + k(0.3333333333333333) * t283,
+            k(0.6666666666666666) * t320 + k(0.3333333333333333) * t304
+                - k(0.6666666666666666) * t283,
         ];
     }
 }
@@ -6170,6 +6667,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for CarriedBlock<T> {
             t28,
             t29,
             t30,
+            t31,
             t32,
             t38,
             t40,
@@ -6184,6 +6682,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for CarriedBlock<T> {
             t57,
             t58,
             t59,
+            t60,
             t61,
             t65,
             t67,
@@ -6198,13 +6697,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for CarriedBlock<T> {
             t82,
             t83,
             t84,
+            t85,
             t86,
             t89,
-            t90,
             t91,
-            t92,
             t93,
-            t94,
             t95,
             t96,
             t97,
@@ -6214,45 +6711,45 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for CarriedBlock<T> {
             t103,
             t105,
             t106,
-            t114,
-            t115,
+            t108,
+            t110,
+            t112,
+            t113,
             t116,
-            t117,
-            t119,
-            t120,
+            t118,
             t121,
             t122,
             t123,
+            t124,
             t125,
             t126,
             t127,
-            t128,
-            t129,
+            t135,
+            t136,
+            t137,
+            t138,
+            t140,
+            t141,
+            t142,
+            t143,
+            t144,
             t146,
             t147,
             t148,
             t149,
-            t154,
-            t155,
+            t150,
+            t158,
             t160,
-            t161,
-            t162,
-            t163,
+            t167,
             t168,
             t169,
             t170,
-            t171,
-            t172,
-            t173,
-            t174,
             t175,
             t176,
-            t179,
             t181,
+            t182,
             t183,
             t184,
-            t185,
-            t186,
             t189,
             t190,
             t191,
@@ -6262,7 +6759,6 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for CarriedBlock<T> {
             t195,
             t196,
             t197,
-            t198,
             t199,
         ) = {
             let t0 = block_e0 * block_e2;
@@ -6384,119 +6880,118 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for CarriedBlock<T> {
             let t104 = t28 * t97 + (t95 * t96 - t28 * t89);
             let t105 = k(0.6) * block_dsz - (k(1.8) - t104);
             let t106 = t105 + (k(1.5) * arm_dsz - (k(4.5) + t104));
-            let t107 = t10 * t28 + (t42 * t57 - t69 * t82);
-            let t108 = t7 * t28 + (t40 * t57 + t67 * t82);
-            let t109 = k(0.1) * t108 - k(0.05) * t107;
-            let t110 = t10 * t95 - (t42 * t93 - t69 * t91);
-            let t111 = t7 * t95 - (t40 * t93 + t67 * t91);
-            let t112 = t97 * t109
-                + (t96 * (k(0.1) * t111 - k(0.05) * t110) - t89 * t109);
-            let t113 = t15 * t3 + (t47 * t38 + t72 * t65);
-            let t114 = k(0.6666666666666666) * t113;
-            let t115 = t15 * t7 - (t47 * t40 + t72 * t67);
-            let t116 = k(0.3333333333333333) * t115;
-            let t117 = t15 * t10 - (t47 * t42 - t72 * t69);
-            let t118 = k(0.6666666666666666) * t117 + (t116 + t114);
-            let t119 = t19 * t3 - (t49 * t38 + t74 * t65);
-            let t120 = k(0.6666666666666666) * t119;
-            let t121 = t19 * t7 + (t74 * t67 + t49 * t40);
-            let t122 = k(0.3333333333333333) * t121;
-            let t123 = t19 * t10 - (t74 * t69 - t49 * t42);
-            let t124 = k(0.6666666666666666) * t123 + (t122 + t120);
-            let t125 = t23 * t3 - (t52 * t38 - t77 * t65);
-            let t126 = k(0.6666666666666666) * t125;
-            let t127 = t23 * t7 - (t77 * t67 - t52 * t40);
-            let t128 = k(0.3333333333333333) * t127;
-            let t129 = t77 * t69 + t52 * t42 + t23 * t10;
-            let t130 = k(0.6666666666666666) * t129 + (t128 + t126);
-            let t131 = k(0.6666666666666666) * t130
-                + (k(0.3333333333333333) * t124 + k(0.6666666666666666) * t118);
-            let t132 = turn0.cos();
-            let t133 = k(0.3333333333333333) * t130
-                + k(0.6666666666666666) * (t124 - t118);
-            let t134 = turn0.sin();
-            let t135 = (t132 * t133 - t134 * t131).atan2(t134 * t133 + t132 * t131);
-            let t136 = turn0 + t135;
-            let t137 = k(0.2) * t136;
-            let t138 = k(0.3333333333333333) * arm_wx + k(0.6666666666666666) * arm_wy
+            let t107 = k(1.3333333333333333) * t18;
+            let t108 = t107 + k(0.6666666666666666) * t14;
+            let t109 = k(1.3333333333333333) * t48;
+            let t110 = t109 - k(0.6666666666666666) * t46;
+            let t111 = k(1.3333333333333333) * t73;
+            let t112 = t111 - k(0.6666666666666666) * t71;
+            let t113 = k(0.5962847939999439) * t112 + k(0.29814239699997197) * t110
+                - k(0.7453559924999299) * t108;
+            let t114 = t46 - t51;
+            let t115 = t71 + t76;
+            let t116 = k(0.7950463919999252) * t115 + k(0.3975231959999626) * t114
+                + k(0.9938079899999065) * (t14 + t22);
+            let t117 = k(0.6666666666666666) * t116;
+            let t118 = t117 - k(0.3333333333333333) * t113;
+            let t119 = t92 - t109;
+            let t120 = t90 + t111;
+            let t121 = k(0.4472135954999579) * t120 + k(0.8944271909999159) * t119;
+            let t122 = k(0.5962847939999439) * t120 - k(0.29814239699997197) * t119
+                + k(0.7453559924999299) * (t94 - t107);
+            let t123 = k(0.6666666666666666) * (t122 + t113);
+            let t124 = k(0.5962847939999439) * t115 - k(1.1925695879998879) * t114;
+            let t125 = k(0.3333333333333333) * t122 + t117;
+            let t126 = k(0.4472135954999579) * t112 - k(0.8944271909999159) * t110;
+            let t127 = k(1.0) / (t126 * t125 - (t124 * t123 - t121 * t118));
+            let t128 = t10 * t28 + (t42 * t57 - t69 * t82);
+            let t129 = t7 * t28 + (t40 * t57 + t67 * t82);
+            let t130 = k(0.1) * t129 - k(0.05) * t128;
+            let t131 = t10 * t95 - (t42 * t93 - t69 * t91);
+            let t132 = t7 * t95 - (t40 * t93 + t67 * t91);
+            let t133 = t97 * t130
+                + (t96 * (k(0.1) * t132 - k(0.05) * t131) - t89 * t130);
+            let t134 = t15 * t3 + (t47 * t38 + t72 * t65);
+            let t135 = k(0.6666666666666666) * t134;
+            let t136 = t15 * t7 - (t47 * t40 + t72 * t67);
+            let t137 = k(0.3333333333333333) * t136;
+            let t138 = t15 * t10 - (t47 * t42 - t72 * t69);
+            let t139 = k(0.6666666666666666) * t138 + (t137 + t135);
+            let t140 = t19 * t3 - (t49 * t38 + t74 * t65);
+            let t141 = k(0.6666666666666666) * t140;
+            let t142 = t19 * t7 + (t74 * t67 + t49 * t40);
+            let t143 = k(0.3333333333333333) * t142;
+            let t144 = t19 * t10 - (t74 * t69 - t49 * t42);
+            let t145 = k(0.6666666666666666) * t144 + (t143 + t141);
+            let t146 = t23 * t3 - (t52 * t38 - t77 * t65);
+            let t147 = k(0.6666666666666666) * t146;
+            let t148 = t23 * t7 - (t77 * t67 - t52 * t40);
+            let t149 = k(0.3333333333333333) * t148;
+            let t150 = t77 * t69 + t52 * t42 + t23 * t10;
+            let t151 = k(0.6666666666666666) * t150 + (t149 + t147);
+            let t152 = k(0.6666666666666666) * t151
+                + (k(0.3333333333333333) * t145 + k(0.6666666666666666) * t139);
+            let t153 = turn0.cos();
+            let t154 = k(0.3333333333333333) * t151
+                + k(0.6666666666666666) * (t145 - t139);
+            let t155 = turn0.sin();
+            let t156 = (t153 * t154 - t155 * t152).atan2(t155 * t154 + t153 * t152);
+            let t157 = turn0 + t156;
+            let t158 = k(0.2) * t157;
+            let t159 = k(0.3333333333333333) * arm_wx + k(0.6666666666666666) * arm_wy
                 + k(0.6666666666666666) * arm_wz
                 - (k(0.3333333333333333) * block_wx + k(0.6666666666666666) * block_wy
                     + k(0.6666666666666666) * block_wz);
-            let t139 = k(0.006666666666666667) * t138;
-            let t140 = block_wy * block_wy;
-            let t141 = block_wz * block_wz;
-            let t142 = k(0.001) * block_wz;
-            let t143 = k(0.002) * block_wy;
-            let t144 = block_wx * (t143 - t142)
-                - (k(0.005) * (block_wy * block_wz) - k(0.003) * (t141 - t140));
-            let t145 = k(0.02) * block_dwx + k(0.001) * block_dwy + k(0.002) * block_dwz
-                + (t144 - (t139 - (t137 + t112)));
-            let t146 = k(0.1) * t68 + k(0.2) * t66;
-            let t147 = k(0.1) * t41 - k(0.2) * t39;
-            let t148 = k(0.1) * t9 - k(0.2) * t6;
-            let t149 = t148 * t105 - (t147 * t102 + t146 * t99) + t145;
-            let t150 = t3 * t28 - (t38 * t57 + t65 * t82);
-            let t151 = k(0.03) * t107 - k(0.1) * t150;
-            let t152 = t3 * t95 + (t38 * t93 + t65 * t91);
-            let t153 = t97 * t151
-                + (t96 * (k(0.03) * t110 - k(0.1) * t152) - t89 * t151);
-            let t154 = k(0.4) * t136;
-            let t155 = k(0.013333333333333334) * t138;
-            let t156 = block_wx * block_wx;
-            let t157 = k(0.003) * block_wx;
-            let t158 = block_wy * (t142 + t157)
-                - (k(0.005) * (block_wx * block_wz) - k(0.002) * (t141 - t156));
-            let t159 = k(0.001) * block_dwx + k(0.03) * block_dwy - k(0.003) * block_dwz
-                + (t158 - (t155 - (t154 + t153)));
-            let t160 = k(0.06) * t68 - k(0.2) * t64;
-            let t161 = k(0.06) * t41 + k(0.2) * t37;
-            let t162 = k(0.06) * t9 - k(0.2) * t2;
-            let t163 = t162 * t105 - (t161 * t102 + t160 * t99) - t159;
-            let t164 = k(0.05) * t150 - k(0.03) * t108;
-            let t165 = t97 * t164
-                + (t96 * (k(0.05) * t152 - k(0.03) * t111) - t89 * t164);
-            let t166 = block_wz * (t143 + t157)
-                - (k(0.01) * (block_wx * block_wy) - k(0.001) * (t140 - t156));
-            let t167 = k(0.002) * block_dwx - k(0.003) * block_dwy + k(0.025) * block_dwz
-                - (t166 + (t155 - (t154 - t165)));
-            let t168 = k(0.06) * t66 + k(0.1) * t64;
-            let t169 = k(0.06) * t39 + k(0.1) * t37;
-            let t170 = k(0.06) * t6 - k(0.1) * t2;
-            let t171 = t170 * t105 - (t169 * t102 - t168 * t99) - t167;
-            let t172 = arm_rx - t86;
-            let t173 = arm_ry - t61;
-            let t174 = arm_rz - t32;
-            let t175 = t23 * t174 - (t52 * t173 + t77 * t172);
-            let t176 = t19 * t174 - (t49 * t173 - t74 * t172);
-            let t177 = t102 * (t52 * t176 - t49 * t175)
-                + t99 * (t77 * t176 + t74 * t175);
-            let t178 = t105 * (t23 * t176 - t19 * t175) - t177
-                + (t117 * t171 - (t115 * t163 - t113 * t149));
-            let t179 = k(0.6666666666666666) * t176;
-            let t180 = t179 - k(0.3333333333333333) * t175;
-            let t181 = k(0.6666666666666666) * t175;
-            let t182 = t97 * t180
-                + (t96 * (t181 - k(0.3333333333333333) * t176) - t89 * t180);
-            let t183 = arm_wy * arm_wy;
-            let t184 = arm_wz * arm_wz;
-            let t185 = k(0.02) * arm_wz;
-            let t186 = k(0.03) * arm_wy;
-            let t187 = arm_wx * (t186 + t185)
-                + (k(0.05) * (arm_wy * arm_wz) + k(0.01) * (t184 - t183));
-            let t188 = k(0.3) * arm_dwx + k(0.02) * arm_dwy - k(0.03) * arm_dwz
-                - (t187 - (t139 - (t137 + t182)));
-            let t189 = t31 * t106 - (t60 * t103 + t85 * t100);
-            let t190 = t189 + (t188 + t178);
-            let t191 = k(1.3333333333333333) * t18;
-            let t192 = t191 + k(0.6666666666666666) * t14;
-            let t193 = k(1.3333333333333333) * t48;
-            let t194 = t193 - k(0.6666666666666666) * t46;
-            let t195 = k(1.3333333333333333) * t73;
-            let t196 = t195 - k(0.6666666666666666) * t71;
-            let t197 = k(0.5962847939999439) * t196 + k(0.29814239699997197) * t194
-                - k(0.7453559924999299) * t192;
-            let t198 = t46 - t51;
-            let t199 = t71 + t76;
+            let t160 = k(0.006666666666666667) * t159;
+            let t161 = block_wy * block_wy;
+            let t162 = block_wz * block_wz;
+            let t163 = k(0.001) * block_wz;
+            let t164 = k(0.002) * block_wy;
+            let t165 = block_wx * (t164 - t163)
+                - (k(0.005) * (block_wy * block_wz) - k(0.003) * (t162 - t161));
+            let t166 = k(0.02) * block_dwx + k(0.001) * block_dwy + k(0.002) * block_dwz
+                + (t165 - (t160 - (t158 + t133)));
+            let t167 = k(0.1) * t68 + k(0.2) * t66;
+            let t168 = k(0.1) * t41 - k(0.2) * t39;
+            let t169 = k(0.1) * t9 - k(0.2) * t6;
+            let t170 = t169 * t105 - (t168 * t102 + t167 * t99) + t166;
+            let t171 = t3 * t28 - (t38 * t57 + t65 * t82);
+            let t172 = k(0.03) * t128 - k(0.1) * t171;
+            let t173 = t3 * t95 + (t38 * t93 + t65 * t91);
+            let t174 = t97 * t172
+                + (t96 * (k(0.03) * t131 - k(0.1) * t173) - t89 * t172);
+            let t175 = k(0.4) * t157;
+            let t176 = k(0.013333333333333334) * t159;
+            let t177 = block_wx * block_wx;
+            let t178 = k(0.003) * block_wx;
+            let t179 = block_wy * (t163 + t178)
+                - (k(0.005) * (block_wx * block_wz) - k(0.002) * (t162 - t177));
+            let t180 = k(0.001) * block_dwx + k(0.03) * block_dwy - k(0.003) * block_dwz
+                + (t179 - (t176 - (t175 + t174)));
+            let t181 = k(0.06) * t68 - k(0.2) * t64;
+            let t182 = k(0.06) * t41 + k(0.2) * t37;
+            let t183 = k(0.06) * t9 - k(0.2) * t2;
+            let t184 = t183 * t105 - (t182 * t102 + t181 * t99) - t180;
+            let t185 = k(0.05) * t171 - k(0.03) * t129;
+            let t186 = t97 * t185
+                + (t96 * (k(0.05) * t173 - k(0.03) * t132) - t89 * t185);
+            let t187 = block_wz * (t164 + t178)
+                - (k(0.01) * (block_wx * block_wy) - k(0.001) * (t161 - t177));
+            let t188 = k(0.002) * block_dwx - k(0.003) * block_dwy + k(0.025) * block_dwz
+                - (t187 + (t176 - (t175 - t186)));
+            let t189 = k(0.06) * t66 + k(0.1) * t64;
+            let t190 = k(0.06) * t39 + k(0.1) * t37;
+            let t191 = k(0.06) * t6 - k(0.1) * t2;
+            let t192 = t191 * t105 - (t190 * t102 - t189 * t99) - t188;
+            let t193 = arm_rx - t86;
+            let t194 = arm_ry - t61;
+            let t195 = arm_rz - t32;
+            let t196 = t23 * t195 - (t52 * t194 + t77 * t193);
+            let t197 = t19 * t195 - (t49 * t194 - t74 * t193);
+            let t198 = t102 * (t52 * t197 - t49 * t196)
+                + t99 * (t77 * t197 + t74 * t196);
+            let t199 = t105 * (t23 * t197 - t19 * t196) - t198
+                + (t138 * t192 - (t136 * t184 - t134 * t170));
             (
                 t3,
                 t7,
@@ -6511,6 +7006,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for CarriedBlock<T> {
                 t28,
                 t29,
                 t30,
+                t31,
                 t32,
                 t38,
                 t40,
@@ -6525,6 +7021,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for CarriedBlock<T> {
                 t57,
                 t58,
                 t59,
+                t60,
                 t61,
                 t65,
                 t67,
@@ -6539,13 +7036,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for CarriedBlock<T> {
                 t82,
                 t83,
                 t84,
+                t85,
                 t86,
                 t89,
-                t90,
                 t91,
-                t92,
                 t93,
-                t94,
                 t95,
                 t96,
                 t97,
@@ -6555,45 +7050,45 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for CarriedBlock<T> {
                 t103,
                 t105,
                 t106,
-                t114,
-                t115,
+                t108,
+                t110,
+                t112,
+                t113,
                 t116,
-                t117,
-                t119,
-                t120,
+                t118,
                 t121,
                 t122,
                 t123,
+                t124,
                 t125,
                 t126,
                 t127,
-                t128,
-                t129,
+                t135,
+                t136,
+                t137,
+                t138,
+                t140,
+                t141,
+                t142,
+                t143,
+                t144,
                 t146,
                 t147,
                 t148,
                 t149,
-                t154,
-                t155,
+                t150,
+                t158,
                 t160,
-                t161,
-                t162,
-                t163,
+                t167,
                 t168,
                 t169,
                 t170,
-                t171,
-                t172,
-                t173,
-                t174,
                 t175,
                 t176,
-                t179,
                 t181,
+                t182,
                 t183,
                 t184,
-                t185,
-                t186,
                 t189,
                 t190,
                 t191,
@@ -6603,64 +7098,65 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for CarriedBlock<T> {
                 t195,
                 t196,
                 t197,
-                t198,
                 t199,
             )
         };
         let (t242, t244, t245, t246, t247, t248, t250, t251, t252, t285, t287, t288) = {
-            let t200 = k(0.7950463919999252) * t199 + k(0.3975231959999626) * t198
-                + k(0.9938079899999065) * (t14 + t22);
-            let t201 = k(0.6666666666666666) * t200;
-            let t202 = t201 - k(0.3333333333333333) * t197;
-            let t203 = t92 - t193;
-            let t204 = t90 + t195;
-            let t205 = k(0.4472135954999579) * t204 + k(0.8944271909999159) * t203;
-            let t206 = k(0.5962847939999439) * t204 - k(0.29814239699997197) * t203
-                + k(0.7453559924999299) * (t94 - t191);
-            let t207 = k(0.6666666666666666) * (t206 + t197);
-            let t208 = k(0.5962847939999439) * t199 - k(1.1925695879998879) * t198;
-            let t209 = k(0.3333333333333333) * t206 + t201;
-            let t210 = k(0.4472135954999579) * t196 - k(0.8944271909999159) * t194;
-            let t211 = k(1.0) / (t210 * t209 - (t208 * t207 - t205 * t202));
-            let t212 = t15 * t174 + (t47 * t173 - t72 * t172);
-            let t213 = t102 * (t52 * t212 + t47 * t175)
-                + t99 * (t77 * t212 - t72 * t175);
-            let t214 = t105 * (t23 * t212 - t15 * t175) - t213
-                - (t123 * t171 - (t121 * t163 - t119 * t149));
-            let t215 = k(0.6666666666666666) * (t212 - t175);
+            let t200 = k(0.6666666666666666) * t197;
+            let t201 = t200 - k(0.3333333333333333) * t196;
+            let t202 = k(0.6666666666666666) * t196;
+            let t203 = t97 * t201
+                + (t96 * (t202 - k(0.3333333333333333) * t197) - t89 * t201);
+            let t204 = arm_wy * arm_wy;
+            let t205 = arm_wz * arm_wz;
+            let t206 = k(0.02) * arm_wz;
+            let t207 = k(0.03) * arm_wy;
+            let t208 = arm_wx * (t207 + t206)
+                + (k(0.05) * (arm_wy * arm_wz) + k(0.01) * (t205 - t204));
+            let t209 = k(0.3) * arm_dwx + k(0.02) * arm_dwy - k(0.03) * arm_dwz
+                - (t208 - (t160 - (t158 + t203)));
+            let t210 = t31 * t106 - (t60 * t103 + t85 * t100);
+            let t211 = t210 + (t209 + t199);
+            let t212 = t15 * t195 + (t47 * t194 - t72 * t193);
+            let t213 = t102 * (t52 * t212 + t47 * t196)
+                + t99 * (t77 * t212 - t72 * t196);
+            let t214 = t105 * (t23 * t212 - t15 * t196) - t213
+                - (t144 * t192 - (t142 * t184 - t140 * t170));
+            let t215 = k(0.6666666666666666) * (t196 - t212);
             let t216 = k(0.3333333333333333) * t212;
-            let t217 = t154 - (t97 * t215 - (t96 * (t216 + t181) + t89 * t215));
+            let t217 = t175 + (t97 * t215 + (t96 * (t216 + t202) - t89 * t215));
             let t218 = arm_wx * arm_wx;
             let t219 = k(0.01) * arm_wx;
-            let t220 = arm_wy * (t185 - t219)
-                + (k(0.1) * (arm_wx * arm_wz) - k(0.03) * (t184 - t218));
+            let t220 = arm_wy * (t206 - t219)
+                + (k(0.1) * (arm_wx * arm_wz) - k(0.03) * (t205 - t218));
             let t221 = k(0.02) * arm_dwx + k(0.25) * arm_dwy + k(0.01) * arm_dwz
-                + (t220 + (t155 - t217));
+                + (t220 + (t176 - t217));
             let t222 = k(0.4) * t22 * t106 - (k(0.4) * t51 * t103 + k(0.4) * t76 * t100);
             let t223 = t222 + (t221 - t214);
-            let t224 = t102 * (t49 * t212 + t47 * t176)
-                - t99 * (t74 * t212 + t72 * t176);
-            let t225 = t105 * (t19 * t212 - t15 * t176) - t224
-                + (t129 * t171 - (t127 * t163 - t125 * t149));
-            let t226 = t216 - t179;
+            let t224 = t102 * (t49 * t212 + t47 * t197)
+                - t99 * (t74 * t212 + t72 * t197);
+            let t225 = t105 * (t19 * t212 - t15 * t197) - t224
+                + (t150 * t192 - (t148 * t184 - t146 * t170));
+            let t226 = t216 - t200;
             let t227 = t97 * t226
-                - (t96 * (k(0.6666666666666666) * (t212 + t176)) + t89 * t226);
-            let t228 = arm_wz * (t186 + t219)
-                - (k(0.05) * (arm_wx * arm_wy) + k(0.02) * (t183 - t218));
+                - (t96 * (k(0.6666666666666666) * (t197 + t212)) + t89 * t226);
+            let t228 = arm_wz * (t207 + t219)
+                - (k(0.05) * (arm_wx * arm_wy) + k(0.02) * (t204 - t218));
             let t229 = k(0.03) * arm_dwx - k(0.01) * arm_dwy - k(0.2) * arm_dwz
-                - (t228 + (t155 - (t154 - t227)));
+                - (t228 + (t176 - (t175 - t227)));
             let t230 = (k(0.4) * t48 - k(0.2) * t46) * t103
                 - (k(0.4) * t73 - k(0.2) * t71) * t100;
             let t231 = (k(0.4) * t18 + k(0.2) * t14) * t106 - t230;
             let t232 = t231 - (t229 + t225);
-            let t233 = t209 * t211 * t232 + (t207 * t211 * t223 - t202 * t211 * t190);
-            let t234 = k(0.6666666666666666) * t208;
-            let t235 = t211 * (k(0.6666666666666666) * (t205 + t210)) * t223
-                - t211 * (t234 - k(0.3333333333333333) * t210) * t190;
-            let t236 = t211 * (k(0.3333333333333333) * t205 + t234) * t232 + t235;
-            let t237 = t206 * t236 - (t189 + t205 * t233);
-            let t238 = t200 * t236 - (t222 + t208 * t233);
-            let t239 = t197 * t236 + (t231 - t210 * t233);
+            let t233 = t232 * (t125 * t127)
+                + (t223 * (t123 * t127) - t211 * (t118 * t127));
+            let t234 = k(0.6666666666666666) * t124;
+            let t235 = t223 * (t127 * (k(0.6666666666666666) * (t121 + t126)))
+                - t211 * (t127 * (t234 - k(0.3333333333333333) * t126));
+            let t236 = t232 * (t127 * (k(0.3333333333333333) * t121 + t234)) + t235;
+            let t237 = t122 * t236 - (t210 + t121 * t233);
+            let t238 = t116 * t236 - (t222 + t124 * t233);
+            let t239 = t113 * t236 + (t231 - t126 * t233);
             let t240 = arm_ry - (arm_ry - (t59 + t58));
             let t241 = arm_rz - (arm_rz + (t30 - t29));
             let t242 = t103 * t241 - t106 * t240
@@ -6670,27 +7166,27 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for CarriedBlock<T> {
                 + (t52 * t239 + (t49 * t238 - t47 * t237));
             let t245 = t100 * t240 - t103 * t243
                 - (t23 * t239 + (t19 * t238 + t15 * t237));
-            let t246 = t81 + t196;
-            let t247 = t56 - t194;
-            let t248 = t27 - t192;
-            let t249 = t105 * t248 - (t102 * t247 + t99 * t246);
+            let t246 = t81 + t112;
+            let t247 = t56 - t110;
+            let t248 = t27 - t108;
+            let t249 = t248 * t105 - (t247 * t102 + t246 * t99);
             let t250 = t246 * t249;
             let t251 = t247 * t249;
             let t252 = t248 * t249;
-            let t253 = t128 - t126;
-            let t254 = t122 - t120;
-            let t255 = t116 - t114;
+            let t253 = t149 - t147;
+            let t254 = t143 - t141;
+            let t255 = t137 - t135;
             let t256 = k(0.6666666666666666) * (t255 - t254)
                 - k(0.3333333333333333) * t253;
-            let t257 = t126 + k(0.3333333333333333) * t129;
-            let t258 = t120 + k(0.3333333333333333) * t123;
-            let t259 = t114 + k(0.3333333333333333) * t117;
+            let t257 = t147 + k(0.3333333333333333) * t150;
+            let t258 = t141 + k(0.3333333333333333) * t144;
+            let t259 = t135 + k(0.3333333333333333) * t138;
             let t260 = k(0.6666666666666666) * (t259 - t258)
                 - k(0.3333333333333333) * t257;
             let t261 = k(0.6666666666666666) * (t260 - t256);
-            let t262 = t129 + t127;
-            let t263 = t123 + t121;
-            let t264 = t117 + t115;
+            let t262 = t150 + t148;
+            let t263 = t144 + t142;
+            let t264 = t138 + t136;
             let t265 = k(0.4444444444444444) * t264 + k(0.2222222222222222) * t263
                 + k(0.4444444444444444) * t262;
             let t266 = k(0.4444444444444444) * (t264 - t263)
@@ -6703,17 +7199,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for CarriedBlock<T> {
             let t271 = k(0.6666666666666666) * t255 + k(0.3333333333333333) * t254
                 + k(0.6666666666666666) * t253;
             let t272 = k(1.0) / (t271 * t270 - (t269 * t268 - t265 * t261));
-            let t273 = t171 * (t270 * t272)
-                - (t163 * (t268 * t272) - t149 * (t261 * t272));
-            let t274 = t265 * t273 - t249 * (t146 * t246 + t147 * t247 + t148 * t248);
+            let t273 = t192 * (t270 * t272)
+                - (t184 * (t268 * t272) - t170 * (t261 * t272));
+            let t274 = t265 * t273 - t249 * (t167 * t246 + t168 * t247 + t169 * t248);
             let t275 = k(0.6666666666666666) * t265;
-            let t276 = t163 * (t272 * (t275 + k(0.3333333333333333) * t271))
-                - t149 * (t272 * (k(0.6666666666666666) * (t269 - t271)));
-            let t277 = t171 * (t272 * (k(0.3333333333333333) * t269 + t275)) - t276;
+            let t276 = t184 * (t272 * (t275 + k(0.3333333333333333) * t271))
+                - t170 * (t272 * (k(0.6666666666666666) * (t269 - t271)));
+            let t277 = t192 * (t272 * (k(0.3333333333333333) * t269 + t275)) - t276;
             let t278 = t266 * t277 - t274;
-            let t279 = t269 * t273 - t249 * (t160 * t246 + t161 * t247 + t162 * t248);
+            let t279 = t269 * t273 - t249 * (t181 * t246 + t182 * t247 + t183 * t248);
             let t280 = t260 * t277 - t279;
-            let t281 = t271 * t273 + t249 * (t168 * t246 - t169 * t247 - t170 * t248);
+            let t281 = t271 * t273 + t249 * (t189 * t246 - t190 * t247 - t191 * t248);
             let t282 = t256 * t277 - t281;
             let t283 = block_ry - t61;
             let t284 = block_rz - t32;

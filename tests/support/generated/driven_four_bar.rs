@@ -18,7 +18,7 @@
 //! | gamma | γ | 111 | 183 | 1 | 295 | 0 of 18 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 87 | 113 | 1 | 201 | 0 of 18 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 593 | 819 | 11 | 1423 | 0 of 22 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 541 | 749 | 11 | 1301 | 0 of 22 |
 //! | multipliers | λ, the accelerations being known | 107 | 170 | 4 | 281 | 0 of 18 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 25 | 51 | 0 | 76 | 0 of 23 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
@@ -34,7 +34,7 @@
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints, outputs: their definitions
 //!
-//! All of it holds but with a probability below 1e-141.
+//! All of it holds but with a probability below 1e-142.
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
 
 /// The mechanism `driven_four_bar`.
@@ -1486,7 +1486,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
             -(k(0.01076) * (rocker_wx * rocker_wy)),
         ];
     }
-    /// Solves eq. (17): 1423 operations (593 ±, 819 ×, 11 ÷) and 1 functions.
+    /// Solves eq. (17): 1301 operations (541 ±, 749 ×, 11 ÷) and 1 functions.
     fn accelerations(&self, t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let crank_e0 = y[3];
@@ -1511,62 +1511,70 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
         let rocker_wy = y[37];
         let rocker_wz = y[38];
         let (
-            t2,
-            t3,
-            t6,
-            t8,
-            t9,
+            t7,
+            t12,
+            t14,
+            t15,
+            t16,
+            t17,
             t18,
+            t19,
+            t20,
+            t21,
             t23,
+            t24,
             t25,
-            t29,
-            t33,
+            t26,
+            t27,
             t37,
-            t39,
-            t43,
-            t46,
+            t42,
+            t44,
+            t49,
+            t50,
             t51,
-            t53,
             t54,
-            t58,
+            t56,
             t59,
             t60,
-            t61,
-            t62,
+            t63,
             t64,
+            t65,
             t66,
             t67,
-            t70,
+            t69,
             t71,
-            t72,
-            t73,
-            t75,
-            t80,
-            t83,
+            t74,
+            t76,
+            t81,
+            t82,
+            t85,
             t86,
             t87,
-            t88,
-            t90,
+            t89,
+            t92,
             t93,
-            t94,
-            t97,
-            t98,
+            t95,
+            t96,
             t99,
+            t100,
             t101,
-            t104,
+            t103,
+            t106,
             t111,
             t112,
             t113,
-            t114,
             t115,
-            t116,
-            t120,
+            t121,
+            t122,
             t123,
             t124,
-            t144,
-            t148,
-            t152,
-            t169,
+            t128,
+            t131,
+            t132,
+            t146,
+            t150,
+            t154,
+            t167,
             t189,
             t190,
             t192,
@@ -1576,280 +1584,290 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
             t198,
             t199,
         ) = {
-            let t0 = crank_e0 * crank_e0;
-            let t1 = k(0.5) - (t0 + crank_e2 * crank_e2);
-            let t2 = k(2.0) * t1;
-            let t3 = k(2.0) * (k(0.5) - (t0 + crank_e1 * crank_e1));
-            let t4 = crank_e0 * crank_e3;
-            let t5 = crank_e1 * crank_e2;
-            let t6 = k(2.0) * (t5 + t4);
-            let t7 = t5 - t4;
+            let t0 = coupler_wz * coupler_wz;
+            let t1 = t0 + coupler_wy * coupler_wy;
+            let t2 = coupler_e0 * coupler_e0;
+            let t3 = k(2.0) * (k(0.5) - (t2 + coupler_e1 * coupler_e1));
+            let t4 = coupler_wx * coupler_wy;
+            let t5 = coupler_e0 * coupler_e3;
+            let t6 = coupler_e1 * coupler_e2;
+            let t7 = t6 - t5;
             let t8 = k(2.0) * t7;
-            let t9 = t8 * t6 - t3 * t2;
-            let t10 = k(1.0) / t9;
-            let t11 = crank_wx * crank_wz;
-            let t12 = crank_wy * crank_wz;
-            let t13 = crank_wy * crank_wy;
-            let t14 = t13 + crank_wx * crank_wx;
-            let t15 = crank_e0 * crank_e2;
-            let t16 = crank_e1 * crank_e3;
-            let t17 = t16 + t15;
-            let t18 = k(2.0) * t17;
-            let t19 = t18 * t14 - (t8 * t12 - t3 * t11);
-            let t20 = crank_e0 * crank_e1;
-            let t21 = crank_e2 * crank_e3;
-            let t22 = t21 - t20;
-            let t23 = k(2.0) * t22;
-            let t24 = t23 * t14 + (t2 * t12 - t6 * t11);
-            let t25 = t24 * (t8 * t10) + t19 * (t2 * t10);
-            let t26 = k(0.2) * t17;
-            let t27 = coupler_e0 * coupler_e1;
-            let t28 = coupler_e2 * coupler_e3;
-            let t29 = t28 - t27;
-            let t30 = coupler_wx * coupler_wz;
-            let t31 = k(0.02095) * t30 + k(4.905) * t29;
-            let t32 = coupler_e0 * coupler_e0;
-            let t33 = k(0.5) - (t32 + coupler_e2 * coupler_e2);
-            let t34 = k(2.0) * t33;
-            let t35 = coupler_e0 * coupler_e3;
-            let t36 = coupler_e1 * coupler_e2;
-            let t37 = t36 - t35;
-            let t38 = k(2.0) * t37;
-            let t39 = t28 + t27;
-            let t40 = k(2.0) * t39;
-            let t41 = k(0.5) - (t0 + crank_e3 * crank_e3);
-            let t42 = k(2.0) * t41;
-            let t43 = t42 * t40 - (t18 * t38 - t23 * t34);
-            let t44 = coupler_wx * coupler_wy;
-            let t45 = k(0.02095) * t44 - k(4.905) * t33;
-            let t46 = k(0.5) - (t32 + coupler_e3 * coupler_e3);
-            let t47 = k(2.0) * t46;
-            let t48 = k(2.0) * t29;
-            let t49 = coupler_e0 * coupler_e2;
-            let t50 = coupler_e1 * coupler_e3;
-            let t51 = t50 + t49;
+            let t9 = coupler_wx * coupler_wz;
+            let t10 = coupler_e0 * coupler_e2;
+            let t11 = coupler_e1 * coupler_e3;
+            let t12 = t11 + t10;
+            let t13 = k(2.0) * t12;
+            let t14 = k(0.25) * (t13 * t9 + (t8 * t4 + t3 * t1));
+            let t15 = rocker_wy * rocker_wy;
+            let t16 = rocker_wz * rocker_wz + t15;
+            let t17 = rocker_e0 * rocker_e0;
+            let t18 = rocker_wx * rocker_wy;
+            let t19 = rocker_e0 * rocker_e3;
+            let t20 = rocker_e1 * rocker_e2;
+            let t21 = t20 - t19;
+            let t22 = k(2.0) * t21 * t18
+                + k(2.0) * (k(0.5) - (t17 + rocker_e1 * rocker_e1)) * t16;
+            let t23 = rocker_wx * rocker_wz;
+            let t24 = rocker_e0 * rocker_e2;
+            let t25 = rocker_e1 * rocker_e3;
+            let t26 = t25 + t24;
+            let t27 = k(0.2) * (k(2.0) * t26 * t23 + t22);
+            let t28 = crank_e0 * crank_e0;
+            let t29 = k(0.5) - (t28 + crank_e3 * crank_e3);
+            let t30 = crank_wy * crank_wy;
+            let t31 = t30 + crank_wx * crank_wx;
+            let t32 = t31 * (k(0.5) / t29);
+            let t33 = crank_e0 * crank_e2;
+            let t34 = crank_e1 * crank_e3;
+            let t35 = k(2.0) * (t34 - t33);
+            let t36 = crank_wx * crank_wz;
+            let t37 = t36 - t35 * t32;
+            let t38 = t34 + t33;
+            let t39 = k(0.2) * t38;
+            let t40 = coupler_e0 * coupler_e1;
+            let t41 = coupler_e2 * coupler_e3;
+            let t42 = t41 - t40;
+            let t43 = k(0.02095) * t9 + k(4.905) * t42;
+            let t44 = k(0.5) - (t2 + coupler_e2 * coupler_e2);
+            let t45 = k(2.0) * t44;
+            let t46 = crank_e0 * crank_e1;
+            let t47 = crank_e2 * crank_e3;
+            let t48 = t47 - t46;
+            let t49 = k(2.0) * t48;
+            let t50 = k(2.0) * t38;
+            let t51 = t41 + t40;
             let t52 = k(2.0) * t51;
-            let t53 = t18 * t52 + t23 * t48 + t42 * t47;
-            let t54 = t53 * t45 + t43 * t31;
-            let t55 = k(2.0) * (k(0.5) - (t32 + coupler_e1 * coupler_e1));
-            let t56 = k(2.0) * (t36 + t35);
-            let t57 = k(2.0) * (t50 - t49);
-            let t58 = t42 * t57 - (t23 * t56 - t18 * t55);
-            let t59 = k(5e-5) * t58;
-            let t60 = k(0.0835) * t43;
-            let t61 = k(0.0835) * t53;
-            let t62 = k(1.0) / (t53 * t61 + (t43 * t60 + t58 * t59));
-            let t63 = t62 * t54;
-            let t64 = t31 - t60 * t63;
-            let t65 = t60 * t62;
-            let t66 = k(0.0835) - t60 * t65;
-            let t67 = k(1.0) / t66;
-            let t68 = t67 * t64;
-            let t69 = t59 * t62;
-            let t70 = t60 * t69;
-            let t71 = k(0.5) * t51;
-            let t72 = k(0.5) * t37;
-            let t73 = t72 * t53 + t71 * t43;
-            let t74 = t62 * t73;
-            let t75 = t71 - t60 * t74;
-            let t76 = t67 * t75;
-            let t77 = t70 * t76 - t59 * t74;
-            let t78 = coupler_wz * coupler_wz;
-            let t79 = t78 + coupler_wy * coupler_wy;
-            let t80 = k(0.25) * (t52 * t30 + (t38 * t44 + t55 * t79));
-            let t81 = crank_wz * crank_wz + t13;
-            let t82 = crank_wx * crank_wy;
-            let t83 = t18 * t11 + (t8 * t82 + t3 * t81);
-            let t84 = k(0.1) * t83;
-            let t85 = t84 + t80;
-            let t86 = k(0.5) * t29;
-            let t87 = k(0.5) * t33;
-            let t88 = t87 * t53 - t86 * t43;
-            let t89 = t62 * t88;
-            let t90 = t86 + t60 * t89;
-            let t91 = t67 * t90;
-            let t92 = t70 * t91 + t59 * t89;
-            let t93 = k(0.25) * (t48 * t30 - (t34 * t44 + t56 * t79));
-            let t94 = t23 * t11 - (t2 * t82 + t6 * t81);
-            let t95 = k(0.1) * t94;
-            let t96 = t95 + t93;
-            let t97 = k(0.5) * t46;
-            let t98 = k(0.5) * t39;
-            let t99 = t98 * t53 - t97 * t43;
-            let t100 = t62 * t99;
-            let t101 = t97 + t60 * t100;
+            let t53 = k(2.0) * t29;
+            let t54 = t53 * t52 - (t50 * t8 - t49 * t45);
+            let t55 = k(0.02095) * t4 - k(4.905) * t44;
+            let t56 = k(0.5) - (t2 + coupler_e3 * coupler_e3);
+            let t57 = k(2.0) * t56;
+            let t58 = k(2.0) * t42;
+            let t59 = t50 * t13 + t49 * t58 + t53 * t57;
+            let t60 = t59 * t55 + t54 * t43;
+            let t61 = k(2.0) * (t6 + t5);
+            let t62 = k(2.0) * (t11 - t10);
+            let t63 = t53 * t62 - (t49 * t61 - t50 * t3);
+            let t64 = k(5e-5) * t63;
+            let t65 = k(0.0835) * t54;
+            let t66 = k(0.0835) * t59;
+            let t67 = k(1.0) / (t59 * t66 + (t54 * t65 + t63 * t64));
+            let t68 = t67 * t60;
+            let t69 = t43 - t65 * t68;
+            let t70 = t65 * t67;
+            let t71 = k(1.0) / (k(0.0835) - t65 * t70);
+            let t72 = t71 * t69;
+            let t73 = t64 * t67;
+            let t74 = t65 * t73;
+            let t75 = crank_wz * crank_wz + t30;
+            let t76 = k(2.0) * (k(0.5) - (t28 + crank_e1 * crank_e1));
+            let t77 = crank_wx * crank_wy;
+            let t78 = crank_e0 * crank_e3;
+            let t79 = crank_e1 * crank_e2;
+            let t80 = t79 - t78;
+            let t81 = k(2.0) * t80;
+            let t82 = t50 * t36 + (t81 * t77 + t76 * t75);
+            let t83 = k(0.1) * t82;
+            let t84 = t83 + t14;
+            let t85 = k(0.5) * t12;
+            let t86 = k(0.5) * t7;
+            let t87 = t86 * t59 + t85 * t54;
+            let t88 = t67 * t87;
+            let t89 = t85 - t65 * t88;
+            let t90 = t71 * t89;
+            let t91 = t74 * t90 - t64 * t88;
+            let t92 = k(0.25) * (t58 * t9 - (t45 * t4 + t61 * t1));
+            let t93 = k(2.0) * (t79 + t78);
+            let t94 = k(0.5) - (t28 + crank_e2 * crank_e2);
+            let t95 = k(2.0) * t94;
+            let t96 = t49 * t36 - (t95 * t77 + t93 * t75);
+            let t97 = k(0.1) * t96;
+            let t98 = t97 + t92;
+            let t99 = k(0.5) * t42;
+            let t100 = k(0.5) * t44;
+            let t101 = t100 * t59 - t99 * t54;
             let t102 = t67 * t101;
-            let t103 = t70 * t102 + t59 * t100;
-            let t104 = k(0.25) * (t47 * t30 - (t40 * t44 - t57 * t79));
-            let t105 = k(2.0) * (t16 - t15);
-            let t106 = t21 + t20;
-            let t107 = k(2.0) * t106;
-            let t108 = k(0.1) * (t42 * t11 - (t107 * t82 - t105 * t81));
-            let t109 = t108 + t104;
-            let t110 = k(1.0) / (t58 * t58 + t53 * t53);
-            let t111 = t105 * t40 - (t6 * t34 + t3 * t38);
-            let t112 = t107 * t40 + (t8 * t38 + t2 * t34);
-            let t113 = t105 * t57 + (t6 * t56 + t3 * t55);
-            let t114 = t105 * t47 - (t6 * t48 - t3 * t52);
-            let t115 = t107 * t57 - (t2 * t56 + t8 * t55);
-            let t116 = t107 * t47 - (t8 * t52 - t2 * t48);
-            let t117 = crank_wx * (coupler_wx * t116 + coupler_wz * t115)
-                - crank_wy * (coupler_wx * t114 + coupler_wz * t113);
-            let t118 = coupler_wy * coupler_wz * t53
-                + ((t78 + coupler_wx * coupler_wx) * t43 - t44 * t58);
-            let t119 = t118 + k(2.0) * t117 + (t14 * t43 + (t12 * t112 + t11 * t111));
-            let t120 = t119 * (t53 * t110);
-            let t121 = t67 * t70;
-            let t122 = t70 * t121 - (k(5e-5) - t59 * t69);
-            let t123 = t119 * (t58 * t110);
-            let t124 = t61 * t65;
-            let t125 = t124 * t121 + t61 * t69;
-            let t126 = t125 * t123 - t122 * t120
-                + (t109 * t103 + (t96 * t92 + t85 * t77));
-            let t127 = t75 - t66 * t76;
-            let t128 = t90 - t66 * t91;
-            let t129 = t101 - t66 * t102;
-            let t130 = t70 - t66 * t121;
-            let t131 = t130 * t120 - (t109 * t129 + (t96 * t128 + t85 * t127));
-            let t132 = t43 * (t131 - (t64 - t66 * t68))
-                - t58 * (t126 + (t70 * t68 - t59 * t63));
-            let t133 = t124 * t76 + (t72 - t61 * t74);
-            let t134 = t124 * t91 - (t87 - t61 * t89);
-            let t135 = t124 * t102 - (t98 - t61 * t100);
-            let t136 = t124 * (t67 * t124) - (k(0.0835) - t61 * (t61 * t62));
-            let t137 = t136 * t123 - t125 * t120
-                + (t109 * t135 + (t96 * t134 + t85 * t133));
-            let t138 = t53 * (t137 + (t124 * t68 + (t45 - t61 * t63))) - t132;
-            let t139 = t90 * t76 - t88 * t74;
-            let t140 = t90 * t91 + t88 * t89;
-            let t141 = t101 * t91 + t99 * t89;
-            let t142 = t134 * t123 - t92 * t120
-                - (t96 - (t109 * t141 + (t96 * t140 + t85 * t139)));
-            let t143 = t142 + (t90 * t68 - (k(9.81) + t88 * t63));
-            let t144 = k(0.2) * t1;
-            let t145 = t75 * t76 + t73 * t74;
-            let t146 = t101 * t76 - t99 * t74;
-            let t147 = t133 * t123 - t77 * t120
-                - (t85 - (t109 * t146 + (t96 * t139 + t85 * t145)));
-            let t148 = k(0.2) * t7;
-            let t149 = t148 * (t147 + (t75 * t68 + t73 * t63));
-            let t150 = t101 * t102 + t99 * t100;
-            let t151 = t135 * t123 - t103 * t120
-                - (t109 - (t109 * t150 + (t96 * t141 + t85 * t146)));
-            let t152 = k(0.2) * t106;
-            let t153 = t152 * (t151 + (t101 * t68 - t99 * t63));
-            let t154 = t144 * (k(3.924) - t143) + t149 - t153
-                - (k(0.00133) * t82 + (t153 - (t149 - t144 * t143) + t138));
-            let t155 = t152 * t146 + (t144 * t139 - t148 * t145);
-            let t156 = t53 * t133 + (t43 * t127 + t58 * t77);
-            let t157 = t148 + t155 + t156;
-            let t158 = t152 * t141 + (t144 * t140 - t148 * t139);
-            let t159 = t53 * t134 + (t43 * t128 + t58 * t92);
-            let t160 = t144 - t158 - t159;
-            let t161 = t95 * (t160 - (t158 - k(0.28) * t1))
-                - t84 * (t157 + (t155 + k(0.28) * t7));
-            let t162 = t152 * t150 + (t144 * t141 - t148 * t146);
-            let t163 = t53 * t135 + (t43 * t129 + t58 * t103);
-            let t164 = t152 - t162 - t163;
-            let t165 = t43 * (t113 * t130)
-                + t58 * (t114 * t125 + (t111 * t130 + t113 * t122));
-            let t166 = t144 * (t114 * t134 + (t111 * t128 + t113 * t92))
-                - t148 * (t114 * t133 + (t111 * t127 + t113 * t77));
-            let t167 = t152 * (t114 * t135 + (t111 * t129 + t113 * t103)) + t166;
-            let t168 = t167 + (t167 + (t53 * (t114 * t136 + t113 * t125) + t165));
-            let t169 = t24 * (t3 * t10) + t19 * (t6 * t10);
-            let t170 = t43 * (t115 * t130)
-                + t58 * (t116 * t125 + (t112 * t130 + t115 * t122));
-            let t171 = k(0.2) * t22;
-            let t172 = k(0.2) * t41;
-            let t173 = t116 * t133 + (t112 * t127 + t115 * t77);
-            let t174 = t116 * t134 + (t112 * t128 + t115 * t92);
-            let t175 = t116 * t135 + (t112 * t129 + t115 * t103);
-            let t176 = t152 * t175 + (t144 * t174 - t148 * t173)
-                - (t172 * t163 + (t171 * t159 + t26 * t156));
-            let t177 = t172 * t162 + (t171 * t158 + t26 * t155);
-            let t178 = t177 - t176 - (t53 * (t116 * t136 + t115 * t125) + t170);
-            let t179 = t26 - (t172 * t146 + (t171 * t139 + t26 * t145)) + t173;
-            let t180 = t171 - (t172 * t141 + (t171 * t140 + t26 * t139)) + t174;
-            let t181 = t172 - (t172 * t150 + (t171 * t141 + t26 * t146)) + t175;
-            let t182 = t152 * t181 + (t144 * t180 - t148 * t179)
-                + (t172 * t164 + (t171 * t160 - t26 * t157));
-            let t183 = t25 * (t182 - t177 - t178) - t169 * t168
-                - (t108 * (t164 - (t162 - k(0.28) * t106)) + t161);
-            let t184 = t43 * (t58 * t130)
-                + t58 * (t53 * t125 + (t43 * t130 + t58 * t122));
-            let t185 = t152 * t162 + (t144 * t158 - t148 * t155);
-            let t186 = t185 + k(2.0) * (t152 * t163 + (t144 * t159 - t148 * t156));
-            let t187 = t186 - (k(0.01) - (t53 * (t53 * t136 + t58 * t125) + t184));
-            let t188 = k(2.0) * (t152 * t164 + (t144 * t160 + t148 * t157)) - t185;
-            let t189 = k(1.0) / (t188 + (k(0.014) + (k(0.00135) - t187)));
-            let t190 = t189 * (t183 - t154);
-            let t191 = t148 * t190 + t26 * t25;
-            let t192 = t84 - t191;
-            let t193 = t85 - (t191 - t192);
-            let t194 = t144 * t190 - t171 * t25;
-            let t195 = t95 + t194;
-            let t196 = t96 + (t194 + t195);
-            let t197 = t152 * t190 - t172 * t25;
-            let t198 = t108 + t197;
-            let t199 = t109 + (t197 + t198);
+            let t103 = t99 + t65 * t102;
+            let t104 = t71 * t103;
+            let t105 = t74 * t104 + t64 * t102;
+            let t106 = k(0.25) * (t57 * t9 - (t52 * t4 - t62 * t1));
+            let t107 = t47 + t46;
+            let t108 = k(2.0) * t107;
+            let t109 = k(0.1) * (t53 * t36 - (t108 * t77 - t35 * t75));
+            let t110 = t109 + t106;
+            let t111 = k(0.5) * t56;
+            let t112 = k(0.5) * t51;
+            let t113 = t112 * t59 - t111 * t54;
+            let t114 = t67 * t113;
+            let t115 = t111 + t65 * t114;
+            let t116 = t71 * t115;
+            let t117 = t74 * t116 + t64 * t114;
+            let t118 = k(1.0) / (t63 * t63 + t59 * t59);
+            let t119 = crank_wy * crank_wz;
+            let t120 = t119 * (t108 * t52 + (t81 * t8 + t95 * t45))
+                + t36 * (t35 * t52 - (t93 * t45 + t76 * t8));
+            let t121 = t35 * t62 + (t93 * t61 + t76 * t3);
+            let t122 = t35 * t57 - (t93 * t58 - t76 * t13);
+            let t123 = t108 * t62 - (t95 * t61 + t81 * t3);
+            let t124 = t108 * t57 - (t81 * t13 - t95 * t58);
+            let t125 = crank_wx * (coupler_wx * t124 + coupler_wz * t123)
+                - crank_wy * (coupler_wx * t122 + coupler_wz * t121);
+            let t126 = coupler_wy * coupler_wz * t59
+                + ((t0 + coupler_wx * coupler_wx) * t54 - t4 * t63);
+            let t127 = t126 + k(2.0) * t125 + (t31 * t54 + t120);
+            let t128 = t127 * (t59 * t118);
+            let t129 = t71 * t74;
+            let t130 = t74 * t129 - (k(5e-5) - t64 * t73);
+            let t131 = t63 * t118 * t127;
+            let t132 = t66 * t70;
+            let t133 = t132 * t129 + t66 * t73;
+            let t134 = t133 * t131 - t130 * t128
+                + (t117 * t110 + (t105 * t98 + t91 * t84));
+            let t135 = t132 * t90 + (t86 - t66 * t88);
+            let t136 = t132 * t104 - (t100 - t66 * t102);
+            let t137 = t132 * t116 - (t112 - t66 * t114);
+            let t138 = t132 * (t71 * t132) - (k(0.0835) - t66 * (t66 * t67));
+            let t139 = t138 * t131 - t133 * t128
+                + (t137 * t110 + (t136 * t98 + t135 * t84));
+            let t140 = t59 * (t139 + (t132 * t72 + (t55 - t66 * t68)))
+                + t63 * (t134 + (t74 * t72 - t64 * t68));
+            let t141 = t103 * t90 - t101 * t88;
+            let t142 = t103 * t104 + t101 * t102;
+            let t143 = t115 * t104 + t113 * t102;
+            let t144 = t136 * t131 - t105 * t128
+                - (t98 - (t143 * t110 + (t142 * t98 + t141 * t84)));
+            let t145 = t144 + (t103 * t72 - (k(9.81) + t101 * t68));
+            let t146 = k(0.2) * t94;
+            let t147 = t89 * t90 + t87 * t88;
+            let t148 = t115 * t90 - t113 * t88;
+            let t149 = t135 * t131 - t91 * t128
+                - (t84 - (t148 * t110 + (t141 * t98 + t147 * t84)));
+            let t150 = k(0.2) * t80;
+            let t151 = t150 * (t149 + (t89 * t72 + t87 * t68));
+            let t152 = t115 * t116 + t113 * t114;
+            let t153 = t137 * t131 - t117 * t128
+                - (t110 - (t152 * t110 + (t143 * t98 + t148 * t84)));
+            let t154 = k(0.2) * t107;
+            let t155 = t154 * (t153 + (t115 * t72 - t113 * t68));
+            let t156 = t146 * (k(3.924) - t145) + t151 - t155
+                - (k(0.00133) * t77 + (t155 - (t151 - t146 * t145) + t140));
+            let t157 = t154 * t148 + (t146 * t141 - t150 * t147);
+            let t158 = t59 * t135 + t63 * t91;
+            let t159 = t150 + t157 + t158;
+            let t160 = t154 * t143 + (t146 * t142 - t150 * t141);
+            let t161 = t59 * t136 + t63 * t105;
+            let t162 = t146 - t160 - t161;
+            let t163 = (t162 - (t160 - k(0.28) * t94)) * t97
+                - (t159 + (t157 + k(0.28) * t80)) * t83;
+            let t164 = t154 * t152 + (t146 * t143 - t150 * t148);
+            let t165 = t59 * t137 + t63 * t117;
+            let t166 = t154 - t164 - t165;
+            let t167 = t119 - t108 * t32;
+            let t168 = t59 * (t138 * t122 + t133 * t121)
+                + t63 * (t133 * t122 + t130 * t121);
+            let t169 = t146 * (t136 * t122 + t105 * t121)
+                - t150 * (t135 * t122 + t91 * t121);
+            let t170 = t154 * (t137 * t122 + t117 * t121) + t169;
+            let t171 = t59 * (t138 * t124 + t133 * t123)
+                + t63 * (t133 * t124 + t130 * t123);
+            let t172 = k(0.2) * t48;
+            let t173 = k(0.2) * t29;
+            let t174 = t135 * t124 + t91 * t123;
+            let t175 = t136 * t124 + t105 * t123;
+            let t176 = t137 * t124 + t117 * t123;
+            let t177 = t154 * t176 + (t146 * t175 - t150 * t174)
+                - (t173 * t165 + (t172 * t161 + t39 * t158));
+            let t178 = t173 * t164 + (t172 * t160 + t39 * t157);
+            let t179 = t39 - (t173 * t148 + (t172 * t141 + t39 * t147)) + t174;
+            let t180 = t172 - (t173 * t143 + (t172 * t142 + t39 * t141)) + t175;
+            let t181 = t173 - (t173 * t152 + (t172 * t143 + t39 * t148)) + t176;
+            let t182 = t154 * t181 + (t146 * t180 - t150 * t179)
+                + (t173 * t166 + (t172 * t162 - t39 * t159));
+            let t183 = (t182 - t178 - (t178 - t177 - t171)) * t37
+                - (t170 + (t170 + t168)) * t167;
+            let t184 = t183 + ((t166 - (t164 - k(0.28) * t107)) * t109 + t163) + t156;
+            let t185 = t59 * (t59 * t138 + t63 * t133) + t63 * (t59 * t133 + t63 * t130);
+            let t186 = t154 * t164 + (t146 * t160 - t150 * t157);
+            let t187 = t186 + k(2.0) * (t154 * t165 + (t146 * t161 - t150 * t158));
+            let t188 = k(2.0) * (t154 * t166 + (t146 * t162 + t150 * t159)) - t186;
+            let t189 = k(1.0)
+                / (t188 + (k(0.014) + (k(0.00135) - (t187 - (k(0.01) - t185)))));
+            let t190 = t189 * t184;
+            let t191 = t150 * t190 + t39 * t37;
+            let t192 = t83 + t191;
+            let t193 = t84 + (t191 + t192);
+            let t194 = t146 * t190 - t172 * t37;
+            let t195 = t97 - t194;
+            let t196 = t98 - (t194 - t195);
+            let t197 = t154 * t190 - t173 * t37;
+            let t198 = t109 - t197;
+            let t199 = t110 - (t197 - t198);
             (
-                t2,
-                t3,
-                t6,
-                t8,
-                t9,
+                t7,
+                t12,
+                t14,
+                t15,
+                t16,
+                t17,
                 t18,
+                t19,
+                t20,
+                t21,
                 t23,
+                t24,
                 t25,
-                t29,
-                t33,
+                t26,
+                t27,
                 t37,
-                t39,
-                t43,
-                t46,
+                t42,
+                t44,
+                t49,
+                t50,
                 t51,
-                t53,
                 t54,
-                t58,
+                t56,
                 t59,
                 t60,
-                t61,
-                t62,
+                t63,
                 t64,
+                t65,
                 t66,
                 t67,
-                t70,
+                t69,
                 t71,
-                t72,
-                t73,
-                t75,
-                t80,
-                t83,
+                t74,
+                t76,
+                t81,
+                t82,
+                t85,
                 t86,
                 t87,
-                t88,
-                t90,
+                t89,
+                t92,
                 t93,
-                t94,
-                t97,
-                t98,
+                t95,
+                t96,
                 t99,
+                t100,
                 t101,
-                t104,
+                t103,
+                t106,
                 t111,
                 t112,
                 t113,
-                t114,
                 t115,
-                t116,
-                t120,
+                t121,
+                t122,
                 t123,
                 t124,
-                t144,
-                t148,
-                t152,
-                t169,
+                t128,
+                t131,
+                t132,
+                t146,
+                t150,
+                t154,
+                t167,
                 t189,
                 t190,
                 t192,
@@ -1861,402 +1879,312 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
             )
         };
         let (
-            t200,
-            t206,
-            t207,
-            t208,
+            t211,
             t213,
-            t219,
-            t220,
-            t229,
-            t234,
-            t235,
-            t245,
-            t246,
-            t248,
-            t265,
-            t271,
-            t272,
-            t273,
-            t276,
-            t277,
-            t280,
-            t281,
-            t283,
-            t285,
-            t286,
-            t305,
-            t311,
-            t312,
-            t313,
-            t315,
-            t316,
-            t317,
-            t320,
-            t323,
-            t325,
-            t326,
-            t331,
-            t332,
-            t346,
-            t348,
-            t351,
+            t221,
+            t224,
+            t253,
+            t291,
+            t298,
+            t301,
+            t307,
+            t335,
+            t336,
+            t356,
             t357,
             t358,
             t359,
             t361,
-            t362,
             t363,
+            t365,
+            t366,
+            t369,
+            t377,
+            t378,
+            t379,
+            t380,
             t381,
             t383,
             t384,
             t385,
             t386,
-            t388,
-            t390,
-            t392,
-            t393,
-            t394,
-            t395,
-            t396,
-            t397,
-            t398,
-            t399,
+            t387,
         ) = {
-            let t200 = t120 - (t58 * t190 + (t115 * t25 - t113 * t169));
-            let t201 = t43 * t190 + (t112 * t25 - t111 * t169);
-            let t202 = t123 + (t53 * t190 + (t116 * t25 - t114 * t169));
-            let t203 = t124 * t202 - (t66 * t201 + t70 * t200)
-                + (t101 * t199 + (t90 * t196 + t75 * t193));
-            let t204 = t201 + t67 * (t64 + t203);
-            let t205 = t61 * t202 + (t60 * t204 - t59 * t200)
-                + (t99 * t199 + (t88 * t196 - t73 * t193));
-            let t206 = t62 * (t54 - t205);
-            let t207 = t204 + t43 * t206;
-            let t208 = t202 + t53 * t206;
-            let t209 = t72 * t208 + t71 * t207;
-            let t210 = t193 - t209;
-            let t211 = rocker_e0 * rocker_e3;
-            let t212 = rocker_e1 * rocker_e2;
-            let t213 = k(2.0) * (t212 + t211);
-            let t214 = t212 - t211;
-            let t215 = k(2.0) * t214;
-            let t216 = rocker_e0 * rocker_e0;
-            let t217 = k(0.5) - (t216 + rocker_e2 * rocker_e2);
-            let t218 = k(2.0) * t217;
-            let t219 = k(2.0) * (k(0.5) - (t216 + rocker_e1 * rocker_e1));
-            let t220 = k(1.0) / (t219 * t218 - t215 * t213);
-            let t221 = rocker_wx * rocker_wz;
-            let t222 = rocker_wy * rocker_wz;
-            let t223 = rocker_wy * rocker_wy;
-            let t224 = t223 + rocker_wx * rocker_wx;
-            let t225 = rocker_e0 * rocker_e2;
-            let t226 = rocker_e1 * rocker_e3;
-            let t227 = t226 + t225;
-            let t228 = k(2.0) * t227;
-            let t229 = t228 * t224 - (t215 * t222 - t219 * t221);
-            let t230 = rocker_e0 * rocker_e1;
-            let t231 = rocker_e2 * rocker_e3;
-            let t232 = t231 - t230;
-            let t233 = k(2.0) * t232;
-            let t234 = t233 * t224 + (t218 * t222 - t213 * t221);
-            let t235 = t234 * (t215 * t220) + t229 * (t218 * t220);
-            let t236 = rocker_wx * rocker_wy;
-            let t237 = rocker_wz * rocker_wz + t223;
-            let t238 = k(0.2) * (t228 * t221 + (t215 * t236 + t219 * t237));
-            let t239 = k(0.2) * (t233 * t221 - (t218 * t236 + t213 * t237));
-            let t240 = t231 + t230;
-            let t241 = k(0.5) - (t216 + rocker_e3 * rocker_e3);
-            let t242 = k(2.0) * t241 * t221
-                - (k(2.0) * t240 * t236 - k(2.0) * (t226 - t225) * t237);
-            let t243 = k(0.2) * t242;
-            let t244 = t243 * (k(0.32) * t240)
-                + (t239 * (k(0.32) * t217) - t238 * (k(0.32) * t214));
-            let t245 = k(23.364485981308412)
-                * (t244 - (k(0.01076) * t236 - k(3.1392) * t217));
-            let t246 = k(0.4) * t214;
-            let t247 = t246 * t245 + k(0.4) * t227 * t235;
-            let t248 = t238 + t247;
-            let t249 = t238 - t80 + (t247 + t248 + (t209 - t210));
-            let t250 = t37 * t53 + t51 * t43;
-            let t251 = t250 * t62;
-            let t252 = t51 - t60 * t251;
-            let t253 = t252 * t67;
-            let t254 = t43 * (t252 - t66 * t253) + t58 * (t253 * t70 - t59 * t251);
-            let t255 = t144 * (t253 * t90 - t251 * t88)
-                - t148 * (t253 * t75 - (k(1.0) - t251 * t73));
-            let t256 = t152 * (t253 * t101 - t251 * t99) + t255;
-            let t257 = t256 + (t53 * (t253 * t124 + (t37 - t61 * t251)) + t254);
-            let t258 = (t256 + t257) * t189;
-            let t259 = t148 * t258;
-            let t260 = k(2.0) * t259;
-            let t261 = t144 * t258;
-            let t262 = k(2.0) * t261;
-            let t263 = t152 * t258;
-            let t264 = k(2.0) * t263;
-            let t265 = t58 * t258;
-            let t266 = t43 * t258;
-            let t267 = t53 * t258;
-            let t268 = t124 * t267 - (t66 * t266 - t70 * t265)
-                + (t101 * t264 + (t90 * t262 - t75 * t260));
-            let t269 = t266 + t67 * (t252 + t268);
-            let t270 = t61 * t267 + (t60 * t269 + t59 * t265)
-                + (t99 * t264 + (t88 * t262 + t73 * t260));
-            let t271 = t62 * (t250 - t270);
-            let t272 = t269 + t43 * t271;
-            let t273 = t267 + t53 * t271;
-            let t274 = t72 * t273 + t71 * t272;
-            let t275 = t260 + t274;
-            let t276 = k(18.69158878504673) * t214;
-            let t277 = t246 * t276;
-            let t278 = k(1.0) / (k(2.0) * t277 + (t274 + t275));
-            let t279 = t87 * t208 - t86 * t207;
-            let t280 = t196 + t279;
-            let t281 = k(0.4) * t217;
-            let t282 = t281 * t245 - k(0.4) * t232 * t235;
-            let t283 = t239 - t282;
-            let t284 = t87 * t273 - t86 * t272;
-            let t285 = t262 + t284;
-            let t286 = t281 * t276;
-            let t287 = k(2.0) * t286 + (t284 + t285);
-            let t288 = t278 * t287;
-            let t289 = t288 * t249 + (t239 - t93 - (t282 - t283 + (t279 + t280)));
-            let t290 = t33 * t53 - t29 * t43;
-            let t291 = t62 * t290;
-            let t292 = t29 + t60 * t291;
-            let t293 = t67 * t292;
-            let t294 = t43 * (t292 - t66 * t293) + t58 * (t70 * t293 + t59 * t291);
-            let t295 = t144 * (t90 * t293 - (k(1.0) - t88 * t291))
-                - t148 * (t75 * t293 - t73 * t291);
-            let t296 = t152 * (t101 * t293 + t99 * t291) + t295;
-            let t297 = t296 + (t53 * (t124 * t293 - (t33 - t61 * t291)) + t294);
-            let t298 = t189 * (t296 + t297);
-            let t299 = t148 * t298;
-            let t300 = k(2.0) * t299;
-            let t301 = t144 * t298;
-            let t302 = k(2.0) * t301;
-            let t303 = t152 * t298;
-            let t304 = k(2.0) * t303;
-            let t305 = t58 * t298;
-            let t306 = t43 * t298;
-            let t307 = t53 * t298;
-            let t308 = t124 * t307 - (t66 * t306 - t70 * t305)
-                + (t101 * t304 + (t90 * t302 - t75 * t300));
-            let t309 = t306 + t67 * (t292 + t308);
-            let t310 = t61 * t307 + (t60 * t309 + t59 * t305)
-                + (t99 * t304 + (t88 * t302 + t73 * t300));
-            let t311 = t62 * (t290 + t310);
-            let t312 = t309 - t43 * t311;
-            let t313 = t307 - t53 * t311;
-            let t314 = t87 * t313 - t86 * t312;
-            let t315 = t302 + t314;
-            let t316 = k(18.69158878504673) * t217;
-            let t317 = t281 * t316;
-            let t318 = k(1.0) / (t287 * t288 - (k(2.0) * t317 - (t314 + t315)));
-            let t319 = t98 * t208 - t97 * t207;
-            let t320 = t199 + t319;
-            let t321 = k(0.4) * t240;
-            let t322 = t321 * t245 - k(0.4) * t241 * t235;
-            let t323 = t243 - t322;
-            let t324 = t98 * t273 - t97 * t272;
-            let t325 = t264 + t324;
-            let t326 = t321 * t276;
-            let t327 = k(2.0) * t326 + (t324 + t325);
-            let t328 = t278 * t327;
-            let t329 = t328 * t249 + (t243 - t104 - (t322 - t323 + (t319 + t320)));
-            let t330 = t98 * t313 - t97 * t312;
-            let t331 = t304 + t330;
-            let t332 = t321 * t316;
-            let t333 = t287 * t328 - (k(2.0) * t332 - (t330 + t331));
-            let t334 = t318 * t333;
-            let t335 = t334 * t289 - t329;
-            let t336 = t39 * t53 - t46 * t43;
-            let t337 = t62 * t336;
-            let t338 = t46 + t60 * t337;
-            let t339 = t67 * t338;
-            let t340 = t43 * (t338 - t66 * t339) + t58 * (t70 * t339 + t59 * t337);
-            let t341 = t144 * (t90 * t339 + t88 * t337)
-                - t148 * (t75 * t339 - t73 * t337);
-            let t342 = t152 * (t101 * t339 - (k(1.0) - t99 * t337)) + t341;
-            let t343 = t342 + (t53 * (t124 * t339 - (t39 - t61 * t337)) + t340);
-            let t344 = t189 * (t342 + t343);
-            let t345 = t148 * t344;
-            let t346 = k(2.0) * t345;
-            let t347 = t144 * t344;
-            let t348 = k(2.0) * t347;
-            let t349 = t152 * t344;
-            let t350 = k(2.0) * t349;
-            let t351 = t58 * t344;
-            let t352 = t43 * t344;
-            let t353 = t53 * t344;
-            let t354 = t124 * t353 - (t66 * t352 - t70 * t351)
-                + (t101 * t350 + (t90 * t348 - t75 * t346));
-            let t355 = t352 + t67 * (t338 + t354);
-            let t356 = t61 * t353 + (t60 * t355 + t59 * t351)
-                + (t99 * t350 + (t88 * t348 + t73 * t346));
-            let t357 = t62 * (t336 + t356);
-            let t358 = t355 - t43 * t357;
-            let t359 = t353 - t53 * t357;
-            let t360 = t98 * t359 - t97 * t358;
-            let t361 = t350 + t360;
-            let t362 = k(18.69158878504673) * t240;
-            let t363 = t321 * t362;
-            let t364 = t333 * t334 - (t327 * t328 - (k(2.0) * t363 - (t360 + t361)));
-            let t365 = k(1.0) / t364;
-            let t366 = k(1.0) / (t6 * t6 + t3 * t3);
-            let t367 = t366 * t9;
-            let t368 = t367 * t190 + (t18 * t6 + t3 * t23) * t366 * t25;
-            let t369 = t23 * crank_wy + t2 * crank_wz;
-            let t370 = t18 * crank_wy - t8 * crank_wz;
-            let t371 = t366 * t366 * (k(2.0) * (t3 * t370 - t6 * t369))
-                * (t6 * t370 + t3 * t369);
-            let t372 = t369 * t370;
-            let t373 = t366 * (t3 * t94 - t372 + (t372 + t6 * t83)) + t371;
-            let t374 = t367 * t258;
-            let t375 = t278 * t374;
-            let t376 = t375 * t249 - (k(1.8) * (k(3.0) * t).sin() - t373 + t368);
-            let t377 = t287 * t375 + t367 * t298;
-            let t378 = t318 * t377;
-            let t379 = t333 * t378 - (t327 * t375 + t367 * t344);
-            let t380 = t365 * t379;
-            let t381 = t367 * t189;
-            let t382 = t379 * t380 - (t377 * t378 - (t374 * t375 - t367 * t381));
-            let t383 = (t380 * t335 - (t378 * t289 - t376)) / t382;
-            let t384 = t380 * t383 - t365 * t335;
-            let t385 = t378 * t383 - (t334 * t384 + t318 * t289);
-            let t386 = t375 * t383 - (t328 * t384 + (t288 * t385 + t278 * t249));
-            let t387 = t148 * t381;
-            let t388 = t383 * t387
-                + (t345 * t384 + (t299 * t385 + (t192 - t259 * t386)));
-            let t389 = t144 * t381;
-            let t390 = t383 * t389
-                + (t347 * t384 + (t301 * t385 - (t195 + t261 * t386)));
-            let t391 = t152 * t381;
-            let t392 = t383 * t391
-                + (t349 * t384 + (t303 * t385 - (t198 + t263 * t386)));
-            let t393 = t381 * t383
-                + (t344 * t384 + (t298 * t385 - (t190 + t258 * t386)));
-            let t394 = t385 * (t300 + (t72 * t313 + t71 * t312)) + (t210 - t275 * t386);
-            let t395 = k(2.0) * t387;
-            let t396 = k(2.0) * t389;
-            let t397 = k(2.0) * t391;
-            let t398 = t58 * t381;
-            let t399 = t43 * t381;
+            let t200 = t128 + (t63 * t190 + (t123 * t37 - t121 * t167));
+            let t201 = t131 - (t59 * t190 + (t124 * t37 - t122 * t167));
+            let t202 = t132 * t201 - t74 * t200
+                + (t115 * t199 + (t103 * t196 + t89 * t193));
+            let t203 = t71 * (t69 + t202);
+            let t204 = t66 * t201 + (t65 * t203 - t64 * t200)
+                + (t113 * t199 + (t101 * t196 - t87 * t193));
+            let t205 = t67 * (t60 - t204);
+            let t206 = t203 + t54 * t205;
+            let t207 = t201 + t59 * t205;
+            let t208 = t86 * t207 + t85 * t206;
+            let t209 = t193 - t208;
+            let t210 = k(0.5) - (t17 + rocker_e3 * rocker_e3);
+            let t211 = (t15 + rocker_wx * rocker_wx) * (k(0.5) / t210);
+            let t212 = k(2.0) * (t25 - t24);
+            let t213 = t23 - t212 * t211;
+            let t214 = k(0.5) - (t17 + rocker_e2 * rocker_e2);
+            let t215 = rocker_e0 * rocker_e1;
+            let t216 = rocker_e2 * rocker_e3;
+            let t217 = t216 - t215;
+            let t218 = k(2.0) * t217 * t23
+                - (k(2.0) * t214 * t18 + k(2.0) * (t20 + t19) * t16);
+            let t219 = k(0.2) * t218;
+            let t220 = t216 + t215;
+            let t221 = k(2.0) * t220;
+            let t222 = k(0.2) * (k(2.0) * t210 * t23 - (t221 * t18 - t212 * t16));
+            let t223 = k(0.32) * t220 * t222
+                + (k(0.32) * t214 * t219 - k(0.32) * t21 * t27);
+            let t224 = k(23.364485981308412)
+                * (t223 - (k(0.01076) * t18 - k(3.1392) * t214));
+            let t225 = k(0.4) * t21;
+            let t226 = t225 * t224 + k(0.4) * t26 * t213;
+            let t227 = t27 + t226;
+            let t228 = t226 + t227 + (t208 - t209) + (t27 - t14);
+            let t229 = t7 * t59 + t12 * t54;
+            let t230 = t229 * t67;
+            let t231 = t12 - t65 * t230;
+            let t232 = t231 * t71;
+            let t233 = t59 * (t232 * t132 + (t7 - t66 * t230))
+                + t63 * (t232 * t74 - t64 * t230);
+            let t234 = t146 * (t232 * t103 - t230 * t101)
+                - t150 * (t232 * t89 - (k(1.0) - t230 * t87));
+            let t235 = t154 * (t232 * t115 - t230 * t113) + t234;
+            let t236 = (t235 + (t235 + t233)) * t189;
+            let t237 = t150 * t236;
+            let t238 = k(2.0) * t237;
+            let t239 = t146 * t236;
+            let t240 = k(2.0) * t239;
+            let t241 = t154 * t236;
+            let t242 = k(2.0) * t241;
+            let t243 = t63 * t236;
+            let t244 = t59 * t236;
+            let t245 = t132 * t244 + t74 * t243
+                + (t115 * t242 + (t103 * t240 - t89 * t238));
+            let t246 = t71 * (t231 + t245);
+            let t247 = t66 * t244 + (t65 * t246 + t64 * t243)
+                + (t113 * t242 + (t101 * t240 + t87 * t238));
+            let t248 = t67 * (t229 - t247);
+            let t249 = t246 + t54 * t248;
+            let t250 = t244 + t59 * t248;
+            let t251 = t86 * t250 + t85 * t249;
+            let t252 = t238 + t251;
+            let t253 = k(18.69158878504673) * t21;
+            let t254 = t225 * t253;
+            let t255 = k(1.0) / (k(2.0) * t254 + (t251 + t252));
+            let t256 = t100 * t207 - t99 * t206;
+            let t257 = t196 + t256;
+            let t258 = k(0.4) * t214;
+            let t259 = t258 * t224 - k(0.4) * t217 * t213;
+            let t260 = t219 - t259;
+            let t261 = t100 * t250 - t99 * t249;
+            let t262 = t240 + t261;
+            let t263 = t258 * t253;
+            let t264 = k(2.0) * t263 + (t261 + t262);
+            let t265 = t255 * t264;
+            let t266 = t265 * t228 - (t259 - t260 + (t256 + t257) - (t219 - t92));
+            let t267 = t44 * t59 - t42 * t54;
+            let t268 = t67 * t267;
+            let t269 = t42 + t65 * t268;
+            let t270 = t71 * t269;
+            let t271 = t59 * (t132 * t270 - (t44 - t66 * t268))
+                + t63 * (t74 * t270 + t64 * t268);
+            let t272 = t146 * (t103 * t270 - (k(1.0) - t101 * t268))
+                - t150 * (t89 * t270 - t87 * t268);
+            let t273 = t154 * (t115 * t270 + t113 * t268) + t272;
+            let t274 = t189 * (t273 + (t273 + t271));
+            let t275 = t150 * t274;
+            let t276 = k(2.0) * t275;
+            let t277 = t146 * t274;
+            let t278 = k(2.0) * t277;
+            let t279 = t154 * t274;
+            let t280 = k(2.0) * t279;
+            let t281 = t63 * t274;
+            let t282 = t59 * t274;
+            let t283 = t132 * t282 + t74 * t281
+                + (t115 * t280 + (t103 * t278 - t89 * t276));
+            let t284 = t71 * (t269 + t283);
+            let t285 = t66 * t282 + (t65 * t284 + t64 * t281)
+                + (t113 * t280 + (t101 * t278 + t87 * t276));
+            let t286 = t67 * (t267 + t285);
+            let t287 = t284 - t54 * t286;
+            let t288 = t282 - t59 * t286;
+            let t289 = t100 * t288 - t99 * t287;
+            let t290 = t278 + t289;
+            let t291 = k(18.69158878504673) * t214;
+            let t292 = t258 * t291;
+            let t293 = k(1.0) / (t264 * t265 - (k(2.0) * t292 - (t289 + t290)));
+            let t294 = t112 * t207 - t111 * t206;
+            let t295 = t199 + t294;
+            let t296 = k(0.4) * t220;
+            let t297 = t296 * t224 - k(0.4) * t210 * t213;
+            let t298 = t222 - t297;
+            let t299 = t112 * t250 - t111 * t249;
+            let t300 = t242 + t299;
+            let t301 = t296 * t253;
+            let t302 = k(2.0) * t301 + (t299 + t300);
+            let t303 = t255 * t302;
+            let t304 = t303 * t228 - (t297 - t298 + (t294 + t295) - (t222 - t106));
+            let t305 = t112 * t288 - t111 * t287;
+            let t306 = t280 + t305;
+            let t307 = t296 * t291;
+            let t308 = t264 * t303 - (k(2.0) * t307 - (t305 + t306));
+            let t309 = t293 * t308;
+            let t310 = t309 * t266 - t304;
+            let t311 = t51 * t59 - t56 * t54;
+            let t312 = t67 * t311;
+            let t313 = t56 + t65 * t312;
+            let t314 = t71 * t313;
+            let t315 = t59 * (t132 * t314 - (t51 - t66 * t312))
+                + t63 * (t74 * t314 + t64 * t312);
+            let t316 = t146 * (t103 * t314 + t101 * t312)
+                - t150 * (t89 * t314 - t87 * t312);
+            let t317 = t154 * (t115 * t314 - (k(1.0) - t113 * t312)) + t316;
+            let t318 = t189 * (t317 + (t317 + t315));
+            let t319 = t150 * t318;
+            let t320 = k(2.0) * t319;
+            let t321 = t146 * t318;
+            let t322 = k(2.0) * t321;
+            let t323 = t154 * t318;
+            let t324 = k(2.0) * t323;
+            let t325 = t63 * t318;
+            let t326 = t59 * t318;
+            let t327 = t132 * t326 + t74 * t325
+                + (t115 * t324 + (t103 * t322 - t89 * t320));
+            let t328 = t71 * (t313 + t327);
+            let t329 = t66 * t326 + (t65 * t328 + t64 * t325)
+                + (t113 * t324 + (t101 * t322 + t87 * t320));
+            let t330 = t67 * (t311 + t329);
+            let t331 = t328 - t54 * t330;
+            let t332 = t326 - t59 * t330;
+            let t333 = t112 * t332 - t111 * t331;
+            let t334 = t324 + t333;
+            let t335 = k(18.69158878504673) * t220;
+            let t336 = t296 * t335;
+            let t337 = t308 * t309 - (t302 * t303 - (k(2.0) * t336 - (t333 + t334)));
+            let t338 = k(1.0) / t337;
+            let t339 = t49 * crank_wy + t95 * crank_wz;
+            let t340 = t50 * crank_wy - t81 * crank_wz;
+            let t341 = k(1.0) / (t93 * t93 + t76 * t76);
+            let t342 = t341 * t341 * (k(2.0) * (t76 * t340 - t93 * t339))
+                * (t93 * t340 + t76 * t339);
+            let t343 = t339 * t340;
+            let t344 = t341 * (t76 * t96 - t343 + (t343 + t93 * t82)) + t342;
+            let t345 = t341 * (t81 * t93 - t76 * t95);
+            let t346 = t345 * t190 + (t50 * t93 + t76 * t49) * t341 * t37;
+            let t347 = t345 * t236;
+            let t348 = t255 * t347;
+            let t349 = t348 * t228 + (t346 - (k(1.8) * (k(3.0) * t).sin() - t344));
+            let t350 = t264 * t348 + t345 * t274;
+            let t351 = t293 * t350;
+            let t352 = t308 * t351 - (t302 * t348 + t345 * t318);
+            let t353 = t338 * t352;
+            let t354 = t345 * t189;
+            let t355 = t352 * t353 - (t350 * t351 - (t347 * t348 - t345 * t354));
+            let t356 = (t353 * t310 - (t351 * t266 - t349)) / t355;
+            let t357 = t353 * t356 - t338 * t310;
+            let t358 = t351 * t356 - (t309 * t357 + t293 * t266);
+            let t359 = t348 * t356 - (t303 * t357 + (t265 * t358 + t255 * t228));
+            let t360 = t150 * t354;
+            let t361 = t356 * t360
+                + (t319 * t357 + (t275 * t358 + (t192 - t237 * t359)));
+            let t362 = t146 * t354;
+            let t363 = t356 * t362
+                + (t321 * t357 + (t277 * t358 - (t195 + t239 * t359)));
+            let t364 = t154 * t354;
+            let t365 = t356 * t364
+                + (t323 * t357 + (t279 * t358 - (t198 + t241 * t359)));
+            let t366 = t354 * t356
+                + (t318 * t357 + (t274 * t358 + (t190 - t236 * t359)));
+            let t367 = t358 * (t276 + (t86 * t288 + t85 * t287)) + (t209 - t252 * t359);
+            let t368 = k(2.0) * t360;
+            let t369 = k(2.0) * t362;
+            let t370 = k(2.0) * t364;
+            let t371 = t63 * t354;
+            let t372 = t59 * t354;
+            let t373 = t132 * t372 + t74 * t371
+                + (t115 * t370 + (t103 * t369 - t89 * t368));
+            let t374 = t71 * t373;
+            let t375 = t66 * t372 + (t65 * t374 + t64 * t371)
+                + (t113 * t370 + (t101 * t369 + t87 * t368));
+            let t376 = t67 * t375;
+            let t377 = t374 - t54 * t376;
+            let t378 = t372 - t59 * t376;
+            let t379 = t356 * (t368 + (t86 * t378 + t85 * t377))
+                + (t357 * (t320 + (t86 * t332 + t85 * t331)) + t367);
+            let t380 = t357 * (t322 + (t100 * t332 - t99 * t331))
+                + (t290 * t358 - (t257 + t262 * t359));
+            let t381 = t356 * (t370 + (t112 * t378 - t111 * t377))
+                + (t334 * t357 + (t306 * t358 - (t295 + t300 * t359)));
+            let t382 = t358 * (t281 - t63 * t286)
+                - (t359 * (t243 + t63 * t248) - (t200 - t63 * t205));
+            let t383 = t356 * (t371 - t63 * t376) + (t357 * (t325 - t63 * t330) + t382);
+            let t384 = t356 * t377
+                + (t331 * t357 + (t287 * t358 - (t206 + t249 * t359)));
+            let t385 = t356 * t378
+                + (t332 * t357 + (t288 * t358 - (t207 + t250 * t359)));
+            let t386 = t357 * (t225 * t335)
+                + (t358 * (t225 * t291) + (t227 + t254 * t359));
+            let t387 = t357 * (t258 * t335) + (t292 * t358 - (t260 - t263 * t359));
             (
-                t200,
-                t206,
-                t207,
-                t208,
+                t211,
                 t213,
-                t219,
-                t220,
-                t229,
-                t234,
-                t235,
-                t245,
-                t246,
-                t248,
-                t265,
-                t271,
-                t272,
-                t273,
-                t276,
-                t277,
-                t280,
-                t281,
-                t283,
-                t285,
-                t286,
-                t305,
-                t311,
-                t312,
-                t313,
-                t315,
-                t316,
-                t317,
-                t320,
-                t323,
-                t325,
-                t326,
-                t331,
-                t332,
-                t346,
-                t348,
-                t351,
+                t221,
+                t224,
+                t253,
+                t291,
+                t298,
+                t301,
+                t307,
+                t335,
+                t336,
+                t356,
                 t357,
                 t358,
                 t359,
                 t361,
-                t362,
                 t363,
+                t365,
+                t366,
+                t369,
+                t377,
+                t378,
+                t379,
+                t380,
                 t381,
                 t383,
                 t384,
                 t385,
                 t386,
-                t388,
-                t390,
-                t392,
-                t393,
-                t394,
-                t395,
-                t396,
-                t397,
-                t398,
-                t399,
+                t387,
             )
         };
-        let (t405, t406, t407, t408, t409, t411, t412, t413, t414, t415) = {
-            let t400 = t53 * t381;
-            let t401 = t124 * t400 - (t66 * t399 - t70 * t398)
-                + (t101 * t397 + (t90 * t396 - t75 * t395));
-            let t402 = t399 + t67 * t401;
-            let t403 = t61 * t400 + (t60 * t402 + t59 * t398)
-                + (t99 * t397 + (t88 * t396 + t73 * t395));
-            let t404 = t62 * t403;
-            let t405 = t402 - t43 * t404;
-            let t406 = t400 - t53 * t404;
-            let t407 = t383 * (t395 + (t72 * t406 + t71 * t405))
-                + (t384 * (t346 + (t72 * t359 + t71 * t358)) + t394);
-            let t408 = t384 * (t348 + (t87 * t359 - t86 * t358))
-                + (t315 * t385 - (t280 + t285 * t386));
-            let t409 = t383 * (t397 + (t98 * t406 - t97 * t405))
-                + (t361 * t384 + (t331 * t385 - (t320 + t325 * t386)));
-            let t410 = t385 * (t305 - t58 * t311)
-                - (t386 * (t265 + t58 * t271) - (t200 - t58 * t206));
-            let t411 = t383 * (t398 - t58 * t404) + (t384 * (t351 - t58 * t357) + t410);
-            let t412 = t383 * t405
-                + (t358 * t384 + (t312 * t385 - (t207 + t272 * t386)));
-            let t413 = t383 * t406
-                + (t359 * t384 + (t313 * t385 - (t208 + t273 * t386)));
-            let t414 = t384 * (t246 * t362)
-                + (t385 * (t246 * t316) + (t248 + t277 * t386));
-            let t415 = t384 * (t281 * t362) + (t317 * t385 - (t283 - t286 * t386));
-            (t405, t406, t407, t408, t409, t411, t412, t413, t414, t415)
-        };
         *out = [
-            t388,
-            -t390,
-            t392,
-            -t169,
-            t25,
-            t393,
-            t407,
-            -(t383 * (t396 + (t87 * t406 - t86 * t405)) + t408),
-            t409,
-            -t411,
-            -t412,
-            t413,
-            t414,
-            -t415,
-            t363 * t384 + (t332 * t385 - (t323 - t326 * t386)),
-            t234 * (t219 * t220) + t229 * (t213 * t220),
-            -t235,
-            t362 * t384 + (t316 * t385 + (t245 + t276 * t386)),
-            -t386,
-            t385,
+            t361,
+            -t363,
+            t365,
+            t167,
+            -t37,
+            t366,
+            t379,
+            -(t356 * (t369 + (t100 * t378 - t99 * t377)) + t380),
+            t381,
+            -t383,
             -t384,
-            t383,
+            t385,
+            t386,
+            -t387,
+            t336 * t357 + (t307 * t358 - (t298 - t301 * t359)),
+            rocker_wy * rocker_wz - t221 * t211,
+            -t213,
+            t335 * t357 + (t291 * t358 + (t224 + t253 * t359)),
+            -t359,
+            t358,
+            -t357,
+            t356,
         ];
     }
     /// Writes λ: 281 operations (107 ±, 170 ×, 4 ÷).
@@ -2313,72 +2241,72 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
         let t3 = k(3.924) + k(0.4) * crank_dsy + t2;
         let t4 = coupler_dsz - closing2;
         let t5 = k(0.4) * crank_dsz + t4;
-        let t6 = coupler_e0 * coupler_e0;
-        let t7 = k(2.0) * (k(0.5) - (t6 + coupler_e1 * coupler_e1));
-        let t8 = crank_e0 * crank_e0;
-        let t9 = k(2.0) * (k(0.5) - (t8 + crank_e1 * crank_e1));
-        let t10 = coupler_e0 * coupler_e3;
-        let t11 = coupler_e1 * coupler_e2;
-        let t12 = k(2.0) * (t11 + t10);
-        let t13 = crank_e0 * crank_e3;
-        let t14 = crank_e1 * crank_e2;
-        let t15 = k(2.0) * (t14 + t13);
-        let t16 = coupler_e0 * coupler_e2;
-        let t17 = coupler_e1 * coupler_e3;
-        let t18 = k(2.0) * (t17 - t16);
-        let t19 = crank_e0 * crank_e2;
-        let t20 = crank_e1 * crank_e3;
+        let t6 = crank_e0 * crank_e0;
+        let t7 = k(2.0) * (k(0.5) - (t6 + crank_e2 * crank_e2));
+        let t8 = k(2.0) * (k(0.5) - (t6 + crank_e1 * crank_e1));
+        let t9 = crank_e0 * crank_e3;
+        let t10 = crank_e1 * crank_e2;
+        let t11 = k(2.0) * (t10 + t9);
+        let t12 = k(2.0) * (t10 - t9);
+        let t13 = k(1.0) / (t12 * t11 - t8 * t7);
+        let t14 = coupler_e0 * coupler_e0;
+        let t15 = k(2.0) * (k(0.5) - (t14 + coupler_e1 * coupler_e1));
+        let t16 = coupler_e0 * coupler_e3;
+        let t17 = coupler_e1 * coupler_e2;
+        let t18 = k(2.0) * (t17 + t16);
+        let t19 = coupler_e0 * coupler_e2;
+        let t20 = coupler_e1 * coupler_e3;
         let t21 = k(2.0) * (t20 - t19);
-        let t22 = k(5e-5) * coupler_dwx;
-        let t23 = t17 + t16;
-        let t24 = k(0.5) * t23;
-        let t25 = coupler_e0 * coupler_e1;
-        let t26 = coupler_e2 * coupler_e3;
-        let t27 = t26 - t25;
-        let t28 = k(0.5) * t27;
-        let t29 = closing1 * t28
-            - (k(0.02095) * (coupler_wx * coupler_wz) - k(0.021) * coupler_dwy
-                - closing0 * t24);
-        let t30 = k(0.5) - (t6 + coupler_e3 * coupler_e3);
+        let t22 = crank_e0 * crank_e2;
+        let t23 = crank_e1 * crank_e3;
+        let t24 = k(2.0) * (t23 - t22);
+        let t25 = k(5e-5) * coupler_dwx;
+        let t26 = t20 + t19;
+        let t27 = k(0.5) * t26;
+        let t28 = coupler_e0 * coupler_e1;
+        let t29 = coupler_e2 * coupler_e3;
+        let t30 = t29 - t28;
         let t31 = k(0.5) * t30;
-        let t32 = t4 * t31 - (t2 * t28 + t0 * t24) - (closing2 * t31 - t29);
-        let t33 = t11 - t10;
-        let t34 = k(2.0) * t33;
-        let t35 = k(0.5) - (t6 + coupler_e2 * coupler_e2);
-        let t36 = k(2.0) * t35;
-        let t37 = t26 + t25;
-        let t38 = k(2.0) * t37;
-        let t39 = (t21 * t38 - (t15 * t36 + t9 * t34)) * t32
-            + t22 * (t21 * t18 + (t15 * t12 + t9 * t7));
-        let t40 = k(0.5) * t33;
-        let t41 = k(0.5) * t35;
-        let t42 = closing1 * t41
+        let t32 = closing1 * t31
+            - (k(0.02095) * (coupler_wx * coupler_wz) - k(0.021) * coupler_dwy
+                - closing0 * t27);
+        let t33 = k(0.5) - (t14 + coupler_e3 * coupler_e3);
+        let t34 = k(0.5) * t33;
+        let t35 = t4 * t34 - (t2 * t31 + t0 * t27) - (closing2 * t34 - t32);
+        let t36 = t17 - t16;
+        let t37 = k(2.0) * t36;
+        let t38 = k(0.5) - (t14 + coupler_e2 * coupler_e2);
+        let t39 = k(2.0) * t38;
+        let t40 = t29 + t28;
+        let t41 = k(2.0) * t40;
+        let t42 = (t24 * t41 - (t11 * t39 + t8 * t37)) * t35
+            + t25 * (t24 * t21 + (t11 * t18 + t8 * t15));
+        let t43 = k(0.5) * t36;
+        let t44 = k(0.5) * t38;
+        let t45 = closing1 * t44
             + (k(0.02095) * (coupler_wx * coupler_wy) + k(0.021) * coupler_dwz
-                - closing0 * t40);
-        let t43 = k(0.5) * t37;
-        let t44 = t4 * t43 - (t2 * t41 - t0 * t40) - (closing2 * t43 - t42);
-        let t45 = k(2.0) * t23;
-        let t46 = k(2.0) * t27;
-        let t47 = k(2.0) * t30;
-        let t48 = (t21 * t47 - (t15 * t46 - t9 * t45)) * t44 - t39;
-        let t49 = k(2e-5) * crank_dwx - t48;
-        let t50 = k(2.0) * (k(0.5) - (t8 + crank_e2 * crank_e2));
-        let t51 = k(2.0) * (t14 - t13);
-        let t52 = k(1.0) / (t51 * t15 - t9 * t50);
+                - closing0 * t43);
+        let t46 = k(0.5) * t40;
+        let t47 = t4 * t46 - (t2 * t44 - t0 * t43) - (closing2 * t46 - t45);
+        let t48 = k(2.0) * t26;
+        let t49 = k(2.0) * t30;
+        let t50 = k(2.0) * t33;
+        let t51 = (t24 * t50 - (t11 * t49 - t8 * t48)) * t47 - t42;
+        let t52 = k(2e-5) * crank_dwx - t51;
         let t53 = crank_e0 * crank_e1;
         let t54 = crank_e2 * crank_e3;
         let t55 = t54 - t53;
         let t56 = k(2.0) * t55;
-        let t57 = t20 + t19;
+        let t57 = t23 + t22;
         let t58 = k(2.0) * t57;
-        let t59 = (t58 * t15 + t9 * t56) / (t15 * t15 + t9 * t9);
+        let t59 = (t58 * t11 + t8 * t56) / (t11 * t11 + t8 * t8);
         let t60 = k(2.0) * (t54 + t53);
-        let t61 = (t60 * t38 + (t51 * t34 + t50 * t36)) * t32
-            + t22 * (t60 * t18 - (t50 * t12 + t51 * t7));
-        let t62 = (t60 * t47 - (t51 * t45 - t50 * t46)) * t44 - t61;
+        let t61 = (t60 * t41 + (t12 * t37 + t7 * t39)) * t35
+            + t25 * (t60 * t21 - (t7 * t18 + t12 * t15));
+        let t62 = (t60 * t50 - (t12 * t48 - t7 * t49)) * t47 - t61;
         let t63 = k(0.2) * t57;
         let t64 = k(0.2) * t55;
-        let t65 = k(0.5) - (t8 + crank_e3 * crank_e3);
+        let t65 = k(0.5) - (t6 + crank_e3 * crank_e3);
         let t66 = k(0.2) * t65;
         let t67 = t4 * t66 - (t2 * t64 + t0 * t63) - t62
             - (k(0.00133) * (crank_wx * crank_wz) - k(0.00135) * crank_dwy
@@ -2404,24 +2332,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
         let t84 = k(0.4) * (k(0.5) - (t76 + rocker_e3 * rocker_e3));
         let t85 = t71 * t84 - (t70 * t82 + t69 * t81) + (closing2 * t84 - t83);
         let t86 = k(2.0) * t65;
-        let t87 = t58 * t45 + t56 * t46 + t86 * t47;
-        let t88 = t86 * t18 - (t56 * t12 - t58 * t7);
+        let t87 = t58 * t48 + t56 * t49 + t86 * t50;
+        let t88 = t86 * t21 - (t56 * t18 - t58 * t15);
         let t89 = k(1.0) / (t88 * t88 + t87 * t87);
         *lambda = [
             -t1,
             -t3,
             -t5,
-            t15 * t52 * t49 - t50 * t52 * t68,
-            t9 * t52 * t49 - t51 * t52 * t68,
+            t52 * (t11 * t13) - t68 * (t7 * t13),
+            t52 * (t8 * t13) - t68 * (t12 * t13),
             -t69,
             -t70,
             -t71,
-            t77 * t79 * t85 - t80 * (t74 * t79),
-            t75 * t79 * t85 - t80 * (t78 * t79),
+            t85 * (t77 * t79) - t80 * (t74 * t79),
+            t85 * (t75 * t79) - t80 * (t78 * t79),
             -t0,
             -t2,
             -t4,
-            -(t88 * t89 * t44 + t22 * (t87 * t89)),
+            -(t88 * t89 * t47 + t25 * (t87 * t89)),
             closing0,
             closing1,
             closing2,

@@ -19,7 +19,7 @@
 //! | gamma | γ | 29 | 55 | 0 | 84 | 8 of 13 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 18 | 31 | 0 | 49 | 0 of 13 |
 //! | applied_force | (f, n' − w̃'J'w') | 7 | 25 | 0 | 32 | 9 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 41 | 99 | 2 | 142 | 8 of 18 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 35 | 84 | 2 | 121 | 8 of 18 |
 //! | multipliers | λ, the accelerations being known | 25 | 69 | 2 | 96 | 0 of 13 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 28 | 59 | 0 | 87 | 0 of 23 |
 //! | energy | T and V | 23 | 43 | 0 | 66 | 0 of 2 |
@@ -31,6 +31,7 @@
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 7 | 18 | 0 | 25 | 0 of 5 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 11 | 32 | 0 | 43 | 9 of 18 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 7 | 23 | 0 | 30 | 0 of 13 |
+//! | corrected_solution | both | 14 | 47 | 0 | 61 | 16 of 31 |
 //!
 //! # Proof
 //!
@@ -45,7 +46,7 @@
 //! * joint_derivative: eqs. (14) and (16) on the constraints
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
-//! * corrected_multipliers: eq. (17) on the constraints
+//! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //!
 //! All of it holds but with a probability below 1e-150.
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
@@ -951,7 +952,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Friction<T> {
             -(k(0.1) * (carriage_wx * carriage_wy)),
         ];
     }
-    /// Solves eq. (17): 142 operations (41 ±, 99 ×, 2 ÷) and 4 functions.
+    /// Solves eq. (17): 121 operations (35 ±, 84 ×, 2 ÷) and 4 functions.
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let disc_e0 = y[3];
@@ -973,56 +974,50 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Friction<T> {
         let carriage_wy = y[37];
         let carriage_wz = y[38];
         let turn0 = y[40];
-        let t0 = disc_e0 * disc_e3;
-        let t1 = disc_e1 * disc_e2;
-        let t2 = k(2.0) * (t1 + t0);
-        let t3 = k(2.0) * (t1 - t0);
-        let t4 = disc_e0 * disc_e0;
-        let t5 = k(2.0) * (k(0.5) - (t4 + disc_e2 * disc_e2));
-        let t6 = k(2.0) * (k(0.5) - (t4 + disc_e1 * disc_e1));
-        let t7 = k(1.0) / (t6 * t5 - t3 * t2);
-        let t8 = disc_wx * disc_wz;
-        let t9 = disc_wy * disc_wz;
-        let t10 = disc_wy * disc_wy + disc_wx * disc_wx;
-        let t11 = k(2.0) * (disc_e1 * disc_e3 + disc_e0 * disc_e2) * t10
-            - (t3 * t9 - t6 * t8);
-        let t12 = k(2.0) * (disc_e2 * disc_e3 - disc_e0 * disc_e1) * t10
-            + (t5 * t9 - t2 * t8);
-        let t13 = turn0.cos();
-        let t14 = turn0.sin();
-        let t15 = (t2 * t13 + t6 * t14).atan2(t2 * t14 - t6 * t13);
-        let t16 = k(50.0)
-            * (k(0.05) * (k(10.0) * disc_wz).tanh() + k(0.5) * (turn0 + t15));
+        let t0 = disc_e0 * disc_e0;
+        let t1 = (disc_wy * disc_wy + disc_wx * disc_wx)
+            * (k(0.5) / (k(0.5) - (t0 + disc_e3 * disc_e3)));
+        let t2 = disc_wy * disc_wz
+            - k(2.0) * (disc_e2 * disc_e3 + disc_e0 * disc_e1) * t1;
+        let t3 = disc_wx * disc_wz
+            - k(2.0) * (disc_e1 * disc_e3 - disc_e0 * disc_e2) * t1;
+        let t4 = turn0.cos();
+        let t5 = k(2.0) * (k(0.5) - (t0 + disc_e1 * disc_e1));
+        let t6 = turn0.sin();
+        let t7 = k(2.0) * (disc_e1 * disc_e2 + disc_e0 * disc_e3);
+        let t8 = (t7 * t4 + t5 * t6).atan2(t7 * t6 - t5 * t4);
+        let t9 = k(50.0)
+            * (k(0.05) * (k(10.0) * disc_wz).tanh() + k(0.5) * (turn0 + t8));
+        let t10 = carriage_wx * carriage_wy;
+        let t11 = carriage_e0 * carriage_e0;
+        let t12 = k(2.0) * (k(0.5) - (t11 + carriage_e1 * carriage_e1));
+        let t13 = carriage_wx * carriage_wx;
+        let t14 = carriage_wz * carriage_wz + t13;
+        let t15 = k(2.0) * (carriage_e1 * carriage_e2 - carriage_e0 * carriage_e3);
+        let t16 = carriage_wy * carriage_wz;
         let t17 = carriage_e0 * carriage_e2;
         let t18 = carriage_e1 * carriage_e3;
-        let t19 = k(2.0) * (t18 - t17);
-        let t20 = carriage_e0 * carriage_e0;
-        let t21 = k(2.0) * (k(0.5) - (t20 + carriage_e1 * carriage_e1));
-        let t22 = k(2.0) * (k(0.5) - (t20 + carriage_e3 * carriage_e3));
-        let t23 = t21 * t22;
-        let t24 = k(2.0) * (t18 + t17);
-        let t25 = t24 * t19 - t23;
-        let t26 = k(1.0) / (t21 * t25);
-        let t27 = carriage_wx * carriage_wy;
-        let t28 = carriage_wx * carriage_wx;
-        let t29 = carriage_wz * carriage_wz + t28;
-        let t30 = k(2.0) * (carriage_e1 * carriage_e2 - carriage_e0 * carriage_e3);
-        let t31 = carriage_wy * carriage_wz;
-        let t32 = t24 * t31 - (t30 * t29 + t21 * t27);
-        let t33 = k(2.0) * (carriage_e2 * carriage_e3 + carriage_e0 * carriage_e1) * t29
-            - t19 * t27;
-        let t34 = t22 * t31 + t33;
-        let t35 = t34 * (t26 * (t21 * t21)) - t32 * (t26 * (t21 * t19));
-        let t36 = t24 * (carriage_wy * carriage_wy + t28)
-            - (t30 * t31 - t21 * (carriage_wx * carriage_wz));
-        let t37 = t34 * (t26 * (t21 * t30)) - t32 * (t26 * (t30 * t19));
+        let t19 = k(2.0) * (t18 + t17);
+        let t20 = t19 * t16 - (t15 * t14 + t12 * t10);
+        let t21 = k(2.0) * (t18 - t17);
+        let t22 = k(2.0) * (k(0.5) - (t11 + carriage_e3 * carriage_e3));
+        let t23 = t12 * t22;
+        let t24 = t19 * t21 - t23;
+        let t25 = k(1.0) / (t12 * t24);
+        let t26 = k(2.0) * (carriage_e2 * carriage_e3 + carriage_e0 * carriage_e1) * t14
+            - t21 * t10;
+        let t27 = t22 * t16 + t26;
+        let t28 = t25 * (t12 * t12) * t27 - t25 * (t12 * t21) * t20;
+        let t29 = t19 * (carriage_wy * carriage_wy + t13)
+            - (t15 * t16 - t12 * (carriage_wx * carriage_wz));
+        let t30 = t27 * (t25 * (t12 * t15)) - t20 * (t25 * (t15 * t21));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            t12 * (t6 * t7) + t11 * (t2 * t7),
-            -(t12 * (t3 * t7) + t11 * (t5 * t7)),
-            -t16,
+            t2,
+            -t3,
+            -t9,
             k(0.0),
             k(0.0),
             k(0.0),
@@ -1032,9 +1027,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Friction<T> {
             k(0.0),
             -(k(0.25) * carriage_sy),
             k(0.0),
-            t35,
-            -(t37 + t36 * (t25 * t26)),
-            t32 * (t23 * t26) - t34 * (t26 * (t21 * t24)),
+            t28,
+            -(t30 + t24 * t25 * t29),
+            t20 * (t23 * t25) - t27 * (t25 * (t12 * t19)),
         ];
     }
     /// Writes λ: 96 operations (25 ±, 69 ×, 2 ÷).
@@ -1118,6 +1113,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Friction<T> {
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Friction<T> {
     type Joints = [T; 12];
     type Rates = [T; 5];
+    type Solution = [T; 31];
     fn joint_start(&self) -> Self::Joints {
         let k = T::constant;
         [
@@ -1137,6 +1133,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Friction<T> {
     }
     fn rates(&self) -> Self::Rates {
         [T::constant(0.0); 5]
+    }
+    fn solution(&self) -> Self::Solution {
+        [T::constant(0.0); 31]
     }
     /// Writes u̇: 9 operations (1 ±, 8 ×, 0 ÷) and 1 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
@@ -1414,6 +1413,80 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Friction<T> {
             k(0.1) * (carriage_wx * carriage_wy) + k(0.2) * carriage_dwz,
             k(0.1) * carriage_dwx,
             k(0.2) * carriage_dwy - k(0.1) * (carriage_wx * carriage_wz),
+        ];
+    }
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 61 operations (14 ±, 47 ×, 0 ÷) and 4 functions.
+    fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
+        let k = T::constant;
+        let disc_e0 = y[3];
+        let disc_e1 = y[4];
+        let disc_e2 = y[5];
+        let disc_e3 = y[6];
+        let carriage_e0 = y[17];
+        let carriage_e1 = y[18];
+        let carriage_e2 = y[19];
+        let carriage_e3 = y[20];
+        let carriage_sy = y[34];
+        let disc_wx = y[24];
+        let disc_wy = y[25];
+        let disc_wz = y[26];
+        let ball_wx = y[30];
+        let ball_wy = y[31];
+        let ball_wz = y[32];
+        let carriage_wx = y[36];
+        let carriage_wy = y[37];
+        let carriage_wz = y[38];
+        let turn0 = y[40];
+        let t0 = disc_wy * disc_wz;
+        let t1 = disc_wx * disc_wz;
+        let t2 = turn0.cos();
+        let t3 = k(2.0) * (k(0.5) - (disc_e0 * disc_e0 + disc_e1 * disc_e1));
+        let t4 = turn0.sin();
+        let t5 = k(2.0) * (disc_e1 * disc_e2 + disc_e0 * disc_e3);
+        let t6 = (t5 * t2 + t3 * t4).atan2(t5 * t4 - t3 * t2);
+        let t7 = k(50.0)
+            * (k(0.05) * (k(10.0) * disc_wz).tanh() + k(0.5) * (turn0 + t6));
+        let t8 = k(0.25) * carriage_sy;
+        let t9 = k(2.0) * (carriage_e1 * carriage_e2 - carriage_e0 * carriage_e3) * t8;
+        let t10 = k(2.0) * (carriage_e2 * carriage_e3 + carriage_e0 * carriage_e1) * t8;
+        let t11 = k(0.02) * t1;
+        let t12 = k(2.0) * disc_e3;
+        let t13 = k(1.0) - disc_e3 * t12;
+        let t14 = k(0.02) * t0;
+        let t15 = disc_e0 * t12;
+        *out = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t0,
+            -t1,
+            -t7,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -(k(0.8) * ball_wx),
+            -(k(0.8) * ball_wy),
+            -(k(0.8) * ball_wz),
+            -t9,
+            k(2.0) * (k(0.5) - (carriage_e0 * carriage_e0 + carriage_e2 * carriage_e2))
+                * t8,
+            -t10,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t13 * t11 - t15 * t14,
+            t13 * t14 + t15 * t11,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(2.0) * t9,
+            -(k(2.0) * t10),
+            k(0.1) * (carriage_wx * carriage_wy),
+            k(0.0),
+            -(k(0.1) * (carriage_wx * carriage_wz)),
         ];
     }
 }

@@ -19,7 +19,7 @@
 //! | gamma | γ | 55 | 103 | 2 | 160 | 6 of 11 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 29 | 55 | 2 | 86 | 0 of 11 |
 //! | applied_force | (f, n' − w̃'J'w') | 7 | 19 | 0 | 26 | 6 of 12 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 74 | 148 | 5 | 227 | 6 of 13 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 74 | 132 | 5 | 211 | 6 of 13 |
 //! | multipliers | λ, the accelerations being known | 32 | 75 | 4 | 111 | 0 of 11 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 16 | 33 | 0 | 49 | 0 of 17 |
 //! | energy | T and V | 18 | 34 | 0 | 52 | 0 of 2 |
@@ -196,19 +196,19 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Gear<T> {
         let wheel_e3 = y[13];
         let turn0 = y[27];
         let turn1 = y[28];
-        let t0 = turn1.cos();
-        let t1 = wheel_e2 * wheel_e2;
-        let t2 = wheel_e0 * wheel_e0;
-        let t3 = k(2.0) * (k(0.5) - (t2 + t1));
-        let t4 = turn1.sin();
-        let t5 = k(2.0) * (wheel_e2 * wheel_e3 + wheel_e0 * wheel_e1);
-        let t6 = (t5 * t0 + t3 * t4).atan2(t5 * t4 - t3 * t0);
-        let t7 = turn0.cos();
-        let t8 = pinion_e0 * pinion_e0 + pinion_e1 * pinion_e1;
-        let t9 = k(2.0) * (k(0.5) - t8);
-        let t10 = turn0.sin();
-        let t11 = k(2.0) * (pinion_e1 * pinion_e2 + pinion_e0 * pinion_e3);
-        let t12 = (t11 * t7 + t9 * t10).atan2(t11 * t10 - t9 * t7);
+        let t0 = turn0.cos();
+        let t1 = pinion_e0 * pinion_e0 + pinion_e1 * pinion_e1;
+        let t2 = k(2.0) * (k(0.5) - t1);
+        let t3 = turn0.sin();
+        let t4 = k(2.0) * (pinion_e1 * pinion_e2 + pinion_e0 * pinion_e3);
+        let t5 = (t4 * t0 + t2 * t3).atan2(t4 * t3 - t2 * t0);
+        let t6 = turn1.cos();
+        let t7 = wheel_e2 * wheel_e2;
+        let t8 = wheel_e0 * wheel_e0;
+        let t9 = k(2.0) * (k(0.5) - (t8 + t7));
+        let t10 = turn1.sin();
+        let t11 = k(2.0) * (wheel_e2 * wheel_e3 + wheel_e0 * wheel_e1);
+        let t12 = (t11 * t6 + t9 * t10).atan2(t11 * t10 - t9 * t6);
         *out = [
             pinion_rx,
             pinion_ry,
@@ -220,9 +220,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Gear<T> {
             wheel_rz,
             k(2.0) * (wheel_e1 * wheel_e2 + wheel_e0 * wheel_e3),
             k(2.0) * (wheel_e1 * wheel_e3 - wheel_e0 * wheel_e2),
-            k(2.5) * (turn0 + t12) + (turn1 + t6) - k(0.3),
-            pinion_e3 * pinion_e3 + (t8 + pinion_e2 * pinion_e2) - k(1.0),
-            wheel_e3 * wheel_e3 + (t2 + wheel_e1 * wheel_e1 + t1) - k(1.0),
+            turn1 + t12 + k(2.5) * (turn0 + t5) - k(0.3),
+            pinion_e3 * pinion_e3 + (t1 + pinion_e2 * pinion_e2) - k(1.0),
+            wheel_e3 * wheel_e3 + (t8 + wheel_e1 * wheel_e1 + t7) - k(1.0),
         ];
     }
     /// Writes Φ_r s + Φ_π' w' − ν: 86 operations (29 ±, 55 ×, 2 ÷).
@@ -807,7 +807,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gear<T> {
             k(0.025) * (wheel_wx * wheel_wy),
         ];
     }
-    /// Solves eq. (17): 227 operations (74 ±, 148 ×, 5 ÷) and 3 functions.
+    /// Solves eq. (17): 211 operations (74 ±, 132 ×, 5 ÷) and 3 functions.
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let pinion_e0 = y[3];
@@ -826,86 +826,87 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gear<T> {
         let wheel_wz = y[25];
         let turn1 = y[28];
         let t0 = pinion_e0 * pinion_e0;
-        let t1 = k(2.0) * (k(0.5) - (t0 + pinion_e2 * pinion_e2));
-        let t2 = k(2.0) * (k(0.5) - (t0 + pinion_e1 * pinion_e1));
-        let t3 = pinion_e0 * pinion_e3;
-        let t4 = pinion_e1 * pinion_e2;
-        let t5 = k(2.0) * (t4 + t3);
-        let t6 = k(2.0) * (t4 - t3);
-        let t7 = t6 * t5 - t2 * t1;
-        let t8 = k(1.0) / t7;
-        let t9 = pinion_wx * pinion_wz;
-        let t10 = pinion_wy * pinion_wz;
-        let t11 = pinion_wy * pinion_wy;
-        let t12 = t11 + pinion_wx * pinion_wx;
-        let t13 = k(2.0) * (pinion_e1 * pinion_e3 + pinion_e0 * pinion_e2);
-        let t14 = t13 * t12 - (t6 * t10 - t2 * t9);
-        let t15 = k(2.0) * (pinion_e2 * pinion_e3 - pinion_e0 * pinion_e1);
-        let t16 = t15 * t12 + (t1 * t10 - t5 * t9);
-        let t17 = t16 * (t6 * t8) + t14 * (t1 * t8);
-        let t18 = k(1.0) / (t5 * t5 + t2 * t2);
-        let t19 = t18 * t7;
-        let t20 = k(87.5) * t19 - k(2.5) * ((t13 * t5 + t2 * t15) * t18) * t17;
-        let t21 = turn1.cos();
-        let t22 = wheel_e0 * wheel_e0;
-        let t23 = k(2.0) * (k(0.5) - (t22 + wheel_e2 * wheel_e2));
-        let t24 = turn1.sin();
-        let t25 = wheel_e0 * wheel_e1;
-        let t26 = wheel_e2 * wheel_e3;
-        let t27 = k(2.0) * (t26 + t25);
-        let t28 = (t27 * t21 + t23 * t24).atan2(t27 * t24 - t23 * t21);
-        let t29 = k(8.0) * (k(0.2) + (turn1 + t28));
-        let t30 = k(1.0) / (t27 * t27 + t23 * t23);
-        let t31 = k(2.0) * (k(0.5) - (t22 + wheel_e3 * wheel_e3));
-        let t32 = k(2.0) * (t26 - t25);
-        let t33 = t32 * t27 - t23 * t31;
-        let t34 = t33 * t30;
-        let t35 = k(1.0) / t33;
-        let t36 = wheel_wz * wheel_wz;
-        let t37 = t36 + wheel_wy * wheel_wy;
-        let t38 = k(2.0) * (wheel_e1 * wheel_e2 + wheel_e0 * wheel_e3);
-        let t39 = wheel_wx * wheel_wy;
-        let t40 = wheel_wx * wheel_wz;
-        let t41 = t32 * t40 - (t23 * t39 + t38 * t37);
-        let t42 = k(2.0) * (wheel_e1 * wheel_e3 - wheel_e0 * wheel_e2);
-        let t43 = t31 * t40 - (t27 * t39 - t42 * t37);
-        let t44 = t43 * (t32 * t35) - t41 * (t31 * t35);
-        let t45 = t30 * (t38 * t27 + t23 * t42) * t44 + t34 * t29;
-        let t46 = t31 * wheel_wx + t42 * wheel_wz;
-        let t47 = t32 * wheel_wx - t38 * wheel_wz;
-        let t48 = t30 * t30 * (k(2.0) * (t23 * t47 + t27 * t46))
-            * (t27 * t47 - t23 * t46);
-        let t49 = t36 + wheel_wx * wheel_wx;
-        let t50 = wheel_wy * wheel_wz;
-        let t51 = t46 * t47;
-        let t52 = t51 - t27 * (t32 * t50 + (t23 * t49 + t38 * t39));
-        let t53 = t23 * (t31 * t50 + (t27 * t49 - t42 * t39)) - t51;
-        let t54 = t15 * pinion_wy + t1 * pinion_wz;
-        let t55 = t13 * pinion_wy - t6 * pinion_wz;
-        let t56 = t18 * t18 * (k(2.0) * (t2 * t55 - t5 * t54)) * (t5 * t55 + t2 * t54);
-        let t57 = pinion_wz * pinion_wz + t11;
-        let t58 = pinion_wx * pinion_wy;
-        let t59 = t54 * t55;
-        let t60 = t59 + t5 * (t13 * t9 + (t6 * t58 + t2 * t57));
-        let t61 = t2 * (t15 * t9 - (t1 * t58 + t5 * t57)) - t59;
-        let t62 = k(2.5) * (t18 * (t61 + t60) + t56) - (t30 * (t53 + t52) - t48);
-        let t63 = k(125.0) * t19;
-        let t64 = k(20.0) * t34;
-        let t65 = (t62 - (t45 - t20)) / (t34 * t64 + k(2.5) * t19 * t63);
+        let t1 = pinion_wy * pinion_wy;
+        let t2 = (t1 + pinion_wx * pinion_wx)
+            * (k(0.5) / (k(0.5) - (t0 + pinion_e3 * pinion_e3)));
+        let t3 = pinion_e0 * pinion_e1;
+        let t4 = pinion_e2 * pinion_e3;
+        let t5 = pinion_e0 * pinion_e2;
+        let t6 = pinion_e1 * pinion_e3;
+        let t7 = pinion_wx * pinion_wz;
+        let t8 = t7 - k(2.0) * (t6 - t5) * t2;
+        let t9 = wheel_e0 * wheel_e2;
+        let t10 = wheel_e1 * wheel_e3;
+        let t11 = k(2.0) * (t10 - t9);
+        let t12 = wheel_e0 * wheel_e0;
+        let t13 = k(2.0) * (k(0.5) - (t12 + wheel_e3 * wheel_e3));
+        let t14 = t13 * wheel_wx + t11 * wheel_wz;
+        let t15 = k(2.0) * (k(0.5) - (t12 + wheel_e2 * wheel_e2));
+        let t16 = wheel_e0 * wheel_e3;
+        let t17 = wheel_e1 * wheel_e2;
+        let t18 = k(2.0) * (t17 + t16);
+        let t19 = wheel_e0 * wheel_e1;
+        let t20 = wheel_e2 * wheel_e3;
+        let t21 = k(2.0) * (t20 - t19);
+        let t22 = t21 * wheel_wx - t18 * wheel_wz;
+        let t23 = k(2.0) * (t20 + t19);
+        let t24 = k(1.0) / (t23 * t23 + t15 * t15);
+        let t25 = t24 * t24 * (k(2.0) * (t15 * t22 + t23 * t14))
+            * (t23 * t22 - t15 * t14);
+        let t26 = wheel_wx * wheel_wy;
+        let t27 = wheel_wz * wheel_wz;
+        let t28 = t27 + wheel_wx * wheel_wx;
+        let t29 = wheel_wy * wheel_wz;
+        let t30 = t14 * t22;
+        let t31 = t30 - t23 * (t21 * t29 + (t15 * t28 + t18 * t26));
+        let t32 = t15 * (t13 * t29 + (t23 * t28 - t11 * t26)) - t30;
+        let t33 = k(2.0) * (k(0.5) - (t0 + pinion_e2 * pinion_e2));
+        let t34 = k(2.0) * (t4 - t3);
+        let t35 = t34 * pinion_wy + t33 * pinion_wz;
+        let t36 = k(2.0) * (k(0.5) - (t0 + pinion_e1 * pinion_e1));
+        let t37 = pinion_e0 * pinion_e3;
+        let t38 = pinion_e1 * pinion_e2;
+        let t39 = k(2.0) * (t38 - t37);
+        let t40 = k(2.0) * (t6 + t5);
+        let t41 = t40 * pinion_wy - t39 * pinion_wz;
+        let t42 = k(2.0) * (t38 + t37);
+        let t43 = k(1.0) / (t42 * t42 + t36 * t36);
+        let t44 = t43 * t43 * (k(2.0) * (t36 * t41 - t42 * t35))
+            * (t42 * t41 + t36 * t35);
+        let t45 = pinion_wz * pinion_wz + t1;
+        let t46 = pinion_wx * pinion_wy;
+        let t47 = t35 * t41;
+        let t48 = t47 + t42 * (t40 * t7 + (t39 * t46 + t36 * t45));
+        let t49 = t36 * (t34 * t7 - (t33 * t46 + t42 * t45)) - t47;
+        let t50 = k(2.5) * (t43 * (t49 + t48) + t44) - (t24 * (t32 + t31) - t25);
+        let t51 = t43 * (t39 * t42 - t36 * t33);
+        let t52 = k(87.5) * t51 + k(2.5) * ((t40 * t42 + t36 * t34) * t43) * t8;
+        let t53 = turn1.cos();
+        let t54 = turn1.sin();
+        let t55 = (t23 * t53 + t15 * t54).atan2(t23 * t54 - t15 * t53);
+        let t56 = k(8.0) * (k(0.2) + (turn1 + t55));
+        let t57 = (t21 * t23 - t15 * t13) * t24;
+        let t58 = (t27 + wheel_wy * wheel_wy)
+            * (k(0.5) / (k(0.5) - (t12 + wheel_e1 * wheel_e1)));
+        let t59 = t26 - k(2.0) * (t17 - t16) * t58;
+        let t60 = t24 * (t18 * t23 + t15 * t11) * t59 - t57 * t56;
+        let t61 = k(125.0) * t51;
+        let t62 = k(20.0) * t57;
+        let t63 = (t60 + t52 + t50) / (t57 * t62 + k(2.5) * t51 * t61);
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -(t16 * (t2 * t8) + t14 * (t5 * t8)),
-            t17,
-            k(35.0) - t63 * t65,
+            pinion_wy * pinion_wz - k(2.0) * (t4 + t3) * t2,
+            -t8,
+            k(35.0) - t61 * t63,
             k(0.0),
             k(0.0),
             k(0.0),
-            -(t29 + t64 * t65),
-            t41 * (t27 * t35) - t43 * (t23 * t35),
-            t44,
-            -t65,
+            -(t56 + t62 * t63),
+            wheel_wx * wheel_wz - k(2.0) * (t10 + t9) * t58,
+            -t59,
+            -t63,
         ];
     }
     /// Writes λ: 111 operations (32 ±, 75 ×, 4 ÷).
@@ -972,13 +973,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gear<T> {
             -(k(2.0) * pinion_dsx),
             -(k(2.0) * pinion_dsy),
             -(k(2.0) * pinion_dsz),
-            t1 * t7 * t11 + t8 * (t5 * t7),
-            t6 * t7 * t11 + t8 * (t2 * t7),
+            t11 * (t1 * t7) + t8 * (t5 * t7),
+            t11 * (t6 * t7) + t8 * (t2 * t7),
             -(k(4.0) * wheel_dsx),
             -(k(4.0) * wheel_dsy),
             -(k(4.0) * wheel_dsz),
-            t13 * t19 * t22 + t20 * (t17 * t19),
-            t18 * t19 * t22 + t20 * (t14 * t19),
+            t22 * (t13 * t19) + t20 * (t17 * t19),
+            t22 * (t18 * t19) + t20 * (t14 * t19),
             closing0,
         ];
     }

@@ -19,7 +19,7 @@
 //! | gamma | γ | 122 | 193 | 0 | 315 | 6 of 15 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 90 | 128 | 0 | 218 | 0 of 15 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 216 | 339 | 5 | 560 | 7 of 18 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 172 | 259 | 5 | 436 | 7 of 18 |
 //! | multipliers | λ, the accelerations being known | 114 | 187 | 3 | 304 | 0 of 15 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
@@ -35,6 +35,7 @@
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 14 | 23 | 1 | 38 | 0 of 3 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 56 | 92 | 1 | 149 | 6 of 18 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 54 | 80 | 0 | 134 | 0 of 15 |
+//! | corrected_solution | both | 88 | 142 | 1 | 231 | 6 of 33 |
 //!
 //! # Proof
 //!
@@ -51,7 +52,7 @@
 //! * joint_derivative: eqs. (14) and (16) on the constraints
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
-//! * corrected_multipliers: eq. (17) on the constraints
+//! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //!
 //! All of it holds but with a probability below 1e-144.
 //! Not proved: the size of rounding errors.
@@ -1738,7 +1739,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeBearings<T> {
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 560 operations (216 ±, 339 ×, 5 ÷).
+    /// Solves eq. (17): 436 operations (172 ±, 259 ×, 5 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1762,197 +1763,170 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeBearings<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = outer_ring_wx * outer_ring_wy;
-        let t1 = outer_ring_e0 * outer_ring_e2;
-        let t2 = outer_ring_e1 * outer_ring_e3;
-        let t3 = k(2.0) * (t2 - t1);
-        let t4 = outer_ring_wz * outer_ring_wz;
-        let t5 = t4 + outer_ring_wx * outer_ring_wx;
-        let t6 = outer_ring_e0 * outer_ring_e1;
-        let t7 = outer_ring_e2 * outer_ring_e3;
-        let t8 = k(2.0) * (t7 + t6);
-        let t9 = outer_ring_wy * outer_ring_wz;
-        let t10 = outer_ring_e0 * outer_ring_e0;
-        let t11 = k(2.0) * (k(0.5) - (t10 + outer_ring_e3 * outer_ring_e3));
-        let t12 = t11 * t9 + (t8 * t5 - t3 * t0);
-        let t13 = k(2.0) * (k(0.5) - (t10 + outer_ring_e1 * outer_ring_e1));
-        let t14 = k(2.0) * (t2 + t1);
-        let t15 = k(1.0) / (t14 * t3 - t13 * t11);
-        let t16 = outer_ring_e0 * outer_ring_e3;
-        let t17 = outer_ring_e1 * outer_ring_e2;
-        let t18 = k(2.0) * (t17 - t16);
-        let t19 = t14 * t9 - (t18 * t5 + t13 * t0);
-        let t20 = t3 * t15 * t19 - t13 * t15 * t12;
-        let t21 = rotor_e0 * rotor_e3;
-        let t22 = rotor_e1 * rotor_e2;
-        let t23 = k(2.0) * (t22 - t21);
-        let t24 = inner_ring_e0 * inner_ring_e0;
-        let t25 = k(2.0) * (k(0.5) - (t24 + inner_ring_e1 * inner_ring_e1));
-        let t26 = rotor_e0 * rotor_e0;
-        let t27 = k(2.0) * (k(0.5) - (t26 + rotor_e2 * rotor_e2));
-        let t28 = inner_ring_e0 * inner_ring_e3;
-        let t29 = inner_ring_e1 * inner_ring_e2;
-        let t30 = k(2.0) * (t29 + t28);
-        let t31 = rotor_e0 * rotor_e1;
-        let t32 = rotor_e2 * rotor_e3;
-        let t33 = k(2.0) * (t32 + t31);
-        let t34 = inner_ring_e0 * inner_ring_e2;
-        let t35 = inner_ring_e1 * inner_ring_e3;
-        let t36 = k(2.0) * (t35 - t34);
-        let t37 = t36 * t33 - (t30 * t27 + t25 * t23);
-        let t38 = k(5e-6) * t37;
-        let t39 = rotor_e0 * rotor_e2;
-        let t40 = rotor_e1 * rotor_e3;
-        let t41 = k(2.0) * (t40 + t39);
-        let t42 = k(2.0) * (t32 - t31);
-        let t43 = k(2.0) * (k(0.5) - (t26 + rotor_e3 * rotor_e3));
-        let t44 = t36 * t43 - (t30 * t42 - t25 * t41);
-        let t45 = k(5e-6) * t44;
-        let t46 = inner_ring_e0 * inner_ring_e1;
-        let t47 = inner_ring_e2 * inner_ring_e3;
-        let t48 = t47 - t46;
-        let t49 = k(2.0) * t48;
-        let t50 = t35 + t34;
-        let t51 = k(2.0) * t50;
-        let t52 = k(0.5) - (t24 + inner_ring_e3 * inner_ring_e3);
-        let t53 = k(2.0) * t52;
-        let t54 = t53 * t33 - (t51 * t23 - t49 * t27);
-        let t55 = t51 * t41 + t49 * t42 + t53 * t43;
-        let t56 = t55 * t45 + t54 * t38;
-        let t57 = k(1e-6)
-            + (k(1.25e-9) + (t55 * (k(5e-6) * t55) + t54 * (k(5e-6) * t54)));
-        let t58 = k(1.0) / t57;
-        let t59 = t58 * t56;
-        let t60 = t56 * t59 - (k(1e-6) + (t44 * t45 + t37 * t38));
-        let t61 = k(2.0) * (k(0.5) - (t10 + outer_ring_e2 * outer_ring_e2));
-        let t62 = t8 * t36 - (t61 * t30 + t18 * t25);
-        let t63 = k(0.5) - (t24 + inner_ring_e2 * inner_ring_e2);
-        let t64 = k(2.0) * t63;
-        let t65 = t29 - t28;
-        let t66 = k(2.0) * t65;
-        let t67 = t47 + t46;
-        let t68 = k(2.0) * t67;
-        let t69 = t68 * t33 + (t66 * t23 + t64 * t27);
-        let t70 = t68 * t43 - (t66 * t41 - t64 * t42);
-        let t71 = k(5e-6) * t69;
-        let t72 = k(5e-6) * t70;
-        let t73 = t55 * t72 + t54 * t71;
-        let t74 = t73 * t59 - (t70 * t45 + t69 * t38);
-        let t75 = t8 * t68 + (t18 * t66 + t61 * t64);
-        let t76 = t56 - t57 * t59;
-        let t77 = t8 * t53 - (t18 * t51 - t61 * t49);
-        let t78 = t77 * t76 - (t75 * t74 + t62 * t60);
-        let t79 = t58 * t73;
-        let t80 = t73 * t79 - (k(2e-6) + (k(1.25e-9) + (t70 * t72 + t69 * t71)));
-        let t81 = t73 - t57 * t79;
-        let t82 = t77 * t81 - (t75 * t80 + t62 * t74);
-        let t83 = t75 * t81 + t62 * t76;
-        let t84 = k(2.0) * (k(0.5) - (t26 + rotor_e1 * rotor_e1));
-        let t85 = k(2.0) * (t22 + t21);
-        let t86 = k(2.0) * (t40 - t39);
-        let t87 = t36 * t86 + (t30 * t85 + t25 * t84);
-        let t88 = inner_ring_wx * inner_ring_wy;
-        let t89 = t68 * t86 - (t64 * t85 + t66 * t84);
-        let t90 = inner_ring_wx * inner_ring_wx;
-        let t91 = inner_ring_wz * inner_ring_wz;
-        let t92 = t53 * t86 - (t49 * t85 - t51 * t84);
-        let t93 = inner_ring_wy * inner_ring_wz;
-        let t94 = rotor_wy * t44 + rotor_wz * t37;
-        let t95 = k(2.0)
-            * (inner_ring_wx * (rotor_wy * t55 + rotor_wz * t54) + inner_ring_wz * t94);
-        let t96 = rotor_wz * rotor_wz + rotor_wy * rotor_wy;
-        let t97 = rotor_wx * rotor_wy;
-        let t98 = rotor_wx * rotor_wz;
-        let t99 = t98 * t70 - (t97 * t69 - t96 * t89) + t95
-            + (t93 * t92 + ((t91 + t90) * t89 - t88 * t87));
-        let t100 = k(1.0) / (t69 * t55 - t70 * t54);
-        let t101 = inner_ring_wx * inner_ring_wz;
-        let t102 = inner_ring_wy * inner_ring_wy;
-        let t103 = t102 + t90;
-        let t104 = k(2.0)
-            * (inner_ring_wx * (rotor_wy * t70 + rotor_wz * t69) - inner_ring_wy * t94);
-        let t105 = t98 * t55 - (t97 * t54 - t96 * t92) - t104
-            + (t103 * t92 + (t93 * t89 + t101 * t87));
-        let t106 = t69 * t100 * t105 - t54 * t100 * t99;
-        let t107 = k(5e-6) * (t98 + t106);
-        let t108 = t70 * t100 * t105 - t55 * t100 * t99;
-        let t109 = k(5e-6) * (t97 + t108);
-        let t110 = t91 + t102;
-        let t111 = t51 * t101 + (t66 * t88 + t25 * t110);
-        let t112 = k(1e-5) * t111;
-        let t113 = k(0.00025) * t65;
-        let t114 = t49 * t101 - (t64 * t88 + t30 * t110);
-        let t115 = k(0.8) + k(1e-5) * t114;
-        let t116 = k(0.00025) * t63;
-        let t117 = t53 * t101 - (t68 * t88 - t36 * t110);
-        let t118 = k(1e-5) * t117;
-        let t119 = k(0.00025) * t67;
-        let t120 = t119 * t118 + (t116 * t115 - t113 * t112) + (t55 * t109 + t54 * t107);
-        let t121 = k(1e-6) * t88 - t120;
-        let t122 = t58 * t121;
-        let t123 = t56 * t122 - (k(1e-6) * t93 - (t44 * t109 + t37 * t107));
-        let t124 = k(2.0) * (t17 + t16);
-        let t125 = t3 * t53 - (t124 * t49 - t13 * t51);
-        let t126 = k(2.0) * (t7 - t6);
-        let t127 = t14 * t51 + t126 * t49 + t11 * t53;
-        let t128 = outer_ring_wx * outer_ring_wz;
-        let t129 = t128 * t127
-            - (t0 * t77 - (t4 + outer_ring_wy * outer_ring_wy) * t125);
-        let t130 = t11 * t36 - (t126 * t30 - t14 * t25);
-        let t131 = t11 * t68 - (t14 * t66 - t126 * t64);
-        let t132 = inner_ring_wx * t131 - inner_ring_wy * t130;
-        let t133 = k(2.0)
-            * (outer_ring_wy * t132
-                + outer_ring_wz * (inner_ring_wx * t75 - inner_ring_wy * t62));
-        let t134 = t3 * t36 + (t124 * t30 + t13 * t25);
-        let t135 = t3 * t68 - (t124 * t64 + t13 * t66);
-        let t136 = t103 * t125 + (t93 * t135 + t101 * t134) - t133 + t129;
-        let t137 = k(1.0) / (t134 * t75 - t135 * t62);
-        let t138 = k(2.0)
-            * (outer_ring_wx * t132
-                + outer_ring_wz * (inner_ring_wx * t135 - inner_ring_wy * t134));
-        let t139 = t103 * t77 + (t93 * t75 + t101 * t62) + t138
-            + (t9 * t127 + (t5 * t77 - t0 * t125));
-        let t140 = t134 * t137 * t139 - t62 * t137 * t136;
-        let t141 = t135 * t137 * t139 - t75 * t137 * t136;
-        let t142 = k(0.00025) * t50;
-        let t143 = k(0.00025) * t48;
-        let t144 = k(0.00025) * t52;
-        let t145 = t144 * t118 + (t143 * t115 + t142 * t112) - (t70 * t109 + t69 * t107);
-        let t146 = t75 * (t80 * t141 + t74 * t140 - (t73 * t122 - t145));
-        let t147 = t77 * (t81 * t141 + t76 * t140 - (t121 - t57 * t122));
-        let t148 = t147 - (t146 + t62 * (t74 * t141 + t60 * t140 - t123));
-        let t149 = t75 * (t125 * t81 - (t135 * t80 + t134 * t74))
-            + t62 * (t125 * t76 - (t135 * t74 + t134 * t60));
-        let t150 = t11 * t15 * t19 - t14 * t15 * t12;
-        let t151 = t150 * (t127 * t83 + (t131 * t82 + t130 * t78))
-            + t20 * (t77 * (t135 * t81 + t134 * t76) + t149);
-        let t152 = (t151 - (k(1e-6) * t128 + t148))
-            / (k(1e-6) + (t77 * t83 + (t75 * t82 + t62 * t78)));
-        let t153 = t140 - (t130 * t150 - (t62 * t152 - t134 * t20));
-        let t154 = t141 - (t131 * t150 - (t75 * t152 - t135 * t20));
-        let t155 = t127 * t150 - (t77 * t152 - t125 * t20);
-        let t156 = t58 * (t121 + (t57 * t155 - (t73 * t154 + t56 * t153)));
-        let t157 = t155 - t156;
+        let t0 = (outer_ring_wz * outer_ring_wz + outer_ring_wx * outer_ring_wx)
+            * (k(0.5)
+                / (k(0.5)
+                    - (outer_ring_e0 * outer_ring_e0 + outer_ring_e2 * outer_ring_e2)));
+        let t1 = outer_ring_wy * outer_ring_wz
+            - k(2.0) * (outer_ring_e2 * outer_ring_e3 - outer_ring_e0 * outer_ring_e1)
+                * t0;
+        let t2 = inner_ring_e3 * rotor_e0 - inner_ring_e2 * rotor_e1
+            + inner_ring_e1 * rotor_e2 - inner_ring_e0 * rotor_e3;
+        let t3 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t4 = t3 * t2;
+        let t5 = inner_ring_e2 * rotor_e0 + inner_ring_e3 * rotor_e1
+            - inner_ring_e0 * rotor_e2 - inner_ring_e1 * rotor_e3;
+        let t6 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t7 = t6 * t5;
+        let t8 = t7 + t4;
+        let t9 = k(1e-5) * t8;
+        let t10 = k(2.0) * t8;
+        let t11 = t3 * t5;
+        let t12 = t6 * t2;
+        let t13 = t12 - t11;
+        let t14 = k(1e-5) * t13;
+        let t15 = k(2.0) * t13;
+        let t16 = t3 * t6;
+        let t17 = t5 * t2;
+        let t18 = t17 - t16;
+        let t19 = k(2.0) * t18;
+        let t20 = t3 * t3;
+        let t21 = k(0.5) - (t20 + t2 * t2);
+        let t22 = k(2.0) * t21;
+        let t23 = t22 * t14 - t19 * t9;
+        let t24 = k(1e-6)
+            + (k(1.25e-9) + (t22 * (k(1e-5) * t21) + t19 * (k(1e-5) * t18)));
+        let t25 = k(1.0) / t24;
+        let t26 = t25 * t23;
+        let t27 = t23 * t26 - (k(1e-6) + (t15 * t14 + t10 * t9));
+        let t28 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t29 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t30 = t29 * t28;
+        let t31 = outer_ring_e2 * inner_ring_e0 + outer_ring_e3 * inner_ring_e1
+            - outer_ring_e0 * inner_ring_e2 - outer_ring_e1 * inner_ring_e3;
+        let t32 = outer_ring_e1 * inner_ring_e0 - outer_ring_e0 * inner_ring_e1
+            - outer_ring_e3 * inner_ring_e2 + outer_ring_e2 * inner_ring_e3;
+        let t33 = t32 * t31;
+        let t34 = k(2.0) * (t33 - t30);
+        let t35 = k(0.5) - (t20 + t5 * t5);
+        let t36 = k(2.0) * t35;
+        let t37 = t17 + t16;
+        let t38 = k(2.0) * t37;
+        let t39 = k(1e-5) * t35;
+        let t40 = k(1e-5) * t37;
+        let t41 = t22 * t40 + t19 * t39;
+        let t42 = t41 * t26 - (t38 * t14 - t36 * t9);
+        let t43 = t29 * t29;
+        let t44 = k(2.0) * (k(0.5) - (t43 + t31 * t31));
+        let t45 = t44 * t42 - t34 * t27;
+        let t46 = t41 * (t25 * t41) - (k(2e-6) + (k(1.25e-9) + (t38 * t40 + t36 * t39)));
+        let t47 = t44 * t46 - t34 * t42;
+        let t48 = k(0.5) - (t20 + t6 * t6);
+        let t49 = inner_ring_wz * (k(2.0) * (t12 + t11))
+            + (inner_ring_wy * (k(2.0) * (t7 - t4)) - inner_ring_wx * (k(2.0) * t48));
+        let t50 = rotor_wx - t49;
+        let t51 = inner_ring_wz * t22 - (inner_ring_wy * t38 + inner_ring_wx * t15);
+        let t52 = rotor_wz + t51;
+        let t53 = inner_ring_wz * t19 - (inner_ring_wy * t36 - inner_ring_wx * t10);
+        let t54 = rotor_wy - t53;
+        let t55 = k(0.5) / t48 * (t54 * t54 + t52 * t52);
+        let t56 = rotor_wz * t49 + rotor_wx * t51 + (t15 * t55 - t52 * t50);
+        let t57 = k(5e-6) * (rotor_wx * rotor_wz - t56);
+        let t58 = rotor_wx * t53 - rotor_wy * t49 - (t10 * t55 - t54 * t50);
+        let t59 = k(5e-6) * (rotor_wx * rotor_wy + t58);
+        let t60 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
+        let t61 = inner_ring_e0 * inner_ring_e0;
+        let t62 = inner_ring_wx * inner_ring_wy;
+        let t63 = inner_ring_e0 * inner_ring_e3;
+        let t64 = inner_ring_e1 * inner_ring_e2;
+        let t65 = t64 - t63;
+        let t66 = k(2.0) * t65 * t62
+            + k(2.0) * (k(0.5) - (t61 + inner_ring_e1 * inner_ring_e1)) * t60;
+        let t67 = inner_ring_wx * inner_ring_wz;
+        let t68 = inner_ring_e0 * inner_ring_e2;
+        let t69 = inner_ring_e1 * inner_ring_e3;
+        let t70 = t69 + t68;
+        let t71 = k(2.0) * t70 * t67 + t66;
+        let t72 = k(1e-5) * t71;
+        let t73 = k(0.00025) * t65;
+        let t74 = k(0.5) - (t61 + inner_ring_e2 * inner_ring_e2);
+        let t75 = inner_ring_e0 * inner_ring_e1;
+        let t76 = inner_ring_e2 * inner_ring_e3;
+        let t77 = t76 - t75;
+        let t78 = k(2.0) * t77 * t67 - (k(2.0) * t74 * t62 + k(2.0) * (t64 + t63) * t60);
+        let t79 = k(0.8) + k(1e-5) * t78;
+        let t80 = k(0.00025) * t74;
+        let t81 = t76 + t75;
+        let t82 = k(0.5) - (t61 + inner_ring_e3 * inner_ring_e3);
+        let t83 = k(2.0) * t82 * t67 - (k(2.0) * t81 * t62 - k(2.0) * (t69 - t68) * t60);
+        let t84 = k(1e-5) * t83;
+        let t85 = k(0.00025) * t81;
+        let t86 = t85 * t84 + (t80 * t79 - t73 * t72) - (t22 * t59 + t19 * t57);
+        let t87 = k(1e-6) * t62 - t86;
+        let t88 = t25 * t87;
+        let t89 = t23 * t88
+            - (k(1e-6) * (inner_ring_wy * inner_ring_wz) + (t15 * t59 - t10 * t57));
+        let t90 = t29 * t31;
+        let t91 = t32 * t28;
+        let t92 = t29 * t32;
+        let t93 = t31 * t28;
+        let t94 = outer_ring_wy * (k(2.0) * (t93 + t92))
+            + outer_ring_wx * (k(2.0) * (t91 - t90));
+        let t95 = k(0.5) - (t43 + t28 * t28);
+        let t96 = outer_ring_wz * (k(2.0) * t95) - t94;
+        let t97 = inner_ring_wz + t96;
+        let t98 = k(2.0) * (t33 + t30);
+        let t99 = k(2.0) * (t93 - t92);
+        let t100 = outer_ring_wz * t99 - (outer_ring_wy * t44 - outer_ring_wx * t98);
+        let t101 = inner_ring_wy - t100;
+        let t102 = k(2.0) * (k(0.5) - (t43 + t32 * t32));
+        let t103 = k(2.0) * (t91 + t90);
+        let t104 = outer_ring_wz * t103 + (outer_ring_wy * t34 - outer_ring_wx * t102);
+        let t105 = inner_ring_wx - t104;
+        let t106 = k(0.5) / t95 * (t105 * t105 + t101 * t101);
+        let t107 = inner_ring_wy * t96 + inner_ring_wz * t100
+            - (t99 * t106 - t101 * t97);
+        let t108 = inner_ring_wz * t104 + inner_ring_wx * t96
+            - (t103 * t106 - t105 * t97);
+        let t109 = k(0.00025) * t70;
+        let t110 = k(0.00025) * t77;
+        let t111 = k(0.00025) * t82;
+        let t112 = t111 * t84 + (t110 * t79 + t109 * t72) + (t38 * t59 + t36 * t57);
+        let t113 = t44 * (t46 * t108 - t42 * t107 + (t41 * t88 - t112));
+        let t114 = k(1e-6) * (outer_ring_wx * outer_ring_wz)
+            - (t113 - t34 * (t42 * t108 - t27 * t107 + t89));
+        let t115 = t44 * (t98 * t46 - t102 * t42) - t34 * (t98 * t42 - t102 * t27);
+        let t116 = outer_ring_wx * outer_ring_wy
+            - k(2.0) * (outer_ring_e1 * outer_ring_e2 + outer_ring_e0 * outer_ring_e3)
+                * t0;
+        let t117 = t116 * (t99 * t47 + t103 * t45) - t1 * t115 + t114;
+        let t118 = t117 / (k(1e-6) - (t44 * t47 - t34 * t45));
+        let t119 = t107 + (t116 * t103 - (t34 * t118 - t1 * t102));
+        let t120 = t108 - (t116 * t99 + (t44 * t118 - t1 * t98));
+        let t121 = t25 * (t87 + (t41 * t120 - t23 * t119));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -t20,
-            t152,
-            t150,
+            -t1,
+            -t118,
+            t116,
             k(0.0),
             k(0.0),
             k(0.0),
-            t153,
-            t154,
-            t157,
-            k(0.000125) * t111 + (t113 * t157 - t142 * t154),
-            k(0.000125) * t114 - (t116 * t157 + t143 * t154),
-            t119 * t157 + t144 * t154 - k(0.000125) * t117,
+            t119,
+            -t120,
+            -t121,
+            k(0.000125) * t71 - (t73 * t121 - t109 * t120),
+            k(0.000125) * t78 + (t80 * t121 + t110 * t120),
+            -(k(0.000125) * t83 + (t85 * t121 + t111 * t120)),
             k(0.0),
-            t106 - (t54 * t157 - (t69 * t154 + t37 * t153)),
-            t55 * t157 - (t70 * t154 + t44 * t153) - t108,
+            -(t56 + (t19 * t121 - (t36 * t120 + t10 * t119))),
+            t22 * t121 - (t38 * t120 - t15 * t119) - t58,
         ];
     }
     /// Writes λ: 304 operations (114 ±, 187 ×, 3 ÷).
@@ -2116,12 +2090,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeBearings<T> {
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeBearings<T> {
     type Joints = [T; 6];
     type Rates = [T; 3];
+    type Solution = [T; 33];
     fn joint_start(&self) -> Self::Joints {
         let k = T::constant;
         [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(100.0)]
     }
     fn rates(&self) -> Self::Rates {
         [T::constant(0.0); 3]
+    }
+    fn solution(&self) -> Self::Solution {
+        [T::constant(0.0); 33]
     }
     /// Writes u̇: 18 operations (5 ±, 12 ×, 1 ÷) and 2 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
@@ -2413,14 +2391,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeBearings<T> {
         let t24 = inner_ring_wx * t23;
         let t25 = k(0.000125) * inner_ring_wz;
         let t26 = inner_ring_wx * t25;
-        let t27 = t22 * t26 - t19 * t24 - (t22 * t20 + t19 * t16);
+        let t27 = t26 * t22 - t24 * t19 - (t22 * t20 + t19 * t16);
         let t28 = rotor_e0 * rotor_e3;
         let t29 = rotor_e1 * rotor_e2;
         let t30 = inner_ring_wy * t23 + inner_ring_wz * t25;
         let t31 = rotor_e0 * rotor_e0;
         let t32 = k(2.0) * (k(0.5) - (t31 + rotor_e1 * rotor_e1)) * t30
             - k(2.0) * (t29 - t28) * t27;
-        let t33 = t19 * t26 + t22 * t24 - (t19 * t20 - t22 * t16);
+        let t33 = t26 * t19 + t24 * t22 - (t19 * t20 - t22 * t16);
         let t34 = rotor_e0 * rotor_e2;
         let t35 = rotor_e1 * rotor_e3;
         let t36 = k(2.0) * (t29 + t28) * t30
@@ -2560,6 +2538,149 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeBearings<T> {
             -t4,
             t31,
             -t21,
+        ];
+    }
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 231 operations (88 ±, 142 ×, 1 ÷).
+    fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        let t0 = outer_ring_wy * outer_ring_wz;
+        let t1 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t2 = k(2.0) * t1;
+        let t3 = k(1.0) - t1 * t2;
+        let t4 = outer_ring_wz - inner_ring_wz;
+        let t5 = t4 * t3;
+        let t6 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t7 = t6 * t2;
+        let t8 = outer_ring_wy * t7;
+        let t9 = inner_ring_wx - rotor_wx;
+        let t10 = k(1.6663195167673401)
+            * ((t9 - k(0.20025) * t8) / (k(1.3332639033534681) - t7 * t7));
+        let t11 = t10 * t5;
+        let t12 = outer_ring_wx * outer_ring_wy;
+        let t13 = inner_ring_wy * t4 + (t0 * t3 - t7 * t11);
+        let t14 = inner_ring_wx * t4 - (t0 * t7 + t3 * t11);
+        let t15 = t12
+            - k(1.6663195167673401)
+                * (t3 * (k(10.0) + outer_ring_wy * (t9 + k(0.399875) * t8)));
+        let t16 = k(0.000125) * t15;
+        let t17 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t18 = k(2.0) * t17;
+        let t19 = k(1.0) - t17 * t18;
+        let t20 = k(0.000125) * t14;
+        let t21 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t22 = t21 * t18;
+        let t23 = k(0.000125) * inner_ring_wy;
+        let t24 = inner_ring_wx * t23;
+        let t25 = k(0.000125) * inner_ring_wz;
+        let t26 = inner_ring_wx * t25;
+        let t27 = t26 * t22 - t24 * t19 - (t22 * t20 + t19 * t16);
+        let t28 = rotor_e0 * rotor_e3;
+        let t29 = rotor_e1 * rotor_e2;
+        let t30 = inner_ring_wy * t23 + inner_ring_wz * t25;
+        let t31 = rotor_e0 * rotor_e0;
+        let t32 = k(2.0) * (k(0.5) - (t31 + rotor_e1 * rotor_e1)) * t30
+            - k(2.0) * (t29 - t28) * t27;
+        let t33 = t26 * t19 + t24 * t22 - (t19 * t20 - t22 * t16);
+        let t34 = rotor_e0 * rotor_e2;
+        let t35 = rotor_e1 * rotor_e3;
+        let t36 = k(2.0) * (t35 + t34) * t33 + t32;
+        let t37 = k(2.0) * (t29 + t28) * t30
+            - k(2.0) * (k(0.5) - (t31 + rotor_e2 * rotor_e2)) * t27;
+        let t38 = rotor_e0 * rotor_e1;
+        let t39 = rotor_e2 * rotor_e3;
+        let t40 = k(2.0) * (t39 - t38) * t33 - t37;
+        let t41 = k(2.0) * (t35 - t34) * t30 + k(2.0) * (t39 + t38) * t27;
+        let t42 = k(2.0) * (k(0.5) - (t31 + rotor_e3 * rotor_e3)) * t33 + t41;
+        let t43 = t5 * (outer_ring_wy - t7 * t10) - t13;
+        let t44 = rotor_wz * t9 + (t22 * t15 - t19 * t14);
+        let t45 = rotor_wy * t9 + (t19 * t15 + t22 * t14);
+        let t46 = k(0.08) * t36;
+        let t47 = k(0.8) + k(0.08) * t40;
+        let t48 = k(0.1) + t47;
+        let t49 = k(0.08) * t42;
+        let t50 = k(5e-6) * (rotor_wx * rotor_wy - t45);
+        let t51 = k(5e-6) * (rotor_wx * rotor_wz - t44);
+        let t52 = t22 * t51 + t19 * t50;
+        let t53 = inner_ring_e0 * inner_ring_e1;
+        let t54 = inner_ring_e2 * inner_ring_e3;
+        let t55 = inner_ring_e0 * inner_ring_e0;
+        let t56 = k(0.00025)
+            * (inner_ring_e1 * inner_ring_e2 - inner_ring_e0 * inner_ring_e3) * t46
+            - k(0.00025) * (k(0.5) - (t55 + inner_ring_e2 * inner_ring_e2)) * t47;
+        let t57 = t56 - k(0.00025) * (t54 + t53) * t49 - t52
+            + k(1e-6) * (inner_ring_wx * inner_ring_wy + t15);
+        let t58 = k(2.0) * outer_ring_e2;
+        let t59 = outer_ring_e0 * t58;
+        let t60 = t19 * t51 - t22 * t50;
+        let t61 = k(0.00025)
+            * (inner_ring_e1 * inner_ring_e3 + inner_ring_e0 * inner_ring_e2) * t46
+            + k(0.00025) * (t54 - t53) * t47;
+        let t62 = t61
+            + k(0.00025) * (k(0.5) - (t55 + inner_ring_e3 * inner_ring_e3)) * t49 - t60;
+        let t63 = t62 - k(2e-6) * t14;
+        let t64 = k(1e-5) * t43 - k(1e-6) * (inner_ring_wy * inner_ring_wz + t13);
+        let t65 = t3 * t64 - t7 * t63;
+        let t66 = t65 - k(2e-6) * t0;
+        let t67 = k(1.0) - outer_ring_e2 * t58;
+        *out = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t0,
+            -t11,
+            t12,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t13,
+            t14,
+            t15,
+            t36,
+            t40,
+            -t42,
+            t43,
+            -t44,
+            t45,
+            -t46,
+            -(k(0.1) + t48),
+            t49,
+            -(t67 * t66 + t59 * t57),
+            t67 * t57 - t59 * t66,
+            -t46,
+            -t48,
+            t49,
+            t7 * t64 + t3 * t63,
+            t65,
+            -t46,
+            -t47,
+            t49,
+            t52,
+            t60,
         ];
     }
 }

@@ -19,7 +19,7 @@
 //! | gamma | γ | 49 | 84 | 0 | 133 | 5 of 10 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 34 | 60 | 0 | 94 | 0 of 10 |
 //! | applied_force | (f, n' − w̃'J'w') | 32 | 54 | 0 | 86 | 1 of 12 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 78 | 155 | 2 | 235 | 4 of 12 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 69 | 138 | 2 | 209 | 4 of 12 |
 //! | multipliers | λ, the accelerations being known | 69 | 122 | 2 | 193 | 0 of 10 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 54 | 93 | 0 | 147 | 0 of 15 |
 //! | energy | T and V | 11 | 21 | 0 | 32 | 1 of 2 |
@@ -31,6 +31,7 @@
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 17 | 26 | 0 | 43 | 0 of 2 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 23 | 38 | 0 | 61 | 6 of 12 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 45 | 66 | 0 | 111 | 0 of 10 |
+//! | corrected_solution | both | 51 | 80 | 0 | 131 | 6 of 22 |
 //!
 //! # Proof
 //!
@@ -45,7 +46,7 @@
 //! * joint_derivative: eqs. (14) and (16) on the constraints
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
-//! * corrected_multipliers: eq. (17) on the constraints
+//! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //!
 //! All of it holds but with a probability below 1e-158.
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
@@ -929,7 +930,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Loads<T> {
             -(k(0.1) * (carriage_wx * carriage_wy - t21)),
         ];
     }
-    /// Solves eq. (17): 235 operations (78 ±, 155 ×, 2 ÷).
+    /// Solves eq. (17): 209 operations (69 ±, 138 ×, 2 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let disc_e0 = y[3];
@@ -946,102 +947,90 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Loads<T> {
         let carriage_wx = y[23];
         let carriage_wy = y[24];
         let carriage_wz = y[25];
-        let t0 = disc_e0 * disc_e3;
-        let t1 = disc_e1 * disc_e2;
-        let t2 = k(2.0) * (t1 + t0);
-        let t3 = t1 - t0;
+        let t0 = disc_e0 * disc_e0;
+        let t1 = k(0.5) - (t0 + disc_e3 * disc_e3);
+        let t2 = (disc_wy * disc_wy + disc_wx * disc_wx) * (k(0.5) / t1);
+        let t3 = disc_e2 * disc_e3 + disc_e0 * disc_e1;
         let t4 = k(2.0) * t3;
-        let t5 = disc_e0 * disc_e0;
-        let t6 = k(0.5) - (t5 + disc_e2 * disc_e2);
-        let t7 = k(2.0) * t6;
-        let t8 = k(2.0) * (k(0.5) - (t5 + disc_e1 * disc_e1));
-        let t9 = k(1.0) / (t8 * t7 - t4 * t2);
-        let t10 = disc_wx * disc_wz;
-        let t11 = disc_wy * disc_wz;
-        let t12 = disc_wy * disc_wy + disc_wx * disc_wx;
-        let t13 = k(2.0) * (disc_e1 * disc_e3 + disc_e0 * disc_e2) * t12
-            - (t4 * t11 - t8 * t10);
-        let t14 = disc_e0 * disc_e1;
-        let t15 = disc_e2 * disc_e3;
-        let t16 = k(2.0) * (t15 - t14) * t12 + (t7 * t11 - t2 * t10);
-        let t17 = t15 + t14;
-        let t18 = k(2.0) * t17 * (k(0.6) * t17)
-            + (t7 * (k(0.6) * t6) + t4 * (k(0.6) * t3));
-        let t19 = k(50.0)
-            * (k(0.02) * (k(0.5) - (t5 + disc_e3 * disc_e3)) + k(0.2) * t18);
-        let t20 = carriage_e0 * carriage_e2;
-        let t21 = carriage_e1 * carriage_e3;
-        let t22 = t21 - t20;
-        let t23 = carriage_e0 * carriage_e1;
-        let t24 = carriage_e2 * carriage_e3;
-        let t25 = t24 + t23;
-        let t26 = k(1.6) * t25 - k(1.2) * t22;
-        let t27 = t24 - t23;
-        let t28 = t21 + t20;
-        let t29 = k(0.96) * t28 - k(1.28) * t27;
-        let t30 = carriage_e0 * carriage_e0;
-        let t31 = k(0.5) - (t30 + carriage_e3 * carriage_e3);
-        let t32 = k(1.6) * t31;
-        let t33 = k(0.5) - (t30 + carriage_e2 * carriage_e2);
-        let t34 = k(1.6) * t33;
-        let t35 = carriage_e0 * carriage_e3;
-        let t36 = carriage_e1 * carriage_e2;
-        let t37 = t36 + t35;
-        let t38 = k(0.5) - (t30 + carriage_e1 * carriage_e1);
-        let t39 = k(1.2) * t38;
-        let t40 = t36 - t35;
-        let t41 = k(0.6) * (k(1.6) * t40 + t39) + k(0.8) * (k(1.2) * t37 + t34);
-        let t42 = t41 * t32 + t29 * t26;
-        let t43 = k(1.2) * t40 + t34;
-        let t44 = k(1.2) * t31;
-        let t45 = k(0.72) * t28 - k(0.96) * t27;
-        let t46 = t45 * t26 + t41 * t44;
-        let t47 = k(1.6) * t37 + t39;
-        let t48 = k(1.0) / (t47 * t46 + t43 * t42);
-        let t49 = carriage_wx * carriage_wz;
-        let t50 = k(2.0) * t38;
-        let t51 = carriage_wy * carriage_wz;
-        let t52 = k(2.0) * t40;
-        let t53 = carriage_wx * carriage_wx;
-        let t54 = carriage_wy * carriage_wy;
-        let t55 = t54 + t53;
-        let t56 = k(2.0) * t28;
-        let t57 = k(2.0) * t37;
-        let t58 = k(2.0) * t33;
-        let t59 = k(2.0) * t27;
-        let t60 = k(0.8) * (t59 * t55 + (t58 * t51 - t57 * t49))
-            - k(0.6) * (t56 * t55 - (t52 * t51 - t50 * t49));
-        let t61 = carriage_wz * carriage_wz;
-        let t62 = t61 + t54;
-        let t63 = carriage_wx * carriage_wy;
-        let t64 = t61 + t53;
-        let t65 = k(0.6) * (t56 * t51 - (t52 * t64 + t50 * t63))
-            + k(0.8) * (t56 * t49 + (t52 * t63 + t50 * t62));
-        let t66 = k(0.6) * (t59 * t51 + (t58 * t64 + t57 * t63))
-            + k(0.8) * (t59 * t49 - (t58 * t63 + t57 * t62));
-        let t67 = k(0.8) * t66 - k(0.6) * t65;
-        let t68 = k(2.0) * t22;
-        let t69 = k(2.0) * t25;
-        let t70 = k(2.0) * t31;
-        let t71 = k(0.6) * (t70 * t51 + (t69 * t64 - t68 * t63))
-            + k(0.8) * (t70 * t49 - (t69 * t63 - t68 * t62));
-        let t72 = t71 * (t48 * (t41 * t47)) - t67 * (t48 * (t26 * t47));
-        let t73 = t71 * (t48 * (t41 * t43)) - t67 * (t48 * (t26 * t43));
-        let t74 = t71 * (t48 * (t45 * t47 + t29 * t43))
-            + t67 * (t48 * (t32 * t43 + t44 * t47));
+        let t5 = disc_wx * disc_wz
+            - k(2.0) * (disc_e1 * disc_e3 - disc_e0 * disc_e2) * t2;
+        let t6 = disc_e1 * disc_e2 - disc_e0 * disc_e3;
+        let t7 = k(0.5) - (t0 + disc_e2 * disc_e2);
+        let t8 = k(2.0) * t7 * (k(0.6) * t7) + k(2.0) * t6 * (k(0.6) * t6);
+        let t9 = k(50.0) * (k(0.02) * t1 + k(0.2) * (t4 * (k(0.6) * t3) + t8));
+        let t10 = carriage_wx * carriage_wz;
+        let t11 = carriage_e0 * carriage_e0;
+        let t12 = k(0.5) - (t11 + carriage_e1 * carriage_e1);
+        let t13 = k(2.0) * t12;
+        let t14 = carriage_wy * carriage_wz;
+        let t15 = carriage_e0 * carriage_e3;
+        let t16 = carriage_e1 * carriage_e2;
+        let t17 = t16 - t15;
+        let t18 = k(2.0) * t17;
+        let t19 = carriage_wx * carriage_wx;
+        let t20 = carriage_wy * carriage_wy;
+        let t21 = t20 + t19;
+        let t22 = carriage_e0 * carriage_e2;
+        let t23 = carriage_e1 * carriage_e3;
+        let t24 = t23 + t22;
+        let t25 = k(2.0) * t24;
+        let t26 = t16 + t15;
+        let t27 = k(2.0) * t26;
+        let t28 = k(0.5) - (t11 + carriage_e2 * carriage_e2);
+        let t29 = k(2.0) * t28;
+        let t30 = carriage_e0 * carriage_e1;
+        let t31 = carriage_e2 * carriage_e3;
+        let t32 = t31 - t30;
+        let t33 = k(2.0) * t32;
+        let t34 = k(0.8) * (t33 * t21 + (t29 * t14 - t27 * t10))
+            - k(0.6) * (t25 * t21 - (t18 * t14 - t13 * t10));
+        let t35 = k(1.6) * t28;
+        let t36 = k(1.2) * t17 + t35;
+        let t37 = k(0.96) * t24 - k(1.28) * t32;
+        let t38 = t23 - t22;
+        let t39 = t31 + t30;
+        let t40 = k(1.6) * t39 - k(1.2) * t38;
+        let t41 = k(0.5) - (t11 + carriage_e3 * carriage_e3);
+        let t42 = k(1.6) * t41;
+        let t43 = k(1.2) * t12;
+        let t44 = k(0.6) * (k(1.6) * t17 + t43) + k(0.8) * (k(1.2) * t26 + t35);
+        let t45 = t44 * t42 + t40 * t37;
+        let t46 = k(1.6) * t26 + t43;
+        let t47 = k(1.2) * t41;
+        let t48 = k(0.72) * t24 - k(0.96) * t32;
+        let t49 = t40 * t48 + t44 * t47;
+        let t50 = k(1.0) / (t49 * t46 + t45 * t36);
+        let t51 = carriage_wz * carriage_wz;
+        let t52 = t51 + t20;
+        let t53 = carriage_wx * carriage_wy;
+        let t54 = t51 + t19;
+        let t55 = k(0.6) * (t25 * t14 - (t18 * t54 + t13 * t53))
+            + k(0.8) * (t25 * t10 + (t18 * t53 + t13 * t52));
+        let t56 = k(0.6) * (t33 * t14 + (t29 * t54 + t27 * t53))
+            + k(0.8) * (t33 * t10 - (t29 * t53 + t27 * t52));
+        let t57 = k(0.8) * t56 - k(0.6) * t55;
+        let t58 = k(2.0) * t38;
+        let t59 = k(2.0) * t39;
+        let t60 = k(2.0) * t41;
+        let t61 = k(0.6) * (t60 * t14 + (t59 * t54 - t58 * t53))
+            + k(0.8) * (t60 * t10 - (t59 * t53 - t58 * t52));
+        let t62 = t50 * (t44 * t46) * t61 - t50 * (t40 * t46) * t57;
+        let t63 = t61 * (t50 * (t44 * t36)) - t57 * (t50 * (t40 * t36));
+        let t64 = t61 * (t50 * (t48 * t46 + t37 * t36))
+            + t57 * (t50 * (t42 * t36 + t47 * t46));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            t16 * (t8 * t9) + t13 * (t2 * t9),
-            -(t16 * (t4 * t9) + t13 * (t7 * t9)),
-            t19,
+            disc_wy * disc_wz - t4 * t2,
+            -t5,
+            t9,
             k(1.2),
             k(0.9),
             k(0.0),
-            t60 * (t42 * t48) - t72,
-            t73 + t60 * (t46 * t48),
-            t74 + t60 * (t48 * (t29 * t44 - t45 * t32)),
+            t45 * t50 * t34 - t62,
+            t63 + t34 * (t49 * t50),
+            t64 + t34 * (t50 * (t47 * t37 - t48 * t42)),
         ];
     }
     /// Writes λ: 193 operations (69 ±, 122 ×, 2 ÷).
@@ -1118,27 +1107,27 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Loads<T> {
         let t35 = carriage_e1 * carriage_e3;
         let t36 = t35 - t34;
         let t37 = k(1.6) * (t23 + t22) - k(1.2) * t36;
-        let t38 = t35 + t34;
-        let t39 = k(0.96) * t38 - k(1.28) * t24;
-        let t40 = k(1.6) * t26;
-        let t41 = k(1.6) * (k(0.5) - (t25 + carriage_e2 * carriage_e2));
-        let t42 = t31 - t30;
-        let t43 = k(0.6) * (k(1.6) * t42 + t29) + k(0.8) * (k(1.2) * t32 + t41);
-        let t44 = t43 * t40 + t39 * t37;
-        let t45 = k(1.2) * t42 + t41;
+        let t38 = k(1.6) * (k(0.5) - (t25 + carriage_e2 * carriage_e2));
+        let t39 = t31 - t30;
+        let t40 = k(1.2) * t39 + t38;
+        let t41 = t35 + t34;
+        let t42 = k(0.96) * t41 - k(1.28) * t24;
+        let t43 = k(1.6) * t26;
+        let t44 = k(0.6) * (k(1.6) * t39 + t29) + k(0.8) * (k(1.2) * t32 + t38);
+        let t45 = t44 * t43 + t37 * t42;
         let t46 = k(1.2) * t26;
-        let t47 = k(0.72) * t38 - k(0.96) * t24;
-        let t48 = t47 * t37 + t43 * t46;
-        let t49 = k(1.0) / (t33 * t48 + t45 * t44);
+        let t47 = k(0.72) * t41 - k(0.96) * t24;
+        let t48 = t37 * t47 + t44 * t46;
+        let t49 = k(1.0) / (t48 * t33 + t45 * t40);
         let t50 = k(0.2) * carriage_dwy
-            - k(0.1) * (k(2.0) * t42 + carriage_wx * carriage_wz);
-        let t51 = t50 * (t49 * (t37 * t45)) - t49 * (t37 * t33) * t28;
+            - k(0.1) * (k(2.0) * t39 + carriage_wx * carriage_wz);
+        let t51 = t49 * (t37 * t40) * t50 - t49 * (t37 * t33) * t28;
         let t52 = carriage_wx * carriage_wy
-            - (k(2.0) * t38 - (k(2.0) * t36 + k(10.0) * t32));
+            - (k(2.0) * t41 - (k(2.0) * t36 + k(10.0) * t32));
         let t53 = k(0.2) * carriage_dwz + k(0.1) * t52;
-        let t54 = t50 * (t49 * (t43 * t45)) - t49 * (t43 * t33) * t28;
-        let t55 = t53 * (t49 * (t39 * t46 - t47 * t40))
-            + (t50 * (t48 * t49) + t44 * t49 * t28);
+        let t54 = t49 * (t44 * t40) * t50 - t49 * (t44 * t33) * t28;
+        let t55 = t49 * (t46 * t42 - t47 * t43) * t53
+            + (t48 * t49 * t50 + t45 * t49 * t28);
         *lambda = [
             t3 - k(4.0) * disc_dsx,
             -(k(4.0) * disc_dsy + t6),
@@ -1147,8 +1136,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Loads<T> {
             t21 * (t12 * t15) - t18 * (t14 * t15),
             k(1.2) * carriage_dsx + k(0.8) * (k(5.0) - k(2.0) * carriage_dsy),
             k(1.0) - k(2.0) * carriage_dsz,
-            t53 * (t49 * (t40 * t45 + t46 * t33)) - t51,
-            -(t53 * (t49 * (t47 * t33 + t39 * t45)) + t54),
+            t49 * (t43 * t40 + t46 * t33) * t53 - t51,
+            -(t49 * (t47 * t33 + t42 * t40) * t53 + t54),
             -t55,
         ];
     }
@@ -1156,12 +1145,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Loads<T> {
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Loads<T> {
     type Joints = [T; 5];
     type Rates = [T; 2];
+    type Solution = [T; 22];
     fn joint_start(&self) -> Self::Joints {
         let k = T::constant;
         [k(0.0), k(0.0), k(1.0), k(-1.0), k(0.0)]
     }
     fn rates(&self) -> Self::Rates {
         [T::constant(0.0); 2]
+    }
+    fn solution(&self) -> Self::Solution {
+        [T::constant(0.0); 22]
     }
     /// Writes u̇: 14 operations (5 ±, 9 ×, 0 ÷) and 2 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
@@ -1407,6 +1400,97 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Loads<T> {
             -(k(0.2) * carriage_dwz + k(0.1) * (carriage_wx * carriage_wy - t20)),
             k(0.8) * t24 - k(0.06) * t23,
             k(0.6) * t24 + k(0.08) * t23,
+        ];
+    }
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 131 operations (51 ±, 80 ×, 0 ÷).
+    fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
+        let k = T::constant;
+        let disc_e0 = y[3];
+        let disc_e1 = y[4];
+        let disc_e2 = y[5];
+        let disc_e3 = y[6];
+        let carriage_e0 = y[10];
+        let carriage_e1 = y[11];
+        let carriage_e2 = y[12];
+        let carriage_e3 = y[13];
+        let disc_wx = y[17];
+        let disc_wy = y[18];
+        let disc_wz = y[19];
+        let carriage_wx = y[23];
+        let carriage_wy = y[24];
+        let carriage_wz = y[25];
+        let t0 = disc_wy * disc_wz;
+        let t1 = disc_wx * disc_wz;
+        let t2 = disc_e0 * disc_e0;
+        let t3 = k(0.5) - (t2 + disc_e2 * disc_e2);
+        let t4 = k(2.0) * t3;
+        let t5 = disc_e0 * disc_e1;
+        let t6 = disc_e2 * disc_e3;
+        let t7 = t6 + t5;
+        let t8 = k(2.0) * t7;
+        let t9 = disc_e1 * disc_e2 - disc_e0 * disc_e3;
+        let t10 = k(2.0) * t9;
+        let t11 = k(0.5) - (t2 + disc_e3 * disc_e3);
+        let t12 = t11 + k(3.0) * (t10 * t10 + t8 * t8 + t4 * t4);
+        let t13 = carriage_e0 * carriage_e0;
+        let t14 = k(0.5) - (t13 + carriage_e1 * carriage_e1);
+        let t15 = carriage_e0 * carriage_e3;
+        let t16 = carriage_e1 * carriage_e2;
+        let t17 = t16 - t15;
+        let t18 = carriage_e0 * carriage_e2;
+        let t19 = carriage_e1 * carriage_e3;
+        let t20 = t19 - t18;
+        let t21 = t16 + t15;
+        let t22 = k(0.5) - (t13 + carriage_e2 * carriage_e2);
+        let t23 = carriage_e0 * carriage_e1;
+        let t24 = carriage_e2 * carriage_e3;
+        let t25 = t24 + t23;
+        let t26 = k(0.6) * t25 - k(3.0) * t22 + k(4.0) * t21 + k(0.8) * t20;
+        let t27 = t26 * (k(1.2) * t17 - k(1.6) * t14);
+        let t28 = t26 * (k(1.2) * t22 - k(1.6) * t21);
+        let t29 = t26 * (k(1.2) * t25 + k(1.6) * t20);
+        let t30 = k(0.6) * t9;
+        let t31 = k(0.6) * t3;
+        let t32 = k(0.6) * t7;
+        let t33 = disc_e0 * disc_e2;
+        let t34 = disc_e1 * disc_e3;
+        let t35 = k(2.0) * (t6 - t5) * t31 - k(2.0) * (t34 + t33) * t30;
+        let t36 = k(0.01) * t1;
+        let t37 = t36 - (k(0.02) * t7 - k(0.2) * (k(2.0) * t11 * t32 + t35));
+        let t38 = t36 + t37;
+        let t39 = k(2.0) * disc_e3;
+        let t40 = k(1.0) - disc_e3 * t39;
+        let t41 = k(0.01) * (t0 + (k(2.0) * (t34 - t33) + t0));
+        let t42 = disc_e0 * t39;
+        let t43 = carriage_wx * carriage_wy
+            - (k(2.0) * (t19 + t18) - (k(2.0) * t20 + k(10.0) * t21));
+        let t44 = k(2.0) * t17 + carriage_wx * carriage_wz;
+        let t45 = k(2.0) * (k(0.5) - (t13 + carriage_e3 * carriage_e3))
+            - k(10.0) * (t24 - t23);
+        let t46 = k(2.0) * t14 + t45;
+        *out = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t0,
+            -t1,
+            t12,
+            t27,
+            -t28,
+            t29,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t30,
+            -t31,
+            t32,
+            t40 * t38 - t42 * t41,
+            t40 * t41 + t42 * t38,
+            k(0.8) * (k(5.0) + k(2.0) * t28) + k(1.2) * t27,
+            k(1.0) - k(2.0) * t29,
+            -(k(0.1) * t43),
+            -(k(0.06) * t46 + k(0.08) * t44),
+            k(0.08) * t46 - k(0.06) * t44,
         ];
     }
 }

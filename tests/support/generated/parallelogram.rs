@@ -19,7 +19,7 @@
 //! | gamma | γ | 101 | 166 | 0 | 267 | 0 of 17 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 83 | 110 | 0 | 193 | 0 of 17 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 568 | 789 | 9 | 1366 | 0 of 21 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 477 | 709 | 9 | 1195 | 0 of 21 |
 //! | multipliers | λ, the accelerations being known | 104 | 171 | 3 | 278 | 0 of 17 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | energy | T and V | 19 | 34 | 0 | 53 | 0 of 2 |
@@ -34,7 +34,7 @@
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints: their definitions
 //!
-//! All of it holds but with a probability below 1e-142.
+//! All of it holds but with a probability below 1e-143.
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
 
 /// The mechanism `parallelogram`.
@@ -1431,7 +1431,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
             -(k(0.00496) * (rocker_wx * rocker_wy)),
         ];
     }
-    /// Solves eq. (17): 1366 operations (568 ±, 789 ×, 9 ÷).
+    /// Solves eq. (17): 1195 operations (477 ±, 709 ×, 9 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let crank_e0 = y[3];
@@ -1456,693 +1456,632 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
         let rocker_wy = y[37];
         let rocker_wz = y[38];
         let (
-            t24,
+            t3,
+            t7,
+            t11,
+            t14,
+            t16,
+            t19,
+            t22,
+            t23,
             t25,
             t28,
-            t32,
+            t31,
+            t35,
             t36,
-            t38,
+            t40,
+            t41,
             t42,
-            t45,
-            t50,
+            t43,
+            t46,
+            t47,
+            t48,
             t52,
             t53,
+            t55,
             t57,
             t58,
             t59,
             t60,
             t61,
+            t62,
             t63,
-            t65,
-            t66,
-            t69,
-            t72,
-            t74,
-            t82,
-            t83,
-            t86,
+            t67,
+            t70,
+            t73,
+            t78,
+            t79,
             t88,
-            t92,
+            t91,
             t93,
-            t96,
+            t95,
             t98,
-            t105,
+            t100,
+            t104,
             t106,
-            t108,
-            t109,
-            t110,
-            t111,
-            t112,
-            t113,
-            t117,
-            t120,
-            t121,
-            t141,
-            t146,
-            t150,
+            t142,
+            t145,
             t152,
             t153,
             t154,
             t155,
-            t160,
+            t156,
+            t158,
+            t163,
+            t164,
             t165,
-            t171,
+            t166,
+            t167,
+            t168,
+            t169,
+            t172,
+            t173,
+            t174,
+            t175,
+            t176,
             t177,
-            t180,
-            t181,
+            t178,
+            t179,
             t182,
-            t188,
-            t189,
+            t185,
+            t190,
+            t191,
+            t192,
+            t193,
+            t194,
             t195,
+            t196,
+            t197,
             t198,
             t199,
         ) = {
-            let t0 = crank_e0 * crank_e0;
-            let t1 = k(0.5) - (t0 + crank_e2 * crank_e2);
-            let t2 = k(2.0) * t1;
-            let t3 = k(2.0) * (k(0.5) - (t0 + crank_e1 * crank_e1));
-            let t4 = crank_e0 * crank_e3;
-            let t5 = crank_e1 * crank_e2;
-            let t6 = k(2.0) * (t5 + t4);
-            let t7 = t5 - t4;
-            let t8 = k(2.0) * t7;
-            let t9 = k(1.0) / (t8 * t6 - t3 * t2);
-            let t10 = crank_wx * crank_wz;
-            let t11 = crank_wy * crank_wz;
-            let t12 = crank_wy * crank_wy;
-            let t13 = t12 + crank_wx * crank_wx;
-            let t14 = crank_e0 * crank_e1;
-            let t15 = crank_e2 * crank_e3;
-            let t16 = t15 - t14;
-            let t17 = k(2.0) * t16;
-            let t18 = t17 * t13 + (t2 * t11 - t6 * t10);
-            let t19 = crank_e0 * crank_e2;
-            let t20 = crank_e1 * crank_e3;
-            let t21 = t20 + t19;
-            let t22 = k(2.0) * t21;
-            let t23 = t22 * t13 - (t8 * t11 - t3 * t10);
-            let t24 = t23 * (t2 * t9) + t18 * (t8 * t9);
-            let t25 = k(0.2) * t21;
-            let t26 = coupler_e0 * coupler_e1;
-            let t27 = coupler_e2 * coupler_e3;
-            let t28 = t27 - t26;
-            let t29 = coupler_wx * coupler_wz;
-            let t30 = k(0.01995) * t29 + k(3.924) * t28;
-            let t31 = coupler_e0 * coupler_e0;
-            let t32 = k(0.5) - (t31 + coupler_e2 * coupler_e2);
-            let t33 = k(2.0) * t32;
-            let t34 = coupler_e0 * coupler_e3;
-            let t35 = coupler_e1 * coupler_e2;
-            let t36 = t35 - t34;
-            let t37 = k(2.0) * t36;
-            let t38 = t27 + t26;
-            let t39 = k(2.0) * t38;
-            let t40 = k(0.5) - (t0 + crank_e3 * crank_e3);
-            let t41 = k(2.0) * t40;
-            let t42 = t41 * t39 - (t22 * t37 - t17 * t33);
-            let t43 = coupler_wx * coupler_wy;
-            let t44 = k(0.01995) * t43 - k(3.924) * t32;
-            let t45 = k(0.5) - (t31 + coupler_e3 * coupler_e3);
-            let t46 = k(2.0) * t45;
-            let t47 = k(2.0) * t28;
-            let t48 = coupler_e0 * coupler_e2;
-            let t49 = coupler_e1 * coupler_e3;
-            let t50 = t49 + t48;
-            let t51 = k(2.0) * t50;
-            let t52 = t22 * t51 + t17 * t47 + t41 * t46;
-            let t53 = t52 * t44 + t42 * t30;
-            let t54 = k(2.0) * (k(0.5) - (t31 + coupler_e1 * coupler_e1));
-            let t55 = k(2.0) * (t35 + t34);
-            let t56 = k(2.0) * (t49 - t48);
-            let t57 = t41 * t56 - (t17 * t55 - t22 * t54);
-            let t58 = k(5e-5) * t57;
-            let t59 = k(0.07) * t42;
-            let t60 = k(0.07) * t52;
-            let t61 = k(1.0) / (t52 * t60 + (t42 * t59 + t57 * t58));
-            let t62 = t61 * t53;
-            let t63 = t30 - t59 * t62;
-            let t64 = t59 * t61;
-            let t65 = k(0.07) - t59 * t64;
-            let t66 = k(1.0) / t65;
-            let t67 = t66 * t63;
-            let t68 = t58 * t61;
-            let t69 = t59 * t68;
-            let t70 = k(0.4) * t50;
-            let t71 = k(0.4) * t36;
-            let t72 = t52 * t71 + t42 * t70;
-            let t73 = t61 * t72;
-            let t74 = t70 - t59 * t73;
-            let t75 = t66 * t74;
-            let t76 = t69 * t75 - t58 * t73;
-            let t77 = crank_wz * crank_wz + t12;
-            let t78 = crank_wx * crank_wy;
-            let t79 = t22 * t10 + (t8 * t78 + t3 * t77);
-            let t80 = coupler_wz * coupler_wz;
-            let t81 = t80 + coupler_wy * coupler_wy;
-            let t82 = k(0.25) * (t51 * t29 + (t37 * t43 + t54 * t81));
-            let t83 = t82 + k(0.2) * t79;
-            let t84 = k(0.4) * t28;
-            let t85 = k(0.4) * t32;
-            let t86 = t52 * t85 - t42 * t84;
-            let t87 = t61 * t86;
-            let t88 = t84 + t59 * t87;
-            let t89 = t66 * t88;
-            let t90 = t69 * t89 + t58 * t87;
-            let t91 = t17 * t10 - (t2 * t78 + t6 * t77);
-            let t92 = k(0.25) * (t47 * t29 - (t33 * t43 + t55 * t81));
-            let t93 = t92 + k(0.2) * t91;
-            let t94 = k(0.4) * t45;
-            let t95 = k(0.4) * t38;
-            let t96 = t52 * t95 - t42 * t94;
-            let t97 = t61 * t96;
-            let t98 = t94 + t59 * t97;
-            let t99 = t66 * t98;
-            let t100 = t69 * t99 + t58 * t97;
-            let t101 = k(2.0) * (t20 - t19);
-            let t102 = t15 + t14;
-            let t103 = k(2.0) * t102;
-            let t104 = t41 * t10 - (t103 * t78 - t101 * t77);
-            let t105 = k(0.25) * (t46 * t29 - (t39 * t43 - t56 * t81));
-            let t106 = t105 + k(0.2) * t104;
-            let t107 = k(1.0) / (t57 * t57 + t52 * t52);
-            let t108 = t101 * t39 - (t6 * t33 + t3 * t37);
-            let t109 = t103 * t39 + (t8 * t37 + t2 * t33);
-            let t110 = t101 * t56 + (t6 * t55 + t3 * t54);
-            let t111 = t101 * t46 - (t6 * t47 - t3 * t51);
-            let t112 = t103 * t56 - (t2 * t55 + t8 * t54);
-            let t113 = t103 * t46 - (t8 * t51 - t2 * t47);
-            let t114 = crank_wx * (coupler_wx * t113 + coupler_wz * t112)
-                - crank_wy * (coupler_wx * t111 + coupler_wz * t110);
-            let t115 = coupler_wy * coupler_wz * t52
-                + ((t80 + coupler_wx * coupler_wx) * t42 - t43 * t57);
-            let t116 = t115 + k(2.0) * t114 + (t13 * t42 + (t11 * t109 + t10 * t108));
-            let t117 = t116 * (t52 * t107);
-            let t118 = t66 * t69;
-            let t119 = t69 * t118 - (k(5e-5) - t58 * t68);
-            let t120 = t116 * (t57 * t107);
-            let t121 = t60 * t64;
-            let t122 = t121 * t118 + t60 * t68;
-            let t123 = t122 * t120 - t119 * t117
-                + (t106 * t100 + (t93 * t90 + t83 * t76));
-            let t124 = t74 - t65 * t75;
-            let t125 = t88 - t65 * t89;
-            let t126 = t98 - t65 * t99;
-            let t127 = t69 - t65 * t118;
-            let t128 = t127 * t117 - (t106 * t126 + (t93 * t125 + t83 * t124));
-            let t129 = t42 * (t128 - (t63 - t65 * t67))
-                - t57 * (t123 + (t69 * t67 - t58 * t62));
-            let t130 = t121 * t75 + (t71 - t60 * t73);
-            let t131 = t121 * t89 - (t85 - t60 * t87);
-            let t132 = t121 * t99 - (t95 - t60 * t97);
-            let t133 = t121 * (t66 * t121) - (k(0.07) - t60 * (t60 * t61));
-            let t134 = t133 * t120 - t122 * t117
-                + (t106 * t132 + (t93 * t131 + t83 * t130));
-            let t135 = t52 * (t134 + (t121 * t67 + (t44 - t60 * t62))) - t129;
-            let t136 = t74 * t75 + t72 * t73;
-            let t137 = t88 * t75 - t86 * t73;
-            let t138 = t98 * t75 - t96 * t73;
-            let t139 = t106 * t138 + (t93 * t137 + t83 * t136) - k(0.8) * t83;
-            let t140 = t130 * t120 - t76 * t117 + t139 + (t74 * t67 + t72 * t62);
-            let t141 = k(0.4) * t7;
-            let t142 = t88 * t89 + t86 * t87;
-            let t143 = t98 * t89 + t96 * t87;
-            let t144 = t106 * t143 + (t93 * t142 + t83 * t137) - k(0.8) * t93;
-            let t145 = t131 * t120 - t90 * t117 + t144
-                + (t88 * t67 - (k(7.848) + t86 * t62));
-            let t146 = k(0.4) * t1;
-            let t147 = t98 * t99 + t96 * t97;
-            let t148 = t106 * t147 + (t93 * t143 + t83 * t138) - k(0.8) * t106;
-            let t149 = t132 * t120 - t100 * t117 + t148 + (t98 * t67 - t96 * t62);
-            let t150 = k(0.4) * t102;
-            let t151 = k(0.00398) * t78
-                + (t150 * t149 + (t146 * t145 - t141 * t140) + t135);
-            let t152 = k(0.2) * t7;
-            let t153 = k(0.2) * t1;
-            let t154 = k(0.2) * t102;
-            let t155 = t154 * t149 - (t153 * (k(4.905) - t145) + t152 * t140) + t151;
-            let t156 = t154 * t138 + (t153 * t137 - t152 * t136);
-            let t157 = t52 * t130 + (t42 * t124 + t57 * t76);
-            let t158 = t150 * t138 + (t146 * t137 - t141 * t136);
-            let t159 = t158 + k(0.32) * t7 + t157;
-            let t160 = k(0.1) * t79;
-            let t161 = t154 * t143 + (t153 * t142 - t152 * t137);
-            let t162 = t52 * t131 + (t42 * t125 + t57 * t90);
-            let t163 = t150 * t143 + (t146 * t142 - t141 * t137);
-            let t164 = t163 - k(0.32) * t1 + t162;
-            let t165 = k(0.1) * t91;
-            let t166 = t165 * (t164 + (t161 - k(0.26) * t1))
-                + t160 * (t159 + (t156 + k(0.26) * t7));
-            let t167 = t154 * t147 + (t153 * t143 - t152 * t138);
-            let t168 = t52 * t132 + (t42 * t126 + t57 * t100);
-            let t169 = t150 * t147 + (t146 * t143 - t141 * t138);
-            let t170 = t169 - k(0.32) * t102 + t168;
-            let t171 = k(0.1) * t104;
-            let t172 = t42 * (t110 * t127)
-                + t57 * (t111 * t122 + (t108 * t127 + t110 * t119));
-            let t173 = t111 * t130 + (t108 * t124 + t110 * t76);
-            let t174 = t111 * t131 + (t108 * t125 + t110 * t90);
-            let t175 = t111 * t132 + (t108 * t126 + t110 * t100);
-            let t176 = t150 * t175 + (t146 * t174 - t141 * t173)
-                + (t52 * (t111 * t133 + t110 * t122) + t172);
-            let t177 = t23 * (t6 * t9) + t18 * (t3 * t9);
-            let t178 = t177 * (t154 * t175 + (t153 * t174 - t152 * t173) + t176);
-            let t179 = t42 * (t112 * t127)
-                + t57 * (t113 * t122 + (t109 * t127 + t112 * t119));
-            let t180 = k(0.4) * t21;
-            let t181 = k(0.4) * t16;
-            let t182 = k(0.4) * t40;
-            let t183 = t113 * t130 + (t109 * t124 + t112 * t76);
-            let t184 = t113 * t131 + (t109 * t125 + t112 * t90);
-            let t185 = t113 * t132 + (t109 * t126 + t112 * t100);
-            let t186 = t150 * t185 + (t146 * t184 - t141 * t183)
-                - (t182 * t168 + (t181 * t162 + t180 * t157));
-            let t187 = t186 - (t182 * t169 + (t181 * t163 + t180 * t158))
-                + (t52 * (t113 * t133 + t112 * t122) + t179);
-            let t188 = k(0.2) * t16;
-            let t189 = k(0.2) * t40;
-            let t190 = t182 * t138 + (t181 * t137 + t180 * t136) - k(0.32) * t21;
-            let t191 = t182 * t143 + (t181 * t142 + t180 * t137) - k(0.32) * t16;
-            let t192 = t182 * t147 + (t181 * t143 + t180 * t138) - k(0.32) * t40;
-            let t193 = t154 * (t192 - t185)
-                + (t153 * (t191 - t184) - t152 * (t190 - t183));
-            let t194 = t193 + (t189 * t170 + (t188 * t164 + t25 * t159))
-                + (t189 * t167 + (t188 * t161 + t25 * t156));
-            let t195 = t24 * (t194 - t187) + t178
-                - (t171 * (t170 + (t167 - k(0.26) * t102)) + t166);
-            let t196 = t42 * (t57 * t127)
-                + t57 * (t52 * t122 + (t42 * t127 + t57 * t119));
-            let t197 = k(2.0) * (t150 * t168 + (t146 * t162 - t141 * t157))
-                + (t150 * t169 + (t146 * t163 - t141 * t158));
-            let t198 = t197 - (k(0.032) - (t52 * (t52 * t133 + t57 * t122) + t196));
-            let t199 = k(2.0) * (t154 * t170 + (t153 * t164 - t152 * t159))
-                + (t154 * t167 + (t153 * t161 - t152 * t156));
+            let t0 = crank_wy * crank_wy;
+            let t1 = crank_wz * crank_wz + t0;
+            let t2 = crank_e0 * crank_e0;
+            let t3 = k(2.0) * (k(0.5) - (t2 + crank_e1 * crank_e1));
+            let t4 = crank_wx * crank_wy;
+            let t5 = crank_e0 * crank_e3;
+            let t6 = crank_e1 * crank_e2;
+            let t7 = k(2.0) * (t6 - t5);
+            let t8 = crank_wx * crank_wz;
+            let t9 = crank_e0 * crank_e2;
+            let t10 = crank_e1 * crank_e3;
+            let t11 = k(2.0) * (t10 + t9);
+            let t12 = t11 * t8 + (t7 * t4 + t3 * t1);
+            let t13 = k(0.1) * t12;
+            let t14 = k(2.0) * (t6 + t5);
+            let t15 = k(0.5) - (t2 + crank_e2 * crank_e2);
+            let t16 = k(2.0) * t15;
+            let t17 = crank_e0 * crank_e1;
+            let t18 = crank_e2 * crank_e3;
+            let t19 = k(2.0) * (t18 - t17);
+            let t20 = t19 * t8 - (t16 * t4 + t14 * t1);
+            let t21 = k(0.1) * t20;
+            let t22 = k(2.0) * (t10 - t9);
+            let t23 = k(2.0) * (t18 + t17);
+            let t24 = k(0.5) - (t2 + crank_e3 * crank_e3);
+            let t25 = k(2.0) * t24;
+            let t26 = t25 * t8 - (t23 * t4 - t22 * t1);
+            let t27 = k(0.1) * t26;
+            let t28 = t22 * t27 - (t14 * t21 - t3 * t13);
+            let t29 = coupler_e0 * coupler_e1;
+            let t30 = coupler_e2 * coupler_e3;
+            let t31 = t30 - t29;
+            let t32 = coupler_wx * coupler_wz;
+            let t33 = k(0.01995) * t32 + k(3.924) * t31;
+            let t34 = coupler_e0 * coupler_e0;
+            let t35 = k(0.5) - (t34 + coupler_e2 * coupler_e2);
+            let t36 = k(2.0) * t35;
+            let t37 = coupler_e0 * coupler_e3;
+            let t38 = coupler_e1 * coupler_e2;
+            let t39 = t38 - t37;
+            let t40 = k(2.0) * t39;
+            let t41 = t30 + t29;
+            let t42 = k(2.0) * t41;
+            let t43 = t25 * t42 - (t11 * t40 - t19 * t36);
+            let t44 = coupler_wx * coupler_wy;
+            let t45 = k(0.01995) * t44 - k(3.924) * t35;
+            let t46 = k(0.5) - (t34 + coupler_e3 * coupler_e3);
+            let t47 = k(2.0) * t46;
+            let t48 = k(2.0) * t31;
+            let t49 = coupler_e0 * coupler_e2;
+            let t50 = coupler_e1 * coupler_e3;
+            let t51 = t50 + t49;
+            let t52 = k(2.0) * t51;
+            let t53 = t11 * t52 + t19 * t48 + t25 * t47;
+            let t54 = t53 * t45 + t43 * t33;
+            let t55 = k(2.0) * (k(0.5) - (t34 + coupler_e1 * coupler_e1));
+            let t56 = t38 + t37;
+            let t57 = k(2.0) * t56;
+            let t58 = k(2.0) * (t50 - t49);
+            let t59 = t25 * t58 - (t19 * t57 - t11 * t55);
+            let t60 = k(5e-5) * t59;
+            let t61 = k(0.07) * t43;
+            let t62 = k(0.07) * t53;
+            let t63 = k(1.0) / (t53 * t62 + (t43 * t61 + t59 * t60));
+            let t64 = t63 * t54;
+            let t65 = t33 - t61 * t64;
+            let t66 = t61 * t63;
+            let t67 = k(1.0) / (k(0.07) - t61 * t66);
+            let t68 = t67 * t65;
+            let t69 = t60 * t63;
+            let t70 = t61 * t69;
+            let t71 = k(1.0) / (t59 * t59 + t53 * t53);
+            let t72 = t22 * t42 - (t14 * t36 + t3 * t40);
+            let t73 = t23 * t42 + (t7 * t40 + t16 * t36);
+            let t74 = crank_wy * crank_wz;
+            let t75 = t0 + crank_wx * crank_wx;
+            let t76 = t22 * t58 + (t14 * t57 + t3 * t55);
+            let t77 = t22 * t47 - (t14 * t48 - t3 * t52);
+            let t78 = t23 * t58 - (t16 * t57 + t7 * t55);
+            let t79 = t23 * t47 - (t7 * t52 - t16 * t48);
+            let t80 = crank_wx * (coupler_wx * t79 + coupler_wz * t78)
+                - crank_wy * (coupler_wx * t77 + coupler_wz * t76);
+            let t81 = coupler_wz * coupler_wz;
+            let t82 = coupler_wy * coupler_wz * t53
+                + ((t81 + coupler_wx * coupler_wx) * t43 - t44 * t59);
+            let t83 = t82 + k(2.0) * t80 + (t75 * t43 + (t74 * t73 + t8 * t72));
+            let t84 = t83 * (t53 * t71);
+            let t85 = t67 * t70;
+            let t86 = t70 * t85 - (k(5e-5) - t60 * t69);
+            let t87 = t59 * t71 * t83;
+            let t88 = t62 * t66;
+            let t89 = t88 * t85 + t62 * t69;
+            let t90 = t81 + coupler_wy * coupler_wy;
+            let t91 = k(0.25) * (t52 * t32 + (t40 * t44 + t55 * t90));
+            let t92 = t91 + k(0.2) * t12;
+            let t93 = k(0.25) * (t48 * t32 - (t36 * t44 + t57 * t90));
+            let t94 = t93 + k(0.2) * t20;
+            let t95 = k(0.25) * (t47 * t32 - (t42 * t44 - t58 * t90));
+            let t96 = t95 + k(0.2) * t26;
+            let t97 = t42 * t96 + (t36 * t94 - t40 * t92);
+            let t98 = k(0.2) * t53;
+            let t99 = t63 * t98;
+            let t100 = t61 * t99;
+            let t101 = t67 * t100;
+            let t102 = t70 * t101 + t60 * t99;
+            let t103 = t47 * t96 + (t48 * t94 + t52 * t92);
+            let t104 = k(0.2) * t43;
+            let t105 = t63 * t104;
+            let t106 = k(0.2) - t61 * t105;
+            let t107 = t67 * t106;
+            let t108 = t70 * t107 - t60 * t105;
+            let t109 = t108 * t103 + t102 * t97 + (t89 * t87 - t86 * t84);
+            let t110 = t88 * (t67 * t88) - (k(0.07) - t62 * (t62 * t63));
+            let t111 = t88 * t101 - (k(0.2) - t62 * t99);
+            let t112 = t88 * t107 - t62 * t105;
+            let t113 = t112 * t103 + t111 * t97 + (t110 * t87 - t89 * t84);
+            let t114 = t53 * (t113 + (t88 * t68 + (t45 - t62 * t64)))
+                + t59 * (t109 + (t70 * t68 - t60 * t64));
+            let t115 = t58 * t96 - (t57 * t94 - t55 * t92);
+            let t116 = t100 * t101 + t98 * t99;
+            let t117 = t106 * t101 - t104 * t99;
+            let t118 = t111 * t87 - t102 * t84
+                + (t117 * t103 + t116 * t97 - k(0.8) * t97);
+            let t119 = t73 * (t118 + (t100 * t68 - (t98 * t64 + k(15.696) * t35)));
+            let t120 = t106 * t107 + t104 * t105;
+            let t121 = t112 * t87 - t108 * t84
+                + (t120 * t103 + t117 * t97 - k(0.8) * t103);
+            let t122 = t79 * (t121 + (t106 * t68 + (t104 * t64 - k(15.696) * t31)));
+            let t123 = t122 + (t119 - t78 * (k(0.8) * t115 - k(15.696) * t56));
+            let t124 = k(0.1) * (t123 - k(9.81) * t15)
+                + (k(0.00398) * t4 + (k(0.2) * t123 + t114));
+            let t125 = t53 * (t112 * t77 + t72 * t111) + t59 * (t108 * t77 + t72 * t102);
+            let t126 = t79 * (t120 * t77 + t72 * t117) + t73 * (t117 * t77 + t72 * t116);
+            let t127 = t23 * t27 + (t16 * t21 - t7 * t13);
+            let t128 = t79 * t117 + t73 * t116;
+            let t129 = t79 * t120 + t73 * t117;
+            let t130 = t79 * t129 + t73 * t128;
+            let t131 = t79 * t108 + t73 * t102;
+            let t132 = t79 * t112 + t73 * t111;
+            let t133 = t53 * t132 + t59 * t131;
+            let t134 = k(0.16) - k(0.2) * t130 - t133;
+            let t135 = (t134 + (k(0.13) - k(0.1) * t130)) * t127
+                - (k(0.1) * t126 + (k(0.2) * t126 + t125)) * t28;
+            let t136 = t25 * t27 + (t19 * t21 + t11 * t13);
+            let t137 = t53 * t129 + t43 * t128;
+            let t138 = t53 * (t53 * t112 + t43 * t111) + t59 * (t53 * t108 + t43 * t102);
+            let t139 = k(0.2) * t137;
+            let t140 = t139 + t138;
+            let t141 = t75 * (k(0.5) / t24);
+            let t142 = t74 - t23 * t141;
+            let t143 = t53 * (t110 * t77 + t89 * t76) + t59 * (t89 * t77 + t86 * t76);
+            let t144 = t132 * t77 + t131 * t76;
+            let t145 = t8 - t22 * t141;
+            let t146 = t53 * (t79 * t110 + t78 * t89) + t59 * (t79 * t89 + t78 * t86);
+            let t147 = t79 * t132 + t78 * t131;
+            let t148 = k(0.1) * (t140 + (t139 - t147)) + k(0.01) * t137
+                + (k(0.2) * (t138 - t147) + k(0.04) * t137 - t146);
+            let t149 = t148 * t145 + (k(0.1) * t144 + (k(0.2) * t144 + t143)) * t142;
+            let t150 = t53 * (t53 * t110 + t59 * t89) + t59 * (t53 * t89 + t59 * t86);
+            let t151 = k(0.013)
+                + (k(0.004) - (k(0.4) * t133 + k(0.04) * t130 - (k(0.032) - t150)));
+            let t152 = k(1.0) / (k(0.2) * t134 - k(0.01) * t130 + t151);
+            let t153 = t152 * (t149 + ((t140 + k(0.1) * t137) * t136 - t135) + t124);
+            let t154 = t127 + k(0.1) * t153;
+            let t155 = t136 + k(0.1) * t145;
+            let t156 = t39 * t53 + t51 * t43;
+            let t157 = t156 * t63;
+            let t158 = t51 - t61 * t157;
+            let t159 = t158 * t67;
+            let t160 = t53 * (t159 * t88 + (t39 - t62 * t157))
+                + t59 * (t159 * t70 - t60 * t157);
+            let t161 = t73 * (t159 * t100 + (t40 - t157 * t98)) - t55 * t78;
+            let t162 = (t159 * t106 - (t52 - t157 * t104)) * t79 + t161;
+            let t163 = (k(0.1) * t162 + (k(0.2) * t162 + t160)) * t152;
+            let t164 = k(0.1) * t163;
+            let t165 = rocker_wy * rocker_wy;
+            let t166 = rocker_wz * rocker_wz + t165;
+            let t167 = rocker_e0 * rocker_e0;
+            let t168 = k(2.0) * (k(0.5) - (t167 + rocker_e1 * rocker_e1));
+            let t169 = rocker_wx * rocker_wy;
+            let t170 = rocker_e0 * rocker_e3;
+            let t171 = rocker_e1 * rocker_e2;
+            let t172 = t171 - t170;
+            let t173 = k(2.0) * t172;
+            let t174 = rocker_wx * rocker_wz;
+            let t175 = rocker_e0 * rocker_e2;
+            let t176 = rocker_e1 * rocker_e3;
+            let t177 = t176 + t175;
+            let t178 = k(2.0) * t177;
+            let t179 = k(0.15) * (t178 * t174 + (t173 * t169 + t168 * t166));
+            let t180 = k(0.2) * t153 + t154;
+            let t181 = k(0.2) * t145 + t155;
+            let t182 = t115 + (t59 * t181 + (t78 * t180 + t76 * t28));
+            let t183 = t97 + (t43 * t181 + (t73 * t180 + t72 * t28));
+            let t184 = t103 + (t53 * t181 + (t79 * t180 + t77 * t28));
+            let t185 = t84 - (t59 * t153 - (t78 * t145 - t76 * t142));
+            let t186 = t87 + (t53 * t153 - (t79 * t145 - t77 * t142));
+            let t187 = t88 * t186 - t70 * t185 + (t106 * t184 + t100 * t183);
+            let t188 = t67 * (t65 + t187);
+            let t189 = t62 * t186 + (t61 * t188 - t60 * t185)
+                - (t104 * t184 - t98 * t183);
+            let t190 = t63 * (t54 - t189);
+            let t191 = t186 + t53 * t190;
+            let t192 = t183 + k(0.25) * t191;
+            let t193 = t188 + t43 * t190;
+            let t194 = t184 - k(0.25) * t193;
+            let t195 = t52 * t194 - (t40 * t192 - t55 * t182);
+            let t196 = k(0.5) * t51;
+            let t197 = k(0.5) * t39;
+            let t198 = k(2.0) * (t171 + t170);
+            let t199 = k(0.5) - (t167 + rocker_e2 * rocker_e2);
             (
-                t24,
+                t3,
+                t7,
+                t11,
+                t14,
+                t16,
+                t19,
+                t22,
+                t23,
                 t25,
                 t28,
-                t32,
+                t31,
+                t35,
                 t36,
-                t38,
+                t40,
+                t41,
                 t42,
-                t45,
-                t50,
+                t43,
+                t46,
+                t47,
+                t48,
                 t52,
                 t53,
+                t55,
                 t57,
                 t58,
                 t59,
                 t60,
                 t61,
+                t62,
                 t63,
-                t65,
-                t66,
-                t69,
-                t72,
-                t74,
-                t82,
-                t83,
-                t86,
+                t67,
+                t70,
+                t73,
+                t78,
+                t79,
                 t88,
-                t92,
+                t91,
                 t93,
-                t96,
+                t95,
                 t98,
-                t105,
+                t100,
+                t104,
                 t106,
-                t108,
-                t109,
-                t110,
-                t111,
-                t112,
-                t113,
-                t117,
-                t120,
-                t121,
-                t141,
-                t146,
-                t150,
+                t142,
+                t145,
                 t152,
                 t153,
                 t154,
                 t155,
-                t160,
+                t156,
+                t158,
+                t163,
+                t164,
                 t165,
-                t171,
+                t166,
+                t167,
+                t168,
+                t169,
+                t172,
+                t173,
+                t174,
+                t175,
+                t176,
                 t177,
-                t180,
-                t181,
+                t178,
+                t179,
                 t182,
-                t188,
-                t189,
+                t185,
+                t190,
+                t191,
+                t192,
+                t193,
+                t194,
                 t195,
+                t196,
+                t197,
                 t198,
                 t199,
             )
         };
         let (
-            t201,
-            t202,
-            t204,
-            t206,
-            t215,
+            t208,
             t216,
             t217,
-            t218,
-            t224,
-            t227,
-            t230,
+            t220,
+            t234,
+            t236,
             t239,
-            t244,
-            t245,
-            t255,
-            t269,
-            t270,
-            t272,
-            t274,
+            t262,
+            t273,
+            t275,
+            t278,
             t283,
-            t284,
-            t287,
-            t312,
-            t313,
+            t286,
+            t289,
+            t290,
+            t293,
+            t294,
+            t305,
+            t310,
             t315,
-            t317,
+            t316,
+            t318,
+            t320,
+            t321,
+            t323,
+            t325,
             t326,
             t327,
+            t328,
+            t329,
             t330,
+            t331,
+            t332,
+            t334,
+            t335,
             t336,
-            t339,
-            t341,
-            t342,
-            t347,
-            t348,
-            t360,
-            t361,
-            t362,
-            t363,
-            t365,
-            t367,
-            t373,
-            t374,
-            t375,
-            t377,
-            t378,
-            t379,
-            t381,
-            t382,
-            t383,
-            t384,
-            t385,
-            t386,
-            t387,
-            t388,
+            t337,
+            t338,
         ) = {
-            let t200 = k(1.0) / (t199 - (k(0.013) + (k(0.004) - t198)));
-            let t201 = t200 * (t195 - t155);
-            let t202 = t160 - (t152 * t201 + t25 * t24);
-            let t203 = t83 - (t141 * t201 + t180 * t24 - t202);
-            let t204 = t165 + (t153 * t201 - t188 * t24);
-            let t205 = t93 + (t146 * t201 - t181 * t24 + t204);
-            let t206 = t171 + (t154 * t201 - t189 * t24);
-            let t207 = t106 + (t150 * t201 - t182 * t24 + t206);
-            let t208 = t117 - (t57 * t201 + (t112 * t24 - t110 * t177));
-            let t209 = t42 * t201 + (t109 * t24 - t108 * t177);
-            let t210 = t120 + (t52 * t201 + (t113 * t24 - t111 * t177));
-            let t211 = t121 * t210 - (t65 * t209 + t69 * t208)
-                + (t98 * t207 + (t88 * t205 + t74 * t203));
-            let t212 = t209 + t66 * (t63 + t211);
-            let t213 = t60 * t210 + (t59 * t212 - t58 * t208)
-                + (t96 * t207 + (t86 * t205 - t72 * t203));
-            let t214 = t61 * (t53 - t213);
-            let t215 = t212 + t42 * t214;
-            let t216 = k(0.5) * t50;
-            let t217 = t210 + t52 * t214;
-            let t218 = k(0.5) * t36;
-            let t219 = t218 * t217 + t216 * t215;
-            let t220 = t203 - t219;
-            let t221 = rocker_e0 * rocker_e0;
-            let t222 = k(0.5) - (t221 + rocker_e2 * rocker_e2);
-            let t223 = k(2.0) * t222;
-            let t224 = k(2.0) * (k(0.5) - (t221 + rocker_e1 * rocker_e1));
-            let t225 = rocker_e0 * rocker_e3;
-            let t226 = rocker_e1 * rocker_e2;
-            let t227 = k(2.0) * (t226 + t225);
-            let t228 = t226 - t225;
-            let t229 = k(2.0) * t228;
-            let t230 = k(1.0) / (t229 * t227 - t224 * t223);
-            let t231 = rocker_wx * rocker_wz;
-            let t232 = rocker_wy * rocker_wz;
-            let t233 = rocker_wy * rocker_wy;
-            let t234 = t233 + rocker_wx * rocker_wx;
-            let t235 = rocker_e0 * rocker_e1;
-            let t236 = rocker_e2 * rocker_e3;
-            let t237 = t236 - t235;
-            let t238 = k(2.0) * t237;
-            let t239 = t238 * t234 + (t223 * t232 - t227 * t231);
-            let t240 = rocker_e0 * rocker_e2;
-            let t241 = rocker_e1 * rocker_e3;
-            let t242 = t241 + t240;
-            let t243 = k(2.0) * t242;
-            let t244 = t243 * t234 - (t229 * t232 - t224 * t231);
-            let t245 = t244 * (t223 * t230) + t239 * (t229 * t230);
-            let t246 = rocker_wx * rocker_wy;
-            let t247 = rocker_wz * rocker_wz + t233;
-            let t248 = k(0.15) * (t243 * t231 + (t229 * t246 + t224 * t247));
-            let t249 = k(0.15) * (t238 * t231 - (t223 * t246 + t227 * t247));
-            let t250 = t236 + t235;
-            let t251 = k(0.5) - (t221 + rocker_e3 * rocker_e3);
-            let t252 = k(2.0) * t251 * t231
-                - (k(2.0) * t250 * t246 - k(2.0) * (t241 - t240) * t247);
-            let t253 = k(0.15) * t252;
-            let t254 = t253 * (k(0.18) * t250)
-                + (t249 * (k(0.18) * t222) - t248 * (k(0.18) * t228));
-            let t255 = k(54.054054054054056)
-                * (t254 - (k(0.00496) * t246 - k(1.7658) * t222));
-            let t256 = k(0.3) * t228;
-            let t257 = t256 * t255 - k(0.3) * t242 * t245;
-            let t258 = t248 + t257;
-            let t259 = t248 - t82 + (t257 + t258 + (t219 - t220));
-            let t260 = t36 * t52 + t50 * t42;
-            let t261 = t260 * t61;
-            let t262 = t50 - t59 * t261;
-            let t263 = t262 * t66;
-            let t264 = t42 * (t262 - t65 * t263) + t57 * (t263 * t69 - t58 * t261);
-            let t265 = t263 * t74 - (k(1.0) - t261 * t72);
-            let t266 = t263 * t88 - t261 * t86;
-            let t267 = t263 * t98 - t261 * t96;
-            let t268 = t150 * t267 + (t146 * t266 - t141 * t265)
-                + (t52 * (t263 * t121 + (t36 - t60 * t261)) + t264);
-            let t269 = (t154 * t267 + (t153 * t266 - t152 * t265) + t268) * t200;
-            let t270 = t152 * t269;
-            let t271 = t141 * t269 + t270;
-            let t272 = t153 * t269;
-            let t273 = t146 * t269 + t272;
-            let t274 = t154 * t269;
-            let t275 = t150 * t269 + t274;
-            let t276 = t57 * t269;
-            let t277 = t42 * t269;
-            let t278 = t52 * t269;
-            let t279 = t121 * t278 - (t65 * t277 - t69 * t276)
-                + (t98 * t275 + (t88 * t273 - t74 * t271));
-            let t280 = t277 - t66 * (t262 - t279);
-            let t281 = t60 * t278 + (t59 * t280 + t58 * t276)
-                + (t96 * t275 + (t86 * t273 + t72 * t271));
-            let t282 = t61 * (t260 + t281);
-            let t283 = t280 - t42 * t282;
-            let t284 = t278 - t52 * t282;
-            let t285 = t218 * t284 + t216 * t283;
-            let t286 = t271 + t285;
-            let t287 = k(32.432432432432435) * t228;
-            let t288 = t256 * t287;
-            let t289 = k(1.0) / (k(2.0) * t288 - (t285 + t286));
-            let t290 = k(0.5) * t28;
-            let t291 = k(0.5) * t32;
-            let t292 = t291 * t217 - t290 * t215;
-            let t293 = t205 + t292;
-            let t294 = k(0.3) * t222;
-            let t295 = t294 * t255 + k(0.3) * t237 * t245;
-            let t296 = t249 - t295;
-            let t297 = t291 * t284 - t290 * t283;
-            let t298 = t273 + t297;
-            let t299 = t294 * t287;
-            let t300 = k(2.0) * t299 - (t297 + t298);
-            let t301 = t289 * t300;
-            let t302 = t301 * t259 + (t249 - t92 - (t295 - t296 + (t292 + t293)));
-            let t303 = t32 * t52 - t28 * t42;
-            let t304 = t61 * t303;
-            let t305 = t28 + t59 * t304;
-            let t306 = t66 * t305;
-            let t307 = t42 * (t305 - t65 * t306) + t57 * (t69 * t306 + t58 * t304);
-            let t308 = t74 * t306 - t72 * t304;
-            let t309 = t88 * t306 - (k(1.0) - t86 * t304);
-            let t310 = t98 * t306 + t96 * t304;
-            let t311 = t150 * t310 + (t146 * t309 - t141 * t308)
-                + (t52 * (t121 * t306 - (t32 - t60 * t304)) + t307);
-            let t312 = t200 * (t154 * t310 + (t153 * t309 - t152 * t308) + t311);
-            let t313 = t152 * t312;
-            let t314 = t141 * t312 + t313;
-            let t315 = t153 * t312;
-            let t316 = t146 * t312 + t315;
-            let t317 = t154 * t312;
-            let t318 = t150 * t312 + t317;
-            let t319 = t57 * t312;
-            let t320 = t42 * t312;
-            let t321 = t52 * t312;
-            let t322 = t121 * t321 - (t65 * t320 - t69 * t319)
-                + (t98 * t318 + (t88 * t316 - t74 * t314));
-            let t323 = t320 - t66 * (t305 - t322);
-            let t324 = t60 * t321 + (t59 * t323 + t58 * t319)
-                + (t96 * t318 + (t86 * t316 + t72 * t314));
-            let t325 = t61 * (t303 - t324);
-            let t326 = t323 + t42 * t325;
-            let t327 = t321 + t52 * t325;
-            let t328 = t291 * t327 - t290 * t326;
-            let t329 = t316 + t328;
-            let t330 = k(32.432432432432435) * t222;
-            let t331 = t294 * t330;
-            let t332 = k(1.0) / (t300 * t301 - (k(2.0) * t331 + (t328 + t329)));
-            let t333 = k(0.5) * t45;
-            let t334 = k(0.5) * t38;
-            let t335 = t334 * t217 - t333 * t215;
-            let t336 = t207 + t335;
-            let t337 = k(0.3) * t250;
-            let t338 = t337 * t255 + k(0.3) * t251 * t245;
-            let t339 = t253 - t338;
-            let t340 = t334 * t284 - t333 * t283;
-            let t341 = t275 + t340;
-            let t342 = t337 * t287;
-            let t343 = k(2.0) * t342 - (t340 + t341);
-            let t344 = t289 * t343;
-            let t345 = t344 * t259 + (t253 - t105 - (t338 - t339 + (t335 + t336)));
-            let t346 = t334 * t327 - t333 * t326;
-            let t347 = t318 + t346;
-            let t348 = t337 * t330;
-            let t349 = t300 * t344 - (k(2.0) * t348 + (t346 + t347));
-            let t350 = t332 * t349;
-            let t351 = t38 * t52 - t45 * t42;
-            let t352 = t61 * t351;
-            let t353 = t45 + t59 * t352;
-            let t354 = t66 * t353;
-            let t355 = t42 * (t353 - t65 * t354) + t57 * (t69 * t354 + t58 * t352);
-            let t356 = t74 * t354 - t72 * t352;
-            let t357 = t88 * t354 + t86 * t352;
-            let t358 = t98 * t354 - (k(1.0) - t96 * t352);
-            let t359 = t150 * t358 + (t146 * t357 - t141 * t356)
-                + (t52 * (t121 * t354 - (t38 - t60 * t352)) + t355);
-            let t360 = t200 * (t154 * t358 + (t153 * t357 - t152 * t356) + t359);
-            let t361 = t152 * t360;
-            let t362 = t141 * t360 + t361;
-            let t363 = t153 * t360;
-            let t364 = t146 * t360 + t363;
-            let t365 = t154 * t360;
-            let t366 = t150 * t360 + t365;
-            let t367 = t57 * t360;
-            let t368 = t42 * t360;
-            let t369 = t52 * t360;
-            let t370 = t121 * t369 - (t65 * t368 - t69 * t367)
-                + (t98 * t366 + (t88 * t364 - t74 * t362));
-            let t371 = t368 - t66 * (t353 - t370);
-            let t372 = t60 * t369 + (t59 * t371 + t58 * t367)
-                + (t96 * t366 + (t86 * t364 + t72 * t362));
-            let t373 = t61 * (t351 - t372);
-            let t374 = t371 + t42 * t373;
-            let t375 = t369 + t52 * t373;
-            let t376 = t334 * t375 - t333 * t374;
-            let t377 = t366 + t376;
-            let t378 = k(32.432432432432435) * t250;
-            let t379 = t337 * t378;
-            let t380 = t349 * t350 - (t343 * t344 - (k(2.0) * t379 + (t376 + t377)));
-            let t381 = (t350 * t302 - t345) / t380;
-            let t382 = t350 * t381 - t332 * t302;
-            let t383 = t344 * t381 - (t301 * t382 + t289 * t259);
-            let t384 = t382 * (t314 + (t218 * t327 + t216 * t326))
-                - (t220 + t286 * t383);
-            let t385 = t381 * (t364 + (t291 * t375 - t290 * t374))
-                - (t329 * t382 + (t293 - t298 * t383));
-            let t386 = t382 * (t319 + t57 * t325)
-                - (t383 * (t276 - t57 * t282) + (t208 - t57 * t214));
-            let t387 = t381 * (t256 * t378)
-                - (t382 * (t256 * t330) + (t258 + t288 * t383));
-            let t388 = t381 * (t294 * t378) - (t331 * t382 - (t296 - t299 * t383));
+            let t200 = k(2.0) * t199;
+            let t201 = rocker_e0 * rocker_e1;
+            let t202 = rocker_e2 * rocker_e3;
+            let t203 = t202 - t201;
+            let t204 = k(2.0) * t203;
+            let t205 = k(0.15) * (t204 * t174 - (t200 * t169 + t198 * t166));
+            let t206 = k(2.0) * (t176 - t175);
+            let t207 = t202 + t201;
+            let t208 = k(2.0) * t207;
+            let t209 = k(0.5) - (t167 + rocker_e3 * rocker_e3);
+            let t210 = k(2.0) * t209;
+            let t211 = k(0.15) * (t210 * t174 - (t208 * t169 - t206 * t166));
+            let t212 = t206 * t211 - (t198 * t205 - t168 * t179);
+            let t213 = t208 * t211 + (t200 * t205 - t173 * t179);
+            let t214 = k(0.09) * t213 - (k(0.00496) * t169 - k(1.7658) * t199);
+            let t215 = t213 - k(8.108108108108109) * t214;
+            let t216 = (t165 + rocker_wx * rocker_wx) * (k(0.5) / t209);
+            let t217 = t174 - t206 * t216;
+            let t218 = k(0.15) * t217 + (t210 * t211 + (t204 * t205 + t178 * t179));
+            let t219 = t178 * t218 - (t173 * t215 - t168 * t212);
+            let t220 = k(54.054054054054056) * t214;
+            let t221 = k(0.3) * t172;
+            let t222 = t221 * t220 + k(0.3) * t177 * t217 + t219
+                + (t197 * t191 + t196 * t193 - t195);
+            let t223 = t222 + (t179 - t91);
+            let t224 = k(0.3) * t163;
+            let t225 = t78 * t224;
+            let t226 = t73 * t224;
+            let t227 = t79 * t224;
+            let t228 = t59 * t163;
+            let t229 = t53 * t163;
+            let t230 = t88 * t229 + t70 * t228 + (t106 * t227 + t100 * t226);
+            let t231 = t67 * (t158 + t230);
+            let t232 = t62 * t229 + (t61 * t231 + t60 * t228)
+                - (t104 * t227 - t98 * t226);
+            let t233 = t63 * (t156 - t232);
+            let t234 = t229 + t53 * t233;
+            let t235 = t226 + k(0.25) * t234;
+            let t236 = t231 + t43 * t233;
+            let t237 = t227 - k(0.25) * t236;
+            let t238 = t52 * t237 - (t40 * t235 - t55 * t225);
+            let t239 = k(32.432432432432435) * t172;
+            let t240 = k(4.864864864864865) * t172;
+            let t241 = t173 * t240;
+            let t242 = t241 + t221 * t239 + (t197 * t234 + t196 * t236 - t238);
+            let t243 = k(1.0) / t242;
+            let t244 = t48 * t194 + (t36 * t192 - t57 * t182);
+            let t245 = k(0.5) * t31;
+            let t246 = k(0.5) * t35;
+            let t247 = t204 * t218 + (t200 * t215 - t198 * t212);
+            let t248 = k(0.3) * t199;
+            let t249 = t248 * t220 - k(0.3) * t203 * t217 - t247
+                + (t246 * t191 - t245 * t193 + t244);
+            let t250 = t48 * t237 + (t36 * t235 - t57 * t225);
+            let t251 = t200 * t240;
+            let t252 = t251 + t248 * t239 + (t246 * t234 - t245 * t236 + t250);
+            let t253 = t243 * t252;
+            let t254 = t253 * t223 - (t249 - (t205 - t93));
+            let t255 = t35 * t53 - t31 * t43;
+            let t256 = t63 * t255;
+            let t257 = t31 + t61 * t256;
+            let t258 = t67 * t257;
+            let t259 = t53 * (t88 * t258 - (t35 - t62 * t256))
+                + t59 * (t70 * t258 + t60 * t256);
+            let t260 = t73 * (t100 * t258 - (t36 - t98 * t256)) + t57 * t78;
+            let t261 = t79 * (t106 * t258 - (t48 + t104 * t256)) + t260;
+            let t262 = t152 * (k(0.1) * t261 + (k(0.2) * t261 + t259));
+            let t263 = k(0.3) * t262;
+            let t264 = t78 * t263;
+            let t265 = t73 * t263;
+            let t266 = t79 * t263;
+            let t267 = t59 * t262;
+            let t268 = t53 * t262;
+            let t269 = t88 * t268 + t70 * t267 + (t106 * t266 + t100 * t265);
+            let t270 = t67 * (t257 + t269);
+            let t271 = t62 * t268 + (t61 * t270 + t60 * t267)
+                - (t104 * t266 - t98 * t265);
+            let t272 = t63 * (t255 + t271);
+            let t273 = t268 - t53 * t272;
+            let t274 = t265 + k(0.25) * t273;
+            let t275 = t270 - t43 * t272;
+            let t276 = t266 - k(0.25) * t275;
+            let t277 = t48 * t276 + (t36 * t274 - t57 * t264);
+            let t278 = k(32.432432432432435) * t199;
+            let t279 = k(4.864864864864865) * t199;
+            let t280 = t200 * t279;
+            let t281 = t280 + t248 * t278 - (t246 * t273 - t245 * t275 + t277);
+            let t282 = k(1.0) / (t252 * t253 - t281);
+            let t283 = t47 * t194 + (t42 * t192 + t58 * t182);
+            let t284 = k(0.5) * t46;
+            let t285 = k(0.5) * t41;
+            let t286 = t210 * t218 + (t208 * t215 + t206 * t212);
+            let t287 = k(0.3) * t207;
+            let t288 = t287 * t220 - k(0.3) * t209 * t217 - t286
+                + (t285 * t191 - t284 * t193 + t283);
+            let t289 = t47 * t237 + (t42 * t235 + t58 * t225);
+            let t290 = t208 * t240;
+            let t291 = t290 + t287 * t239 + (t285 * t234 - t284 * t236 + t289);
+            let t292 = t243 * t291;
+            let t293 = t47 * t276 + (t42 * t274 + t58 * t264);
+            let t294 = t208 * t279;
+            let t295 = t294 + t287 * t278 - (t285 * t273 - t284 * t275 + t293);
+            let t296 = t252 * t292 - t295;
+            let t297 = t282 * t296;
+            let t298 = t41 * t53 - t46 * t43;
+            let t299 = t63 * t298;
+            let t300 = t46 + t61 * t299;
+            let t301 = t67 * t300;
+            let t302 = t53 * (t88 * t301 - (t41 - t62 * t299))
+                + t59 * (t70 * t301 + t60 * t299);
+            let t303 = t73 * (t100 * t301 - (t42 - t98 * t299)) - t58 * t78;
+            let t304 = t79 * (t106 * t301 - (t47 + t104 * t299)) + t303;
+            let t305 = t152 * (k(0.1) * t304 + (k(0.2) * t304 + t302));
+            let t306 = k(0.3) * t305;
+            let t307 = t78 * t306;
+            let t308 = t73 * t306;
+            let t309 = t79 * t306;
+            let t310 = t59 * t305;
+            let t311 = t53 * t305;
+            let t312 = t88 * t311 + t70 * t310 + (t106 * t309 + t100 * t308);
+            let t313 = t67 * (t300 + t312);
+            let t314 = t62 * t311 + (t61 * t313 + t60 * t310)
+                - (t104 * t309 - t98 * t308);
+            let t315 = t63 * (t298 + t314);
+            let t316 = t311 - t53 * t315;
+            let t317 = t308 + k(0.25) * t316;
+            let t318 = t313 - t43 * t315;
+            let t319 = t309 - k(0.25) * t318;
+            let t320 = t47 * t319 + (t42 * t317 + t58 * t307);
+            let t321 = k(32.432432432432435) * t207;
+            let t322 = k(4.864864864864865) * t207;
+            let t323 = t208 * t322;
+            let t324 = t323 + t287 * t321 - (t285 * t316 - t284 * t318 + t320);
+            let t325 = (t297 * t254 - (t292 * t223 - (t288 - (t211 - t95))))
+                / (t296 * t297 - (t291 * t292 - t324));
+            let t326 = t297 * t325 - t282 * t254;
+            let t327 = t292 * t325 - (t253 * t326 + t243 * t223);
+            let t328 = t327 * (t7 * t164) - (t11 * t155 - (t7 * t154 - t3 * t28));
+            let t329 = k(0.1) * t262;
+            let t330 = k(0.1) * t305;
+            let t331 = t327 * (t16 * t164) + (t19 * t155 + (t16 * t154 - t14 * t28));
+            let t332 = t327 * (t23 * t164) + (t25 * t155 + (t23 * t154 + t22 * t28));
+            let t333 = t326 * (t52 * t276 - (t40 * t274 - t55 * t264))
+                - (t195 + t238 * t327);
+            let t334 = t325 * (t52 * t319 - (t40 * t317 - t55 * t307)) - t333;
+            let t335 = t325 * (t48 * t319 + (t36 * t317 - t57 * t307))
+                - (t277 * t326 - (t244 + t250 * t327));
+            let t336 = t326 * (t267 - t59 * t272)
+                - (t327 * (t228 + t59 * t233) - (t185 - t59 * t190));
+            let t337 = t325 * (t173 * t322)
+                - (t326 * (t173 * t279) + (t219 + t241 * t327));
+            let t338 = t325 * (t200 * t322) - (t280 * t326 - (t247 - t251 * t327));
             (
-                t201,
-                t202,
-                t204,
-                t206,
-                t215,
+                t208,
                 t216,
                 t217,
-                t218,
-                t224,
-                t227,
-                t230,
+                t220,
+                t234,
+                t236,
                 t239,
-                t244,
-                t245,
-                t255,
-                t269,
-                t270,
-                t272,
-                t274,
+                t262,
+                t273,
+                t275,
+                t278,
                 t283,
-                t284,
-                t287,
-                t312,
-                t313,
+                t286,
+                t289,
+                t290,
+                t293,
+                t294,
+                t305,
+                t310,
                 t315,
-                t317,
+                t316,
+                t318,
+                t320,
+                t321,
+                t323,
+                t325,
                 t326,
                 t327,
+                t328,
+                t329,
                 t330,
+                t331,
+                t332,
+                t334,
+                t335,
                 t336,
-                t339,
-                t341,
-                t342,
-                t347,
-                t348,
-                t360,
-                t361,
-                t362,
-                t363,
-                t365,
-                t367,
-                t373,
-                t374,
-                t375,
-                t377,
-                t378,
-                t379,
-                t381,
-                t382,
-                t383,
-                t384,
-                t385,
-                t386,
-                t387,
-                t388,
+                t337,
+                t338,
             )
         };
         *out = [
-            t361 * t381 - (t313 * t382 - (t202 + t270 * t383)),
-            t315 * t382 + (t204 - t272 * t383) - t363 * t381,
-            t365 * t381 - (t317 * t382 + (t206 - t274 * t383)),
-            -t177,
-            t24,
-            t360 * t381 - (t312 * t382 + (t201 - t269 * t383)),
-            t381 * (t362 + (t218 * t375 + t216 * t374)) - t384,
-            -t385,
-            t377 * t381 - (t347 * t382 + (t336 - t341 * t383)),
-            t386 - t381 * (t367 + t57 * t373),
-            t326 * t382 + (t215 - t283 * t383) - t374 * t381,
-            t375 * t381 - (t327 * t382 + (t217 - t284 * t383)),
-            -t387,
-            t388,
-            t348 * t382 - (t339 - t342 * t383) - t379 * t381,
-            -(t244 * (t227 * t230) + t239 * (t224 * t230)),
-            t245,
-            t330 * t382 + (t255 + t287 * t383) - t378 * t381,
-            -t383,
-            t382,
-            t381,
+            t326 * (t7 * t329) - t328 - t325 * (t7 * t330),
+            t325 * (t16 * t330) - (t326 * (t16 * t329) - t331),
+            t326 * (t23 * t329) - t332 - t325 * (t23 * t330),
+            t142,
+            -t145,
+            t262 * t326 - (t153 + t163 * t327) - t305 * t325,
+            t334,
+            t335,
+            t293 * t326 - (t283 + t289 * t327) - t320 * t325,
+            t325 * (t310 - t59 * t315) - t336,
+            t318 * t325 - (t275 * t326 - (t193 + t236 * t327)),
+            t273 * t326 - (t191 + t234 * t327) - t316 * t325,
+            -t337,
+            t338,
+            t294 * t326 - (t286 - t290 * t327) - t323 * t325,
+            rocker_wy * rocker_wz - t208 * t216,
+            -t217,
+            t278 * t326 + (t220 + t239 * t327) - t321 * t325,
+            -t327,
+            t326,
+            t325,
         ];
     }
     /// Writes λ: 278 operations (104 ±, 171 ×, 3 ÷).
@@ -2198,67 +2137,67 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
         let t3 = k(4.905) + k(0.5) * crank_dsy + t2;
         let t4 = k(0.8) * coupler_dsz - closing2;
         let t5 = k(0.5) * crank_dsz + t4;
-        let t6 = coupler_e0 * coupler_e0;
-        let t7 = k(2.0) * (k(0.5) - (t6 + coupler_e1 * coupler_e1));
-        let t8 = crank_e0 * crank_e0;
-        let t9 = k(2.0) * (k(0.5) - (t8 + crank_e1 * crank_e1));
-        let t10 = coupler_e0 * coupler_e3;
-        let t11 = coupler_e1 * coupler_e2;
-        let t12 = k(2.0) * (t11 + t10);
-        let t13 = crank_e0 * crank_e3;
-        let t14 = crank_e1 * crank_e2;
-        let t15 = k(2.0) * (t14 + t13);
-        let t16 = coupler_e0 * coupler_e2;
-        let t17 = coupler_e1 * coupler_e3;
-        let t18 = k(2.0) * (t17 - t16);
-        let t19 = crank_e0 * crank_e2;
-        let t20 = crank_e1 * crank_e3;
+        let t6 = crank_e0 * crank_e0;
+        let t7 = k(2.0) * (k(0.5) - (t6 + crank_e2 * crank_e2));
+        let t8 = k(2.0) * (k(0.5) - (t6 + crank_e1 * crank_e1));
+        let t9 = crank_e0 * crank_e3;
+        let t10 = crank_e1 * crank_e2;
+        let t11 = k(2.0) * (t10 + t9);
+        let t12 = k(2.0) * (t10 - t9);
+        let t13 = k(1.0) / (t12 * t11 - t8 * t7);
+        let t14 = coupler_e0 * coupler_e0;
+        let t15 = k(2.0) * (k(0.5) - (t14 + coupler_e1 * coupler_e1));
+        let t16 = coupler_e0 * coupler_e3;
+        let t17 = coupler_e1 * coupler_e2;
+        let t18 = k(2.0) * (t17 + t16);
+        let t19 = coupler_e0 * coupler_e2;
+        let t20 = coupler_e1 * coupler_e3;
         let t21 = k(2.0) * (t20 - t19);
-        let t22 = k(5e-5) * coupler_dwx;
-        let t23 = t17 + t16;
-        let t24 = k(0.5) * t23;
-        let t25 = coupler_e0 * coupler_e1;
-        let t26 = coupler_e2 * coupler_e3;
-        let t27 = t26 - t25;
-        let t28 = k(0.5) * t27;
-        let t29 = closing1 * t28
-            - (k(0.01995) * (coupler_wx * coupler_wz) - k(0.02) * coupler_dwy
-                - closing0 * t24);
-        let t30 = k(0.5) - (t6 + coupler_e3 * coupler_e3);
+        let t22 = crank_e0 * crank_e2;
+        let t23 = crank_e1 * crank_e3;
+        let t24 = k(2.0) * (t23 - t22);
+        let t25 = k(5e-5) * coupler_dwx;
+        let t26 = t20 + t19;
+        let t27 = k(0.5) * t26;
+        let t28 = coupler_e0 * coupler_e1;
+        let t29 = coupler_e2 * coupler_e3;
+        let t30 = t29 - t28;
         let t31 = k(0.5) * t30;
-        let t32 = t4 * t31 - (t2 * t28 + t0 * t24) - (closing2 * t31 - t29);
-        let t33 = t11 - t10;
-        let t34 = k(2.0) * t33;
-        let t35 = k(0.5) - (t6 + coupler_e2 * coupler_e2);
-        let t36 = k(2.0) * t35;
-        let t37 = t26 + t25;
-        let t38 = k(2.0) * t37;
-        let t39 = (t21 * t38 - (t15 * t36 + t9 * t34)) * t32
-            + t22 * (t21 * t18 + (t15 * t12 + t9 * t7));
-        let t40 = k(0.5) * t33;
-        let t41 = k(0.5) * t35;
-        let t42 = closing1 * t41
+        let t32 = closing1 * t31
+            - (k(0.01995) * (coupler_wx * coupler_wz) - k(0.02) * coupler_dwy
+                - closing0 * t27);
+        let t33 = k(0.5) - (t14 + coupler_e3 * coupler_e3);
+        let t34 = k(0.5) * t33;
+        let t35 = t4 * t34 - (t2 * t31 + t0 * t27) - (closing2 * t34 - t32);
+        let t36 = t17 - t16;
+        let t37 = k(2.0) * t36;
+        let t38 = k(0.5) - (t14 + coupler_e2 * coupler_e2);
+        let t39 = k(2.0) * t38;
+        let t40 = t29 + t28;
+        let t41 = k(2.0) * t40;
+        let t42 = (t24 * t41 - (t11 * t39 + t8 * t37)) * t35
+            + t25 * (t24 * t21 + (t11 * t18 + t8 * t15));
+        let t43 = k(0.5) * t36;
+        let t44 = k(0.5) * t38;
+        let t45 = closing1 * t44
             + (k(0.01995) * (coupler_wx * coupler_wy) + k(0.02) * coupler_dwz
-                - closing0 * t40);
-        let t43 = k(0.5) * t37;
-        let t44 = t4 * t43 - (t2 * t41 - t0 * t40) - (closing2 * t43 - t42);
-        let t45 = k(2.0) * t23;
-        let t46 = k(2.0) * t27;
-        let t47 = k(2.0) * t30;
-        let t48 = (t21 * t47 - (t15 * t46 - t9 * t45)) * t44 - t39;
-        let t49 = k(2e-5) * crank_dwx - t48;
-        let t50 = k(2.0) * (k(0.5) - (t8 + crank_e2 * crank_e2));
-        let t51 = k(2.0) * (t14 - t13);
-        let t52 = k(1.0) / (t51 * t15 - t9 * t50);
+                - closing0 * t43);
+        let t46 = k(0.5) * t40;
+        let t47 = t4 * t46 - (t2 * t44 - t0 * t43) - (closing2 * t46 - t45);
+        let t48 = k(2.0) * t26;
+        let t49 = k(2.0) * t30;
+        let t50 = k(2.0) * t33;
+        let t51 = (t24 * t50 - (t11 * t49 - t8 * t48)) * t47 - t42;
+        let t52 = k(2e-5) * crank_dwx - t51;
         let t53 = crank_e0 * crank_e1;
         let t54 = crank_e2 * crank_e3;
         let t55 = k(2.0) * (t54 + t53);
-        let t56 = (t55 * t38 + (t51 * t34 + t50 * t36)) * t32
-            + t22 * (t55 * t18 - (t50 * t12 + t51 * t7));
-        let t57 = (t55 * t47 - (t51 * t45 - t50 * t46)) * t44 - t56;
-        let t58 = t20 + t19;
+        let t56 = (t55 * t41 + (t12 * t37 + t7 * t39)) * t35
+            + t25 * (t55 * t21 - (t7 * t18 + t12 * t15));
+        let t57 = (t55 * t50 - (t12 * t48 - t7 * t49)) * t47 - t56;
+        let t58 = t23 + t22;
         let t59 = t54 - t53;
-        let t60 = k(0.5) - (t8 + crank_e3 * crank_e3);
+        let t60 = k(0.5) - (t6 + crank_e3 * crank_e3);
         let t61 = t4 * (k(0.4) * t60) - (t2 * (k(0.4) * t59) + t0 * (k(0.4) * t58));
         let t62 = t5 * (k(0.2) * t60) - (t3 * (k(0.2) * t59) + t1 * (k(0.2) * t58));
         let t63 = t62
@@ -2285,24 +2224,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
         let t81 = k(2.0) * t60;
         let t82 = k(2.0) * t59;
         let t83 = k(2.0) * t58;
-        let t84 = t83 * t45 + t82 * t46 + t81 * t47;
-        let t85 = t81 * t18 - (t82 * t12 - t83 * t7);
+        let t84 = t83 * t48 + t82 * t49 + t81 * t50;
+        let t85 = t81 * t21 - (t82 * t18 - t83 * t15);
         let t86 = k(1.0) / (t85 * t85 + t84 * t84);
         *lambda = [
             -t1,
             -t3,
             -t5,
-            t51 * t52 * t63 - t9 * t52 * t49,
-            t15 * t52 * t49 - t50 * t52 * t63,
+            t63 * (t12 * t13) - t52 * (t8 * t13),
+            t52 * (t11 * t13) - t63 * (t7 * t13),
             -t64,
             -t65,
             -t66,
-            t73 * t74 * t80 - t75 * (t69 * t74),
-            t75 * (t72 * t74) - t68 * t74 * t80,
+            t80 * (t73 * t74) - t75 * (t69 * t74),
+            t75 * (t72 * t74) - t80 * (t68 * t74),
             -t0,
             -t2,
             -t4,
-            -(t85 * t86 * t44 + t22 * (t84 * t86)),
+            -(t85 * t86 * t47 + t25 * (t84 * t86)),
             closing0,
             closing1,
             closing2,

@@ -18,7 +18,7 @@
 //! | gamma | γ | 157 | 249 | 0 | 406 | 6 of 15 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 101 | 156 | 0 | 257 | 0 of 15 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 257 | 405 | 5 | 667 | 7 of 18 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 216 | 332 | 5 | 553 | 7 of 18 |
 //! | multipliers | λ, the accelerations being known | 120 | 203 | 3 | 326 | 0 of 15 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 132 | 236 | 1 | 369 | 0 of 22 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
@@ -27,13 +27,14 @@
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
 //! | newton_step | dependent positions, one Newton step | 206 | 343 | 3 | 552 | 6 of 21 |
 //! | solve_velocities | dependent velocities, eq. (19) | 113 | 196 | 3 | 312 | 6 of 18 |
-//! | joint_accelerations | u̇ in joint coordinates | 36 | 81 | 1 | 118 | 0 of 3 |
-//! | joint_derivative | ẋ but for u̇ | 192 | 348 | 2 | 542 | 0 of 4 |
+//! | joint_accelerations | u̇ in joint coordinates | 35 | 79 | 1 | 115 | 0 of 3 |
+//! | joint_derivative | ẋ but for u̇ | 192 | 347 | 2 | 541 | 0 of 4 |
 //! | to_maximal | (q, v) of a joint state | 39 | 88 | 0 | 127 | 12 of 39 |
 //! | to_joints | (x, u) of a maximal state | 68 | 86 | 0 | 154 | 0 of 6 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 47 | 100 | 1 | 148 | 0 of 3 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 86 | 159 | 1 | 246 | 7 of 18 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 46 | 98 | 1 | 145 | 0 of 3 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 216 | 333 | 5 | 554 | 7 of 18 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 60 | 96 | 0 | 156 | 0 of 15 |
+//! | corrected_solution | both | 261 | 401 | 5 | 667 | 7 of 33 |
 //!
 //! # Proof
 //!
@@ -50,7 +51,7 @@
 //! * joint_derivative: eqs. (14) and (16) on the constraints
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
-//! * corrected_multipliers: eq. (17) on the constraints
+//! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //!
 //! All of it holds but with a probability below 1e-144.
 //! Not proved: the size of rounding errors.
@@ -2139,7 +2140,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for PitchingBearings<T> {
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 667 operations (257 ±, 405 ×, 5 ÷) and 8 functions.
+    /// Solves eq. (17): 553 operations (216 ±, 332 ×, 5 ÷) and 8 functions.
     fn accelerations(&self, t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2163,244 +2164,221 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for PitchingBearings<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = outer_ring_wx * outer_ring_wy;
-        let t1 = outer_ring_e0 * outer_ring_e3;
-        let t2 = outer_ring_e1 * outer_ring_e2;
-        let t3 = k(2.0) * (t2 + t1);
-        let t4 = outer_ring_wz * outer_ring_wz;
-        let t5 = t4 + outer_ring_wx * outer_ring_wx;
-        let t6 = outer_ring_e0 * outer_ring_e0;
-        let t7 = k(2.0) * (k(0.5) - (t6 + outer_ring_e2 * outer_ring_e2));
-        let t8 = outer_ring_wy * outer_ring_wz;
-        let t9 = outer_ring_e0 * outer_ring_e1;
-        let t10 = outer_ring_e2 * outer_ring_e3;
-        let t11 = k(2.0) * (t10 - t9);
-        let t12 = t11 * t8 + (t7 * t5 + t3 * t0);
-        let t13 = k(12.566370614359172) * t;
-        let t14 = t13.sin();
-        let t15 = k(0.1) * t14;
-        let t16 = t15.sin();
-        let t17 = t11 * outer_ring_wx - t3 * outer_ring_wz;
-        let t18 = t15.cos();
-        let t19 = k(1.2566370614359172) * t13.cos();
-        let t20 = t19 * t18;
-        let t21 = t20 * t17;
-        let t22 = t19 * t16;
-        let t23 = k(15.791367041742975) * t14;
-        let t24 = t18 * t23 + t19 * t22;
-        let t25 = outer_ring_e0 * outer_ring_e2;
-        let t26 = outer_ring_e1 * outer_ring_e3;
-        let t27 = k(2.0) * (t26 - t25);
-        let t28 = k(2.0) * (t10 + t9);
-        let t29 = k(2.0) * (k(0.5) - (t6 + outer_ring_e3 * outer_ring_e3));
-        let t30 = t29 * t8 + (t28 * t5 - t27 * t0);
-        let t31 = t29 * outer_ring_wx + t27 * outer_ring_wz;
-        let t32 = t22 * t31;
-        let t33 = t16 * t23 - t19 * t20;
-        let t34 = t28 * t33 + t32 + (t32 - t18 * t30)
-            - (t7 * t24 + t21 + (t21 + t16 * t12));
-        let t35 = k(2.0) * (k(0.5) - (t6 + outer_ring_e1 * outer_ring_e1));
-        let t36 = k(18.84955592153876) * t;
-        let t37 = t36.sin();
-        let t38 = k(0.05) * t37;
-        let t39 = t38.cos();
-        let t40 = t38.sin();
-        let t41 = t18 * t40;
-        let t42 = t16 * t40;
-        let t43 = t42 * t27 + (t41 * t3 - t39 * t35);
-        let t44 = t16 * t11 + t18 * t29;
-        let t45 = k(2.0) * (t26 + t25);
-        let t46 = t39 * t45 + t41 * t11 - t42 * t29;
-        let t47 = t16 * t3 - t18 * t27;
-        let t48 = k(1.0) / (t47 * t46 - t44 * t43);
-        let t49 = k(2.0) * (t2 - t1);
-        let t50 = k(0.9424777960769379) * t36.cos();
-        let t51 = t50 * t40;
-        let t52 = t51 * (t45 * outer_ring_wx + t35 * outer_ring_wz);
-        let t53 = t52 - t39 * (t45 * t8 - (t49 * t5 + t35 * t0));
-        let t54 = t50 * t39;
-        let t55 = k(17.765287921960844) * t37;
-        let t56 = (t40 * t22 - t18 * t54) * t17;
-        let t57 = t22 * t54;
-        let t58 = t39 * t55 + t50 * t51;
-        let t59 = t7 * (t57 + t18 * t58 + (t57 - t40 * t33)) - t56;
-        let t60 = t59 - (t56 - t41 * t12) + (t49 * (t40 * t55 - t50 * t54) - t52 - t53);
-        let t61 = (t40 * t20 + t16 * t54) * t31;
-        let t62 = t20 * t54;
-        let t63 = t28 * (t62 - t16 * t58 + (t62 - t40 * t24)) - t61;
-        let t64 = t63 - (t61 + t42 * t30) + t60;
-        let t65 = t47 * t48 * t64 + t43 * t48 * t34;
-        let t66 = rotor_e0 * rotor_e3;
-        let t67 = rotor_e1 * rotor_e2;
-        let t68 = k(2.0) * (t67 - t66);
-        let t69 = inner_ring_e0 * inner_ring_e0;
-        let t70 = k(2.0) * (k(0.5) - (t69 + inner_ring_e1 * inner_ring_e1));
-        let t71 = rotor_e0 * rotor_e0;
-        let t72 = k(2.0) * (k(0.5) - (t71 + rotor_e2 * rotor_e2));
-        let t73 = inner_ring_e0 * inner_ring_e3;
-        let t74 = inner_ring_e1 * inner_ring_e2;
-        let t75 = k(2.0) * (t74 + t73);
-        let t76 = rotor_e0 * rotor_e1;
-        let t77 = rotor_e2 * rotor_e3;
-        let t78 = k(2.0) * (t77 + t76);
-        let t79 = inner_ring_e0 * inner_ring_e2;
-        let t80 = inner_ring_e1 * inner_ring_e3;
-        let t81 = k(2.0) * (t80 - t79);
-        let t82 = t81 * t78 - (t75 * t72 + t70 * t68);
-        let t83 = k(5e-6) * t82;
-        let t84 = rotor_e0 * rotor_e2;
-        let t85 = rotor_e1 * rotor_e3;
-        let t86 = k(2.0) * (t85 + t84);
-        let t87 = k(2.0) * (t77 - t76);
-        let t88 = k(2.0) * (k(0.5) - (t71 + rotor_e3 * rotor_e3));
-        let t89 = t81 * t88 - (t75 * t87 - t70 * t86);
-        let t90 = k(5e-6) * t89;
-        let t91 = inner_ring_e0 * inner_ring_e1;
-        let t92 = inner_ring_e2 * inner_ring_e3;
-        let t93 = t92 - t91;
-        let t94 = k(2.0) * t93;
-        let t95 = t80 + t79;
-        let t96 = k(2.0) * t95;
-        let t97 = k(0.5) - (t69 + inner_ring_e3 * inner_ring_e3);
-        let t98 = k(2.0) * t97;
-        let t99 = t98 * t78 - (t96 * t68 - t94 * t72);
-        let t100 = t96 * t86 + t94 * t87 + t98 * t88;
-        let t101 = t100 * t90 + t99 * t83;
-        let t102 = k(1e-6)
-            + (k(1.25e-9) + (t100 * (k(5e-6) * t100) + t99 * (k(5e-6) * t99)));
-        let t103 = k(1.0) / t102;
-        let t104 = t103 * t101;
-        let t105 = t101 * t104 - (k(1e-6) + (t89 * t90 + t82 * t83));
-        let t106 = t28 * t81 - (t7 * t75 + t49 * t70);
-        let t107 = k(0.5) - (t69 + inner_ring_e2 * inner_ring_e2);
-        let t108 = k(2.0) * t107;
-        let t109 = t74 - t73;
-        let t110 = k(2.0) * t109;
-        let t111 = t92 + t91;
-        let t112 = k(2.0) * t111;
-        let t113 = t112 * t78 + (t110 * t68 + t108 * t72);
-        let t114 = t112 * t88 - (t110 * t86 - t108 * t87);
-        let t115 = k(5e-6) * t113;
-        let t116 = k(5e-6) * t114;
-        let t117 = t100 * t116 + t99 * t115;
-        let t118 = t117 * t104 - (t114 * t90 + t113 * t83);
-        let t119 = t28 * t112 + (t49 * t110 + t7 * t108);
-        let t120 = t101 - t102 * t104;
-        let t121 = t28 * t98 - (t49 * t96 - t7 * t94);
-        let t122 = t121 * t120 - (t119 * t118 + t106 * t105);
-        let t123 = t103 * t117;
-        let t124 = t117 * t123 - (k(2e-6) + (k(1.25e-9) + (t114 * t116 + t113 * t115)));
-        let t125 = t117 - t102 * t123;
-        let t126 = t121 * t125 - (t119 * t124 + t106 * t118);
-        let t127 = t119 * t125 + t106 * t120;
-        let t128 = k(2.0) * (k(0.5) - (t71 + rotor_e1 * rotor_e1));
-        let t129 = k(2.0) * (t67 + t66);
-        let t130 = k(2.0) * (t85 - t84);
-        let t131 = t81 * t130 + (t75 * t129 + t70 * t128);
-        let t132 = inner_ring_wx * inner_ring_wy;
-        let t133 = t112 * t130 - (t108 * t129 + t110 * t128);
-        let t134 = inner_ring_wx * inner_ring_wx;
-        let t135 = inner_ring_wz * inner_ring_wz;
-        let t136 = t98 * t130 - (t94 * t129 - t96 * t128);
-        let t137 = inner_ring_wy * inner_ring_wz;
-        let t138 = rotor_wy * t89 + rotor_wz * t82;
-        let t139 = k(2.0)
-            * (inner_ring_wx * (rotor_wy * t100 + rotor_wz * t99)
-                + inner_ring_wz * t138);
-        let t140 = rotor_wz * rotor_wz + rotor_wy * rotor_wy;
-        let t141 = rotor_wx * rotor_wy;
-        let t142 = rotor_wx * rotor_wz;
-        let t143 = t142 * t114 - (t141 * t113 - t140 * t133) + t139
-            + (t137 * t136 + ((t135 + t134) * t133 - t132 * t131));
-        let t144 = k(1.0) / (t113 * t100 - t114 * t99);
-        let t145 = inner_ring_wx * inner_ring_wz;
-        let t146 = inner_ring_wy * inner_ring_wy;
-        let t147 = t146 + t134;
-        let t148 = k(2.0)
-            * (inner_ring_wx * (rotor_wy * t114 + rotor_wz * t113)
-                - inner_ring_wy * t138);
-        let t149 = t142 * t100 - (t141 * t99 - t140 * t136) - t148
-            + (t147 * t136 + (t137 * t133 + t145 * t131));
-        let t150 = t113 * t144 * t149 - t99 * t144 * t143;
-        let t151 = k(5e-6) * (t142 + t150);
-        let t152 = t114 * t144 * t149 - t100 * t144 * t143;
-        let t153 = k(5e-6) * (t141 + t152);
-        let t154 = t135 + t146;
-        let t155 = t96 * t145 + (t110 * t132 + t70 * t154);
-        let t156 = k(1e-5) * t155;
-        let t157 = k(0.00025) * t109;
-        let t158 = t94 * t145 - (t108 * t132 + t75 * t154);
-        let t159 = k(0.8) + k(1e-5) * t158;
-        let t160 = k(0.00025) * t107;
-        let t161 = t98 * t145 - (t112 * t132 - t81 * t154);
-        let t162 = k(1e-5) * t161;
-        let t163 = k(0.00025) * t111;
-        let t164 = t163 * t162 + (t160 * t159 - t157 * t156)
-            + (t100 * t153 + t99 * t151);
-        let t165 = k(1e-6) * t132 - t164;
-        let t166 = t103 * t165;
-        let t167 = t101 * t166 - (k(1e-6) * t137 - (t89 * t153 + t82 * t151));
-        let t168 = t27 * t98 - (t3 * t94 - t35 * t96);
-        let t169 = t45 * t96 + t11 * t94 + t29 * t98;
-        let t170 = outer_ring_wx * outer_ring_wz;
-        let t171 = t170 * t169
-            - (t0 * t121 - (t4 + outer_ring_wy * outer_ring_wy) * t168);
-        let t172 = t29 * t81 - (t11 * t75 - t45 * t70);
-        let t173 = t29 * t112 - (t45 * t110 - t11 * t108);
-        let t174 = inner_ring_wx * t173 - inner_ring_wy * t172;
-        let t175 = k(2.0)
-            * (outer_ring_wy * t174
-                + outer_ring_wz * (inner_ring_wx * t119 - inner_ring_wy * t106));
-        let t176 = t27 * t81 + (t3 * t75 + t35 * t70);
-        let t177 = t27 * t112 - (t3 * t108 + t35 * t110);
-        let t178 = t147 * t168 + (t137 * t177 + t145 * t176) - t175 + t171;
-        let t179 = k(1.0) / (t176 * t119 - t177 * t106);
-        let t180 = k(2.0)
-            * (outer_ring_wx * t174
-                + outer_ring_wz * (inner_ring_wx * t177 - inner_ring_wy * t176));
-        let t181 = t147 * t121 + (t137 * t119 + t145 * t106) + t180
-            + (t8 * t169 + (t5 * t121 - t0 * t168));
-        let t182 = t176 * t179 * t181 - t106 * t179 * t178;
-        let t183 = t177 * t179 * t181 - t119 * t179 * t178;
-        let t184 = k(0.00025) * t95;
-        let t185 = k(0.00025) * t93;
-        let t186 = k(0.00025) * t97;
-        let t187 = t186 * t162 + (t185 * t159 + t184 * t156)
-            - (t114 * t153 + t113 * t151);
-        let t188 = t119 * (t124 * t183 + t118 * t182 - (t117 * t166 - t187));
-        let t189 = t121 * (t125 * t183 + t120 * t182 - (t165 - t102 * t166));
-        let t190 = t189 - (t188 + t106 * (t118 * t183 + t105 * t182 - t167));
-        let t191 = t119 * (t168 * t125 - (t177 * t124 + t176 * t118))
-            + t106 * (t168 * t120 - (t177 * t118 + t176 * t105));
-        let t192 = t44 * t48 * t64 + t46 * t48 * t34;
-        let t193 = t192 * (t169 * t127 + (t173 * t126 + t172 * t122))
-            - t65 * (t121 * (t177 * t125 + t176 * t120) + t191);
-        let t194 = (t193 + (k(1e-6) * t170 + t190))
-            / (k(1e-6) + (t121 * t127 + (t119 * t126 + t106 * t122)));
-        let t195 = t182 + (t172 * t192 - (t106 * t194 + t176 * t65));
-        let t196 = t183 + (t173 * t192 - (t119 * t194 + t177 * t65));
-        let t197 = t169 * t192 - (t121 * t194 + t168 * t65);
-        let t198 = t103 * (t165 - (t102 * t197 + (t117 * t196 + t101 * t195)));
-        let t199 = t197 + t198;
+        let t0 = outer_ring_e0 * outer_ring_e0;
+        let t1 = k(2.0) * (k(0.5) - (t0 + outer_ring_e2 * outer_ring_e2));
+        let t2 = k(18.84955592153876) * t;
+        let t3 = t2.sin();
+        let t4 = k(0.05) * t3;
+        let t5 = t4.sin();
+        let t6 = k(12.566370614359172) * t;
+        let t7 = t6.sin();
+        let t8 = k(0.1) * t7;
+        let t9 = t8.cos();
+        let t10 = t9 * t5;
+        let t11 = outer_ring_e0 * outer_ring_e3;
+        let t12 = outer_ring_e1 * outer_ring_e2;
+        let t13 = k(2.0) * (t12 - t11);
+        let t14 = t4.cos();
+        let t15 = outer_ring_e0 * outer_ring_e1;
+        let t16 = outer_ring_e2 * outer_ring_e3;
+        let t17 = k(2.0) * (t16 + t15);
+        let t18 = t8.sin();
+        let t19 = t18 * t5;
+        let t20 = k(1.2566370614359172) * t6.cos();
+        let t21 = t20 * t14;
+        let t22 = t9 * t14;
+        let t23 = t18 * t14;
+        let t24 = t23 * t17 - (t5 * t13 + t22 * t1);
+        let t25 = t20 * t5;
+        let t26 = t25 * t24 - t21 * (t19 * t17 + (t14 * t13 - t10 * t1));
+        let t27 = k(0.9424777960769379) * t2.cos();
+        let t28 = t27 * (t9 * t17 + t18 * t1) - t26;
+        let t29 = outer_ring_wy - t28;
+        let t30 = k(2.0) * (k(0.5) - (t0 + outer_ring_e3 * outer_ring_e3));
+        let t31 = k(2.0) * (t16 - t15);
+        let t32 = outer_ring_e0 * outer_ring_e2;
+        let t33 = outer_ring_e1 * outer_ring_e3;
+        let t34 = k(2.0) * (t33 + t32);
+        let t35 = t14 * t34 + t10 * t31 - t19 * t30;
+        let t36 = t5 * t34 - t22 * t31 + t23 * t30;
+        let t37 = t18 * t31 + t9 * t30;
+        let t38 = t27 * t37 - (t25 * t36 + t21 * t35);
+        let t39 = outer_ring_wz + t38;
+        let t40 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
+        let t41 = k(2.0) * (t12 + t11);
+        let t42 = k(2.0) * (t33 - t32);
+        let t43 = t19 * t42 + (t10 * t41 - t14 * t40);
+        let t44 = t23 * t42 + (t22 * t41 + t5 * t40);
+        let t45 = t18 * t41 - t9 * t42;
+        let t46 = t27 * t45 + (t25 * t44 - t21 * t43);
+        let t47 = outer_ring_wx + t46;
+        let t48 = (t47 * t47 + t39 * t39) / t24;
+        let t49 = k(15.791367041742975) * t7;
+        let t50 = t14 * t49 + t20 * (t27 * t5);
+        let t51 = t5 * t49 - t20 * (t27 * t14);
+        let t52 = k(17.765287921960844) * t3;
+        let t53 = outer_ring_wy * t38 + outer_ring_wz * t28
+            + (t52 * t45 + (t51 * t44 - t50 * t43));
+        let t54 = t53 + (t36 * t48 - t39 * t29);
+        let t55 = inner_ring_e3 * rotor_e0 - inner_ring_e2 * rotor_e1
+            + inner_ring_e1 * rotor_e2 - inner_ring_e0 * rotor_e3;
+        let t56 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t57 = t56 * t55;
+        let t58 = inner_ring_e2 * rotor_e0 + inner_ring_e3 * rotor_e1
+            - inner_ring_e0 * rotor_e2 - inner_ring_e1 * rotor_e3;
+        let t59 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t60 = t59 * t58;
+        let t61 = t60 + t57;
+        let t62 = k(1e-5) * t61;
+        let t63 = k(2.0) * t61;
+        let t64 = t56 * t58;
+        let t65 = t59 * t55;
+        let t66 = t65 - t64;
+        let t67 = k(1e-5) * t66;
+        let t68 = k(2.0) * t66;
+        let t69 = t56 * t59;
+        let t70 = t58 * t55;
+        let t71 = t70 - t69;
+        let t72 = k(2.0) * t71;
+        let t73 = t56 * t56;
+        let t74 = k(0.5) - (t73 + t55 * t55);
+        let t75 = k(2.0) * t74;
+        let t76 = t75 * t67 - t72 * t62;
+        let t77 = k(1e-6)
+            + (k(1.25e-9) + (t75 * (k(1e-5) * t74) + t72 * (k(1e-5) * t71)));
+        let t78 = k(1.0) / t77;
+        let t79 = t78 * t76;
+        let t80 = t76 * t79 - (k(1e-6) + (t68 * t67 + t63 * t62));
+        let t81 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t82 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t83 = t82 * t81;
+        let t84 = outer_ring_e2 * inner_ring_e0 + outer_ring_e3 * inner_ring_e1
+            - outer_ring_e0 * inner_ring_e2 - outer_ring_e1 * inner_ring_e3;
+        let t85 = outer_ring_e1 * inner_ring_e0 - outer_ring_e0 * inner_ring_e1
+            - outer_ring_e3 * inner_ring_e2 + outer_ring_e2 * inner_ring_e3;
+        let t86 = t85 * t84;
+        let t87 = k(2.0) * (t86 - t83);
+        let t88 = k(0.5) - (t73 + t58 * t58);
+        let t89 = k(2.0) * t88;
+        let t90 = t70 + t69;
+        let t91 = k(2.0) * t90;
+        let t92 = k(1e-5) * t88;
+        let t93 = k(1e-5) * t90;
+        let t94 = t75 * t93 + t72 * t92;
+        let t95 = t94 * t79 - (t91 * t67 - t89 * t62);
+        let t96 = t82 * t82;
+        let t97 = k(2.0) * (k(0.5) - (t96 + t84 * t84));
+        let t98 = t97 * t95 - t87 * t80;
+        let t99 = t94 * (t78 * t94) - (k(2e-6) + (k(1.25e-9) + (t91 * t93 + t89 * t92)));
+        let t100 = t97 * t99 - t87 * t95;
+        let t101 = k(0.5) - (t73 + t59 * t59);
+        let t102 = inner_ring_wz * (k(2.0) * (t65 + t64))
+            + (inner_ring_wy * (k(2.0) * (t60 - t57)) - inner_ring_wx * (k(2.0) * t101));
+        let t103 = rotor_wx - t102;
+        let t104 = inner_ring_wz * t75 - (inner_ring_wy * t91 + inner_ring_wx * t68);
+        let t105 = rotor_wz + t104;
+        let t106 = inner_ring_wz * t72 - (inner_ring_wy * t89 - inner_ring_wx * t63);
+        let t107 = rotor_wy - t106;
+        let t108 = k(0.5) / t101 * (t107 * t107 + t105 * t105);
+        let t109 = rotor_wz * t102 + rotor_wx * t104 + (t68 * t108 - t105 * t103);
+        let t110 = k(5e-6) * (rotor_wx * rotor_wz - t109);
+        let t111 = rotor_wx * t106 - rotor_wy * t102 - (t63 * t108 - t107 * t103);
+        let t112 = k(5e-6) * (rotor_wx * rotor_wy + t111);
+        let t113 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
+        let t114 = inner_ring_e0 * inner_ring_e0;
+        let t115 = inner_ring_wx * inner_ring_wy;
+        let t116 = inner_ring_e0 * inner_ring_e3;
+        let t117 = inner_ring_e1 * inner_ring_e2;
+        let t118 = t117 - t116;
+        let t119 = k(2.0) * t118 * t115
+            + k(2.0) * (k(0.5) - (t114 + inner_ring_e1 * inner_ring_e1)) * t113;
+        let t120 = inner_ring_wx * inner_ring_wz;
+        let t121 = inner_ring_e0 * inner_ring_e2;
+        let t122 = inner_ring_e1 * inner_ring_e3;
+        let t123 = t122 + t121;
+        let t124 = k(2.0) * t123 * t120 + t119;
+        let t125 = k(1e-5) * t124;
+        let t126 = k(0.00025) * t118;
+        let t127 = k(0.5) - (t114 + inner_ring_e2 * inner_ring_e2);
+        let t128 = inner_ring_e0 * inner_ring_e1;
+        let t129 = inner_ring_e2 * inner_ring_e3;
+        let t130 = t129 - t128;
+        let t131 = k(2.0) * t130 * t120
+            - (k(2.0) * t127 * t115 + k(2.0) * (t117 + t116) * t113);
+        let t132 = k(0.8) + k(1e-5) * t131;
+        let t133 = k(0.00025) * t127;
+        let t134 = t129 + t128;
+        let t135 = k(0.5) - (t114 + inner_ring_e3 * inner_ring_e3);
+        let t136 = k(2.0) * t135 * t120
+            - (k(2.0) * t134 * t115 - k(2.0) * (t122 - t121) * t113);
+        let t137 = k(1e-5) * t136;
+        let t138 = k(0.00025) * t134;
+        let t139 = t138 * t137 + (t133 * t132 - t126 * t125) - (t75 * t112 + t72 * t110);
+        let t140 = k(1e-6) * t115 - t139;
+        let t141 = t78 * t140;
+        let t142 = t76 * t141
+            - (k(1e-6) * (inner_ring_wy * inner_ring_wz) + (t68 * t112 - t63 * t110));
+        let t143 = t82 * t84;
+        let t144 = t85 * t81;
+        let t145 = t82 * t85;
+        let t146 = t84 * t81;
+        let t147 = outer_ring_wy * (k(2.0) * (t146 + t145))
+            + outer_ring_wx * (k(2.0) * (t144 - t143));
+        let t148 = k(0.5) - (t96 + t81 * t81);
+        let t149 = outer_ring_wz * (k(2.0) * t148) - t147;
+        let t150 = inner_ring_wz + t149;
+        let t151 = k(2.0) * (t86 + t83);
+        let t152 = k(2.0) * (t146 - t145);
+        let t153 = outer_ring_wz * t152 - (outer_ring_wy * t97 - outer_ring_wx * t151);
+        let t154 = inner_ring_wy - t153;
+        let t155 = k(2.0) * (k(0.5) - (t96 + t85 * t85));
+        let t156 = k(2.0) * (t144 + t143);
+        let t157 = outer_ring_wz * t156 + (outer_ring_wy * t87 - outer_ring_wx * t155);
+        let t158 = inner_ring_wx - t157;
+        let t159 = k(0.5) / t148 * (t158 * t158 + t154 * t154);
+        let t160 = inner_ring_wy * t149 + inner_ring_wz * t153
+            - (t152 * t159 - t154 * t150);
+        let t161 = inner_ring_wz * t157 + inner_ring_wx * t149
+            - (t156 * t159 - t158 * t150);
+        let t162 = k(0.00025) * t123;
+        let t163 = k(0.00025) * t130;
+        let t164 = k(0.00025) * t135;
+        let t165 = t164 * t137 + (t163 * t132 + t162 * t125) + (t91 * t112 + t89 * t110);
+        let t166 = t97 * (t99 * t161 - t95 * t160 + (t94 * t141 - t165));
+        let t167 = k(1e-6) * (outer_ring_wx * outer_ring_wz)
+            - (t166 - t87 * (t95 * t161 - t80 * t160 + t142));
+        let t168 = t97 * (t151 * t99 - t155 * t95) - t87 * (t151 * t95 - t155 * t80);
+        let t169 = outer_ring_wx * t28 + outer_ring_wy * t46
+            - (t52 * t37 - (t51 * t36 + t50 * t35));
+        let t170 = t169 - (t44 * t48 + t47 * t29);
+        let t171 = t170 * (t152 * t100 + t156 * t98) - t54 * t168 - t167;
+        let t172 = t171 / (k(1e-6) - (t97 * t100 - t87 * t98));
+        let t173 = t160 - (t170 * t156 - (t87 * t172 - t54 * t155));
+        let t174 = t161 + (t170 * t152 + (t97 * t172 - t54 * t151));
+        let t175 = t78 * (t140 + (t94 * t174 - t76 * t173));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -t65,
-            -t194,
-            -t192,
+            t54,
+            t172,
+            -t170,
             k(0.0),
             k(0.0),
             k(0.0),
-            t195,
-            t196,
-            -t199,
-            k(0.000125) * t155 - (t157 * t199 + t184 * t196),
-            k(0.000125) * t158 + (t160 * t199 - t185 * t196),
-            -(k(0.000125) * t161 + (t163 * t199 - t186 * t196)),
+            t173,
+            -t174,
+            -t175,
+            k(0.000125) * t124 - (t126 * t175 - t162 * t174),
+            k(0.000125) * t131 + (t133 * t175 + t163 * t174),
+            -(k(0.000125) * t136 + (t138 * t175 + t164 * t174)),
             k(0.0),
-            t150 + (t99 * t199 + (t113 * t196 + t82 * t195)),
-            -(t152 + (t100 * t199 + (t114 * t196 + t89 * t195))),
+            -(t109 + (t72 * t175 - (t89 * t174 + t63 * t173))),
+            t75 * t175 - (t91 * t174 - t68 * t173) - t111,
         ];
     }
     /// Writes λ: 326 operations (120 ±, 203 ×, 3 ÷) and 6 functions.
@@ -2576,6 +2554,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for PitchingBearings<T> {
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
     type Joints = [T; 7];
     type Rates = [T; 3];
+    type Solution = [T; 33];
     fn joint_start(&self) -> Self::Joints {
         let k = T::constant;
         [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(100.0), k(0.0)]
@@ -2583,7 +2562,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
     fn rates(&self) -> Self::Rates {
         [T::constant(0.0); 3]
     }
-    /// Writes u̇: 118 operations (36 ±, 81 ×, 1 ÷) and 12 functions.
+    fn solution(&self) -> Self::Solution {
+        [T::constant(0.0); 33]
+    }
+    /// Writes u̇: 115 operations (35 ±, 79 ×, 1 ÷) and 12 functions.
     fn joint_accelerations(&self, t: T, x: &Self::Joints, out: &mut Self::Rates) {
         let k = T::constant;
         let x0 = x[0];
@@ -2593,55 +2575,50 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
         let u2 = x[5];
         let t0 = x1.sin();
         let t1 = x1.cos();
-        let t2 = k(1e-6) + (t1 * (k(7.00125e-6) * t1) + t0 * (k(1e-6) * t0));
-        let t3 = x0.cos();
-        let t4 = k(18.84955592153876) * t;
-        let t5 = t4.sin();
-        let t6 = k(0.05) * t5;
-        let t7 = t6.cos();
-        let t8 = k(12.566370614359172) * t;
-        let t9 = k(1.2566370614359172) * t8.cos();
-        let t10 = t9 * t7;
-        let t11 = x0.sin();
-        let t12 = k(0.9424777960769379) * t4.cos();
-        let t13 = t12 * t11 - t10 * t3;
-        let t14 = t12 * t3 + t10 * t11;
-        let t15 = t6.sin();
-        let t16 = t9 * t15 - u0;
-        let t17 = t16 * t1 - t0 * t13;
-        let t18 = u1 * t17;
-        let t19 = u1 + t14;
-        let t20 = t16 * t0 + t1 * t13;
-        let t21 = u2 - t20;
-        let t22 = k(1e-5) * (t20 * (k(0.000125) * t19))
-            + k(5e-6) * (t19 * t21 + u2 * t19);
-        let t23 = t1 * (k(7.00125e-6) * (u1 * t20) + t22)
-            + t0 * (k(1e-6) * (t19 * t17 - t18));
-        let t24 = t8.sin();
-        let t25 = k(0.1) * t24;
-        let t26 = t25.cos();
-        let t27 = k(10.0) * (t26 * t15);
-        let t28 = k(10.0) * t25.sin();
-        let t29 = k(15.791367041742975) * t24;
-        let t30 = t7 * t29 + t9 * (t12 * t15);
-        let t31 = k(17.765287921960844) * t5;
-        let t32 = t31 * t11 - t3 * t30 - u0 * t14;
-        let t33 = t15 * t29 - t9 * (t12 * t7);
-        let t34 = t33 * t2 - (t1 * (k(7.00125e-6) * t0) - t0 * (k(1e-6) * t1)) * t32;
-        let t35 = t34 + k(1e-5) * t1 * (t3 * t28 - t11 * t27)
-            + (t23 - k(1e-6) * (t14 * t13));
-        let t36 = t35 / t2;
-        let t37 = k(1e-5) * (t20 * (k(0.000125) * t17))
-            + k(5e-6) * (t21 * t17 + u2 * t17);
-        let t38 = t1 * (k(10.0) * (t26 * t7)) - t0 * (t11 * t28 + t3 * t27);
-        let t39 = k(6.00125e-6) * (t31 * t3 + t11 * t30 + u0 * t13) - k(1e-5) * t38;
-        *out = [
-            -t36,
-            k(166631.95167673402) * (t39 - (t37 + k(1e-6) * (t20 * t17))),
-            t18 - (t0 * (t33 - t36) + t1 * t32),
-        ];
+        let t2 = x0.cos();
+        let t3 = k(18.84955592153876) * t;
+        let t4 = t3.sin();
+        let t5 = k(0.05) * t4;
+        let t6 = t5.cos();
+        let t7 = k(12.566370614359172) * t;
+        let t8 = k(1.2566370614359172) * t7.cos();
+        let t9 = t8 * t6;
+        let t10 = x0.sin();
+        let t11 = k(0.9424777960769379) * t3.cos();
+        let t12 = t11 * t10 - t9 * t2;
+        let t13 = t11 * t2 + t9 * t10;
+        let t14 = t5.sin();
+        let t15 = t8 * t14 - u0;
+        let t16 = t15 * t1 - t0 * t12;
+        let t17 = u1 * t16;
+        let t18 = u1 + t13;
+        let t19 = t15 * t0 + t1 * t12;
+        let t20 = u2 - t19;
+        let t21 = k(1e-5) * (t19 * (k(0.000125) * t18))
+            + k(5e-6) * (t18 * t20 + u2 * t18);
+        let t22 = t1 * (k(7.00125e-6) * (u1 * t19) + t21)
+            + t0 * (k(1e-6) * (t18 * t16 - t17));
+        let t23 = t7.sin();
+        let t24 = k(0.1) * t23;
+        let t25 = t24.cos();
+        let t26 = k(10.0) * (t25 * t14);
+        let t27 = k(10.0) * t24.sin();
+        let t28 = k(15.791367041742975) * t23;
+        let t29 = t6 * t28 + t8 * (t11 * t14);
+        let t30 = k(17.765287921960844) * t4;
+        let t31 = t30 * t10 - t29 * t2 - u0 * t13;
+        let t32 = (t1 * (k(7.00125e-6) * t0) - t0 * (k(1e-6) * t1)) * t31
+            - k(1e-5) * t1 * (t2 * t27 - t10 * t26);
+        let t33 = (t32 - (t22 - k(1e-6) * (t13 * t12)))
+            / (k(1e-6) + (t1 * (k(7.00125e-6) * t1) + t0 * (k(1e-6) * t0)));
+        let t34 = k(1e-5) * (t19 * (k(0.000125) * t16))
+            + k(5e-6) * (t20 * t16 + u2 * t16);
+        let t35 = t1 * (k(10.0) * (t25 * t6)) - t0 * (t10 * t27 + t2 * t26);
+        let t36 = k(166631.95167673402) * (k(1e-5) * t35 + (t34 + k(1e-6) * (t19 * t16)))
+            - (t30 * t2 + t29 * t10 + u0 * t12);
+        *out = [t33 - (t14 * t28 - t8 * (t11 * t6)), -t36, t17 - (t0 * t33 + t1 * t31)];
     }
-    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 542 operations (192 ±, 348 ×, 2 ÷) and 24 functions.
+    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 541 operations (192 ±, 347 ×, 2 ÷) and 24 functions.
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
         let mut rates = gyro_sim::JointSpace::rates(self);
         gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
@@ -2652,26 +2629,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
         let u0 = x[3];
         let u1 = x[4];
         let u2 = x[5];
-        let (
-            t23,
-            t25,
-            t27,
-            t29,
-            t30,
-            t31,
-            t35,
-            t36,
-            t38,
-            t44,
-            t47,
-            t49,
-            t50,
-            t51,
-            t58,
-            t103,
-            t196,
-            t199,
-        ) = {
+        let (t23, t25, t31, t38, t47, t50, t51, t104, t194, t197, t198, t199) = {
             let t0 = k(0.5) * x0;
             let t1 = t0.sin();
             let t2 = k(18.84955592153876) * t;
@@ -2730,13 +2688,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
             let t55 = k(1.0) - t1 * t52;
             let t56 = k(0.9424777960769379) * t2.cos();
             let t57 = t56 * t55 + t54 * t53;
-            let t58 = t56 * t38;
-            let t59 = k(15.791367041742975) * t7;
-            let t60 = t34 * t59 + t26 * t58;
-            let t61 = x0.cos();
+            let t58 = x0.cos();
+            let t59 = t56 * t38;
+            let t60 = k(15.791367041742975) * t7;
+            let t61 = t34 * t60 + t26 * t59;
             let t62 = x0.sin();
             let t63 = k(17.765287921960844) * t3;
-            let t64 = t63 * t62 - t61 * t60;
+            let t64 = t63 * t62 - t61 * t58;
             let t65 = t64 - u0 * t57;
             let t66 = k(0.5) * x1;
             let t67 = t66.sin();
@@ -2762,161 +2720,140 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
             let t87 = t86 * t85 - t84 * t82;
             let t88 = x1.cos();
             let t89 = x1.sin();
-            let t90 = k(1e-6) + (t88 * (k(7.00125e-6) * t88) + t89 * (k(1e-6) * t89));
-            let t91 = t56 * t62 - t54 * t61;
-            let t92 = t56 * t61 + t54 * t62;
-            let t93 = t86 * t88 - t89 * t91;
-            let t94 = u1 * t93;
-            let t95 = u1 + t92;
-            let t96 = t86 * t89 + t88 * t91;
-            let t97 = u2 - t96;
-            let t98 = k(1e-5) * (t96 * (k(0.000125) * t95))
-                + k(5e-6) * (t95 * t97 + u2 * t95);
-            let t99 = t88 * (k(7.00125e-6) * (u1 * t96) + t98)
-                + t89 * (k(1e-6) * (t95 * t93 - t94));
-            let t100 = k(10.0) * t39;
-            let t101 = k(10.0) * t25;
-            let t102 = t64 - u0 * t92;
-            let t103 = t56 * t34;
-            let t104 = t38 * t59 - t26 * t103;
-            let t105 = t104 * t90
-                - (t88 * (k(7.00125e-6) * t89) - t89 * (k(1e-6) * t88)) * t102;
-            let t106 = t105 + k(1e-5) * t88 * (t61 * t101 - t62 * t100)
-                + (t99 - k(1e-6) * (t92 * t91));
-            let t107 = t104 - t106 / t90;
-            let t108 = t89 * t107;
-            let t109 = t108 + t88 * t65 - u1 * t87;
-            let t110 = k(0.5) * x2;
-            let t111 = t110.sin();
-            let t112 = t110.cos();
-            let t113 = t69 * t112 + t70 * t111;
-            let t114 = t70 * t112 - t69 * t111;
-            let t115 = t114 * t114;
-            let t116 = k(2.0) * (k(0.5) - (t115 + t113 * t113));
-            let t117 = t73 * t112 + t75 * t111;
-            let t118 = t114 * t117;
-            let t119 = t75 * t112 - t73 * t111;
-            let t120 = t113 * t119;
-            let t121 = k(2.0) * (t120 - t118);
-            let t122 = t114 * t119;
-            let t123 = t113 * t117;
-            let t124 = k(2.0) * (t123 + t122);
-            let t125 = k(1e-5) * (t94 - (t108 + t88 * t102) + t109);
-            let t126 = k(2.0) * (t120 + t118);
-            let t127 = k(2.0) * (k(0.5) - (t115 + t119 * t119));
-            let t128 = t114 * t113;
-            let t129 = t119 * t117;
-            let t130 = k(2.0) * (t129 - t128);
-            let t131 = k(2.0) * t111;
-            let t132 = t112 * t131;
-            let t133 = k(1.0) - t111 * t131;
-            let t134 = t133 * t81 + t132 * t87;
-            let t135 = t86 * t84 + t85 * t82;
-            let t136 = u2 - t135;
-            let t137 = t88 * t107 - t89 * t65 + u1 * t135;
-            let t138 = x2.cos();
-            let t139 = t63 * t61 + t62 * t60;
-            let t140 = t139 + u0 * t82;
-            let t141 = k(1e-5) * (t96 * (k(0.000125) * t93))
-                + k(5e-6) * (t97 * t93 + u2 * t93);
-            let t142 = t88 * (k(10.0) * (t30 * t34)) - t89 * (t62 * t101 + t61 * t100);
-            let t143 = k(6.00125e-6) * (t139 + u0 * t91) - k(1e-5) * t142
-                - (t141 + k(1e-6) * (t96 * t93));
-            let t144 = k(166631.95167673402) * t143 - t140;
-            let t145 = x2.sin();
-            let t146 = t145 * t144 + t138 * t137 + u2 * t134 + t136 * t134;
-            let t147 = k(5e-6) * t146;
-            let t148 = t147 * (t80 * t130 - (t77 * t127 + t72 * t126))
-                - t125 * (t80 * t124 + (t77 * t121 + t72 * t116));
-            let t149 = k(2.0) * (t123 - t122);
-            let t150 = k(2.0) * (t129 + t128);
-            let t151 = k(2.0) * (k(0.5) - (t115 + t117 * t117));
-            let t152 = t132 * t81 - t133 * t87;
-            let t153 = t138 * t144 - t145 * t137 - u2 * t152 - t136 * t152;
-            let t154 = k(5e-6) * t153;
-            let t155 = t154 * (t80 * t151 - (t77 * t150 - t72 * t149)) + t148;
-            let t156 = t155 - k(1e-6) * (t109 + t87 * t81);
-            let t157 = t76 + t74;
+            let t90 = t56 * t62 - t54 * t58;
+            let t91 = t56 * t58 + t54 * t62;
+            let t92 = t86 * t88 - t89 * t90;
+            let t93 = u1 * t92;
+            let t94 = u1 + t91;
+            let t95 = t86 * t89 + t88 * t90;
+            let t96 = u2 - t95;
+            let t97 = k(1e-5) * (t95 * (k(0.000125) * t94))
+                + k(5e-6) * (t94 * t96 + u2 * t94);
+            let t98 = t88 * (k(7.00125e-6) * (u1 * t95) + t97)
+                + t89 * (k(1e-6) * (t94 * t92 - t93));
+            let t99 = k(10.0) * t39;
+            let t100 = k(10.0) * t25;
+            let t101 = t64 - u0 * t91;
+            let t102 = (t88 * (k(7.00125e-6) * t89) - t89 * (k(1e-6) * t88)) * t101
+                - k(1e-5) * t88 * (t58 * t100 - t62 * t99);
+            let t103 = (t102 - (t98 - k(1e-6) * (t91 * t90)))
+                / (k(1e-6) + (t88 * (k(7.00125e-6) * t88) + t89 * (k(1e-6) * t89)));
+            let t104 = t56 * t34;
+            let t105 = t38 * t60 - t26 * t104;
+            let t106 = t105 - (t105 - t103);
+            let t107 = t89 * t106 + t88 * t65 - u1 * t87;
+            let t108 = k(0.5) * x2;
+            let t109 = t108.sin();
+            let t110 = t108.cos();
+            let t111 = t69 * t110 + t70 * t109;
+            let t112 = t70 * t110 - t69 * t109;
+            let t113 = t112 * t112;
+            let t114 = k(2.0) * (k(0.5) - (t113 + t111 * t111));
+            let t115 = t73 * t110 + t75 * t109;
+            let t116 = t112 * t115;
+            let t117 = t75 * t110 - t73 * t109;
+            let t118 = t111 * t117;
+            let t119 = k(2.0) * (t118 - t116);
+            let t120 = t112 * t117;
+            let t121 = t111 * t115;
+            let t122 = k(2.0) * (t121 + t120);
+            let t123 = k(1e-5) * (t93 - (t89 * t103 + t88 * t101) + t107);
+            let t124 = k(2.0) * (t118 + t116);
+            let t125 = k(2.0) * (k(0.5) - (t113 + t117 * t117));
+            let t126 = t112 * t111;
+            let t127 = t117 * t115;
+            let t128 = k(2.0) * (t127 - t126);
+            let t129 = k(2.0) * t109;
+            let t130 = t110 * t129;
+            let t131 = k(1.0) - t109 * t129;
+            let t132 = t131 * t81 + t130 * t87;
+            let t133 = t86 * t84 + t85 * t82;
+            let t134 = u2 - t133;
+            let t135 = t88 * t106 - t89 * t65 + u1 * t133;
+            let t136 = x2.cos();
+            let t137 = t63 * t58 + t61 * t62;
+            let t138 = t137 + u0 * t82;
+            let t139 = k(1e-5) * (t95 * (k(0.000125) * t92))
+                + k(5e-6) * (t96 * t92 + u2 * t92);
+            let t140 = t88 * (k(10.0) * (t30 * t34)) - t89 * (t62 * t100 + t58 * t99);
+            let t141 = k(166631.95167673402)
+                * (k(1e-5) * t140 + (t139 + k(1e-6) * (t95 * t92))) - (t137 + u0 * t90);
+            let t142 = t141 + t138;
+            let t143 = x2.sin();
+            let t144 = t143 * t142 - t136 * t135 - u2 * t132 - t134 * t132;
+            let t145 = k(5e-6) * t144;
+            let t146 = t145 * (t80 * t128 - (t77 * t125 + t72 * t124))
+                + t123 * (t80 * t122 + (t77 * t119 + t72 * t114));
+            let t147 = k(2.0) * (t121 - t120);
+            let t148 = k(2.0) * (t127 + t126);
+            let t149 = k(2.0) * (k(0.5) - (t113 + t115 * t115));
+            let t150 = t130 * t81 - t131 * t87;
+            let t151 = t136 * t142 + t143 * t135 + u2 * t150 + t134 * t150;
+            let t152 = k(5e-6) * t151;
+            let t153 = t152 * (t80 * t149 - (t77 * t148 - t72 * t147)) + t146;
+            let t154 = t153 + k(1e-6) * (t107 + t87 * t81);
+            let t155 = t76 + t74;
+            let t156 = k(2.0) * t155;
+            let t157 = k(0.5) - (t71 + t75 * t75);
             let t158 = k(2.0) * t157;
-            let t159 = k(0.5) - (t71 + t75 * t75);
-            let t160 = k(2.0) * t159;
-            let t161 = t70 * t69;
-            let t162 = t75 * t73;
-            let t163 = t162 - t161;
-            let t164 = k(2.0) * t163;
-            let t165 = t147 * (t164 * t130 + (t160 * t127 + t158 * t126))
-                - t125 * (t164 * t124 - (t160 * t121 + t158 * t116));
-            let t166 = t154 * (t164 * t151 + (t160 * t150 - t158 * t149)) + t165;
-            let t167 = k(0.000125) * t87;
-            let t168 = k(0.000125) * t81;
-            let t169 = t81 * t168 + t87 * t167;
-            let t170 = t167 * t135;
-            let t171 = t168 * t135;
-            let t172 = t79 - t78;
-            let t173 = k(2.0) * t172;
-            let t174 = k(0.00025) * t172;
-            let t175 = k(0.00025) * t157;
-            let t176 = t144 * t175 + t137 * t174
-                + (t173 * t171 + (t158 * t170 - t72 * t169));
-            let t177 = k(0.08) * t176;
-            let t178 = t162 + t161;
-            let t179 = k(2.0) * t178;
-            let t180 = k(0.00025) * t178;
-            let t181 = k(0.00025) * t159;
-            let t182 = t144 * t181 - t137 * t180
-                - (t179 * t171 - (t160 * t170 - t77 * t169));
-            let t183 = k(0.8) - k(0.08) * t182;
-            let t184 = k(0.5) - (t71 + t73 * t73);
-            let t185 = k(2.0) * t184;
-            let t186 = k(0.00025) * t184;
-            let t187 = k(0.00025) * t163;
-            let t188 = t144 * t187 - t137 * t186
-                - (t185 * t171 - (t164 * t170 + t80 * t169));
-            let t189 = k(0.08) * t188;
-            let t190 = t186 * t189 - (t180 * t183 + t174 * t177) - t166 - k(2e-6) * t137;
-            let t191 = t190 * (t42 * t164 - (t37 * t160 + t32 * t158))
-                - t156 * (t42 * t80 + (t37 * t77 + t32 * t72));
-            let t192 = t147 * (t185 * t130 + (t179 * t127 - t173 * t126))
-                - t125 * (t185 * t124 - (t179 * t121 - t173 * t116));
-            let t193 = t154 * (t185 * t151 + (t179 * t150 + t173 * t149)) + t192;
-            let t194 = t187 * t189 - (t181 * t183 - t175 * t177) + t193
-                + k(1e-6) * (t144 + t87 * t135);
-            let t195 = t194 * (t42 * t185 - (t37 * t179 - t32 * t173)) - t191;
-            let t196 = t195 - k(2e-6) * t65;
-            let t197 = t190 * (t46 * t164 + (t45 * t160 - t48 * t158))
-                - t156 * (t46 * t80 - (t45 * t77 - t48 * t72));
-            let t198 = t194 * (t46 * t185 + (t45 * t179 + t48 * t173)) - t197;
-            let t199 = t198 - k(1e-6) * (t140 + t86 * t82);
-            (
-                t23,
-                t25,
-                t27,
-                t29,
-                t30,
-                t31,
-                t35,
-                t36,
-                t38,
-                t44,
-                t47,
-                t49,
-                t50,
-                t51,
-                t58,
-                t103,
-                t196,
-                t199,
-            )
-        };
-        let (t200, t202) = {
-            let t200 = (t199 * (t49 * t51) + t196 * (t44 * t51))
+            let t159 = t70 * t69;
+            let t160 = t75 * t73;
+            let t161 = t160 - t159;
+            let t162 = k(2.0) * t161;
+            let t163 = t145 * (t162 * t128 + (t158 * t125 + t156 * t124))
+                + t123 * (t162 * t122 - (t158 * t119 + t156 * t114));
+            let t164 = t152 * (t162 * t149 + (t158 * t148 - t156 * t147)) + t163;
+            let t165 = k(0.000125) * t87;
+            let t166 = k(0.000125) * t81;
+            let t167 = t81 * t166 + t87 * t165;
+            let t168 = t165 * t133;
+            let t169 = t166 * t133;
+            let t170 = t79 - t78;
+            let t171 = k(2.0) * t170;
+            let t172 = k(0.00025) * t170;
+            let t173 = k(0.00025) * t155;
+            let t174 = t142 * t173 - t135 * t172
+                - (t171 * t169 + (t156 * t168 - t72 * t167));
+            let t175 = k(0.08) * t174;
+            let t176 = t160 + t159;
+            let t177 = k(2.0) * t176;
+            let t178 = k(0.00025) * t176;
+            let t179 = k(0.00025) * t157;
+            let t180 = t142 * t179 + t135 * t178
+                + (t177 * t169 - (t158 * t168 - t77 * t167));
+            let t181 = k(0.8) + k(0.08) * t180;
+            let t182 = k(0.5) - (t71 + t73 * t73);
+            let t183 = k(2.0) * t182;
+            let t184 = k(0.00025) * t182;
+            let t185 = k(0.00025) * t161;
+            let t186 = t142 * t185 + t135 * t184
+                + (t183 * t169 - (t162 * t168 + t80 * t167));
+            let t187 = k(0.08) * t186;
+            let t188 = t184 * t187 + (t178 * t181 - t172 * t175) - t164 + k(2e-6) * t135;
+            let t189 = t188 * (t42 * t162 - (t37 * t158 + t32 * t156))
+                - t154 * (t42 * t80 + (t37 * t77 + t32 * t72));
+            let t190 = t145 * (t183 * t128 + (t177 * t125 - t171 * t124))
+                + t123 * (t183 * t122 - (t177 * t119 - t171 * t114));
+            let t191 = t152 * (t183 * t149 + (t177 * t148 + t171 * t147)) + t190;
+            let t192 = t185 * t187 + (t179 * t181 + t173 * t175) + t191
+                + k(1e-6) * (t142 - t87 * t133);
+            let t193 = t192 * (t42 * t183 - (t37 * t177 - t32 * t171)) - t189;
+            let t194 = t193 + k(2e-6) * t65;
+            let t195 = t188 * (t46 * t162 + (t45 * t158 - t48 * t156))
+                - t154 * (t46 * t80 - (t45 * t77 - t48 * t72));
+            let t196 = t192 * (t46 * t183 + (t45 * t177 + t48 * t171)) - t195;
+            let t197 = t196 + k(1e-6) * (t138 + t86 * t82);
+            let t198 = (t197 * (t49 * t51) + t194 * (t44 * t51))
                 * (t31 * t29 + t27 * t23);
-            let t201 = t58 * (k(2.0) * (t36 + t35)) + (t38 * t27 - t30 * t103) * t29;
-            let t202 = (t199 * (t47 * t51) + t196 * (t50 * t51))
-                * (t201 - (t38 * t31 + t25 * t103) * t23);
-            (t200, t202)
+            let t199 = t59 * (k(2.0) * (t36 + t35)) + (t38 * t27 - t30 * t104) * t29;
+            (t23, t25, t31, t38, t47, t50, t51, t104, t194, t197, t198, t199)
         };
-        *dx = [u0, u1, u2, rates[0], rates[1], rates[2], t200 - t202];
+        let (t200,) = {
+            let t200 = (t197 * (t47 * t51) + t194 * (t50 * t51))
+                * (t199 - (t38 * t31 + t25 * t104) * t23);
+            (t200,)
+        };
+        *dx = [u0, u1, u2, rates[0], rates[1], rates[2], t200 - t198];
     }
     /// Writes the maximal state of a joint state: 127 operations (39 ±, 88 ×, 0 ÷) and 16 functions.
     fn to_maximal(&self, t: T, x: &Self::Joints, y: &mut Self::State) {
@@ -3125,7 +3062,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
         x[5] = rotor_wx - inner_ring_wx;
         x[6] = y[39];
     }
-    /// Writes u̇ at a state that satisfies the constraints: 148 operations (47 ±, 100 ×, 1 ÷) and 12 functions.
+    /// Writes u̇ at a state that satisfies the constraints: 145 operations (46 ±, 98 ×, 1 ÷) and 12 functions.
     fn joint_accelerations_at(&self, t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -3165,53 +3102,51 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
         let t15 = k(12.566370614359172) * t;
         let t16 = k(1.2566370614359172) * t15.cos();
         let t17 = t16 * t14 + outer_ring_wy;
-        let t18 = k(0.9424777960769379) * t11.cos();
-        let t19 = t15.sin();
-        let t20 = k(15.791367041742975) * t19;
-        let t21 = t13.cos();
-        let t22 = t21 * t20 + t16 * (t18 * t14);
-        let t23 = k(0.025) * t12;
-        let t24 = t23.cos();
-        let t25 = k(0.05) * t19;
-        let t26 = t25.sin();
-        let t27 = t26 * t24;
-        let t28 = t25.cos();
-        let t29 = t28 * t24;
-        let t30 = t23.sin();
-        let t31 = t28 * t30;
-        let t32 = t26 * t30;
-        let t33 = t32 * outer_ring_e0 - t31 * outer_ring_e1 + t29 * outer_ring_e2
+        let t18 = k(0.025) * t12;
+        let t19 = t18.cos();
+        let t20 = t15.sin();
+        let t21 = k(0.05) * t20;
+        let t22 = t21.sin();
+        let t23 = t22 * t19;
+        let t24 = t21.cos();
+        let t25 = t24 * t19;
+        let t26 = t18.sin();
+        let t27 = t24 * t26;
+        let t28 = t22 * t26;
+        let t29 = t28 * outer_ring_e0 - t27 * outer_ring_e1 + t25 * outer_ring_e2
+            + t23 * outer_ring_e3;
+        let t30 = k(2.0) * t29;
+        let t31 = k(1.0) - t29 * t30;
+        let t32 = k(0.9424777960769379) * t11.cos();
+        let t33 = k(15.791367041742975) * t20;
+        let t34 = t13.cos();
+        let t35 = t34 * t33 + t16 * (t32 * t14);
+        let t36 = t25 * outer_ring_e0 + t23 * outer_ring_e1 - t28 * outer_ring_e2
             + t27 * outer_ring_e3;
-        let t34 = k(2.0) * t33;
-        let t35 = k(1.0) - t33 * t34;
-        let t36 = t29 * outer_ring_e0 + t27 * outer_ring_e1 - t32 * outer_ring_e2
-            + t31 * outer_ring_e3;
-        let t37 = t36 * t34;
+        let t37 = t36 * t30;
         let t38 = k(17.765287921960844) * t12;
-        let t39 = t38 * t37 - t35 * t22 - outer_ring_wz * t17;
-        let t40 = k(1e-6) + (t9 * (k(7.00125e-6) * t9) + t5 * (k(1e-6) * t5));
-        let t41 = t14 * t20 - t16 * (t18 * t21);
-        let t42 = t41 * t40 + (t9 * (k(7.00125e-6) * t5) - t5 * (k(1e-6) * t9)) * t39;
-        let t43 = k(0.1) * t19;
-        let t44 = t43.cos();
-        let t45 = k(10.0) * (t44 * t14);
-        let t46 = k(10.0) * t43.sin();
-        let t47 = k(1e-5) * t9 * (t35 * t46 - t37 * t45) + t42
-            + (k(1e-6) * (outer_ring_wx * outer_ring_wz) + t10);
-        let t48 = t47 / t40;
-        let t49 = k(1e-5) * (inner_ring_wx * (k(0.000125) * inner_ring_wy))
+        let t39 = t38 * t37 - t35 * t31 - outer_ring_wz * t17;
+        let t40 = k(0.1) * t20;
+        let t41 = t40.cos();
+        let t42 = k(10.0) * (t41 * t14);
+        let t43 = k(10.0) * t40.sin();
+        let t44 = k(1e-5) * t9 * (t31 * t43 - t37 * t42)
+            + (t9 * (k(7.00125e-6) * t5) - t5 * (k(1e-6) * t9)) * t39;
+        let t45 = (t44 + (k(1e-6) * (outer_ring_wx * outer_ring_wz) + t10))
+            / (k(1e-6) + (t9 * (k(7.00125e-6) * t9) + t5 * (k(1e-6) * t5)));
+        let t46 = k(1e-5) * (inner_ring_wx * (k(0.000125) * inner_ring_wy))
             - k(5e-6) * (inner_ring_wy * t7 - inner_ring_wy * t6);
-        let t50 = t9 * (k(10.0) * (t44 * t21)) + t5 * (t37 * t46 + t35 * t45);
-        let t51 = k(1e-5) * t50
-            - k(6.00125e-6) * (t38 * t35 + t37 * t22 - outer_ring_wx * t17);
+        let t47 = t9 * (k(10.0) * (t41 * t34)) + t5 * (t37 * t43 + t31 * t42);
+        let t48 = k(166631.95167673402)
+            * (k(1e-5) * t47 + (k(1e-6) * (inner_ring_wx * inner_ring_wy) + t46))
+            - (t38 * t31 + t35 * t37 - outer_ring_wx * t17);
         *out = [
+            -(t14 * t33 - t16 * (t32 * t34) + t45),
             -t48,
-            -(k(166631.95167673402)
-                * (t51 + (k(1e-6) * (inner_ring_wx * inner_ring_wy) + t49))),
-            t1 + (t5 * (t41 - t48) - t9 * t39),
+            t1 - (t5 * t45 + t9 * t39),
         ];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 246 operations (86 ±, 159 ×, 1 ÷) and 12 functions.
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 554 operations (216 ±, 333 ×, 5 ÷) and 8 functions.
     fn corrected_accelerations(
         &self,
         t: T,
@@ -3240,117 +3175,209 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = k(18.84955592153876) * t;
-        let t1 = t0.sin();
-        let t2 = k(0.05) * t1;
+        let t0 = outer_ring_e0 * outer_ring_e0;
+        let t1 = k(2.0) * (k(0.5) - (t0 + outer_ring_e2 * outer_ring_e2));
+        let t2 = k(18.84955592153876) * t;
         let t3 = t2.sin();
-        let t4 = k(12.566370614359172) * t;
-        let t5 = k(1.2566370614359172) * t4.cos();
-        let t6 = t5 * t3 + outer_ring_wy;
-        let t7 = k(0.9424777960769379) * t0.cos();
-        let t8 = t4.sin();
-        let t9 = k(15.791367041742975) * t8;
-        let t10 = t2.cos();
-        let t11 = t10 * t9 + t5 * (t7 * t3);
-        let t12 = k(0.025) * t1;
-        let t13 = t12.cos();
-        let t14 = k(0.05) * t8;
-        let t15 = t14.sin();
-        let t16 = t15 * t13;
-        let t17 = t14.cos();
-        let t18 = t17 * t13;
-        let t19 = t12.sin();
-        let t20 = t17 * t19;
-        let t21 = t15 * t19;
-        let t22 = t21 * outer_ring_e0 - t20 * outer_ring_e1 + t18 * outer_ring_e2
-            + t16 * outer_ring_e3;
-        let t23 = k(2.0) * t22;
-        let t24 = k(1.0) - t22 * t23;
-        let t25 = t18 * outer_ring_e0 + t16 * outer_ring_e1 - t21 * outer_ring_e2
-            + t20 * outer_ring_e3;
-        let t26 = t25 * t23;
-        let t27 = k(17.765287921960844) * t1;
-        let t28 = t27 * t26 - t24 * t11 - outer_ring_wz * t6;
-        let t29 = outer_ring_wz - inner_ring_wz;
-        let t30 = inner_ring_wy * t29;
-        let t31 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
-            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
-        let t32 = k(2.0) * t31;
-        let t33 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
-            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
-        let t34 = t33 * t32;
-        let t35 = inner_ring_wx - rotor_wx;
-        let t36 = inner_ring_wx - t35;
-        let t37 = k(0.000125) * inner_ring_wz;
-        let t38 = inner_ring_wx * t37;
-        let t39 = inner_ring_wx * t29;
-        let t40 = k(7.00125e-6) * t39
-            - (k(1e-5) * t38 - k(5e-6) * (inner_ring_wz * t36 - inner_ring_wz * t35));
-        let t41 = k(1.0) - t31 * t32;
-        let t42 = k(1e-6) * (outer_ring_wx * outer_ring_wz)
-            + (t41 * t40 + t34 * (k(1e-6) * (inner_ring_wy * inner_ring_wz + t30)));
-        let t43 = k(1e-6) + (t41 * (k(7.00125e-6) * t41) + t34 * (k(1e-6) * t34));
-        let t44 = t3 * t9 - t5 * (t7 * t10);
-        let t45 = t44 * t43
-            + (t41 * (k(7.00125e-6) * t34) - t34 * (k(1e-6) * t41)) * t28;
-        let t46 = k(0.1) * t8;
-        let t47 = t46.cos();
-        let t48 = k(10.0) * (t47 * t3);
-        let t49 = k(10.0) * t46.sin();
-        let t50 = k(1e-5) * t41 * (t24 * t49 - t26 * t48) + t45 + t42;
-        let t51 = t44 - t50 / t43;
-        let t52 = t27 * t24 + t26 * t11 - outer_ring_wx * t6;
-        let t53 = t39 + (t34 * t28 + t41 * t51);
-        let t54 = k(0.000125) * inner_ring_wy;
-        let t55 = inner_ring_wx * t54;
-        let t56 = k(1e-6) * (inner_ring_wx * inner_ring_wy)
-            + (k(1e-5) * t55 - k(5e-6) * (inner_ring_wy * t36 - inner_ring_wy * t35));
-        let t57 = t41 * (k(10.0) * (t47 * t10)) + t34 * (t26 * t49 + t24 * t48);
-        let t58 = t52
-            + k(166631.95167673402) * (k(1e-5) * t57 - k(6.00125e-6) * t52 + t56);
-        let t59 = k(0.000125) * t58;
-        let t60 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
-            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
-        let t61 = k(2.0) * t60;
-        let t62 = k(1.0) - t60 * t61;
-        let t63 = k(0.000125) * t53;
-        let t64 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
-            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
-        let t65 = t64 * t61;
-        let t66 = t65 * t38 - t62 * t55 - (t65 * t63 - t62 * t59);
-        let t67 = rotor_e0 * rotor_e3;
-        let t68 = rotor_e1 * rotor_e2;
-        let t69 = inner_ring_wy * t54 + inner_ring_wz * t37;
-        let t70 = rotor_e0 * rotor_e0;
-        let t71 = k(2.0) * (k(0.5) - (t70 + rotor_e1 * rotor_e1)) * t69
-            - k(2.0) * (t68 - t67) * t66;
-        let t72 = t62 * t38 + t65 * t55 - (t62 * t63 + t65 * t59);
+        let t4 = k(0.05) * t3;
+        let t5 = t4.sin();
+        let t6 = k(12.566370614359172) * t;
+        let t7 = t6.sin();
+        let t8 = k(0.1) * t7;
+        let t9 = t8.cos();
+        let t10 = t9 * t5;
+        let t11 = outer_ring_e0 * outer_ring_e3;
+        let t12 = outer_ring_e1 * outer_ring_e2;
+        let t13 = k(2.0) * (t12 - t11);
+        let t14 = t4.cos();
+        let t15 = outer_ring_e0 * outer_ring_e1;
+        let t16 = outer_ring_e2 * outer_ring_e3;
+        let t17 = k(2.0) * (t16 + t15);
+        let t18 = t8.sin();
+        let t19 = t18 * t5;
+        let t20 = k(1.2566370614359172) * t6.cos();
+        let t21 = t20 * t14;
+        let t22 = t9 * t14;
+        let t23 = t18 * t14;
+        let t24 = t23 * t17 - (t5 * t13 + t22 * t1);
+        let t25 = t20 * t5;
+        let t26 = t25 * t24 - t21 * (t19 * t17 + (t14 * t13 - t10 * t1));
+        let t27 = k(0.9424777960769379) * t2.cos();
+        let t28 = t27 * (t9 * t17 + t18 * t1) - t26;
+        let t29 = outer_ring_wy - t28;
+        let t30 = k(2.0) * (k(0.5) - (t0 + outer_ring_e3 * outer_ring_e3));
+        let t31 = k(2.0) * (t16 - t15);
+        let t32 = outer_ring_e0 * outer_ring_e2;
+        let t33 = outer_ring_e1 * outer_ring_e3;
+        let t34 = k(2.0) * (t33 + t32);
+        let t35 = t14 * t34 + t10 * t31 - t19 * t30;
+        let t36 = t5 * t34 - t22 * t31 + t23 * t30;
+        let t37 = t18 * t31 + t9 * t30;
+        let t38 = t27 * t37 - (t25 * t36 + t21 * t35);
+        let t39 = outer_ring_wz + t38;
+        let t40 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
+        let t41 = k(2.0) * (t12 + t11);
+        let t42 = k(2.0) * (t33 - t32);
+        let t43 = t19 * t42 + (t10 * t41 - t14 * t40);
+        let t44 = t23 * t42 + (t22 * t41 + t5 * t40);
+        let t45 = t18 * t41 - t9 * t42;
+        let t46 = t27 * t45 + (t25 * t44 - t21 * t43);
+        let t47 = outer_ring_wx + t46;
+        let t48 = (t47 * t47 + t39 * t39) / t24;
+        let t49 = k(15.791367041742975) * t7;
+        let t50 = t14 * t49 + t20 * (t27 * t5);
+        let t51 = t5 * t49 - t20 * (t27 * t14);
+        let t52 = k(17.765287921960844) * t3;
+        let t53 = outer_ring_wy * t38 + outer_ring_wz * t28
+            + (t52 * t45 + (t51 * t44 - t50 * t43));
+        let t54 = t53 + (t36 * t48 - t39 * t29);
+        let t55 = rotor_e0 * rotor_e3;
+        let t56 = rotor_e1 * rotor_e2;
+        let t57 = k(2.0) * (t56 - t55);
+        let t58 = inner_ring_e0 * inner_ring_e0;
+        let t59 = k(2.0) * (k(0.5) - (t58 + inner_ring_e1 * inner_ring_e1));
+        let t60 = rotor_e0 * rotor_e0;
+        let t61 = k(2.0) * (k(0.5) - (t60 + rotor_e2 * rotor_e2));
+        let t62 = inner_ring_e0 * inner_ring_e3;
+        let t63 = inner_ring_e1 * inner_ring_e2;
+        let t64 = k(2.0) * (t63 + t62);
+        let t65 = rotor_e0 * rotor_e1;
+        let t66 = rotor_e2 * rotor_e3;
+        let t67 = k(2.0) * (t66 + t65);
+        let t68 = inner_ring_e0 * inner_ring_e2;
+        let t69 = inner_ring_e1 * inner_ring_e3;
+        let t70 = k(2.0) * (t69 - t68);
+        let t71 = t70 * t67 - (t64 * t61 + t59 * t57);
+        let t72 = k(5e-6) * t71;
         let t73 = rotor_e0 * rotor_e2;
         let t74 = rotor_e1 * rotor_e3;
-        let t75 = k(2.0) * (t68 + t67) * t69
-            - k(2.0) * (k(0.5) - (t70 + rotor_e2 * rotor_e2)) * t66;
-        let t76 = rotor_e0 * rotor_e1;
-        let t77 = rotor_e2 * rotor_e3;
-        let t78 = k(2.0) * (t74 - t73) * t69 + k(2.0) * (t77 + t76) * t66;
+        let t75 = k(2.0) * (t74 + t73);
+        let t76 = k(2.0) * (t66 - t65);
+        let t77 = k(2.0) * (k(0.5) - (t60 + rotor_e3 * rotor_e3));
+        let t78 = t70 * t77 - (t64 * t76 - t59 * t75);
+        let t79 = k(5e-6) * t78;
+        let t80 = inner_ring_e0 * inner_ring_e1;
+        let t81 = inner_ring_e2 * inner_ring_e3;
+        let t82 = t81 - t80;
+        let t83 = k(2.0) * t82;
+        let t84 = t69 + t68;
+        let t85 = k(2.0) * t84;
+        let t86 = k(0.5) - (t58 + inner_ring_e3 * inner_ring_e3);
+        let t87 = k(2.0) * t86;
+        let t88 = t87 * t67 - (t85 * t57 - t83 * t61);
+        let t89 = t85 * t75 + t83 * t76 + t87 * t77;
+        let t90 = t89 * t79 + t88 * t72;
+        let t91 = k(1e-6)
+            + (k(1.25e-9) + (t89 * (k(5e-6) * t89) + t88 * (k(5e-6) * t88)));
+        let t92 = k(1.0) / t91;
+        let t93 = t92 * t90;
+        let t94 = t90 * t93 - (k(1e-6) + (t78 * t79 + t71 * t72));
+        let t95 = t17 * t70 - (t1 * t64 + t13 * t59);
+        let t96 = k(0.5) - (t58 + inner_ring_e2 * inner_ring_e2);
+        let t97 = k(2.0) * t96;
+        let t98 = t63 - t62;
+        let t99 = k(2.0) * t98;
+        let t100 = t81 + t80;
+        let t101 = k(2.0) * t100;
+        let t102 = t101 * t67 + (t99 * t57 + t97 * t61);
+        let t103 = t101 * t77 - (t99 * t75 - t97 * t76);
+        let t104 = k(5e-6) * t102;
+        let t105 = k(5e-6) * t103;
+        let t106 = t89 * t105 + t88 * t104;
+        let t107 = t106 * t93 - (t103 * t79 + t102 * t72);
+        let t108 = t17 * t101 + (t13 * t99 + t1 * t97);
+        let t109 = t108 * t107 + t95 * t94;
+        let t110 = t106 * (t92 * t106)
+            - (k(2e-6) + (k(1.25e-9) + (t103 * t105 + t102 * t104)));
+        let t111 = t108 * t110 + t95 * t107;
+        let t112 = k(2.0) * (k(0.5) - (t60 + rotor_e1 * rotor_e1));
+        let t113 = k(2.0) * (t56 + t55);
+        let t114 = k(2.0) * (t74 - t73);
+        let t115 = t70 * t114 + (t64 * t113 + t59 * t112);
+        let t116 = inner_ring_wy * (t101 * t114 - (t97 * t113 + t99 * t112))
+            + inner_ring_wx * t115;
+        let t117 = inner_ring_wz * (t87 * t114 - (t83 * t113 - t85 * t112)) - t116;
+        let t118 = rotor_wx + t117;
+        let t119 = inner_ring_wz * t89 - (inner_ring_wy * t103 + inner_ring_wx * t78);
+        let t120 = rotor_wz - t119;
+        let t121 = inner_ring_wz * t88 - (inner_ring_wy * t102 + inner_ring_wx * t71);
+        let t122 = rotor_wy + t121;
+        let t123 = (t122 * t122 + t120 * t120) / t115;
+        let t124 = rotor_wz * t117 + rotor_wx * t119 - (t78 * t123 - t120 * t118);
+        let t125 = k(5e-6) * (rotor_wx * rotor_wz + t124);
+        let t126 = rotor_wx * t121 - rotor_wy * t117 - (t71 * t123 + t122 * t118);
+        let t127 = k(5e-6) * (rotor_wx * rotor_wy - t126);
+        let t128 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
+        let t129 = inner_ring_wx * inner_ring_wy;
+        let t130 = inner_ring_wx * inner_ring_wz;
+        let t131 = t85 * t130 + (t99 * t129 + t59 * t128);
+        let t132 = k(1e-5) * t131;
+        let t133 = k(0.00025) * t98;
+        let t134 = t83 * t130 - (t97 * t129 + t64 * t128);
+        let t135 = k(0.8) + k(1e-5) * t134;
+        let t136 = k(0.00025) * t96;
+        let t137 = t87 * t130 - (t101 * t129 - t70 * t128);
+        let t138 = k(1e-5) * t137;
+        let t139 = k(0.00025) * t100;
+        let t140 = t139 * t138 + (t136 * t135 - t133 * t132) + (t89 * t127 + t88 * t125);
+        let t141 = k(1e-6) * t129 - t140;
+        let t142 = t92 * t141;
+        let t143 = t90 * t142
+            - (k(1e-6) * (inner_ring_wy * inner_ring_wz) - (t78 * t127 + t71 * t125));
+        let t144 = outer_ring_wy * (t17 * t87 - (t13 * t85 - t1 * t83))
+            + outer_ring_wx * (t42 * t87 - (t41 * t83 - t40 * t85));
+        let t145 = t34 * t85 + t31 * t83 + t30 * t87;
+        let t146 = outer_ring_wz * t145 - t144;
+        let t147 = inner_ring_wz - t146;
+        let t148 = t42 * t101 - (t41 * t97 + t40 * t99);
+        let t149 = t30 * t101 - (t34 * t99 - t31 * t97);
+        let t150 = outer_ring_wz * t149 - (outer_ring_wy * t108 + outer_ring_wx * t148);
+        let t151 = inner_ring_wy + t150;
+        let t152 = t42 * t70 + (t41 * t64 + t40 * t59);
+        let t153 = t30 * t70 - (t31 * t64 - t34 * t59);
+        let t154 = outer_ring_wz * t153 - (outer_ring_wy * t95 + outer_ring_wx * t152);
+        let t155 = inner_ring_wx + t154;
+        let t156 = (t155 * t155 + t151 * t151) / t145;
+        let t157 = inner_ring_wy * t146 + inner_ring_wz * t150
+            + (t149 * t156 - t151 * t147);
+        let t158 = inner_ring_wz * t154 + inner_ring_wx * t146
+            + (t153 * t156 - t155 * t147);
+        let t159 = k(0.00025) * t84;
+        let t160 = k(0.00025) * t82;
+        let t161 = k(0.00025) * t86;
+        let t162 = t161 * t138 + (t160 * t135 + t159 * t132)
+            - (t103 * t127 + t102 * t125);
+        let t163 = t108 * (t110 * t158 - t107 * t157 - (t106 * t142 - t162));
+        let t164 = k(1e-6) * (outer_ring_wx * outer_ring_wz)
+            - (t163 + t95 * (t107 * t158 - t94 * t157 - t143));
+        let t165 = t108 * (t148 * t110 + t152 * t107) + t95 * (t148 * t107 + t152 * t94);
+        let t166 = outer_ring_wx * t28 + outer_ring_wy * t46
+            - (t52 * t37 - (t51 * t36 + t50 * t35));
+        let t167 = t166 - (t44 * t48 + t47 * t29);
+        let t168 = (t111 * t149 + t109 * t153) * t167 + t54 * t165 - t164;
+        let t169 = t168 / (k(1e-6) - (t108 * t111 + t95 * t109));
+        let t170 = t157 - (t153 * t167 + (t95 * t169 + t152 * t54));
+        let t171 = t158 + (t149 * t167 + (t108 * t169 + t148 * t54));
+        let t172 = t92 * (t141 - (t106 * t171 - t90 * t170));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            t28,
-            t51,
-            -t52,
+            t54,
+            t169,
+            -t167,
             k(0.0),
             k(0.0),
             k(0.0),
-            -(t30 + (t34 * t51 - t41 * t28)),
-            t53,
-            -t58,
-            k(2.0) * (t74 + t73) * t72 + t71,
-            k(2.0) * (t77 - t76) * t72 - t75,
-            -(k(2.0) * (k(0.5) - (t70 + rotor_e3 * rotor_e3)) * t72 + t78),
+            -t170,
+            t171,
+            -t172,
+            k(0.000125) * t131 - (t133 * t172 + t159 * t171),
+            t136 * t172 - t160 * t171 + k(0.000125) * t134,
+            -(t139 * t172 - t161 * t171 + k(0.000125) * t137),
             k(0.0),
-            t65 * t58 + t62 * t53 - rotor_wz * t35,
-            rotor_wy * t35 - (t62 * t58 - t65 * t53),
+            t124 + (t88 * t172 + (t102 * t171 - t71 * t170)),
+            t126 - (t89 * t172 + (t103 * t171 - t78 * t170)),
         ];
     }
     /// Writes λ: 156 operations (60 ±, 96 ×, 0 ÷) and 6 functions.
@@ -3478,6 +3505,377 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
             -t4,
             t42,
             -t21,
+        ];
+    }
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 667 operations (261 ±, 401 ×, 5 ÷) and 12 functions.
+    fn corrected_solution(&self, t: T, y: &Self::State, out: &mut Self::Solution) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        let (
+            t54,
+            t130,
+            t162,
+            t163,
+            t164,
+            t170,
+            t172,
+            t173,
+            t174,
+            t175,
+            t176,
+            t177,
+            t178,
+            t179,
+            t180,
+            t181,
+            t182,
+            t183,
+            t184,
+            t185,
+            t188,
+            t189,
+            t191,
+            t192,
+            t194,
+            t195,
+            t196,
+            t197,
+            t198,
+            t199,
+        ) = {
+            let t0 = outer_ring_e0 * outer_ring_e0;
+            let t1 = k(2.0) * (k(0.5) - (t0 + outer_ring_e2 * outer_ring_e2));
+            let t2 = k(18.84955592153876) * t;
+            let t3 = t2.sin();
+            let t4 = k(0.05) * t3;
+            let t5 = t4.sin();
+            let t6 = k(12.566370614359172) * t;
+            let t7 = t6.sin();
+            let t8 = k(0.1) * t7;
+            let t9 = t8.cos();
+            let t10 = t9 * t5;
+            let t11 = outer_ring_e0 * outer_ring_e3;
+            let t12 = outer_ring_e1 * outer_ring_e2;
+            let t13 = k(2.0) * (t12 - t11);
+            let t14 = t4.cos();
+            let t15 = outer_ring_e0 * outer_ring_e1;
+            let t16 = outer_ring_e2 * outer_ring_e3;
+            let t17 = k(2.0) * (t16 + t15);
+            let t18 = t8.sin();
+            let t19 = t18 * t5;
+            let t20 = k(1.2566370614359172) * t6.cos();
+            let t21 = t20 * t14;
+            let t22 = t9 * t14;
+            let t23 = t18 * t14;
+            let t24 = t23 * t17 - (t5 * t13 + t22 * t1);
+            let t25 = t20 * t5;
+            let t26 = t25 * t24 - t21 * (t19 * t17 + (t14 * t13 - t10 * t1));
+            let t27 = k(0.9424777960769379) * t2.cos();
+            let t28 = t27 * (t9 * t17 + t18 * t1) - t26;
+            let t29 = outer_ring_wy - t28;
+            let t30 = k(2.0) * (k(0.5) - (t0 + outer_ring_e3 * outer_ring_e3));
+            let t31 = k(2.0) * (t16 - t15);
+            let t32 = outer_ring_e0 * outer_ring_e2;
+            let t33 = outer_ring_e1 * outer_ring_e3;
+            let t34 = k(2.0) * (t33 + t32);
+            let t35 = t14 * t34 + t10 * t31 - t19 * t30;
+            let t36 = t5 * t34 - t22 * t31 + t23 * t30;
+            let t37 = t18 * t31 + t9 * t30;
+            let t38 = t27 * t37 - (t25 * t36 + t21 * t35);
+            let t39 = outer_ring_wz + t38;
+            let t40 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
+            let t41 = k(2.0) * (t12 + t11);
+            let t42 = k(2.0) * (t33 - t32);
+            let t43 = t19 * t42 + (t10 * t41 - t14 * t40);
+            let t44 = t23 * t42 + (t22 * t41 + t5 * t40);
+            let t45 = t18 * t41 - t9 * t42;
+            let t46 = t27 * t45 + (t25 * t44 - t21 * t43);
+            let t47 = outer_ring_wx + t46;
+            let t48 = (t47 * t47 + t39 * t39) / t24;
+            let t49 = k(15.791367041742975) * t7;
+            let t50 = t14 * t49 + t20 * (t27 * t5);
+            let t51 = t5 * t49 - t20 * (t27 * t14);
+            let t52 = k(17.765287921960844) * t3;
+            let t53 = outer_ring_wy * t38 + outer_ring_wz * t28
+                + (t52 * t45 + (t51 * t44 - t50 * t43));
+            let t54 = t53 + (t36 * t48 - t39 * t29);
+            let t55 = rotor_e0 * rotor_e3;
+            let t56 = rotor_e1 * rotor_e2;
+            let t57 = k(2.0) * (t56 - t55);
+            let t58 = inner_ring_e0 * inner_ring_e0;
+            let t59 = k(2.0) * (k(0.5) - (t58 + inner_ring_e1 * inner_ring_e1));
+            let t60 = rotor_e0 * rotor_e0;
+            let t61 = k(2.0) * (k(0.5) - (t60 + rotor_e2 * rotor_e2));
+            let t62 = inner_ring_e0 * inner_ring_e3;
+            let t63 = inner_ring_e1 * inner_ring_e2;
+            let t64 = k(2.0) * (t63 + t62);
+            let t65 = rotor_e0 * rotor_e1;
+            let t66 = rotor_e2 * rotor_e3;
+            let t67 = k(2.0) * (t66 + t65);
+            let t68 = inner_ring_e0 * inner_ring_e2;
+            let t69 = inner_ring_e1 * inner_ring_e3;
+            let t70 = k(2.0) * (t69 - t68);
+            let t71 = t70 * t67 - (t64 * t61 + t59 * t57);
+            let t72 = k(5e-6) * t71;
+            let t73 = rotor_e0 * rotor_e2;
+            let t74 = rotor_e1 * rotor_e3;
+            let t75 = k(2.0) * (t74 + t73);
+            let t76 = k(2.0) * (t66 - t65);
+            let t77 = k(2.0) * (k(0.5) - (t60 + rotor_e3 * rotor_e3));
+            let t78 = t70 * t77 - (t64 * t76 - t59 * t75);
+            let t79 = k(5e-6) * t78;
+            let t80 = inner_ring_e0 * inner_ring_e1;
+            let t81 = inner_ring_e2 * inner_ring_e3;
+            let t82 = t81 - t80;
+            let t83 = k(2.0) * t82;
+            let t84 = t69 + t68;
+            let t85 = k(2.0) * t84;
+            let t86 = k(0.5) - (t58 + inner_ring_e3 * inner_ring_e3);
+            let t87 = k(2.0) * t86;
+            let t88 = t87 * t67 - (t85 * t57 - t83 * t61);
+            let t89 = t85 * t75 + t83 * t76 + t87 * t77;
+            let t90 = t89 * t79 + t88 * t72;
+            let t91 = k(1e-6)
+                + (k(1.25e-9) + (t89 * (k(5e-6) * t89) + t88 * (k(5e-6) * t88)));
+            let t92 = k(1.0) / t91;
+            let t93 = t92 * t90;
+            let t94 = t90 * t93 - (k(1e-6) + (t78 * t79 + t71 * t72));
+            let t95 = t17 * t70 - (t1 * t64 + t13 * t59);
+            let t96 = k(0.5) - (t58 + inner_ring_e2 * inner_ring_e2);
+            let t97 = k(2.0) * t96;
+            let t98 = t63 - t62;
+            let t99 = k(2.0) * t98;
+            let t100 = t81 + t80;
+            let t101 = k(2.0) * t100;
+            let t102 = t101 * t67 + (t99 * t57 + t97 * t61);
+            let t103 = t101 * t77 - (t99 * t75 - t97 * t76);
+            let t104 = k(5e-6) * t102;
+            let t105 = k(5e-6) * t103;
+            let t106 = t89 * t105 + t88 * t104;
+            let t107 = t106 * t93 - (t103 * t79 + t102 * t72);
+            let t108 = t17 * t101 + (t13 * t99 + t1 * t97);
+            let t109 = t108 * t107 + t95 * t94;
+            let t110 = t106 * (t92 * t106)
+                - (k(2e-6) + (k(1.25e-9) + (t103 * t105 + t102 * t104)));
+            let t111 = t108 * t110 + t95 * t107;
+            let t112 = k(2.0) * (k(0.5) - (t60 + rotor_e1 * rotor_e1));
+            let t113 = k(2.0) * (t56 + t55);
+            let t114 = k(2.0) * (t74 - t73);
+            let t115 = t70 * t114 + (t64 * t113 + t59 * t112);
+            let t116 = inner_ring_wy * (t101 * t114 - (t97 * t113 + t99 * t112))
+                + inner_ring_wx * t115;
+            let t117 = inner_ring_wz * (t87 * t114 - (t83 * t113 - t85 * t112)) - t116;
+            let t118 = rotor_wx + t117;
+            let t119 = inner_ring_wz * t89
+                - (inner_ring_wy * t103 + inner_ring_wx * t78);
+            let t120 = rotor_wz - t119;
+            let t121 = inner_ring_wz * t88
+                - (inner_ring_wy * t102 + inner_ring_wx * t71);
+            let t122 = rotor_wy + t121;
+            let t123 = (t122 * t122 + t120 * t120) / t115;
+            let t124 = rotor_wz * t117 + rotor_wx * t119 - (t78 * t123 - t120 * t118);
+            let t125 = rotor_wx * rotor_wz;
+            let t126 = k(5e-6) * (t125 + t124);
+            let t127 = rotor_wx * t121 - rotor_wy * t117 - (t71 * t123 + t122 * t118);
+            let t128 = rotor_wx * rotor_wy;
+            let t129 = k(5e-6) * (t128 - t127);
+            let t130 = inner_ring_wy * inner_ring_wz;
+            let t131 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
+            let t132 = inner_ring_wx * inner_ring_wy;
+            let t133 = inner_ring_wx * inner_ring_wz;
+            let t134 = t85 * t133 + (t99 * t132 + t59 * t131);
+            let t135 = k(1e-5) * t134;
+            let t136 = k(0.00025) * t98;
+            let t137 = t83 * t133 - (t97 * t132 + t64 * t131);
+            let t138 = k(0.8) + k(1e-5) * t137;
+            let t139 = k(0.00025) * t96;
+            let t140 = t87 * t133 - (t101 * t132 - t70 * t131);
+            let t141 = k(1e-5) * t140;
+            let t142 = k(0.00025) * t100;
+            let t143 = t142 * t141 + (t139 * t138 - t136 * t135)
+                + (t89 * t129 + t88 * t126);
+            let t144 = k(1e-6) * t132 - t143;
+            let t145 = t92 * t144;
+            let t146 = t90 * t145 - (k(1e-6) * t130 - (t78 * t129 + t71 * t126));
+            let t147 = outer_ring_wy * (t17 * t87 - (t13 * t85 - t1 * t83))
+                + outer_ring_wx * (t42 * t87 - (t41 * t83 - t40 * t85));
+            let t148 = t34 * t85 + t31 * t83 + t30 * t87;
+            let t149 = outer_ring_wz * t148 - t147;
+            let t150 = inner_ring_wz - t149;
+            let t151 = t42 * t101 - (t41 * t97 + t40 * t99);
+            let t152 = t30 * t101 - (t34 * t99 - t31 * t97);
+            let t153 = outer_ring_wz * t152
+                - (outer_ring_wy * t108 + outer_ring_wx * t151);
+            let t154 = inner_ring_wy + t153;
+            let t155 = t42 * t70 + (t41 * t64 + t40 * t59);
+            let t156 = t30 * t70 - (t31 * t64 - t34 * t59);
+            let t157 = outer_ring_wz * t156
+                - (outer_ring_wy * t95 + outer_ring_wx * t155);
+            let t158 = inner_ring_wx + t157;
+            let t159 = (t158 * t158 + t154 * t154) / t148;
+            let t160 = inner_ring_wy * t149 + inner_ring_wz * t153
+                + (t152 * t159 - t154 * t150);
+            let t161 = inner_ring_wz * t157 + inner_ring_wx * t149
+                + (t156 * t159 - t158 * t150);
+            let t162 = k(0.00025) * t84;
+            let t163 = k(0.00025) * t82;
+            let t164 = k(0.00025) * t86;
+            let t165 = t164 * t141 + (t163 * t138 + t162 * t135)
+                - (t103 * t129 + t102 * t126);
+            let t166 = t108 * (t110 * t161 - t107 * t160 - (t106 * t145 - t165));
+            let t167 = k(1e-6) * (outer_ring_wx * outer_ring_wz)
+                - (t166 + t95 * (t107 * t161 - t94 * t160 - t146));
+            let t168 = t108 * (t151 * t110 + t155 * t107)
+                + t95 * (t151 * t107 + t155 * t94);
+            let t169 = outer_ring_wx * t28 + outer_ring_wy * t46
+                - (t52 * t37 - (t51 * t36 + t50 * t35));
+            let t170 = t169 - (t44 * t48 + t47 * t29);
+            let t171 = (t111 * t152 + t109 * t156) * t170 + t54 * t168 - t167;
+            let t172 = t171 / (k(1e-6) - (t108 * t111 + t95 * t109));
+            let t173 = t160 - (t156 * t170 + (t95 * t172 + t155 * t54));
+            let t174 = t161 + (t152 * t170 + (t108 * t172 + t151 * t54));
+            let t175 = t92 * (t144 - (t106 * t174 - t90 * t173));
+            let t176 = t136 * t175 + t162 * t174 - k(0.000125) * t134;
+            let t177 = t139 * t175 - t163 * t174 + k(0.000125) * t137;
+            let t178 = t142 * t175 - t164 * t174 + k(0.000125) * t140;
+            let t179 = t124 + (t88 * t175 + (t102 * t174 - t71 * t173));
+            let t180 = t127 - (t89 * t175 + (t103 * t174 - t78 * t173));
+            let t181 = k(0.08) * t176;
+            let t182 = k(0.8) + k(0.08) * t177;
+            let t183 = k(0.1) + t182;
+            let t184 = k(0.08) * t178;
+            let t185 = k(5e-6) * (t128 - t180);
+            let t186 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
+                - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+            let t187 = k(2.0) * t186;
+            let t188 = k(1.0) - t186 * t187;
+            let t189 = k(5e-6) * (t125 + t179);
+            let t190 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
+                + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+            let t191 = t190 * t187;
+            let t192 = t191 * t189 + t188 * t185;
+            let t193 = t136 * t181 + t139 * t182 + t142 * t184 + t192
+                - k(1e-6) * (t132 - t175);
+            let t194 = t193 + k(1e-6) * (outer_ring_wx * outer_ring_wy + t170);
+            let t195 = k(0.025) * t3;
+            let t196 = t195.cos();
+            let t197 = k(0.05) * t7;
+            let t198 = t197.sin();
+            let t199 = t198 * t196;
+            (
+                t54,
+                t130,
+                t162,
+                t163,
+                t164,
+                t170,
+                t172,
+                t173,
+                t174,
+                t175,
+                t176,
+                t177,
+                t178,
+                t179,
+                t180,
+                t181,
+                t182,
+                t183,
+                t184,
+                t185,
+                t188,
+                t189,
+                t191,
+                t192,
+                t194,
+                t195,
+                t196,
+                t197,
+                t198,
+                t199,
+            )
+        };
+        let (t208, t209, t210, t214, t215, t216, t217, t218, t219) = {
+            let t200 = t197.cos();
+            let t201 = t200 * t196;
+            let t202 = t195.sin();
+            let t203 = t200 * t202;
+            let t204 = t198 * t202;
+            let t205 = t204 * outer_ring_e0 - t203 * outer_ring_e1 + t201 * outer_ring_e2
+                + t199 * outer_ring_e3;
+            let t206 = k(2.0) * t205;
+            let t207 = t201 * outer_ring_e0 + t199 * outer_ring_e1 - t204 * outer_ring_e2
+                + t203 * outer_ring_e3;
+            let t208 = t207 * t206;
+            let t209 = t188 * t189 - t191 * t185;
+            let t210 = t162 * t181 - t163 * t182 - t164 * t184 + t209 + k(2e-6) * t174;
+            let t211 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
+                + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+            let t212 = k(2.0) * t211;
+            let t213 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
+                + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+            let t214 = t213 * t212;
+            let t215 = k(1e-6) * (t130 + t173);
+            let t216 = k(1.0) - t211 * t212;
+            let t217 = t216 * t215 - t214 * t210;
+            let t218 = t217 - k(2e-6) * t54;
+            let t219 = k(1.0) - t205 * t206;
+            (t208, t209, t210, t214, t215, t216, t217, t218, t219)
+        };
+        *out = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t54,
+            t172,
+            -t170,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t173,
+            t174,
+            -t175,
+            -t176,
+            t177,
+            -t178,
+            k(0.0),
+            t179,
+            t180,
+            t181,
+            -(k(0.1) + t183),
+            t184,
+            t219 * t218 + t208 * t194,
+            t208 * t218 - t219 * t194,
+            t181,
+            -t183,
+            t184,
+            -(t214 * t215 + t216 * t210),
+            -t217,
+            t181,
+            -t182,
+            t184,
+            t192,
+            t209,
         ];
     }
 }

@@ -19,7 +19,7 @@
 //! | gamma | γ | 27 | 43 | 0 | 70 | 0 of 3 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 18 | 30 | 0 | 48 | 0 of 3 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 6 | 0 | 6 | 0 of 6 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 68 | 108 | 2 | 178 | 0 of 6 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 63 | 89 | 2 | 154 | 0 of 6 |
 //! | multipliers | λ, the accelerations being known | 32 | 51 | 1 | 84 | 0 of 3 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 |
 //! | energy | T and V | 7 | 14 | 0 | 21 | 0 of 2 |
@@ -32,6 +32,7 @@
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 15 | 27 | 2 | 44 | 0 of 3 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 49 | 79 | 2 | 130 | 0 of 6 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 32 | 44 | 0 | 76 | 0 of 3 |
+//! | corrected_solution | both | 66 | 106 | 2 | 174 | 0 of 9 |
 //!
 //! # Proof
 //!
@@ -46,7 +47,7 @@
 //! * joint_derivative: eqs. (14) and (16) on the constraints
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
-//! * corrected_multipliers: eq. (17) on the constraints
+//! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //!
 //! All of it holds but with a probability below 1e-149.
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
@@ -534,7 +535,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Planar<T> {
             -(k(0.01) * (block_wx * block_wy)),
         ];
     }
-    /// Solves eq. (17): 178 operations (68 ±, 108 ×, 2 ÷).
+    /// Solves eq. (17): 154 operations (63 ±, 89 ×, 2 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let block_e0 = y[3];
@@ -551,60 +552,54 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Planar<T> {
         let t4 = block_e1 * block_e3;
         let t5 = t4 + t3;
         let t6 = k(0.2) * t5 + k(0.1) * t2;
-        let t7 = t1 + t0;
-        let t8 = k(2.0) * t7;
-        let t9 = k(2.0) * t2;
-        let t10 = block_e0 * block_e0;
-        let t11 = k(0.5) - (t10 + block_e2 * block_e2);
-        let t12 = k(2.0) * t11;
-        let t13 = k(0.5) - (t10 + block_e1 * block_e1);
-        let t14 = k(2.0) * t13;
-        let t15 = k(1.0) / (t14 * t12 - t9 * t8);
-        let t16 = block_wx * block_wz;
+        let t7 = block_e0 * block_e0;
+        let t8 = k(0.5) - (t7 + block_e3 * block_e3);
+        let t9 = block_wx * block_wx;
+        let t10 = block_wy * block_wy;
+        let t11 = t10 + t9;
+        let t12 = t11 * (k(0.5) / t8);
+        let t13 = block_e0 * block_e1;
+        let t14 = block_e2 * block_e3;
+        let t15 = t14 + t13;
+        let t16 = k(2.0) * t15;
         let t17 = block_wy * block_wz;
-        let t18 = block_wx * block_wx;
-        let t19 = block_wy * block_wy;
-        let t20 = t19 + t18;
-        let t21 = k(2.0) * t5 * t20 - (t9 * t17 - t14 * t16);
-        let t22 = block_e0 * block_e1;
-        let t23 = block_e2 * block_e3;
-        let t24 = t23 - t22;
-        let t25 = k(2.0) * t24 * t20 + (t12 * t17 - t8 * t16);
-        let t26 = t25 * (t14 * t15) + t21 * (t8 * t15);
-        let t27 = k(0.4) * t5 + k(0.1) * t13;
-        let t28 = t25 * (t9 * t15) + t21 * (t12 * t15);
-        let t29 = k(0.4) * t2 - k(0.2) * t13;
+        let t18 = t17 - t16 * t12;
+        let t19 = k(0.5) - (t7 + block_e1 * block_e1);
+        let t20 = k(0.4) * t5 + k(0.1) * t19;
+        let t21 = t4 - t3;
+        let t22 = k(2.0) * t21;
+        let t23 = block_wx * block_wz;
+        let t24 = t23 - t22 * t12;
+        let t25 = k(0.4) * t2 - k(0.2) * t19;
+        let t26 = k(0.8) * t25;
+        let t27 = t1 + t0;
+        let t28 = k(0.5) - (t7 + block_e2 * block_e2);
+        let t29 = k(0.4) * t28 - k(0.2) * t27;
         let t30 = k(0.8) * t29;
-        let t31 = k(0.4) * t11 - k(0.2) * t7;
-        let t32 = k(0.8) * t31;
-        let t33 = k(1.2) * t29;
-        let t34 = k(3.2) * t31;
-        let t35 = t4 - t3;
-        let t36 = t23 + t22;
-        let t37 = k(0.4) * t36 + k(0.2) * t35;
-        let t38 = block_wx * block_wy;
-        let t39 = t34 + (t33 - (k(0.01) * t38 - (k(6.4) * t37 - (t34 + t33))));
-        let t40 = block_wz * block_wz;
-        let t41 = k(2.0) * t35;
-        let t42 = k(2.0) * t36;
-        let t43 = k(0.5) - (t10 + block_e3 * block_e3);
-        let t44 = k(2.0) * t43;
-        let t45 = k(0.2) * (t44 * t16 - (t42 * t38 - t41 * (t40 + t19)));
-        let t46 = k(0.1) * (t44 * t17 + (t42 * (t40 + t18) - t41 * t38));
-        let t47 = k(0.05) * (t44 * t20 + (t42 * t17 + t41 * t16)) + (t46 - t45);
-        let t48 = k(0.2) * t24 - k(0.1) * t11;
-        let t49 = k(0.4) * t24 - k(0.1) * t7;
-        let t50 = t28 * (t49 * t32 - (k(0.004) + t27 * t30))
-            - t26 * (t48 * t32 + (k(0.008) - t6 * t30));
-        let t51 = (t50 + t47 * (k(0.8) * t37) - t39)
-            / (t31 * t32 - (k(0.065) - t29 * t30));
-        let t52 = t30 * t51 + (t28 * (k(0.8) * t27) - t26 * (k(0.8) * t6));
-        let t53 = t29 * t51 + (t27 * t28 - t6 * t26) - k(1.25) * (k(1.2) + t52);
-        let t54 = t32 * t51 - (t28 * (k(0.8) * t49) - t26 * (k(0.8) * t48));
-        let t55 = t31 * t51 - (t49 * t28 - t48 * t26) - k(1.25) * (k(3.2) + t54);
-        let t56 = (k(0.4) * t43 + k(0.1) * t35) * t28
-            - (k(0.2) * t43 - k(0.1) * t36) * t26;
-        *out = [-t53, t55, -(t47 + (t37 * t51 - t56)), t26, -t28, t51];
+        let t31 = k(1.2) * t25;
+        let t32 = k(3.2) * t29;
+        let t33 = k(0.4) * t15 + k(0.2) * t21;
+        let t34 = block_wx * block_wy;
+        let t35 = t32 + (t31 - (k(0.01) * t34 - (k(6.4) * t33 - (t32 + t31))));
+        let t36 = block_wz * block_wz;
+        let t37 = k(2.0) * t8;
+        let t38 = k(0.2) * (t37 * t23 - (t16 * t34 - t22 * (t36 + t10)));
+        let t39 = k(0.1) * (t37 * t17 + (t16 * (t36 + t9) - t22 * t34));
+        let t40 = k(0.05) * (t37 * t11 + (t16 * t17 + t22 * t23)) + (t39 - t38);
+        let t41 = t14 - t13;
+        let t42 = k(0.2) * t41 - k(0.1) * t28;
+        let t43 = k(0.4) * t41 - k(0.1) * t27;
+        let t44 = (t43 * t30 - (k(0.004) + t20 * t26)) * t24
+            - (t42 * t30 + (k(0.008) - t6 * t26)) * t18;
+        let t45 = (t44 + k(0.8) * t33 * t40 - t35)
+            / (t29 * t30 - (k(0.065) - t25 * t26));
+        let t46 = t26 * t45 + (t24 * (k(0.8) * t20) - t18 * (k(0.8) * t6));
+        let t47 = t25 * t45 + (t20 * t24 - t6 * t18) - k(1.25) * (k(1.2) + t46);
+        let t48 = t30 * t45 - (t24 * (k(0.8) * t43) - t18 * (k(0.8) * t42));
+        let t49 = t29 * t45 - (t43 * t24 - t42 * t18) - k(1.25) * (k(3.2) + t48);
+        let t50 = (k(0.4) * t8 + k(0.1) * t21) * t24
+            - (k(0.2) * t8 - k(0.1) * t15) * t18;
+        *out = [-t47, t49, -(t40 + (t33 * t45 - t50)), t18, -t24, t45];
     }
     /// Writes λ: 84 operations (32 ±, 51 ×, 1 ÷).
     fn multipliers(
@@ -667,12 +662,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Planar<T> {
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Planar<T> {
     type Joints = [T; 6];
     type Rates = [T; 3];
+    type Solution = [T; 9];
     fn joint_start(&self) -> Self::Joints {
         let k = T::constant;
         [k(0.3), k(-0.4), k(0.7), k(1.0), k(2.0), k(-6.0)]
     }
     fn rates(&self) -> Self::Rates {
         [T::constant(0.0); 3]
+    }
+    fn solution(&self) -> Self::Solution {
+        [T::constant(0.0); 9]
     }
     /// Writes u̇: 40 operations (14 ±, 24 ×, 2 ÷) and 2 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
@@ -920,6 +919,83 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Planar<T> {
         let t20 = k(0.015) * (block_wx * block_wz) - k(0.02) * block_dwy + t19;
         let t21 = k(1.0) - block_e3 * t16;
         *lambda = [-t0, t21 * t20 - t17 * t15, t17 * t20 + t21 * t15];
+    }
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 174 operations (66 ±, 106 ×, 2 ÷).
+    fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
+        let k = T::constant;
+        let block_e0 = y[3];
+        let block_e1 = y[4];
+        let block_e2 = y[5];
+        let block_e3 = y[6];
+        let block_wx = y[10];
+        let block_wy = y[11];
+        let block_wz = y[12];
+        let t0 = k(2.0) * block_e3;
+        let t1 = k(1.0) - block_e3 * t0;
+        let t2 = block_e0 * t0;
+        let t3 = k(0.16) * t2 - k(0.08) * t1;
+        let t4 = block_wz * block_wz;
+        let t5 = k(0.52) * t1 + k(0.56) * t2;
+        let t6 = k(0.16) * t1 + k(0.08) * t2;
+        let t7 = k(15.384615384615385) * t6;
+        let t8 = t7 * t5 - (k(3.2) + t4 * t3);
+        let t9 = k(1.0) / (k(0.8) - t6 * t7);
+        let t10 = k(15.384615384615385) * t3;
+        let t11 = t3 * t7;
+        let t12 = t9 * t11;
+        let t13 = (t12 * t8 + (t10 * t5 - (k(1.2) - t4 * t6)))
+            / (t11 * t12 - (k(0.8) - t3 * t10));
+        let t14 = t12 * t13 - t9 * t8;
+        let t15 = k(0.2) * block_wz - k(0.05) * block_wx;
+        let t16 = k(0.1) * block_wx + k(0.2) * block_wy;
+        let t17 = t1 * t13 + (block_wy * t16 + block_wz * t15 - t2 * t14);
+        let t18 = t7 * t14 + (t10 * t13 - k(15.384615384615385) * t5);
+        let t19 = block_wx * block_wz;
+        let t20 = k(0.05) * t19 + k(0.1) * t18 + t17;
+        let t21 = block_e0 * block_e0;
+        let t22 = k(0.5) - (t21 + block_e1 * block_e1);
+        let t23 = k(0.05) * block_wy + k(0.1) * block_wz;
+        let t24 = t2 * t13 + (block_wz * t23 + block_wx * t16 + t1 * t14);
+        let t25 = block_wy * block_wz;
+        let t26 = k(0.05) * t25 + k(0.2) * t18 - t24;
+        let t27 = block_e0 * block_e3;
+        let t28 = block_e1 * block_e2;
+        let t29 = t28 - t27;
+        let t30 = block_wx * t15 - block_wy * t23 + (k(0.2) * t19 - k(0.1) * t25);
+        let t31 = block_e0 * block_e2;
+        let t32 = block_e1 * block_e3;
+        let t33 = t32 + t31;
+        let t34 = k(2.0) * t33 * t30 - (k(2.0) * t29 * t26 - k(2.0) * t22 * t20);
+        let t35 = t28 + t27;
+        let t36 = k(0.5) - (t21 + block_e2 * block_e2);
+        let t37 = block_e0 * block_e1;
+        let t38 = block_e2 * block_e3;
+        let t39 = t38 - t37;
+        let t40 = k(2.0) * t39 * t30 + (k(2.0) * t36 * t26 - k(2.0) * t35 * t20);
+        let t41 = t32 - t31;
+        let t42 = t38 + t37;
+        let t43 = k(0.5) - (t21 + block_e3 * block_e3);
+        let t44 = k(2.0) * t43 * t30 + (k(2.0) * t42 * t26 + k(2.0) * t41 * t20);
+        let t45 = k(6.4) + k(0.8) * t44;
+        let t46 = k(3.2) - k(0.8) * t40;
+        let t47 = k(1.2) + k(0.8) * t34;
+        let t48 = (k(0.4) * t33 + k(0.1) * t22) * t47
+            - (k(0.4) * t39 - k(0.1) * t35) * t46;
+        let t49 = t48 + (k(0.4) * t43 + k(0.1) * t41) * t45 + k(0.035) * t19;
+        let t50 = (k(0.2) * t33 + k(0.1) * t29) * t47
+            - (k(0.2) * t39 - k(0.1) * t36) * t46;
+        let t51 = t50 + (k(0.2) * t43 - k(0.1) * t42) * t45 - k(0.015) * t25;
+        *out = [
+            -t34,
+            -t40,
+            t44,
+            t25,
+            -t19,
+            -t18,
+            -t45,
+            t2 * t51 + t1 * t49,
+            t2 * t49 - t1 * t51,
+        ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Ports for Planar<T> {

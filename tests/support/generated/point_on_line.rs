@@ -30,8 +30,9 @@
 //! | to_maximal | (q, v) of a joint state | 0 | 4 | 0 | 4 | 0 of 13 |
 //! | to_joints | (x, u) of a maximal state | 4 | 6 | 0 | 10 | 0 of 9 |
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 0 | 6 | 0 | 6 | 0 of 4 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 24 | 46 | 0 | 70 | 0 of 6 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 0 | 6 | 0 | 6 | 0 of 6 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 6 | 7 | 0 | 13 | 0 of 2 |
+//! | corrected_solution | both | 0 | 6 | 0 | 6 | 0 of 8 |
 //!
 //! # Proof
 //!
@@ -46,7 +47,7 @@
 //! * joint_derivative: eqs. (14) and (16) on the constraints
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
-//! * corrected_multipliers: eq. (17) on the constraints
+//! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //!
 //! All of it holds but with a probability below 1e-159.
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
@@ -440,6 +441,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for PointOnLine<T> {
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PointOnLine<T> {
     type Joints = [T; 9];
     type Rates = [T; 4];
+    type Solution = [T; 8];
     fn joint_start(&self) -> Self::Joints {
         let k = T::constant;
         [
@@ -456,6 +458,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PointOnLine<T> {
     }
     fn rates(&self) -> Self::Rates {
         [T::constant(0.0); 4]
+    }
+    fn solution(&self) -> Self::Solution {
+        [T::constant(0.0); 8]
     }
     /// Writes u̇: 6 operations (0 ±, 6 ×, 0 ÷).
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
@@ -561,7 +566,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PointOnLine<T> {
             -(k(0.75) * (bead_wx * bead_wy)),
         ];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 70 operations (24 ±, 46 ×, 0 ÷).
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 6 operations (0 ±, 6 ×, 0 ÷).
     fn corrected_accelerations(
         &self,
         _t: T,
@@ -569,45 +574,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PointOnLine<T> {
         out: &mut Self::Velocities,
     ) {
         let k = T::constant;
-        let bead_e0 = y[3];
-        let bead_e1 = y[4];
-        let bead_e2 = y[5];
-        let bead_e3 = y[6];
         let bead_wx = y[10];
         let bead_wy = y[11];
         let bead_wz = y[12];
-        let t0 = bead_e0 * bead_e0;
-        let t1 = k(0.5) - (t0 + bead_e1 * bead_e1);
-        let t2 = bead_e0 * bead_e3;
-        let t3 = bead_e1 * bead_e2;
-        let t4 = t3 + t2;
-        let t5 = bead_e0 * bead_e2;
-        let t6 = bead_e1 * bead_e3;
-        let t7 = t6 - t5;
-        let t8 = k(6.64)
-            * (k(1.3333333333333333) * t7
-                - (k(1.3333333333333333) * t4 - k(0.6666666666666666) * t1));
-        let t9 = t3 - t2;
-        let t10 = k(0.5) - (t0 + bead_e2 * bead_e2);
-        let t11 = bead_e0 * bead_e1;
-        let t12 = bead_e2 * bead_e3;
-        let t13 = t12 + t11;
-        let t14 = k(6.64)
-            * (k(1.3333333333333333) * t13
-                + (k(1.3333333333333333) * t10 - k(0.6666666666666666) * t9));
-        let t15 = t6 + t5;
-        let t16 = t12 - t11;
-        let t17 = k(0.5) - (t0 + bead_e3 * bead_e3);
-        let t18 = k(6.64)
-            * (k(1.3333333333333333) * t17
-                + (k(1.3333333333333333) * t16 + k(0.6666666666666666) * t15));
-        let t19 = k(2.0) * t15 * t18 - (k(2.0) * t9 * t14 - k(2.0) * t1 * t8);
-        let t20 = k(2.0) * t16 * t18 + (k(2.0) * t10 * t14 - k(2.0) * t4 * t8);
-        let t21 = k(2.0) * t17 * t18 + (k(2.0) * t13 * t14 + k(2.0) * t7 * t8);
         *out = [
-            t19,
-            t20,
-            -t21,
+            k(2.2133333333333334),
+            k(4.426666666666667),
+            k(-4.426666666666667),
             k(0.5) * (bead_wy * bead_wz),
             k(0.4) * (bead_wx * bead_wz),
             -(k(0.75) * (bead_wx * bead_wy)),
@@ -630,6 +603,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PointOnLine<T> {
         *lambda = [
             t1 - k(0.23333333333333334) * bead_dsy - k(0.6666666666666666) * t0,
             t1 + k(0.4666666666666667) * bead_dsy + k(0.3333333333333333) * t0,
+        ];
+    }
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 6 operations (0 ±, 6 ×, 0 ÷).
+    fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
+        let k = T::constant;
+        let bead_wx = y[10];
+        let bead_wy = y[11];
+        let bead_wz = y[12];
+        *out = [
+            k(2.2133333333333334),
+            k(4.426666666666667),
+            k(-4.426666666666667),
+            k(0.5) * (bead_wy * bead_wz),
+            k(0.4) * (bead_wx * bead_wz),
+            -(k(0.75) * (bead_wx * bead_wy)),
+            k(-4.438),
+            k(2.429),
         ];
     }
 }

@@ -19,7 +19,7 @@
 //! | gamma | γ | 45 | 73 | 0 | 118 | 0 of 5 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 36 | 58 | 0 | 94 | 0 of 5 |
 //! | applied_force | (f, n' − w̃'J'w') | 38 | 53 | 0 | 91 | 1 of 6 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 101 | 174 | 1 | 276 | 0 of 6 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 99 | 167 | 1 | 267 | 0 of 6 |
 //! | multipliers | λ, the accelerations being known | 92 | 143 | 1 | 236 | 0 of 5 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 |
 //! | energy | T and V | 28 | 38 | 0 | 66 | 0 of 2 |
@@ -32,6 +32,7 @@
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 16 | 18 | 0 | 34 | 0 of 1 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 34 | 51 | 0 | 85 | 3 of 6 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 74 | 99 | 0 | 173 | 0 of 5 |
+//! | corrected_solution | both | 80 | 123 | 0 | 203 | 3 of 11 |
 //!
 //! # Proof
 //!
@@ -46,7 +47,7 @@
 //! * joint_derivative: eqs. (14) and (16) on the constraints
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
-//! * corrected_multipliers: eq. (17) on the constraints
+//! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //!
 //! All of it holds but with a probability below 1e-156.
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
@@ -762,7 +763,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Prismatic<T> {
             t14 * (k(0.05) * t20 - k(0.1) * t13) - t24,
         ];
     }
-    /// Solves eq. (17): 276 operations (101 ±, 174 ×, 1 ÷).
+    /// Solves eq. (17): 267 operations (99 ±, 167 ×, 1 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let carriage_rx = y[0];
@@ -774,103 +775,94 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Prismatic<T> {
         let carriage_wx = y[10];
         let carriage_wy = y[11];
         let carriage_wz = y[12];
-        let t0 = carriage_wy * carriage_wy;
-        let t1 = carriage_wz * carriage_wz;
-        let t2 = t1 + t0;
-        let t3 = carriage_e0 * carriage_e0;
-        let t4 = k(0.5) - (t3 + carriage_e1 * carriage_e1);
-        let t5 = k(2.0) * t4;
-        let t6 = carriage_wx * carriage_wy;
-        let t7 = carriage_e0 * carriage_e3;
-        let t8 = carriage_e1 * carriage_e2;
-        let t9 = t8 - t7;
-        let t10 = k(2.0) * t9;
-        let t11 = carriage_wx * carriage_wz;
-        let t12 = carriage_e0 * carriage_e2;
-        let t13 = carriage_e1 * carriage_e3;
-        let t14 = t13 + t12;
-        let t15 = k(2.0) * t14;
-        let t16 = t15 * t11 + (t10 * t6 + t5 * t2);
-        let t17 = carriage_wx * carriage_wx;
-        let t18 = t1 + t17;
-        let t19 = carriage_wy * carriage_wz;
-        let t20 = t15 * t19 - (t10 * t18 + t5 * t6);
-        let t21 = t0 + t17;
-        let t22 = t15 * t21 - (t10 * t19 - t5 * t11);
-        let t23 = t8 + t7;
-        let t24 = k(2.0) * t23;
-        let t25 = k(0.5) - (t3 + carriage_e2 * carriage_e2);
-        let t26 = k(2.0) * t25;
-        let t27 = carriage_e0 * carriage_e1;
-        let t28 = carriage_e2 * carriage_e3;
-        let t29 = t28 - t27;
-        let t30 = k(2.0) * t29;
-        let t31 = t30 * t11 - (t26 * t6 + t24 * t2);
-        let t32 = t30 * t19 + (t26 * t18 + t24 * t6);
-        let t33 = t30 * t21 + (t26 * t19 - t24 * t11);
-        let t34 = k(0.8) * (k(0.02) * t33 + (k(0.05) * t32 + k(0.1) * t31))
-            - k(0.6) * (k(0.02) * t22 + (k(0.05) * t20 + k(0.1) * t16));
-        let t35 = k(0.8) * (carriage_rx - (k(0.04) * t14 - (k(0.1) * t9 - k(0.2) * t4)));
-        let t36 = k(0.6)
-            * (carriage_ry - (k(0.04) * t29 + (k(0.1) * t25 - k(0.2) * t23)));
-        let t37 = k(0.2) - (t36 + t35);
-        let t38 = k(0.1) * t14 + k(0.04) * t9;
-        let t39 = k(0.1) * t29 - k(0.04) * t25;
-        let t40 = t13 - t12;
-        let t41 = t28 + t27;
-        let t42 = k(1.6) * t41 - k(1.2) * t40;
-        let t43 = k(0.96) * t14 - k(1.28) * t29;
-        let t44 = k(0.5) - (t3 + carriage_e3 * carriage_e3);
+        let t0 = carriage_e0 * carriage_e0;
+        let t1 = k(0.5) - (t0 + carriage_e1 * carriage_e1);
+        let t2 = carriage_e0 * carriage_e3;
+        let t3 = carriage_e1 * carriage_e2;
+        let t4 = t3 - t2;
+        let t5 = carriage_e0 * carriage_e2;
+        let t6 = carriage_e1 * carriage_e3;
+        let t7 = t6 + t5;
+        let t8 = k(0.04) * t7 - (k(0.1) * t4 - k(0.2) * t1);
+        let t9 = t3 + t2;
+        let t10 = k(0.5) - (t0 + carriage_e2 * carriage_e2);
+        let t11 = carriage_e0 * carriage_e1;
+        let t12 = carriage_e2 * carriage_e3;
+        let t13 = t12 - t11;
+        let t14 = k(0.04) * t13 + (k(0.1) * t10 - k(0.2) * t9);
+        let t15 = k(0.2) - (k(0.6) * (carriage_ry - t14) + k(0.8) * (carriage_rx - t8));
+        let t16 = carriage_wy * carriage_wy;
+        let t17 = carriage_wz * carriage_wz;
+        let t18 = t17 + t16;
+        let t19 = k(2.0) * t1;
+        let t20 = carriage_wx * carriage_wy;
+        let t21 = k(2.0) * t4;
+        let t22 = carriage_wx * carriage_wz;
+        let t23 = k(2.0) * t7;
+        let t24 = t23 * t22 + (t21 * t20 + t19 * t18);
+        let t25 = carriage_wx * carriage_wx;
+        let t26 = t17 + t25;
+        let t27 = carriage_wy * carriage_wz;
+        let t28 = t23 * t27 - (t21 * t26 + t19 * t20);
+        let t29 = t16 + t25;
+        let t30 = t23 * t29 - (t21 * t27 - t19 * t22);
+        let t31 = k(2.0) * t9;
+        let t32 = k(2.0) * t10;
+        let t33 = k(2.0) * t13;
+        let t34 = t33 * t22 - (t32 * t20 + t31 * t18);
+        let t35 = t33 * t27 + (t32 * t26 + t31 * t20);
+        let t36 = t33 * t29 + (t32 * t27 - t31 * t22);
+        let t37 = k(0.8) * (k(0.02) * t36 + (k(0.05) * t35 + k(0.1) * t34))
+            - k(0.6) * (k(0.02) * t30 + (k(0.05) * t28 + k(0.1) * t24));
+        let t38 = k(1.6) * t10;
+        let t39 = k(1.2) * t4 + t38;
+        let t40 = k(0.96) * t7 - k(1.28) * t13;
+        let t41 = t6 - t5;
+        let t42 = t12 + t11;
+        let t43 = k(1.6) * t42 - k(1.2) * t41;
+        let t44 = k(0.5) - (t0 + carriage_e3 * carriage_e3);
         let t45 = k(1.6) * t44;
-        let t46 = k(1.6) * t25;
-        let t47 = k(1.2) * t4;
-        let t48 = k(0.6) * (k(1.6) * t9 + t47) + k(0.8) * (k(1.2) * t23 + t46);
-        let t49 = t48 * t45 + t43 * t42;
-        let t50 = k(1.2) * t9 + t46;
-        let t51 = k(1.2) * t44;
-        let t52 = k(0.72) * t14 - k(0.96) * t29;
-        let t53 = t52 * t42 + t48 * t51;
-        let t54 = k(1.6) * t23 + t47;
-        let t55 = k(1.0) / (t54 * t53 + t50 * t49);
-        let t56 = k(0.8) * t33 - k(0.6) * t22;
-        let t57 = k(0.8) * (k(0.6) * t32 + k(0.8) * t31)
-            - k(0.6) * (k(0.6) * t20 + k(0.8) * t16);
-        let t58 = k(2.0) * t40;
-        let t59 = k(2.0) * t41;
-        let t60 = k(2.0) * t44;
-        let t61 = t60 * t11 - (t59 * t6 - t58 * t2);
-        let t62 = t60 * t19 + (t59 * t18 - t58 * t6);
-        let t63 = k(0.6) * t62 + k(0.8) * t61;
-        let t64 = t63 * (t55 * (t48 * t54)) - t57 * (t55 * (t42 * t54));
-        let t65 = t64 - t56 * (t49 * t55);
-        let t66 = k(0.2) * t14 - k(0.04) * t4;
-        let t67 = k(0.2) * t29 + k(0.04) * t23;
-        let t68 = t63 * (t55 * (t48 * t50)) - t57 * (t55 * (t42 * t50));
-        let t69 = t68 + t56 * (t53 * t55);
-        let t70 = t69 * (k(0.78) * t67 + k(1.04) * t66)
-            + t65 * (k(0.78) * t39 + k(1.04) * t38);
-        let t71 = k(0.2) * t9 + k(0.1) * t4;
-        let t72 = k(0.2) * t25 + k(0.1) * t23;
-        let t73 = t63 * (t55 * (t52 * t54 + t43 * t50))
-            + t57 * (t55 * (t45 * t50 + t51 * t54));
-        let t74 = t73 + t56 * (t55 * (t43 * t51 - t52 * t45));
-        let t75 = t74 * (k(0.78) * t72 - k(1.04) * t71) + t70
-            + (k(0.6) * (k(12.753) - k(22.2) * t37) - k(23.68) * t37);
-        let t76 = t71 * t74 - (t66 * t69 + t38 * t65)
-            + (k(0.6153846153846154) * t75 - k(0.6) * t34);
-        let t77 = t72 * t74 + (t67 * t69 + t39 * t65)
-            - (k(0.46153846153846156) * t75 + k(0.8) * t34);
-        let t78 = (k(0.2) * t44 - k(0.04) * t40) * t69
-            + (k(0.1) * t44 - k(0.04) * t41) * t65;
-        let t79 = k(0.02) * (t60 * t21 + (t59 * t19 + t58 * t11))
-            + (k(0.05) * t62 + k(0.1) * t61);
+        let t46 = k(1.2) * t1;
+        let t47 = k(0.6) * (k(1.6) * t4 + t46) + k(0.8) * (k(1.2) * t9 + t38);
+        let t48 = t47 * t45 + t43 * t40;
+        let t49 = k(1.6) * t9 + t46;
+        let t50 = k(1.2) * t44;
+        let t51 = k(0.72) * t7 - k(0.96) * t13;
+        let t52 = t43 * t51 + t47 * t50;
+        let t53 = k(1.0) / (t52 * t49 + t48 * t39);
+        let t54 = k(0.8) * t36 - k(0.6) * t30;
+        let t55 = k(0.8) * (k(0.6) * t35 + k(0.8) * t34)
+            - k(0.6) * (k(0.6) * t28 + k(0.8) * t24);
+        let t56 = k(2.0) * t41;
+        let t57 = k(2.0) * t42;
+        let t58 = k(2.0) * t44;
+        let t59 = t58 * t22 - (t57 * t20 - t56 * t18);
+        let t60 = t58 * t27 + (t57 * t26 - t56 * t20);
+        let t61 = k(0.6) * t60 + k(0.8) * t59;
+        let t62 = t61 * (t53 * (t47 * t49)) - t55 * (t53 * (t43 * t49));
+        let t63 = t62 - t54 * (t48 * t53);
+        let t64 = t61 * (t53 * (t47 * t39)) - t55 * (t53 * (t43 * t39));
+        let t65 = t64 + t54 * (t52 * t53);
+        let t66 = t53 * (t51 * t49 + t40 * t39) * t61
+            + t53 * (t45 * t39 + t50 * t49) * t55;
+        let t67 = t66 + t53 * (t50 * t40 - t51 * t45) * t54;
+        let t68 = t58 * t67 - (t57 * t65 - t56 * t63);
+        let t69 = t33 * t67 - (t32 * t65 + t31 * t63);
+        let t70 = k(0.04) * t44 + (k(0.1) * t42 + k(0.2) * t41);
+        let t71 = t70 * t69 - t14 * t68 - k(0.6) * t37;
+        let t72 = t23 * t67 + (t21 * t65 + t19 * t63);
+        let t73 = t8 * t68 - t72 * t70 + k(0.8) * t37;
+        let t74 = k(0.78) * t73 + k(1.04) * t71
+            - (k(0.6) * (k(12.753) - k(22.2) * t15) - k(23.68) * t15);
+        let t75 = k(0.02) * (t58 * t29 + (t57 * t27 + t56 * t22))
+            + (k(0.05) * t60 + k(0.1) * t59);
         *out = [
-            -t76,
-            t77,
-            t79 - ((k(0.2) * t41 - k(0.1) * t40) * t74 + t78),
-            -t65,
-            t69,
-            t74,
+            k(0.6153846153846154) * t74 - t71,
+            k(0.46153846153846156) * t74 - t73,
+            t14 * t72 - t8 * t69 + t75,
+            t31 * t69 - t19 * t72 - t56 * t68,
+            -(t57 * t68 + (t32 * t69 - t21 * t72)),
+            t58 * t68 + (t33 * t69 + t23 * t72),
         ];
     }
     /// Writes λ: 236 operations (92 ±, 143 ×, 1 ÷).
@@ -917,63 +909,63 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Prismatic<T> {
         let t16 = k(1.3) * carriage_dsx - k(29.6) * t15;
         let t17 = k(1.3) * carriage_dsy + (k(12.753) - k(22.2) * t15);
         let t18 = k(1.3) * carriage_dsz;
-        let t19 = k(1.2) * t1;
-        let t20 = k(1.6) * t9 + t19;
-        let t21 = t6 - t5;
-        let t22 = t12 + t11;
-        let t23 = k(1.6) * t22 - k(1.2) * t21;
-        let t24 = k(0.96) * t7 - k(1.28) * t13;
-        let t25 = k(0.5) - (t0 + carriage_e3 * carriage_e3);
-        let t26 = k(1.6) * t25;
-        let t27 = k(1.6) * t10;
-        let t28 = k(1.2) * t9;
-        let t29 = k(1.6) * t4;
-        let t30 = k(0.6) * (t29 + t19) + k(0.8) * (t28 + t27);
-        let t31 = t30 * t26 + t24 * t23;
-        let t32 = k(1.2) * t4 + t27;
-        let t33 = k(1.2) * t25;
-        let t34 = k(0.72) * t7 - k(0.96) * t13;
-        let t35 = t34 * t23 + t30 * t33;
-        let t36 = k(1.0) / (t20 * t35 + t32 * t31);
-        let t37 = k(1.6) * t7 + k(1.2) * t13;
-        let t38 = k(1.2) * t10 - t29;
-        let t39 = k(37.0) * t15;
-        let t40 = carriage_wy * carriage_wy;
-        let t41 = carriage_wz * carriage_wz;
-        let t42 = k(0.001) * carriage_wz;
-        let t43 = k(0.002) * carriage_wy;
-        let t44 = carriage_wx * (t43 + t42)
-            + (k(0.005) * (carriage_wy * carriage_wz) + k(0.003) * (t41 - t40));
-        let t45 = k(0.01) * carriage_dwx + k(0.001) * carriage_dwy
-            - k(0.002) * carriage_dwz - (t44 - t39 * (k(0.02) * t38 - k(0.05) * t37));
-        let t46 = t17 * (k(0.1) * t13 - k(0.04) * t10)
+        let t19 = k(1.6) * t7 + k(1.2) * t13;
+        let t20 = k(1.6) * t4;
+        let t21 = k(1.2) * t10 - t20;
+        let t22 = k(37.0) * t15;
+        let t23 = carriage_wy * carriage_wy;
+        let t24 = carriage_wz * carriage_wz;
+        let t25 = k(0.001) * carriage_wz;
+        let t26 = k(0.002) * carriage_wy;
+        let t27 = carriage_wx * (t26 + t25)
+            + (k(0.005) * (carriage_wy * carriage_wz) + k(0.003) * (t24 - t23));
+        let t28 = k(0.01) * carriage_dwx + k(0.001) * carriage_dwy
+            - k(0.002) * carriage_dwz - (t27 - t22 * (k(0.02) * t21 - k(0.05) * t19));
+        let t29 = t17 * (k(0.1) * t13 - k(0.04) * t10)
             + t16 * (k(0.1) * t7 + k(0.04) * t4);
-        let t47 = t18 * (k(0.1) * t25 - k(0.04) * t22) - t46 + t45;
-        let t48 = k(1.6) * t1 - t28;
+        let t30 = t12 + t11;
+        let t31 = k(0.5) - (t0 + carriage_e3 * carriage_e3);
+        let t32 = t18 * (k(0.1) * t31 - k(0.04) * t30) - t29 + t28;
+        let t33 = k(1.2) * t1;
+        let t34 = k(1.6) * t9 + t33;
+        let t35 = t6 - t5;
+        let t36 = k(1.6) * t30 - k(1.2) * t35;
+        let t37 = k(1.6) * t10;
+        let t38 = k(1.2) * t4 + t37;
+        let t39 = k(0.96) * t7 - k(1.28) * t13;
+        let t40 = k(1.6) * t31;
+        let t41 = k(1.2) * t9;
+        let t42 = k(0.6) * (t20 + t33) + k(0.8) * (t41 + t37);
+        let t43 = t42 * t40 + t36 * t39;
+        let t44 = k(1.2) * t31;
+        let t45 = k(0.72) * t7 - k(0.96) * t13;
+        let t46 = t36 * t45 + t42 * t44;
+        let t47 = k(1.0) / (t46 * t34 + t43 * t38);
+        let t48 = k(1.6) * t1 - t41;
         let t49 = carriage_wx * carriage_wx;
         let t50 = k(0.003) * carriage_wx;
-        let t51 = carriage_wy * (t42 - t50)
-            - (k(0.005) * (carriage_wx * carriage_wz) + k(0.002) * (t41 - t49));
+        let t51 = carriage_wy * (t25 - t50)
+            - (k(0.005) * (carriage_wx * carriage_wz) + k(0.002) * (t24 - t49));
         let t52 = k(0.001) * carriage_dwx + k(0.02) * carriage_dwy
-            + k(0.003) * carriage_dwz + (t51 + t39 * (k(0.1) * t37 - k(0.02) * t48));
+            + k(0.003) * carriage_dwz + (t51 + t22 * (k(0.1) * t19 - k(0.02) * t48));
         let t53 = t17 * (k(0.2) * t13 + k(0.04) * t9)
             + t16 * (k(0.2) * t7 - k(0.04) * t1);
-        let t54 = t18 * (k(0.2) * t25 - k(0.04) * t21) - t53 - t52;
-        let t55 = t54 * (t36 * (t23 * t32)) + t47 * (t36 * (t23 * t20));
-        let t56 = carriage_wz * (t43 + t50)
-            + (k(0.01) * (carriage_wx * carriage_wy) - k(0.001) * (t40 - t49));
+        let t54 = t18 * (k(0.2) * t31 - k(0.04) * t35) - t53 - t52;
+        let t55 = t47 * (t36 * t38) * t54 + t47 * (t36 * t34) * t32;
+        let t56 = carriage_wz * (t26 + t50)
+            + (k(0.01) * (carriage_wx * carriage_wy) - k(0.001) * (t23 - t49));
         let t57 = k(0.002) * carriage_dwx - k(0.003) * carriage_dwy
-            - k(0.015) * carriage_dwz - (t56 - t39 * (k(0.05) * t48 - k(0.1) * t38));
+            - k(0.015) * carriage_dwz - (t56 - t22 * (k(0.05) * t48 - k(0.1) * t21));
         let t58 = t17 * (k(0.2) * t10 + k(0.1) * t9) - t16 * (k(0.2) * t4 + k(0.1) * t1);
-        let t59 = t18 * (k(0.2) * t22 - k(0.1) * t21) - t58 + t57;
-        let t60 = t54 * (t36 * (t30 * t32)) + t47 * (t36 * (t30 * t20));
-        let t61 = t59 * (t36 * (t24 * t33 - t34 * t26))
-            + (t54 * (t35 * t36) - t47 * (t31 * t36));
+        let t59 = t18 * (k(0.2) * t30 - k(0.1) * t35) - t58 + t57;
+        let t60 = t47 * (t42 * t38) * t54 + t47 * (t42 * t34) * t32;
+        let t61 = t47 * (t44 * t39 - t45 * t40) * t59
+            + (t46 * t47 * t54 - t43 * t47 * t32);
         *lambda = [
             k(0.6) * t16 - k(0.8) * t17,
             -t18,
-            t55 - t59 * (t36 * (t26 * t32 + t33 * t20)),
-            t59 * (t36 * (t34 * t20 + t24 * t32)) + t60,
+            t55 - t47 * (t40 * t38 + t44 * t34) * t59,
+            t47 * (t45 * t34 + t39 * t38) * t59 + t60,
             t61,
         ];
     }
@@ -981,12 +973,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Prismatic<T> {
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Prismatic<T> {
     type Joints = [T; 2];
     type Rates = [T; 1];
+    type Solution = [T; 11];
     fn joint_start(&self) -> Self::Joints {
         let k = T::constant;
         [k(0.5), k(1.5)]
     }
     fn rates(&self) -> Self::Rates {
         [T::constant(0.0); 1]
+    }
+    fn solution(&self) -> Self::Solution {
+        [T::constant(0.0); 11]
     }
     /// Writes u̇: 2 operations (1 ±, 1 ×, 0 ÷).
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
@@ -1226,6 +1222,93 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Prismatic<T> {
             k(0.8) * t38 - k(0.6) * t42,
         ];
     }
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 203 operations (80 ±, 123 ×, 0 ÷).
+    fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
+        let k = T::constant;
+        let carriage_rx = y[0];
+        let carriage_ry = y[1];
+        let carriage_e0 = y[3];
+        let carriage_e1 = y[4];
+        let carriage_e2 = y[5];
+        let carriage_e3 = y[6];
+        let carriage_wx = y[10];
+        let carriage_wy = y[11];
+        let carriage_wz = y[12];
+        let t0 = carriage_e0 * carriage_e0;
+        let t1 = k(0.5) - (t0 + carriage_e1 * carriage_e1);
+        let t2 = carriage_e0 * carriage_e3;
+        let t3 = carriage_e1 * carriage_e2;
+        let t4 = t3 - t2;
+        let t5 = carriage_e0 * carriage_e2;
+        let t6 = carriage_e1 * carriage_e3;
+        let t7 = t6 + t5;
+        let t8 = k(0.8) * (carriage_rx - (k(0.04) * t7 - (k(0.1) * t4 - k(0.2) * t1)));
+        let t9 = t3 + t2;
+        let t10 = k(0.5) - (t0 + carriage_e2 * carriage_e2);
+        let t11 = carriage_e0 * carriage_e1;
+        let t12 = carriage_e2 * carriage_e3;
+        let t13 = t12 - t11;
+        let t14 = k(0.6)
+            * (carriage_ry - (k(0.04) * t13 + (k(0.1) * t10 - k(0.2) * t9)));
+        let t15 = t14 + t8;
+        let t16 = k(0.1936923076923077) + k(28.46153846153846) * t15;
+        let t17 = k(0.1) * carriage_wz + k(0.02) * carriage_wx;
+        let t18 = k(0.05) * carriage_wx - k(0.1) * carriage_wy;
+        let t19 = carriage_wy * t18 - carriage_wz * t17 + k(0.8) * t16;
+        let t20 = k(0.02) * carriage_wy + k(0.05) * carriage_wz;
+        let t21 = carriage_wz * t20 + carriage_wx * t18 - k(0.6) * t16;
+        let t22 = carriage_wx * t17 + carriage_wy * t20;
+        let t23 = k(2.0) * t7 * t22 - (k(2.0) * t4 * t21 + k(2.0) * t1 * t19);
+        let t24 = k(2.0) * t13 * t22 + (k(2.0) * t10 * t21 + k(2.0) * t9 * t19);
+        let t25 = t6 - t5;
+        let t26 = t12 + t11;
+        let t27 = k(0.5) - (t0 + carriage_e3 * carriage_e3);
+        let t28 = k(2.0) * t27 * t22 + (k(2.0) * t26 * t21 - k(2.0) * t25 * t19);
+        let t29 = k(0.2) - t15;
+        let t30 = k(12.753) - k(22.2) * t29 - k(1.3) * t24;
+        let t31 = k(29.6) * t29 + k(1.3) * t23;
+        let t32 = k(1.3) * t28;
+        let t33 = (k(0.2) * t4 + k(0.1) * t1) * t31 + (k(0.2) * t10 + k(0.1) * t9) * t30;
+        let t34 = k(1.2) * t10 - k(1.6) * t4;
+        let t35 = k(1.6) * t1 - k(1.2) * t9;
+        let t36 = k(37.0) * t29;
+        let t37 = carriage_wx * carriage_wx;
+        let t38 = carriage_wy * carriage_wy;
+        let t39 = k(0.003) * carriage_wx;
+        let t40 = k(0.002) * carriage_wy;
+        let t41 = carriage_wz * (t40 + t39)
+            + (k(0.01) * (carriage_wx * carriage_wy) - k(0.001) * (t38 - t37));
+        let t42 = t41 - t36 * (k(0.05) * t35 - k(0.1) * t34)
+            + (t33 - (k(0.2) * t26 - k(0.1) * t25) * t32);
+        let t43 = (k(0.2) * t7 - k(0.04) * t1) * t31
+            - (k(0.2) * t13 + k(0.04) * t9) * t30;
+        let t44 = k(1.6) * t7 + k(1.2) * t13;
+        let t45 = carriage_wz * carriage_wz;
+        let t46 = k(0.001) * carriage_wz;
+        let t47 = carriage_wy * (t46 - t39)
+            - (k(0.005) * (carriage_wx * carriage_wz) + k(0.002) * (t45 - t37));
+        let t48 = t47 + t36 * (k(0.1) * t44 - k(0.02) * t35)
+            - (t43 + (k(0.2) * t27 - k(0.04) * t25) * t32);
+        let t49 = (k(0.1) * t7 + k(0.04) * t4) * t31
+            - (k(0.1) * t13 - k(0.04) * t10) * t30;
+        let t50 = carriage_wx * (t40 + t46)
+            + (k(0.005) * (carriage_wy * carriage_wz) + k(0.003) * (t45 - t38));
+        let t51 = t50 - t36 * (k(0.02) * t34 - k(0.05) * t44)
+            - (t49 + (k(0.1) * t27 - k(0.04) * t26) * t32);
+        *out = [
+            -t23,
+            -t24,
+            t28,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -(k(0.6) * t31 + k(0.8) * t30),
+            -t32,
+            -t42,
+            k(0.6) * t51 + k(0.8) * t48,
+            k(0.6) * t48 - k(0.8) * t51,
+        ];
+    }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Ports for Prismatic<T> {
     type Outputs = [T; 6];
@@ -1278,76 +1361,76 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Prismatic<T> {
         let t22 = t12 + t11;
         let t23 = k(0.5) - (t0 + carriage_e3 * carriage_e3);
         let t24 = t19 * (k(0.1) * t23 - k(0.04) * t22);
-        let t25 = k(1.2) * t1;
-        let t26 = k(1.6) * t9 + t25;
-        let t27 = t6 - t5;
-        let t28 = k(1.6) * t22 - k(1.2) * t27;
-        let t29 = k(0.96) * t7 - k(1.28) * t13;
-        let t30 = k(1.6) * t23;
-        let t31 = k(1.6) * t10;
-        let t32 = k(1.2) * t9;
-        let t33 = k(1.6) * t4;
-        let t34 = k(0.6) * (t33 + t25) + k(0.8) * (t32 + t31);
-        let t35 = t34 * t30 + t29 * t28;
-        let t36 = k(1.2) * t4 + t31;
-        let t37 = k(1.2) * t23;
-        let t38 = k(0.72) * t7 - k(0.96) * t13;
-        let t39 = t38 * t28 + t34 * t37;
-        let t40 = k(1.0) / (t26 * t39 + t36 * t35);
-        let t41 = k(1.6) * t7 + k(1.2) * t13;
-        let t42 = k(1.2) * t10 - t33;
-        let t43 = k(37.0) * t15;
-        let t44 = carriage_wy * carriage_wy;
-        let t45 = carriage_wz * carriage_wz;
-        let t46 = k(0.001) * carriage_wz;
-        let t47 = k(0.002) * carriage_wy;
-        let t48 = carriage_wx * (t47 + t46)
-            + (k(0.005) * (carriage_wy * carriage_wz) + k(0.003) * (t45 - t44));
-        let t49 = k(0.01) * carriage_dwx + k(0.001) * carriage_dwy
-            - k(0.002) * carriage_dwz - (t48 - t43 * (k(0.02) * t42 - k(0.05) * t41));
-        let t50 = t24 - (t17 * t20 + t16 * t21) + t49;
-        let t51 = k(1.6) * t1 - t32;
+        let t25 = k(1.6) * t7 + k(1.2) * t13;
+        let t26 = k(1.6) * t4;
+        let t27 = k(1.2) * t10 - t26;
+        let t28 = k(37.0) * t15;
+        let t29 = carriage_wy * carriage_wy;
+        let t30 = carriage_wz * carriage_wz;
+        let t31 = k(0.001) * carriage_wz;
+        let t32 = k(0.002) * carriage_wy;
+        let t33 = carriage_wx * (t32 + t31)
+            + (k(0.005) * (carriage_wy * carriage_wz) + k(0.003) * (t30 - t29));
+        let t34 = k(0.01) * carriage_dwx + k(0.001) * carriage_dwy
+            - k(0.002) * carriage_dwz - (t33 - t28 * (k(0.02) * t27 - k(0.05) * t25));
+        let t35 = t24 - (t17 * t20 + t16 * t21) + t34;
+        let t36 = k(1.2) * t1;
+        let t37 = k(1.6) * t9 + t36;
+        let t38 = t6 - t5;
+        let t39 = k(1.6) * t22 - k(1.2) * t38;
+        let t40 = k(1.6) * t10;
+        let t41 = k(1.2) * t4 + t40;
+        let t42 = k(0.96) * t7 - k(1.28) * t13;
+        let t43 = k(1.6) * t23;
+        let t44 = k(1.2) * t9;
+        let t45 = k(0.6) * (t26 + t36) + k(0.8) * (t44 + t40);
+        let t46 = t45 * t43 + t39 * t42;
+        let t47 = k(1.2) * t23;
+        let t48 = k(0.72) * t7 - k(0.96) * t13;
+        let t49 = t39 * t48 + t45 * t47;
+        let t50 = k(1.0) / (t49 * t37 + t46 * t41);
+        let t51 = k(1.6) * t1 - t44;
         let t52 = carriage_wx * carriage_wx;
         let t53 = k(0.003) * carriage_wx;
-        let t54 = carriage_wy * (t46 - t53)
-            - (k(0.005) * (carriage_wx * carriage_wz) + k(0.002) * (t45 - t52));
+        let t54 = carriage_wy * (t31 - t53)
+            - (k(0.005) * (carriage_wx * carriage_wz) + k(0.002) * (t30 - t52));
         let t55 = k(0.001) * carriage_dwx + k(0.02) * carriage_dwy
-            + k(0.003) * carriage_dwz + (t54 + t43 * (k(0.1) * t41 - k(0.02) * t51));
+            + k(0.003) * carriage_dwz + (t54 + t28 * (k(0.1) * t25 - k(0.02) * t51));
         let t56 = k(0.2) * t7 - k(0.04) * t1;
         let t57 = k(0.2) * t13 + k(0.04) * t9;
-        let t58 = t19 * (k(0.2) * t23 - k(0.04) * t27);
+        let t58 = t19 * (k(0.2) * t23 - k(0.04) * t38);
         let t59 = t58 - (t17 * t57 + t16 * t56) - t55;
-        let t60 = t59 * (t40 * (t28 * t36)) + t50 * (t40 * (t28 * t26));
-        let t61 = carriage_wz * (t47 + t53)
-            + (k(0.01) * (carriage_wx * carriage_wy) - k(0.001) * (t44 - t52));
+        let t60 = t50 * (t39 * t41) * t59 + t50 * (t39 * t37) * t35;
+        let t61 = carriage_wz * (t32 + t53)
+            + (k(0.01) * (carriage_wx * carriage_wy) - k(0.001) * (t29 - t52));
         let t62 = k(0.002) * carriage_dwx - k(0.003) * carriage_dwy
-            - k(0.015) * carriage_dwz - (t61 - t43 * (k(0.05) * t51 - k(0.1) * t42));
+            - k(0.015) * carriage_dwz - (t61 - t28 * (k(0.05) * t51 - k(0.1) * t27));
         let t63 = k(0.2) * t4 + k(0.1) * t1;
         let t64 = k(0.2) * t10 + k(0.1) * t9;
-        let t65 = t19 * (k(0.2) * t22 - k(0.1) * t27);
+        let t65 = t19 * (k(0.2) * t22 - k(0.1) * t38);
         let t66 = t65 - (t17 * t64 - t16 * t63) + t62;
-        let t67 = t66 * (t40 * (t30 * t36 + t37 * t26)) - t60;
-        let t68 = t38 * t67 + (t24 + t18 * (k(0.6) * t21 - k(0.8) * t20));
-        let t69 = t59 * (t40 * (t34 * t36)) + t50 * (t40 * (t34 * t26));
-        let t70 = t66 * (t40 * (t38 * t26 + t29 * t36)) + t69;
-        let t71 = t66 * (t40 * (t29 * t37 - t38 * t30))
-            + (t59 * (t39 * t40) - t50 * (t35 * t40));
-        let t72 = t36 * t71 - (t37 * t70 - t68);
-        let t73 = t29 * t67 + (t58 + t18 * (k(0.6) * t56 - k(0.8) * t57));
-        let t74 = t26 * t71 + (t30 * t70 - t73);
-        let t75 = t34 * t67 - (t65 - t18 * (k(0.6) * t63 + k(0.8) * t64));
-        let t76 = t28 * t70 + t75;
+        let t67 = t50 * (t43 * t41 + t47 * t37) * t66 - t60;
+        let t68 = t48 * t67 + (t24 + t18 * (k(0.6) * t21 - k(0.8) * t20));
+        let t69 = t50 * (t45 * t41) * t59 + t50 * (t45 * t37) * t35;
+        let t70 = t50 * (t48 * t37 + t42 * t41) * t66 + t69;
+        let t71 = t50 * (t47 * t42 - t48 * t43) * t66
+            + (t49 * t50 * t59 - t46 * t50 * t35);
+        let t72 = t41 * t71 - (t47 * t70 - t68);
+        let t73 = t42 * t67 + (t58 + t18 * (k(0.6) * t56 - k(0.8) * t57));
+        let t74 = t37 * t71 + (t43 * t70 - t73);
+        let t75 = t45 * t67 - (t65 - t18 * (k(0.6) * t63 + k(0.8) * t64));
+        let t76 = t39 * t70 + t75;
         let t77 = k(2.0) * t7 * t76 + (k(2.0) * t4 * t74 - k(2.0) * t1 * t72);
         let t78 = carriage_ry - t14;
         let t79 = k(0.8) * t18;
         let t80 = carriage_rz
-            - (carriage_rz + (k(0.04) * t23 + (k(0.1) * t22 + k(0.2) * t27)));
+            - (carriage_rz + (k(0.04) * t23 + (k(0.1) * t22 + k(0.2) * t38)));
         let t81 = t80 * t79 - t19 * t78 + t77;
         let t82 = k(2.0) * t13 * t76 - (k(2.0) * t10 * t74 - k(2.0) * t9 * t72);
         let t83 = k(0.6) * t18;
         let t84 = carriage_rx - t8;
         let t85 = t19 * t84 + t80 * t83 + t82;
-        let t86 = k(2.0) * t23 * t76 - (k(2.0) * t22 * t74 + k(2.0) * t27 * t72);
+        let t86 = k(2.0) * t23 * t76 - (k(2.0) * t22 * t74 + k(2.0) * t38 * t72);
         *out = [
             t18,
             t19,

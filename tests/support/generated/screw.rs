@@ -32,6 +32,7 @@
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 0 | 0 | 0 | 0 | 0 of 1 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 4 | 11 | 0 | 15 | 0 of 6 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 19 | 44 | 2 | 65 | 0 of 5 |
+//! | corrected_solution | both | 19 | 46 | 2 | 67 | 0 of 11 |
 //!
 //! # Proof
 //!
@@ -46,7 +47,7 @@
 //! * joint_derivative: eqs. (14) and (16) on the constraints
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
-//! * corrected_multipliers: eq. (17) on the constraints
+//! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //!
 //! All of it holds but with a probability below 1e-149.
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
@@ -448,9 +449,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Screw<T> {
         let t2 = nut_e0 * nut_e3;
         let t3 = nut_e1 * nut_e2;
         let t4 = k(2.0) * (t3 + t2);
-        let t5 = k(1.0) / (t4 * t4 + t1 * t1);
-        let t6 = k(2.0) * (nut_e1 * nut_e3 + nut_e0 * nut_e2) * t4
+        let t5 = k(2.0) * (nut_e1 * nut_e3 + nut_e0 * nut_e2) * t4
             + t1 * (k(2.0) * (nut_e2 * nut_e3 - nut_e0 * nut_e1));
+        let t6 = k(1.0) / (t4 * t4 + t1 * t1);
         let t7 = k(2.0) * (k(0.5) - (t0 + nut_e2 * nut_e2));
         let t8 = k(2.0) * (t3 - t2);
         *out = [
@@ -458,7 +459,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Screw<T> {
             k(1.0),
             k(1.0),
             -(k(0.02) * (t6 * t5)),
-            k(0.02) * ((t8 * t4 - t1 * t7) * t5),
+            k(0.02) * ((t8 * t4 - t1 * t7) * t6),
             -t8,
             -t1,
             t7,
@@ -545,8 +546,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Screw<T> {
         let t7 = k(2.0) * (t3 - t2);
         let t8 = t7 * t4 - t1 * t6;
         let t9 = t8 * t5;
-        let t10 = k(0.04) * t9;
-        let t11 = k(0.02) * t9;
+        let t10 = k(0.02) * t9;
+        let t11 = k(0.04) * t9;
         let t12 = nut_wx * nut_wy;
         let t13 = nut_wx * nut_wz;
         let t14 = nut_wy * nut_wz;
@@ -557,27 +558,27 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Screw<T> {
         let t19 = k(1.0) / t8;
         let t20 = t7 * t19;
         let t21 = k(2.0) * (nut_e1 * nut_e3 + nut_e0 * nut_e2);
-        let t22 = k(0.02) * ((t21 * t4 + t1 * t17) * t5);
-        let t23 = t21 * t16 - (t7 * t14 - t1 * t13);
-        let t24 = t6 * t19;
-        let t25 = t17 * nut_wy + t6 * nut_wz;
-        let t26 = t21 * nut_wy - t7 * nut_wz;
-        let t27 = t5 * t5 * (k(2.0) * (t1 * t26 - t4 * t25)) * (t4 * t26 + t1 * t25);
-        let t28 = nut_wz * nut_wz + t15;
-        let t29 = t25 * t26;
-        let t30 = t29 + t4 * (t21 * t13 + (t7 * t12 + t1 * t28));
-        let t31 = t1 * (t17 * t13 - (t6 * t12 + t4 * t28)) - t29;
-        let t32 = k(0.02) * (t5 * (t31 + t30) + t27) - t24 * t22 * t23;
-        let t33 = t32 - t22 * t20 * t18;
-        let t34 = (t33 * t10 + (k(0.0005) * t12 - k(0.3924) * t9))
+        let t22 = k(0.02) * (t5 * (t21 * t4 + t1 * t17));
+        let t23 = t17 * nut_wy + t6 * nut_wz;
+        let t24 = t21 * nut_wy - t7 * nut_wz;
+        let t25 = t5 * t5 * (k(2.0) * (t1 * t24 - t4 * t23)) * (t4 * t24 + t1 * t23);
+        let t26 = nut_wz * nut_wz + t15;
+        let t27 = t23 * t24;
+        let t28 = t27 + t4 * (t21 * t13 + (t7 * t12 + t1 * t26));
+        let t29 = t1 * (t17 * t13 - (t6 * t12 + t4 * t26)) - t27;
+        let t30 = t21 * t16 - (t7 * t14 - t1 * t13);
+        let t31 = t6 * t19;
+        let t32 = t31 * t22 * t30 - k(0.02) * (t5 * (t29 + t28) + t25);
+        let t33 = t32 + t22 * t20 * t18;
+        let t34 = (t11 * t33 - (k(0.0005) * t12 - k(0.3924) * t9))
             / (k(0.003) + t11 * t10);
         *out = [
             k(0.0),
             k(0.0),
-            t11 * t34 - t33,
-            -(t18 * (t1 * t19) + t23 * (t4 * t19)),
-            t20 * t18 + t24 * t23,
-            -t34,
+            t33 - t10 * t34,
+            -(t18 * (t1 * t19) + t30 * (t4 * t19)),
+            t20 * t18 + t31 * t30,
+            t34,
         ];
     }
     /// Writes λ: 63 operations (18 ±, 43 ×, 2 ÷).
@@ -625,12 +626,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Screw<T> {
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Screw<T> {
     type Joints = [T; 2];
     type Rates = [T; 1];
+    type Solution = [T; 11];
     fn joint_start(&self) -> Self::Joints {
         let k = T::constant;
         [k(0.5), k(4.0)]
     }
     fn rates(&self) -> Self::Rates {
         [T::constant(0.0); 1]
+    }
+    fn solution(&self) -> Self::Solution {
+        [T::constant(0.0); 11]
     }
     /// Writes u̇: 0 operations (0 ±, 0 ×, 0 ÷).
     fn joint_accelerations(&self, _t: T, _y: &Self::Joints, out: &mut Self::Rates) {
@@ -757,6 +762,53 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Screw<T> {
         let t17 = t15 * t12 + t13 * t14 - t0 * (t7 * (t9 * t10));
         *lambda = [-(k(2.0) * nut_dsx), -(k(2.0) * nut_dsy), -t0, t16, t17];
     }
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 67 operations (19 ±, 46 ×, 2 ÷).
+    fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
+        let k = T::constant;
+        let nut_e0 = y[3];
+        let nut_e1 = y[4];
+        let nut_e2 = y[5];
+        let nut_e3 = y[6];
+        let nut_wx = y[10];
+        let nut_wy = y[11];
+        let nut_wz = y[12];
+        let t0 = nut_e1 * nut_e3 + nut_e0 * nut_e2;
+        let t1 = nut_e2 * nut_e3 - nut_e0 * nut_e1;
+        let t2 = nut_e0 * nut_e0;
+        let t3 = k(0.5) - (t2 + nut_e3 * nut_e3);
+        let t4 = nut_wy * nut_wz;
+        let t5 = nut_wx * nut_wz;
+        let t6 = k(19.62) + k(8.261052631578947) * t3;
+        let t7 = k(0.0035) * t5;
+        let t8 = k(2.0) * nut_e3;
+        let t9 = k(1.0) - nut_e3 * t8;
+        let t10 = k(0.0025) * t4;
+        let t11 = nut_e0 * t8;
+        let t12 = k(2.0) * (k(0.5) - (t2 + nut_e1 * nut_e1));
+        let t13 = nut_e0 * nut_e3;
+        let t14 = nut_e1 * nut_e2;
+        let t15 = k(2.0) * (t14 + t13);
+        let t16 = (k(2.0) * t0 * t15 + t12 * (k(2.0) * t1)) / (t15 * t15 + t12 * t12);
+        let t17 = k(0.02) * t16;
+        let t18 = k(2.0) * (k(0.5) - (t2 + nut_e2 * nut_e2));
+        let t19 = k(2.0) * (t14 - t13);
+        let t20 = k(1.0) / (t19 * t15 - t12 * t18);
+        let t21 = t18 * t20 * t17 * t6 + (t11 * t10 - t9 * t7);
+        let t22 = t17 * (t19 * t20) * t6 - (t9 * t10 + t11 * t7);
+        *out = [
+            -(k(4.130526315789473) * t0),
+            -(k(4.130526315789473) * t1),
+            k(4.130526315789473) * t3,
+            t4,
+            -t5,
+            k(-103.26315789473684),
+            k(8.261052631578947) * t0,
+            k(8.261052631578947) * t1,
+            -t6,
+            -t21,
+            -t22,
+        ];
+    }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Ports for Screw<T> {
     type Outputs = [T; 6];
@@ -793,27 +845,27 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Screw<T> {
         let t10 = k(0.0005) * (nut_wy * nut_wz) + k(0.002) * nut_dwx;
         let t11 = t2 * t9;
         let t12 = k(0.001) * (nut_wx * nut_wz) - k(0.0025) * nut_dwy;
-        let t13 = k(1.0) / (t6 * t6 + t3 * t3);
-        let t14 = nut_e0 * nut_e1;
-        let t15 = nut_e2 * nut_e3;
-        let t16 = k(2.0) * (t15 - t14);
-        let t17 = nut_e0 * nut_e2;
-        let t18 = nut_e1 * nut_e3;
-        let t19 = k(2.0) * (t18 + t17);
-        let t20 = k(0.02) * ((t19 * t6 + t3 * t16) * t13);
+        let t13 = nut_e0 * nut_e1;
+        let t14 = nut_e2 * nut_e3;
+        let t15 = k(2.0) * (t14 - t13);
+        let t16 = nut_e0 * nut_e2;
+        let t17 = nut_e1 * nut_e3;
+        let t18 = k(2.0) * (t17 + t16);
+        let t19 = k(1.0) / (t6 * t6 + t3 * t3);
+        let t20 = k(0.02) * (t19 * (t18 * t6 + t3 * t15));
         let t21 = t0 * (t11 * t20) - (t12 * t11 + t10 * (t6 * t9));
         let t22 = t7 * t9;
         let t23 = t0 * (t20 * t22) - (t12 * t22 + t10 * (t3 * t9));
         let t24 = t2 * t23 - t7 * t21;
         let t25 = t6 * t23 - (t3 * t21 + t0 * t20);
-        let t26 = t0 * (k(0.02) * (t8 * t13));
-        let t27 = k(2.0) * (t15 + t14) * t25 + k(2.0) * (t18 - t17) * t24;
+        let t26 = t0 * (k(0.02) * (t8 * t19));
+        let t27 = k(2.0) * (t14 + t13) * t25 + k(2.0) * (t17 - t16) * t24;
         *out = [
             k(2.0) * nut_dsx,
             k(2.0) * nut_dsy,
             t0,
-            t19 * t26 + (t7 * t25 - t3 * t24),
-            t16 * t26 - (t2 * t25 - t6 * t24),
+            t18 * t26 + (t7 * t25 - t3 * t24),
+            t15 * t26 - (t2 * t25 - t6 * t24),
             t27 - k(2.0) * (k(0.5) - (t1 + nut_e3 * nut_e3)) * t26,
         ];
     }

@@ -19,7 +19,7 @@
 //! | gamma | γ | 39 | 61 | 0 | 100 | 0 of 3 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 30 | 46 | 0 | 76 | 0 of 3 |
 //! | applied_force | (f, n' − w̃'J'w') | 12 | 18 | 0 | 30 | 2 of 6 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 96 | 133 | 0 | 229 | 0 of 6 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 89 | 120 | 0 | 209 | 0 of 6 |
 //! | multipliers | λ, the accelerations being known | 1 | 3 | 0 | 4 | 0 of 3 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 |
 //! | energy | T and V | 11 | 18 | 0 | 29 | 0 of 2 |
@@ -35,6 +35,7 @@
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 25 | 36 | 0 | 61 | 0 of 3 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 53 | 76 | 0 | 129 | 0 of 6 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 1 | 3 | 0 | 4 | 0 of 3 |
+//! | corrected_solution | both | 54 | 79 | 0 | 133 | 0 of 9 |
 //!
 //! # Proof
 //!
@@ -51,9 +52,9 @@
 //! * joint_derivative: eqs. (14) and (16) on the constraints
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
-//! * corrected_multipliers: eq. (17) on the constraints
+//! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //!
-//! All of it holds but with a probability below 1e-149.
+//! All of it holds but with a probability below 1e-148.
 //! Not proved: the size of rounding errors.
 
 /// The mechanism `spherical`.
@@ -660,7 +661,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Spherical<T> {
             + (k(0.25) * (top_wx * top_wy) - k(0.01) * (t0 - t5));
         *out = [k(0.0), k(0.0), k(-147.15), t4, -t7, -t8];
     }
-    /// Solves eq. (17): 229 operations (96 ±, 133 ×, 0 ÷).
+    /// Solves eq. (17): 209 operations (89 ±, 120 ×, 0 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let top_e0 = y[3];
@@ -670,94 +671,77 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Spherical<T> {
         let top_wx = y[10];
         let top_wy = y[11];
         let top_wz = y[12];
-        let t0 = top_e0 * top_e3;
-        let t1 = top_e1 * top_e2;
-        let t2 = t1 - t0;
-        let t3 = top_e0 * top_e2;
-        let t4 = top_e1 * top_e3;
-        let t5 = t4 + t3;
-        let t6 = t5 + k(0.4) * t2;
-        let t7 = top_wy * top_wy;
-        let t8 = top_wz * top_wz;
-        let t9 = t8 + t7;
-        let t10 = top_e0 * top_e0;
-        let t11 = k(0.5) - (t10 + top_e1 * top_e1);
-        let t12 = k(2.0) * t11;
-        let t13 = top_wx * top_wy;
-        let t14 = k(2.0) * t2;
-        let t15 = top_wx * top_wz;
-        let t16 = k(2.0) * t5;
-        let t17 = top_wx * top_wx;
-        let t18 = t8 + t17;
-        let t19 = top_wy * top_wz;
-        let t20 = k(0.5) * (t16 * t19 - (t14 * t18 + t12 * t13))
-            + k(0.3) * (t16 * t15 + (t14 * t13 + t12 * t9));
-        let t21 = t7 + t17;
-        let t22 = k(0.2) * (t16 * t21 - (t14 * t19 - t12 * t15)) + t20;
-        let t23 = k(0.5) - (t10 + top_e2 * top_e2);
-        let t24 = top_e0 * top_e1;
-        let t25 = top_e2 * top_e3;
-        let t26 = t25 - t24;
-        let t27 = t26 - k(0.4) * t23;
-        let t28 = t1 + t0;
+        let t0 = top_wy * top_wy;
+        let t1 = top_wz * top_wz;
+        let t2 = t1 + t0;
+        let t3 = top_e0 * top_e0;
+        let t4 = k(2.0) * (k(0.5) - (t3 + top_e1 * top_e1));
+        let t5 = top_wx * top_wy;
+        let t6 = top_e0 * top_e3;
+        let t7 = top_e1 * top_e2;
+        let t8 = k(2.0) * (t7 - t6);
+        let t9 = top_wx * top_wz;
+        let t10 = top_e0 * top_e2;
+        let t11 = top_e1 * top_e3;
+        let t12 = k(2.0) * (t11 + t10);
+        let t13 = top_wx * top_wx;
+        let t14 = t1 + t13;
+        let t15 = top_wy * top_wz;
+        let t16 = k(0.5) * (t12 * t15 - (t8 * t14 + t4 * t5))
+            + k(0.3) * (t12 * t9 + (t8 * t5 + t4 * t2));
+        let t17 = t0 + t13;
+        let t18 = k(0.2) * (t12 * t17 - (t8 * t15 - t4 * t9)) + t16;
+        let t19 = k(2.0) * (t7 + t6);
+        let t20 = k(2.0) * (k(0.5) - (t3 + top_e2 * top_e2));
+        let t21 = top_e0 * top_e1;
+        let t22 = top_e2 * top_e3;
+        let t23 = k(2.0) * (t22 - t21);
+        let t24 = k(0.5) * (t23 * t15 + (t20 * t14 + t19 * t5))
+            + k(0.3) * (t23 * t9 - (t20 * t5 + t19 * t2));
+        let t25 = k(0.2) * (t23 * t17 + (t20 * t15 - t19 * t9)) + t24;
+        let t26 = t11 - t10;
+        let t27 = k(2.0) * t26;
+        let t28 = t22 + t21;
         let t29 = k(2.0) * t28;
-        let t30 = k(2.0) * t23;
-        let t31 = k(2.0) * t26;
-        let t32 = k(0.5) * (t31 * t19 + (t30 * t18 + t29 * t13))
-            + k(0.3) * (t31 * t15 - (t30 * t13 + t29 * t9));
-        let t33 = k(0.2) * (t31 * t21 + (t30 * t19 - t29 * t15)) + t32;
-        let t34 = t25 + t24;
-        let t35 = k(0.5) - (t10 + top_e3 * top_e3);
-        let t36 = t35 - k(0.4) * t34;
-        let t37 = t4 - t3;
-        let t38 = k(2.0) * t37;
-        let t39 = k(2.0) * t34;
-        let t40 = k(2.0) * t35;
-        let t41 = k(0.5) * (t40 * t19 + (t39 * t18 - t38 * t13))
-            + k(0.3) * (t40 * t15 - (t39 * t13 - t38 * t9));
-        let t42 = k(0.2) * (t40 * t21 + (t39 * t19 + t38 * t15)) + t41;
-        let t43 = t42 * (k(15.0) * t36) + (t33 * (k(15.0) * t27) + t22 * (k(15.0) * t6));
-        let t44 = k(0.6) * t5 - k(0.4) * t11;
-        let t45 = k(7.304347826086956) * t6 - k(15.0) * t44;
-        let t46 = k(0.6) * t26 + k(0.4) * t28;
-        let t47 = k(7.304347826086956) * t27 - k(15.0) * t46;
-        let t48 = k(0.6) * t35 - k(0.4) * t37;
-        let t49 = k(7.304347826086956) * t36 - k(15.0) * t48;
-        let t50 = t37 - k(0.6) * t34;
-        let t51 = k(0.03) * top_wx;
-        let t52 = k(0.02) * top_wy;
-        let t53 = top_wz * (t52 + t51) + (k(0.25) * t13 - k(0.01) * (t7 - t17));
-        let t54 = k(0.01) * top_wz;
-        let t55 = top_wx * (t52 + t54) + (k(0.125) * t19 + k(0.03) * (t8 - t7));
-        let t56 = t55 + k(147.15) * t36;
-        let t57 = top_wy * (t54 - t51) - (k(0.125) * t15 + k(0.02) * (t8 - t17));
-        let t58 = k(0.48695652173913045) * t56 - (t57 + k(147.15) * t48);
-        let t59 = t11 + k(0.6) * t2;
-        let t60 = t28 + k(0.6) * t23;
-        let t61 = t33
-            * (k(1.440918687224106) * t47 + (k(2.869565217391304) * t27 + k(15.0) * t60))
-            + t22
-                * (k(1.440918687224106) * t45
-                    + (k(2.869565217391304) * t6 - k(15.0) * t59));
-        let t62 = t42
-            * (k(1.440918687224106) * t49 + (k(2.869565217391304) * t36 - k(15.0) * t50))
-            + t61;
-        let t63 = t62
-            - (k(1.440918687224106) * t58
-                + (k(0.19130434782608696) * t56 + (t53 - k(147.15) * t50)));
-        let t64 = k(0.7882702418008584) * t63 + (t42 * t49 + (t33 * t47 + t22 * t45));
-        let t65 = t58 - t64;
-        let t66 = k(0.21739130434782608)
-            * (t56 - (k(0.3541843824989871) * t63 - k(1.6480071652485446) * t65 + t43));
-        let t67 = k(0.7357174844859574) * t65;
-        let t68 = k(0.4024822528397581) * t63;
+        let t30 = k(0.5) - (t3 + top_e3 * top_e3);
+        let t31 = k(2.0) * t30;
+        let t32 = k(0.5) * (t31 * t15 + (t29 * t14 - t27 * t5))
+            + k(0.3) * (t31 * t9 - (t29 * t5 - t27 * t2));
+        let t33 = k(0.2) * (t31 * t17 + (t29 * t15 + t27 * t9)) + t32;
+        let t34 = t27 * t33 - (t19 * t25 - t4 * t18);
+        let t35 = t29 * t33 + (t20 * t25 - t8 * t18);
+        let t36 = t31 * t33 + (t23 * t25 + t12 * t18);
+        let t37 = k(0.03) * top_wx;
+        let t38 = k(0.02) * top_wy;
+        let t39 = top_wz * (t38 + t37) + (k(0.25) * t5 - k(0.01) * (t0 - t13));
+        let t40 = k(0.01) * top_wz;
+        let t41 = top_wx * (t38 + t40) + (k(0.125) * t15 + k(0.03) * (t1 - t0));
+        let t42 = t41 - (k(58.86) * t28 - k(147.15) * t30);
+        let t43 = top_wy * (t40 - t37) - (k(0.125) * t9 + k(0.02) * (t1 - t13));
+        let t44 = k(0.48695652173913045) * t42
+            - (t43 - (k(58.86) * t26 - k(88.29) * t30));
+        let t45 = k(1.440918687224106) * t44
+            + (k(0.19130434782608696) * t42
+                + (t39 - (k(147.15) * t26 - k(88.29) * t28)));
+        let t46 = k(0.21313415648391018) * t36
+            + (k(1.8210927004030453) * t35 - k(3.177243938327682) * t34) - t45;
+        let t47 = k(0.7882702418008584) * t46
+            - (k(0.8478260869565217) * t36
+                + (k(1.4608695652173913) * t35 - k(3.0) * t34));
+        let t48 = t44 - t47;
+        let t49 = t34 + (k(0.20124112641987904) * t46 + k(0.14714349689719147) * t48);
+        let t50 = k(0.3541843824989871) * t46 - k(1.6480071652485446) * t48
+            + (k(7.5) * t36 - k(3.0) * t35);
+        let t51 = t42 - t50;
+        let t52 = t35 - (k(0.12074467585192743) * t46 + k(0.043478260869565216) * t51);
+        let t53 = t36 - (k(0.2207152453457872) * t48 - k(0.10869565217391304) * t51);
         *out = [
-            t22 + (t59 * t68 - (t44 * t67 - t6 * t66)),
-            t33 - (t60 * t68 + (t46 * t67 - t27 * t66)),
-            -(t42 + (t50 * t68 - (t48 * t67 - t36 * t66))),
-            t66,
-            t67,
-            t68,
+            t12 * t53 - (t8 * t52 - t4 * t49),
+            t23 * t53 + (t20 * t52 - t19 * t49),
+            -(t31 * t53 + (t29 * t52 + t27 * t49)),
+            k(0.21739130434782608) * t51,
+            k(0.7357174844859574) * t48,
+            k(0.4024822528397581) * t46,
         ];
     }
     /// Writes λ: 4 operations (1 ±, 3 ×, 0 ÷).
@@ -782,12 +766,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Spherical<T> {
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Spherical<T> {
     type Joints = [T; 7];
     type Rates = [T; 3];
+    type Solution = [T; 9];
     fn joint_start(&self) -> Self::Joints {
         let k = T::constant;
         [k(1.0), k(0.0), k(0.0), k(0.0), k(3.0), k(20.0), k(-5.0)]
     }
     fn rates(&self) -> Self::Rates {
         [T::constant(0.0); 3]
+    }
+    fn solution(&self) -> Self::Solution {
+        [T::constant(0.0); 9]
     }
     /// Writes u̇: 61 operations (25 ±, 36 ×, 0 ÷).
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
@@ -1016,6 +1004,68 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Spherical<T> {
             -(k(15.0) * top_dsx),
             -(k(15.0) * top_dsy),
             -(k(147.15) + k(15.0) * top_dsz),
+        ];
+    }
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 133 operations (54 ±, 79 ×, 0 ÷).
+    fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
+        let k = T::constant;
+        let top_e0 = y[3];
+        let top_e1 = y[4];
+        let top_e2 = y[5];
+        let top_e3 = y[6];
+        let top_wx = y[10];
+        let top_wy = y[11];
+        let top_wz = y[12];
+        let t0 = k(1.53) * top_wy + k(0.88) * top_wx;
+        let t1 = top_e2 * top_e2;
+        let t2 = top_e1 * top_e1;
+        let t3 = k(0.5) - (t2 + t1);
+        let t4 = top_e0 * top_e2;
+        let t5 = top_e1 * top_e3;
+        let t6 = t5 - t4;
+        let t7 = k(2.24) * top_wy - k(0.88) * top_wz;
+        let t8 = top_wz * t7 + k(58.86) * t6 + k(88.29) * t3
+            + top_wx * (k(0.875) * top_wz + t0);
+        let t9 = k(1.53) * top_wz - k(2.24) * top_wx;
+        let t10 = top_e0 * top_e1;
+        let t11 = top_e2 * top_e3;
+        let t12 = t11 + t10;
+        let t13 = k(147.15) * t6 - k(88.29) * t12 - top_wy * t7
+            + top_wx * (k(2.15) * top_wy - t9);
+        let t14 = k(0.27945205479452057) * t13 - t8;
+        let t15 = top_wy * t0 + k(58.86) * t12 + k(147.15) * t3
+            - top_wz * (t9 - k(3.025) * top_wy);
+        let t16 = k(1.2291686422194827) * t14 + (k(0.16073059360730593) * t13 + t15);
+        let t17 = k(0.876134676932097) * t16 + k(0.49445264769232855) * t14;
+        let t18 = k(0.27945205479452057) * t17
+            + (k(0.11456657928481043) * t16 + k(0.182648401826484) * t13);
+        let t19 = k(0.3) * top_wz + k(0.2) * top_wx;
+        let t20 = k(0.5) * top_wx - k(0.3) * top_wy;
+        let t21 = top_wy * t20 - top_wz * t19 - (k(0.5) * t18 - k(0.2) * t17);
+        let t22 = top_e0 * top_e0;
+        let t23 = k(0.2) * top_wy + k(0.5) * top_wz;
+        let t24 = top_wz * t23 + top_wx * t20
+            - (k(0.3) * t18 - k(0.14255727763280387) * t16);
+        let t25 = top_e0 * top_e3;
+        let t26 = top_e1 * top_e2;
+        let t27 = k(2.0) * (t26 - t25) * t24 + k(2.0) * (k(0.5) - (t22 + t2)) * t21;
+        let t28 = top_wx * t19 + top_wy * t23
+            + (k(0.3) * t17 - k(0.3563931940820097) * t16);
+        let t29 = k(2.0) * (t5 + t4) * t28 - t27;
+        let t30 = k(2.0) * (k(0.5) - (t22 + t1)) * t24 + k(2.0) * (t26 + t25) * t21;
+        let t31 = k(2.0) * (t11 - t10) * t28 + t30;
+        let t32 = k(2.0) * (k(0.5) - (t22 + top_e3 * top_e3)) * t28
+            + (k(2.0) * t12 * t24 - k(2.0) * t6 * t21);
+        *out = [
+            t29,
+            t31,
+            -t32,
+            -(k(0.7127863881640194) * t16),
+            -t17,
+            t18,
+            -(k(15.0) * t29),
+            -(k(15.0) * t31),
+            k(15.0) * t32 - k(147.15),
         ];
     }
 }

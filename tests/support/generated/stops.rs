@@ -18,7 +18,7 @@
 //! | gamma | γ | 29 | 55 | 0 | 84 | 5 of 10 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 18 | 31 | 0 | 49 | 0 of 10 |
 //! | applied_force | (f, n' − w̃'J'w') | 26 | 27 | 3 | 56 | 7 of 12 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 60 | 106 | 5 | 171 | 5 of 12 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 54 | 91 | 5 | 150 | 5 of 12 |
 //! | multipliers | λ, the accelerations being known | 24 | 65 | 2 | 91 | 0 of 10 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 42 | 59 | 3 | 104 | 0 of 16 |
 //! | energy | T and V | 12 | 23 | 0 | 35 | 0 of 2 |
@@ -30,6 +30,7 @@
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 26 | 25 | 3 | 54 | 0 of 2 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 30 | 39 | 3 | 72 | 6 of 12 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 6 | 19 | 0 | 25 | 0 of 10 |
+//! | corrected_solution | both | 33 | 50 | 3 | 86 | 11 of 22 |
 //!
 //! # Proof
 //!
@@ -44,7 +45,7 @@
 //! * joint_derivative: eqs. (14) and (16) on the constraints
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
-//! * corrected_multipliers: eq. (17) on the constraints
+//! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //!
 //! All of it holds but with a probability below 1e-140.
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
@@ -824,7 +825,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Stops<T> {
             -(k(20.0) * (t14 - (k(0.0025) + t14 * t14).sqrt()) + t13),
         ];
     }
-    /// Solves eq. (17): 171 operations (60 ±, 106 ×, 5 ÷) and 7 functions.
+    /// Solves eq. (17): 150 operations (54 ±, 91 ×, 5 ÷) and 7 functions.
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let hammer_rz = y[2];
@@ -850,65 +851,59 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Stops<T> {
         let t3 = (hammer_rz * hammer_rz + k(0.0001)).sqrt();
         let t4 = k(2000.0) * (hammer_rz - t3)
             + hammer_sz * (k(2.5) * (k(1.0) - hammer_rz / t3));
-        let t5 = hammer_e0 * hammer_e3;
-        let t6 = hammer_e1 * hammer_e2;
-        let t7 = k(2.0) * (t6 + t5);
-        let t8 = hammer_e0 * hammer_e0;
-        let t9 = k(2.0) * (k(0.5) - (t8 + hammer_e1 * hammer_e1));
-        let t10 = k(2.0) * (k(0.5) - (t8 + hammer_e2 * hammer_e2));
-        let t11 = t9 * t10;
-        let t12 = k(2.0) * (t6 - t5);
-        let t13 = t12 * t7 - t11;
-        let t14 = k(1.0) / (t9 * t13);
-        let t15 = hammer_wx * hammer_wz;
-        let t16 = hammer_wy * hammer_wz;
-        let t17 = hammer_wx * hammer_wx;
-        let t18 = hammer_wy * hammer_wy + t17;
-        let t19 = k(2.0) * (hammer_e1 * hammer_e3 + hammer_e0 * hammer_e2);
-        let t20 = t19 * t18 - (t12 * t16 - t9 * t15);
-        let t21 = k(2.0) * (hammer_e2 * hammer_e3 - hammer_e0 * hammer_e1) * t18
-            + (t10 * t16 - t7 * t15);
-        let t22 = t21 * (t14 * (t9 * t9)) + t20 * (t14 * (t9 * t7));
-        let t23 = t19 * t16
-            - (t12 * (hammer_wz * hammer_wz + t17) + t9 * (hammer_wx * hammer_wy));
-        let t24 = t21 * (t14 * (t9 * t19)) + t20 * (t14 * (t19 * t7));
-        let t25 = disc_e0 * disc_e3;
-        let t26 = disc_e1 * disc_e2;
-        let t27 = k(2.0) * (t26 + t25);
-        let t28 = k(2.0) * (t26 - t25);
-        let t29 = disc_e0 * disc_e0;
-        let t30 = k(2.0) * (k(0.5) - (t29 + disc_e2 * disc_e2));
-        let t31 = k(2.0) * (k(0.5) - (t29 + disc_e1 * disc_e1));
-        let t32 = k(1.0) / (t31 * t30 - t28 * t27);
-        let t33 = disc_wx * disc_wz;
-        let t34 = disc_wy * disc_wz;
-        let t35 = disc_wy * disc_wy + disc_wx * disc_wx;
-        let t36 = k(2.0) * (disc_e1 * disc_e3 + disc_e0 * disc_e2) * t35
-            - (t28 * t34 - t31 * t33);
-        let t37 = k(2.0) * (disc_e2 * disc_e3 - disc_e0 * disc_e1) * t35
-            + (t30 * t34 - t27 * t33);
-        let t38 = turn0.cos();
-        let t39 = turn0.sin();
-        let t40 = (t27 * t38 + t31 * t39).atan2(t27 * t39 - t31 * t38);
-        let t41 = turn0 + t40;
-        let t42 = k(15.7) - t41;
-        let t43 = (k(0.0025) + t42 * t42).sqrt();
-        let t44 = disc_wz * (k(0.05) * (k(1.0) - t42 / t43)) - k(25.0) * (t42 - t43);
-        let t45 = k(9.5) + t41;
-        let t46 = k(50.0) * (k(20.0) * (t45 - (k(0.0025) + t45 * t45).sqrt()) + t44);
+        let t5 = hammer_wx * hammer_wz;
+        let t6 = hammer_e0 * hammer_e0;
+        let t7 = k(2.0) * (k(0.5) - (t6 + hammer_e1 * hammer_e1));
+        let t8 = hammer_wy * hammer_wz;
+        let t9 = hammer_e0 * hammer_e3;
+        let t10 = hammer_e1 * hammer_e2;
+        let t11 = k(2.0) * (t10 - t9);
+        let t12 = hammer_wx * hammer_wx;
+        let t13 = hammer_wy * hammer_wy + t12;
+        let t14 = k(2.0) * (hammer_e1 * hammer_e3 + hammer_e0 * hammer_e2);
+        let t15 = t14 * t13 - (t11 * t8 - t7 * t5);
+        let t16 = k(2.0) * (t10 + t9);
+        let t17 = k(2.0) * (k(0.5) - (t6 + hammer_e2 * hammer_e2));
+        let t18 = t7 * t17;
+        let t19 = t11 * t16 - t18;
+        let t20 = k(1.0) / (t7 * t19);
+        let t21 = k(2.0) * (hammer_e2 * hammer_e3 - hammer_e0 * hammer_e1) * t13
+            + (t17 * t8 - t16 * t5);
+        let t22 = t20 * (t7 * t7) * t21 + t20 * (t7 * t16) * t15;
+        let t23 = t14 * t8
+            - (t11 * (hammer_wz * hammer_wz + t12) + t7 * (hammer_wx * hammer_wy));
+        let t24 = t21 * (t20 * (t7 * t14)) + t15 * (t20 * (t14 * t16));
+        let t25 = disc_e0 * disc_e0;
+        let t26 = (disc_wy * disc_wy + disc_wx * disc_wx)
+            * (k(0.5) / (k(0.5) - (t25 + disc_e3 * disc_e3)));
+        let t27 = disc_wy * disc_wz
+            - k(2.0) * (disc_e2 * disc_e3 + disc_e0 * disc_e1) * t26;
+        let t28 = disc_wx * disc_wz
+            - k(2.0) * (disc_e1 * disc_e3 - disc_e0 * disc_e2) * t26;
+        let t29 = turn0.cos();
+        let t30 = k(2.0) * (k(0.5) - (t25 + disc_e1 * disc_e1));
+        let t31 = turn0.sin();
+        let t32 = k(2.0) * (disc_e1 * disc_e2 + disc_e0 * disc_e3);
+        let t33 = (t32 * t29 + t30 * t31).atan2(t32 * t31 - t30 * t29);
+        let t34 = turn0 + t33;
+        let t35 = k(15.7) - t34;
+        let t36 = (k(0.0025) + t35 * t35).sqrt();
+        let t37 = disc_wz * (k(0.05) * (k(1.0) - t35 / t36)) - k(25.0) * (t35 - t36);
+        let t38 = k(9.5) + t34;
+        let t39 = k(50.0) * (k(20.0) * (t38 - (k(0.0025) + t38 * t38).sqrt()) + t37);
         *out = [
             k(0.0),
             k(0.0),
             -(k(2.0) * (t4 + t2 + k(4.905))),
             -t22,
-            t21 * (t14 * (t9 * t12)) + t20 * (t11 * t14),
-            t24 - t23 * (t13 * t14),
+            t21 * (t20 * (t7 * t11)) + t15 * (t18 * t20),
+            t24 - t19 * t20 * t23,
             k(0.0),
             k(0.0),
             k(0.0),
-            t37 * (t31 * t32) + t36 * (t27 * t32),
-            -(t37 * (t28 * t32) + t36 * (t30 * t32)),
-            -t46,
+            t27,
+            -t28,
+            -t39,
         ];
     }
     /// Writes λ: 91 operations (24 ±, 65 ×, 2 ÷).
@@ -983,12 +978,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Stops<T> {
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Stops<T> {
     type Joints = [T; 5];
     type Rates = [T; 2];
+    type Solution = [T; 22];
     fn joint_start(&self) -> Self::Joints {
         let k = T::constant;
         [k(0.5), k(0.0), k(4.0), k(12.0), k(0.0)]
     }
     fn rates(&self) -> Self::Rates {
         [T::constant(0.0); 2]
+    }
+    fn solution(&self) -> Self::Solution {
+        [T::constant(0.0); 22]
     }
     /// Writes u̇: 38 operations (20 ±, 15 ×, 3 ÷) and 4 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
@@ -1007,7 +1006,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Stops<T> {
         let t7 = (k(0.0025) + t6 * t6).sqrt();
         let t8 = k(25.0) * (t6 - t7) - u1 * (k(0.05) * (k(1.0) - t6 / t7));
         let t9 = k(50.0) * (t8 - k(20.0) * (t5 - (k(0.0025) + t5 * t5).sqrt()));
-        *out = [-(k(2.0) * (k(4.905) + (t4 - t2))), t9];
+        *out = [-(k(9.81) + k(2.0) * (t4 - t2)), t9];
     }
     /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 40 operations (20 ±, 17 ×, 3 ÷) and 4 functions.
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
@@ -1122,7 +1121,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Stops<T> {
         let t13 = disc_wz * (k(0.05) * (k(1.0) - t11 / t12)) - k(25.0) * (t11 - t12);
         let t14 = k(9.5) + t10;
         let t15 = k(50.0) * (k(20.0) * (t14 - (k(0.0025) + t14 * t14).sqrt()) + t13);
-        *out = [-(k(2.0) * (t4 + t2 + k(4.905))), -t15];
+        *out = [-(k(9.81) + k(2.0) * (t4 + t2)), -t15];
     }
     /// Writes (s̈, ẇ') at a state that satisfies the constraints: 72 operations (30 ±, 39 ×, 3 ÷) and 7 functions.
     fn corrected_accelerations(
@@ -1152,7 +1151,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Stops<T> {
         let t3 = (hammer_rz * hammer_rz + k(0.0001)).sqrt();
         let t4 = k(2000.0) * (hammer_rz - t3)
             + hammer_sz * (k(2.5) * (k(1.0) - hammer_rz / t3));
-        let t5 = k(2.0) * (t4 + t2 + k(4.905));
+        let t5 = k(9.81) + k(2.0) * (t4 + t2);
         let t6 = turn0.cos();
         let t7 = k(2.0) * (k(0.5) - (disc_e0 * disc_e0 + disc_e1 * disc_e1));
         let t8 = turn0.sin();
@@ -1219,6 +1218,75 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Stops<T> {
             -(k(39.24) + k(4.0) * disc_dsz),
             t4 * t3 - t2 * t1,
             t4 * t1 + t2 * t3,
+        ];
+    }
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 86 operations (33 ±, 50 ×, 3 ÷) and 7 functions.
+    fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
+        let k = T::constant;
+        let hammer_rz = y[2];
+        let hammer_e0 = y[3];
+        let hammer_e1 = y[4];
+        let hammer_e2 = y[5];
+        let hammer_e3 = y[6];
+        let disc_e0 = y[10];
+        let disc_e1 = y[11];
+        let disc_e2 = y[12];
+        let disc_e3 = y[13];
+        let hammer_sz = y[16];
+        let disc_wx = y[23];
+        let disc_wy = y[24];
+        let disc_wz = y[25];
+        let turn0 = y[27];
+        let t0 = hammer_rz - k(0.8);
+        let t1 = (t0 * t0 + k(0.0004)).sqrt();
+        let t2 = k(1500.0) * (t0 + t1) + hammer_sz * (k(1.0) + t0 / t1);
+        let t3 = (hammer_rz * hammer_rz + k(0.0001)).sqrt();
+        let t4 = k(2000.0) * (hammer_rz - t3)
+            + hammer_sz * (k(2.5) * (k(1.0) - hammer_rz / t3));
+        let t5 = k(9.81) + k(2.0) * (t4 + t2);
+        let t6 = k(2.0) * (hammer_e1 * hammer_e3 + hammer_e0 * hammer_e2) * t5;
+        let t7 = k(2.0) * (hammer_e2 * hammer_e3 - hammer_e0 * hammer_e1) * t5;
+        let t8 = disc_wy * disc_wz;
+        let t9 = disc_wx * disc_wz;
+        let t10 = turn0.cos();
+        let t11 = k(2.0) * (k(0.5) - (disc_e0 * disc_e0 + disc_e1 * disc_e1));
+        let t12 = turn0.sin();
+        let t13 = k(2.0) * (disc_e1 * disc_e2 + disc_e0 * disc_e3);
+        let t14 = (t13 * t10 + t11 * t12).atan2(t13 * t12 - t11 * t10);
+        let t15 = turn0 + t14;
+        let t16 = k(15.7) - t15;
+        let t17 = (k(0.0025) + t16 * t16).sqrt();
+        let t18 = disc_wz * (k(0.05) * (k(1.0) - t16 / t17)) - k(25.0) * (t16 - t17);
+        let t19 = k(9.5) + t15;
+        let t20 = k(50.0) * (k(20.0) * (t19 - (k(0.0025) + t19 * t19).sqrt()) + t18);
+        let t21 = k(0.02) * t9;
+        let t22 = k(2.0) * disc_e3;
+        let t23 = k(1.0) - disc_e3 * t22;
+        let t24 = k(0.02) * t8;
+        let t25 = disc_e0 * t22;
+        *out = [
+            -t6,
+            -t7,
+            k(2.0) * (k(0.5) - (hammer_e0 * hammer_e0 + hammer_e3 * hammer_e3)) * t5,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t8,
+            -t9,
+            -t20,
+            k(0.5) * t6,
+            k(0.5) * t7,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(-39.24),
+            t23 * t21 - t25 * t24,
+            t23 * t24 + t25 * t21,
         ];
     }
 }

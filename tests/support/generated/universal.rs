@@ -18,7 +18,7 @@
 //! | gamma | γ | 39 | 61 | 0 | 100 | 0 of 4 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 30 | 46 | 0 | 76 | 0 of 4 |
 //! | applied_force | (f, n' − w̃'J'w') | 27 | 41 | 0 | 68 | 2 of 6 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 118 | 177 | 3 | 298 | 0 of 6 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 117 | 167 | 3 | 287 | 0 of 6 |
 //! | multipliers | λ, the accelerations being known | 47 | 68 | 1 | 116 | 0 of 4 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 14 | 30 | 0 | 44 | 0 of 9 |
 //! | energy | T and V | 19 | 31 | 0 | 50 | 0 of 2 |
@@ -31,6 +31,7 @@
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 30 | 50 | 1 | 81 | 0 of 2 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 63 | 99 | 1 | 163 | 0 of 6 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 46 | 64 | 0 | 110 | 0 of 4 |
+//! | corrected_solution | both | 94 | 142 | 1 | 237 | 0 of 10 |
 //!
 //! # Proof
 //!
@@ -45,7 +46,7 @@
 //! * joint_derivative: eqs. (14) and (16) on the constraints
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
-//! * corrected_multipliers: eq. (17) on the constraints
+//! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //!
 //! All of it holds but with a probability below 1e-148.
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
@@ -647,7 +648,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Universal<T> {
             k(2.0) * (bob_e1 * bob_e3 + bob_e0 * bob_e2) * t6 - t16,
         ];
     }
-    /// Solves eq. (17): 298 operations (118 ±, 177 ×, 3 ÷) and 3 functions.
+    /// Solves eq. (17): 287 operations (117 ±, 167 ×, 3 ÷) and 3 functions.
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let bob_e0 = y[3];
@@ -658,105 +659,96 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Universal<T> {
         let bob_wy = y[11];
         let bob_wz = y[12];
         let turn0 = y[14];
-        let t0 = bob_e0 * bob_e3;
-        let t1 = bob_e1 * bob_e2;
-        let t2 = t1 - t0;
-        let t3 = bob_e0 * bob_e2;
-        let t4 = bob_e1 * bob_e3;
-        let t5 = t4 + t3;
-        let t6 = k(0.04) * t5;
-        let t7 = t6 - k(0.8) * t2;
-        let t8 = bob_e0 * bob_e0;
-        let t9 = k(0.5) - (t8 + bob_e1 * bob_e1);
+        let t0 = bob_wy * bob_wy;
+        let t1 = bob_wz * bob_wz;
+        let t2 = t1 + t0;
+        let t3 = bob_e0 * bob_e0;
+        let t4 = k(0.5) - (t3 + bob_e1 * bob_e1);
+        let t5 = k(2.0) * t4;
+        let t6 = bob_wx * bob_wy;
+        let t7 = bob_e0 * bob_e3;
+        let t8 = bob_e1 * bob_e2;
+        let t9 = t8 - t7;
         let t10 = k(2.0) * t9;
-        let t11 = k(0.06) * t5 - k(0.8) * t9;
-        let t12 = k(2.0) * t11;
-        let t13 = k(2.0) * t2;
-        let t14 = k(0.04) * t9;
-        let t15 = t14 - k(0.06) * t2;
-        let t16 = k(2.0) * t5;
-        let t17 = t16 * (k(2.0) * t15) + (t13 * t12 - t10 * (k(2.0) * t7));
-        let t18 = bob_wy * bob_wy;
-        let t19 = bob_wz * bob_wz;
-        let t20 = t19 + t18;
-        let t21 = bob_wx * bob_wy;
-        let t22 = bob_wx * bob_wz;
-        let t23 = bob_wx * bob_wx;
-        let t24 = t19 + t23;
-        let t25 = bob_wy * bob_wz;
-        let t26 = t16 * t25 - (t13 * t24 + t10 * t21);
-        let t27 = k(0.02) * t26 - k(0.03) * (t16 * t22 + (t13 * t21 + t10 * t20));
-        let t28 = t18 + t23;
-        let t29 = k(0.4) * (t16 * t28 - (t13 * t25 - t10 * t22)) - t27;
-        let t30 = k(0.5) - (t8 + bob_e2 * bob_e2);
-        let t31 = bob_e0 * bob_e1;
-        let t32 = bob_e2 * bob_e3;
-        let t33 = t32 - t31;
-        let t34 = k(0.04) * t33 + k(0.8) * t30;
-        let t35 = t1 + t0;
-        let t36 = k(0.06) * t33 + k(0.8) * t35;
-        let t37 = k(2.0) * t36;
-        let t38 = k(0.06) * t30 - k(0.04) * t35;
-        let t39 = t16 * (k(2.0) * t38) + (t13 * t37 - t10 * (k(2.0) * t34));
-        let t40 = k(2.0) * t35;
-        let t41 = k(2.0) * t30;
-        let t42 = k(2.0) * t33;
-        let t43 = k(0.02) * (t42 * t25 + (t41 * t24 + t40 * t21))
-            - k(0.03) * (t42 * t22 - (t41 * t21 + t40 * t20));
-        let t44 = k(0.4) * (t42 * t28 + (t41 * t25 - t40 * t22)) - t43;
-        let t45 = t32 + t31;
-        let t46 = k(0.5) - (t8 + bob_e3 * bob_e3);
-        let t47 = k(0.04) * t46 + k(0.8) * t45;
-        let t48 = t4 - t3;
-        let t49 = k(0.06) * t46 - k(0.8) * t48;
-        let t50 = k(2.0) * t49;
-        let t51 = k(0.06) * t45 + k(0.04) * t48;
-        let t52 = t16 * (k(2.0) * t51) + (t13 * t50 - t10 * (k(2.0) * t47));
-        let t53 = k(2.0) * t48;
-        let t54 = k(2.0) * t45;
-        let t55 = k(2.0) * t46;
-        let t56 = k(0.02) * (t55 * t25 + (t54 * t24 - t53 * t21))
-            - k(0.03) * (t55 * t22 - (t54 * t21 - t53 * t20));
-        let t57 = k(0.4) * (t55 * t28 + (t54 * t25 + t53 * t22)) - t56;
-        let t58 = k(1.0) / (t10 * t10 + t16 * t16);
-        let t59 = t26 * (t16 * t58);
-        let t60 = t6 - (k(0.7416) * t9 - k(0.0064) * t2);
-        let t61 = k(0.026) * t5 + (k(0.0064) * t9 - k(0.7636) * t2);
-        let t62 = k(0.0652) * t5 - (t14 + k(0.026) * t2);
-        let t63 = k(1.0) / (t16 * t62 - (t13 * t61 + t10 * t60));
-        let t64 = t61 * t63;
-        let t65 = turn0.cos();
-        let t66 = turn0.sin();
-        let t67 = (t54 * t65 + t41 * t66).atan2(t54 * t66 - t41 * t65);
-        let t68 = k(1.5) * (k(0.2) - (turn0 + t67));
-        let t69 = k(0.002) * bob_wz;
-        let t70 = k(0.004) * bob_wy;
-        let t71 = bob_wx * (t70 + t69) + (k(0.03) * t25 + k(0.003) * (t19 - t18));
-        let t72 = k(0.003) * bob_wx;
-        let t73 = bob_wy * (t69 - t72) + (k(0.02) * t22 - k(0.004) * (t19 - t23));
-        let t74 = t73 + (k(0.05) * bob_wy - t13 * t68) + k(19.62) * t49;
-        let t75 = t13 * t74 + t10 * (t71 - t10 * t68 - k(19.62) * t47);
-        let t76 = bob_wz * (t70 + t72) + (k(0.01) * t21 - k(0.002) * (t18 - t23));
-        let t77 = t16 * (t76 - t16 * t68 + k(19.62) * t51) + t75;
-        let t78 = t44 * (t37 + t61 * (t63 * t39)) + t29 * (t12 + t61 * (t63 * t17));
-        let t79 = t26 * (t10 * t58);
-        let t80 = t79 * (k(0.013) - t62 * t64) - t59 * (k(0.0032) + t61 * (t60 * t63));
-        let t81 = t80 - (t57 * (t50 + t61 * (t63 * t52)) + t78)
-            + (t74 + t61 * (t63 * t77));
-        let t82 = t81 / (k(0.3818) - t61 * t64);
-        let t83 = t79 * t62 - (t61 * t82 - t60 * t59)
-            + (t57 * t52 + (t44 * t39 + t29 * t17));
-        let t84 = t63 * (t77 - t83);
-        let t85 = t59 - t10 * t84;
-        let t86 = t82 + t13 * t84;
-        let t87 = t79 + t16 * t84;
+        let t11 = bob_wx * bob_wz;
+        let t12 = bob_e0 * bob_e2;
+        let t13 = bob_e1 * bob_e3;
+        let t14 = t13 + t12;
+        let t15 = k(2.0) * t14;
+        let t16 = bob_wx * bob_wx;
+        let t17 = t1 + t16;
+        let t18 = bob_wy * bob_wz;
+        let t19 = t15 * t18 - (t10 * t17 + t5 * t6);
+        let t20 = k(0.02) * t19 - k(0.03) * (t15 * t11 + (t10 * t6 + t5 * t2));
+        let t21 = t0 + t16;
+        let t22 = k(0.4) * (t15 * t21 - (t10 * t18 - t5 * t11)) - t20;
+        let t23 = k(2.0) * (t8 + t7);
+        let t24 = k(2.0) * (k(0.5) - (t3 + bob_e2 * bob_e2));
+        let t25 = bob_e0 * bob_e1;
+        let t26 = bob_e2 * bob_e3;
+        let t27 = k(2.0) * (t26 - t25);
+        let t28 = k(0.02) * (t27 * t18 + (t24 * t17 + t23 * t6))
+            - k(0.03) * (t27 * t11 - (t24 * t6 + t23 * t2));
+        let t29 = k(0.4) * (t27 * t21 + (t24 * t18 - t23 * t11)) - t28;
+        let t30 = t13 - t12;
+        let t31 = k(2.0) * t30;
+        let t32 = t26 + t25;
+        let t33 = k(2.0) * t32;
+        let t34 = k(0.5) - (t3 + bob_e3 * bob_e3);
+        let t35 = k(2.0) * t34;
+        let t36 = k(0.02) * (t35 * t18 + (t33 * t17 - t31 * t6))
+            - k(0.03) * (t35 * t11 - (t33 * t6 - t31 * t2));
+        let t37 = k(0.4) * (t35 * t21 + (t33 * t18 + t31 * t11)) - t36;
+        let t38 = t31 * t37 - (t23 * t29 - t5 * t22);
+        let t39 = k(0.08) * t14 - k(1.6) * t9;
+        let t40 = t33 * t37 + (t24 * t29 - t10 * t22);
+        let t41 = k(0.12) * t14 - k(1.6) * t4;
+        let t42 = t35 * t37 + (t27 * t29 + t15 * t22);
+        let t43 = k(0.08) * t4 - k(0.12) * t9;
+        let t44 = k(1.0) / (t5 * t5 + t15 * t15);
+        let t45 = t19 * (t5 * t44);
+        let t46 = k(0.0652) * t14 - (k(0.04) * t4 + k(0.026) * t9);
+        let t47 = t19 * (t15 * t44);
+        let t48 = k(0.04) * t14 - (k(0.7416) * t4 - k(0.0064) * t9);
+        let t49 = k(0.026) * t14 + (k(0.0064) * t4 - k(0.7636) * t9);
+        let t50 = k(1.0) / (t15 * t46 - (t10 * t49 + t5 * t48));
+        let t51 = t49 * t50;
+        let t52 = turn0.cos();
+        let t53 = turn0.sin();
+        let t54 = (t33 * t52 + t24 * t53).atan2(t33 * t53 - t24 * t52);
+        let t55 = k(1.5) * (k(0.2) - (turn0 + t54));
+        let t56 = k(0.002) * bob_wz;
+        let t57 = k(0.004) * bob_wy;
+        let t58 = bob_wx * (t57 + t56) + (k(0.03) * t18 + k(0.003) * (t1 - t0));
+        let t59 = t5 * (k(0.7848) * t34 + k(15.696) * t32 - (t58 - t5 * t55));
+        let t60 = k(0.003) * bob_wx;
+        let t61 = bob_wy * (t56 - t60) + (k(0.02) * t11 - k(0.004) * (t1 - t16));
+        let t62 = k(1.1772) * t34 - k(15.696) * t30
+            + (t61 + (k(0.05) * bob_wy - t10 * t55));
+        let t63 = bob_wz * (t57 + t60) + (k(0.01) * t6 - k(0.002) * (t0 - t16));
+        let t64 = t15 * (k(1.1772) * t32 + k(0.7848) * t30 + (t63 - t15 * t55));
+        let t65 = t64 + (t10 * t62 - t59);
+        let t66 = (k(0.013) - t46 * t51) * t45 - (k(0.0032) + t49 * (t48 * t50)) * t47;
+        let t67 = t49 * (t41 * t50) * t40 - (k(0.8) - t49 * (t50 * t39)) * t38;
+        let t68 = (k(0.06) - t49 * (t43 * t50)) * t42 + t67 - t66
+            - (t62 + t49 * (t50 * t65));
+        let t69 = t68 / (k(0.3818) - t49 * t51);
+        let t70 = t49 * t69 + t48 * t47 + t46 * t45
+            - (t43 * t42 - (t41 * t40 + t39 * t38));
+        let t71 = t50 * (t65 - t70);
+        let t72 = t69 - t10 * t71;
+        let t73 = t45 + t15 * t71;
+        let t74 = t38 + (k(0.02) * t73 + k(0.4) * t72);
+        let t75 = t47 - t5 * t71;
+        let t76 = t40 + (k(0.03) * t73 + k(0.4) * t75);
+        let t77 = t42 - (k(0.03) * t72 - k(0.02) * t75);
         *out = [
-            t29 + (t15 * t87 + (t11 * t86 + t7 * t85)),
-            t44 + (t38 * t87 + (t36 * t86 + t34 * t85)),
-            -(t57 + (t51 * t87 + (t49 * t86 + t47 * t85))),
-            -t85,
-            -t86,
-            -t87,
+            t15 * t77 - (t10 * t76 - t5 * t74),
+            t27 * t77 + (t24 * t76 - t23 * t74),
+            -(t35 * t77 + (t33 * t76 + t31 * t74)),
+            -t75,
+            t72,
+            -t73,
         ];
     }
     /// Writes λ: 116 operations (47 ±, 68 ×, 1 ÷) and 3 functions.
@@ -785,56 +777,60 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Universal<T> {
         let t0 = k(2.0) * bob_dsx;
         let t1 = k(2.0) * bob_dsy;
         let t2 = k(19.62) + k(2.0) * bob_dsz;
-        let t3 = bob_e0 * bob_e2;
-        let t4 = bob_e1 * bob_e3;
-        let t5 = t4 + t3;
+        let t3 = turn0.cos();
+        let t4 = bob_e0 * bob_e0;
+        let t5 = k(0.5) - (t4 + bob_e2 * bob_e2);
         let t6 = k(2.0) * t5;
-        let t7 = bob_e0 * bob_e0;
-        let t8 = k(0.5) - (t7 + bob_e1 * bob_e1);
-        let t9 = k(2.0) * t8;
-        let t10 = k(1.0) / (t9 * t9 + t6 * t6);
-        let t11 = turn0.cos();
-        let t12 = k(0.5) - (t7 + bob_e2 * bob_e2);
-        let t13 = k(2.0) * t12;
-        let t14 = turn0.sin();
-        let t15 = bob_e0 * bob_e1;
-        let t16 = bob_e2 * bob_e3;
-        let t17 = t16 + t15;
-        let t18 = k(2.0) * t17;
-        let t19 = (t18 * t11 + t13 * t14).atan2(t18 * t14 - t13 * t11);
-        let t20 = k(1.5) * (k(0.2) - (turn0 + t19));
-        let t21 = bob_wy * bob_wy;
-        let t22 = k(0.004) * bob_wy;
-        let t23 = bob_wx * (t22 + k(0.002) * bob_wz)
-            + (k(0.03) * (bob_wy * bob_wz) + k(0.003) * (bob_wz * bob_wz - t21));
-        let t24 = k(0.05) * bob_dwx + k(0.002) * bob_dwy - k(0.004) * bob_dwz
-            - (t23 - t9 * t20);
-        let t25 = bob_e0 * bob_e3;
-        let t26 = bob_e1 * bob_e2;
-        let t27 = t26 - t25;
-        let t28 = t1 * (k(0.04) * (t16 - t15) + k(0.8) * t12)
-            + t0 * (k(0.04) * t5 - k(0.8) * t27);
-        let t29 = t2 * (k(0.04) * (k(0.5) - (t7 + bob_e3 * bob_e3)) + k(0.8) * t17);
-        let t30 = bob_wz * (t22 + k(0.003) * bob_wx)
-            + (k(0.01) * (bob_wx * bob_wy) - k(0.002) * (t21 - bob_wx * bob_wx));
+        let t7 = turn0.sin();
+        let t8 = bob_e0 * bob_e1;
+        let t9 = bob_e2 * bob_e3;
+        let t10 = t9 + t8;
+        let t11 = k(2.0) * t10;
+        let t12 = (t11 * t3 + t6 * t7).atan2(t11 * t7 - t6 * t3);
+        let t13 = k(1.5) * (k(0.2) - (turn0 + t12));
+        let t14 = k(0.5) - (t4 + bob_e1 * bob_e1);
+        let t15 = k(2.0) * t14;
+        let t16 = bob_wy * bob_wy;
+        let t17 = k(0.004) * bob_wy;
+        let t18 = bob_wx * (t17 + k(0.002) * bob_wz)
+            + (k(0.03) * (bob_wy * bob_wz) + k(0.003) * (bob_wz * bob_wz - t16));
+        let t19 = k(0.05) * bob_dwx + k(0.002) * bob_dwy - k(0.004) * bob_dwz
+            - (t18 - t15 * t13);
+        let t20 = bob_e0 * bob_e3;
+        let t21 = bob_e1 * bob_e2;
+        let t22 = t21 - t20;
+        let t23 = bob_e0 * bob_e2;
+        let t24 = bob_e1 * bob_e3;
+        let t25 = t24 + t23;
+        let t26 = t1 * (k(0.04) * (t9 - t8) + k(0.8) * t5)
+            + t0 * (k(0.04) * t25 - k(0.8) * t22);
+        let t27 = t2 * (k(0.04) * (k(0.5) - (t4 + bob_e3 * bob_e3)) + k(0.8) * t10);
+        let t28 = k(2.0) * t25;
+        let t29 = k(1.0) / (t15 * t15 + t28 * t28);
+        let t30 = bob_wz * (t17 + k(0.003) * bob_wx)
+            + (k(0.01) * (bob_wx * bob_wy) - k(0.002) * (t16 - bob_wx * bob_wx));
         let t31 = k(0.004) * bob_dwx - k(0.003) * bob_dwy - k(0.03) * bob_dwz
-            - (t30 - t6 * t20);
-        let t32 = t1 * (k(0.06) * t12 - k(0.04) * (t26 + t25))
-            + t0 * (k(0.04) * t8 - k(0.06) * t27);
-        let t33 = t2 * (k(0.06) * t17 + k(0.04) * (t4 - t3)) - t32 - t31;
-        let t34 = t33 * (t9 * t10) + (t29 - t28 + t24) * (t6 * t10);
+            - (t30 - t28 * t13);
+        let t32 = t1 * (k(0.06) * t5 - k(0.04) * (t21 + t20))
+            + t0 * (k(0.04) * t14 - k(0.06) * t22);
+        let t33 = t2 * (k(0.06) * t10 + k(0.04) * (t24 - t23)) - t32 - t31;
+        let t34 = t15 * t29 * t33 + t28 * t29 * (t27 - t26 + t19);
         *lambda = [-t0, -t1, -t2, -t34];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Universal<T> {
     type Joints = [T; 5];
     type Rates = [T; 2];
+    type Solution = [T; 10];
     fn joint_start(&self) -> Self::Joints {
         let k = T::constant;
         [k(0.9), k(-0.5), k(1.5000000000000004), k(2.0), k(0.0)]
     }
     fn rates(&self) -> Self::Rates {
         [T::constant(0.0); 2]
+    }
+    fn solution(&self) -> Self::Solution {
+        [T::constant(0.0); 10]
     }
     /// Writes u̇: 48 operations (18 ±, 29 ×, 1 ÷) and 4 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
@@ -1126,6 +1122,93 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Universal<T> {
         let t32 = t2 * (k(0.06) * t10 + k(0.04) * (t24 - t23)) - t31 - t30;
         *lambda = [-t0, -t1, -t2, -(t15 * t32 + t28 * (t27 - t26 + t19))];
     }
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 237 operations (94 ±, 142 ×, 1 ÷) and 3 functions.
+    fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
+        let k = T::constant;
+        let bob_e0 = y[3];
+        let bob_e1 = y[4];
+        let bob_e2 = y[5];
+        let bob_e3 = y[6];
+        let bob_wx = y[10];
+        let bob_wy = y[11];
+        let bob_wz = y[12];
+        let turn0 = y[14];
+        let t0 = bob_e0 * bob_e0;
+        let t1 = k(0.5) - (t0 + bob_e1 * bob_e1);
+        let t2 = k(2.0) * t1;
+        let t3 = bob_e0 * bob_e3;
+        let t4 = bob_e1 * bob_e2;
+        let t5 = t4 - t3;
+        let t6 = k(2.0) * t5;
+        let t7 = bob_e0 * bob_e2;
+        let t8 = bob_e1 * bob_e3;
+        let t9 = t8 + t7;
+        let t10 = k(2.0) * t9;
+        let t11 = t10 * bob_wz + (t6 * bob_wy - t2 * bob_wx);
+        let t12 = t2 * t11;
+        let t13 = t10 * t11;
+        let t14 = t11 * (t2 * t13 - t10 * t12) - (bob_wx * t13 + bob_wz * t12);
+        let t15 = t11 * (k(0.5) - t10 * (t10 - k(16.91) * t1));
+        let t16 = k(0.5) - (t0 + bob_e2 * bob_e2);
+        let t17 = k(2.0) * t16;
+        let t18 = k(0.05) * bob_wy - k(7.848) * (t17 * (t10 + k(0.15) * t1))
+            - k(0.04) * (t11 * t15);
+        let t19 = k(0.0032)
+            * (bob_wy * (k(25.0) * t15 - bob_wy * (t10 - k(8.125) * t1)));
+        let t20 = bob_e0 * bob_e1;
+        let t21 = bob_e2 * bob_e3;
+        let t22 = t21 + t20;
+        let t23 = k(2.0) * t22;
+        let t24 = turn0.cos();
+        let t25 = turn0.sin();
+        let t26 = (t23 * t24 + t17 * t25).atan2(t23 * t25 - t17 * t24);
+        let t27 = turn0 + t26;
+        let t28 = k(0.3) - k(0.7848) * t16 - k(1.5) * t27
+            - k(0.5886) * (t23 * (t10 - k(26.666666666666668) * t1));
+        let t29 = k(0.026) * t9 + k(0.0064) * t1;
+        let t30 = k(2.6191723415400734) * t29;
+        let t31 = t29 * t30
+            - (k(0.3708) - k(0.3382) * (t10 * (t10 + k(0.23654642223536368) * t1)));
+        let t32 = (t30 * t18 - (t28 - t19)) / t31;
+        let t33 = t30 * t32 - k(2.6191723415400734) * t18 + t14;
+        let t34 = bob_wx * bob_wy;
+        let t35 = t11 * (t2 * bob_wy) - (t34 + bob_wy * t12) - t10 * t32;
+        let t36 = k(0.03) * bob_wz + k(0.4) * bob_wx;
+        let t37 = k(0.02) * bob_wx + k(0.03) * bob_wy;
+        let t38 = bob_wy * t37 + bob_wz * t36 + (k(0.02) * t35 + k(0.4) * t33);
+        let t39 = bob_wy * bob_wz;
+        let t40 = t11 * (t10 * bob_wy) + (t39 - bob_wy * t13) + t2 * t32;
+        let t41 = k(0.03) * t35;
+        let t42 = k(0.4) * bob_wy - k(0.02) * bob_wz;
+        let t43 = bob_wz * t42 - bob_wx * t37 + (t41 + k(0.4) * t40);
+        let t44 = bob_wx * t36 + bob_wy * t42 - (k(0.03) * t33 - k(0.02) * t40);
+        let t45 = t10 * t44 - (t6 * t43 - t2 * t38);
+        let t46 = t4 + t3;
+        let t47 = t21 - t20;
+        let t48 = k(2.0) * t47 * t44 + (t17 * t43 - k(2.0) * t46 * t38);
+        let t49 = t8 - t7;
+        let t50 = k(0.5) - (t0 + bob_e3 * bob_e3);
+        let t51 = k(2.0) * t50 * t44 + (t23 * t43 + k(2.0) * t49 * t38);
+        let t52 = k(2.0) * t45;
+        let t53 = k(2.0) * t48;
+        let t54 = k(19.62) - k(2.0) * t51;
+        let t55 = (k(0.04) * t1 - k(0.06) * t5) * t52
+            + (k(0.06) * t16 - k(0.04) * t46) * t53;
+        let t56 = k(1.5) * (k(0.2) - t27);
+        let t57 = bob_wy * bob_wy;
+        let t58 = k(0.004) * bob_wy;
+        let t59 = bob_wz * (t58 + k(0.003) * bob_wx)
+            + (k(0.01) * t34 - k(0.002) * (t57 - bob_wx * bob_wx));
+        let t60 = t59 - t10 * t56 - (t41 - (k(0.003) * t33 + k(0.004) * t40));
+        let t61 = t2 * (t60 - (t55 - (k(0.06) * t22 + k(0.04) * t49) * t54));
+        let t62 = (k(0.04) * t9 - k(0.8) * t5) * t52
+            + (k(0.04) * t47 + k(0.8) * t16) * t53;
+        let t63 = bob_wx * (t58 + k(0.002) * bob_wz)
+            + (k(0.03) * t39 + k(0.003) * (bob_wz * bob_wz - t57));
+        let t64 = t63 - t2 * t56 - (k(0.004) * t35 + (k(0.002) * t33 - k(0.05) * t40));
+        let t65 = t10 * (t64 + (t62 - (k(0.04) * t50 + k(0.8) * t22) * t54));
+        *out = [t45, t48, -t51, -t40, t33, -t35, -t52, -t53, -t54, t65 - t61];
+    }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Ports for Universal<T> {
     type Outputs = [T; 6];
@@ -1157,59 +1240,59 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Universal<T> {
         let t0 = k(2.0) * bob_dsy;
         let t1 = k(19.62) + k(2.0) * bob_dsz;
         let t2 = k(2.0) * bob_dsx;
-        let t3 = bob_e0 * bob_e2;
-        let t4 = bob_e1 * bob_e3;
-        let t5 = t4 + t3;
+        let t3 = turn0.cos();
+        let t4 = bob_e0 * bob_e0;
+        let t5 = k(0.5) - (t4 + bob_e2 * bob_e2);
         let t6 = k(2.0) * t5;
-        let t7 = bob_e0 * bob_e0;
-        let t8 = k(0.5) - (t7 + bob_e1 * bob_e1);
-        let t9 = k(2.0) * t8;
-        let t10 = k(1.0) / (t9 * t9 + t6 * t6);
-        let t11 = turn0.cos();
-        let t12 = k(0.5) - (t7 + bob_e2 * bob_e2);
-        let t13 = k(2.0) * t12;
-        let t14 = turn0.sin();
-        let t15 = bob_e0 * bob_e1;
-        let t16 = bob_e2 * bob_e3;
-        let t17 = t16 + t15;
-        let t18 = k(2.0) * t17;
-        let t19 = (t18 * t11 + t13 * t14).atan2(t18 * t14 - t13 * t11);
-        let t20 = k(1.5) * (k(0.2) - (turn0 + t19));
-        let t21 = bob_wy * bob_wy;
-        let t22 = k(0.004) * bob_wy;
-        let t23 = bob_wx * (t22 + k(0.002) * bob_wz)
-            + (k(0.03) * (bob_wy * bob_wz) + k(0.003) * (bob_wz * bob_wz - t21));
-        let t24 = k(0.05) * bob_dwx + k(0.002) * bob_dwy - k(0.004) * bob_dwz
-            - (t23 - t9 * t20);
-        let t25 = bob_e0 * bob_e3;
-        let t26 = bob_e1 * bob_e2;
-        let t27 = t26 - t25;
-        let t28 = t16 - t15;
-        let t29 = t0 * (k(0.04) * t28 + k(0.8) * t12)
-            + t2 * (k(0.04) * t5 - k(0.8) * t27);
-        let t30 = k(0.5) - (t7 + bob_e3 * bob_e3);
-        let t31 = t1 * (k(0.04) * t30 + k(0.8) * t17) - t29;
-        let t32 = bob_wz * (t22 + k(0.003) * bob_wx)
-            + (k(0.01) * (bob_wx * bob_wy) - k(0.002) * (t21 - bob_wx * bob_wx));
+        let t7 = turn0.sin();
+        let t8 = bob_e0 * bob_e1;
+        let t9 = bob_e2 * bob_e3;
+        let t10 = t9 + t8;
+        let t11 = k(2.0) * t10;
+        let t12 = (t11 * t3 + t6 * t7).atan2(t11 * t7 - t6 * t3);
+        let t13 = k(1.5) * (k(0.2) - (turn0 + t12));
+        let t14 = k(0.5) - (t4 + bob_e1 * bob_e1);
+        let t15 = k(2.0) * t14;
+        let t16 = bob_wy * bob_wy;
+        let t17 = k(0.004) * bob_wy;
+        let t18 = bob_wx * (t17 + k(0.002) * bob_wz)
+            + (k(0.03) * (bob_wy * bob_wz) + k(0.003) * (bob_wz * bob_wz - t16));
+        let t19 = k(0.05) * bob_dwx + k(0.002) * bob_dwy - k(0.004) * bob_dwz
+            - (t18 - t15 * t13);
+        let t20 = bob_e0 * bob_e3;
+        let t21 = bob_e1 * bob_e2;
+        let t22 = t21 - t20;
+        let t23 = bob_e0 * bob_e2;
+        let t24 = bob_e1 * bob_e3;
+        let t25 = t24 + t23;
+        let t26 = t9 - t8;
+        let t27 = t0 * (k(0.04) * t26 + k(0.8) * t5)
+            + t2 * (k(0.04) * t25 - k(0.8) * t22);
+        let t28 = k(0.5) - (t4 + bob_e3 * bob_e3);
+        let t29 = t1 * (k(0.04) * t28 + k(0.8) * t10) - t27;
+        let t30 = k(2.0) * t25;
+        let t31 = k(1.0) / (t15 * t15 + t30 * t30);
+        let t32 = bob_wz * (t17 + k(0.003) * bob_wx)
+            + (k(0.01) * (bob_wx * bob_wy) - k(0.002) * (t16 - bob_wx * bob_wx));
         let t33 = k(0.004) * bob_dwx - k(0.003) * bob_dwy - k(0.03) * bob_dwz
-            - (t32 - t6 * t20);
-        let t34 = t26 + t25;
-        let t35 = t0 * (k(0.06) * t12 - k(0.04) * t34)
-            + t2 * (k(0.04) * t8 - k(0.06) * t27);
-        let t36 = t4 - t3;
-        let t37 = t1 * (k(0.06) * t17 + k(0.04) * t36) - t35;
-        let t38 = (t37 - t33) * (t9 * t10) + (t31 + t24) * (t6 * t10);
-        let t39 = t31 - t6 * t38;
-        let t40 = t0 * (k(0.06) * t28 + k(0.8) * t34)
-            + t2 * (k(0.06) * t5 - k(0.8) * t8);
-        let t41 = t1 * (k(0.06) * t30 - k(0.8) * t36) - t40;
-        let t42 = t37 - t9 * t38;
-        let t43 = k(2.0) * t28 * t42 - (t13 * t41 - k(2.0) * t34 * t39);
-        let t44 = bob_rz - (bob_rz - (k(0.8) * t30 - (k(0.04) * t17 - k(0.06) * t36)));
-        let t45 = bob_rx - (bob_rx + (k(0.8) * t5 + (k(0.04) * t27 + k(0.06) * t8)));
-        let t46 = k(2.0) * t30 * t42 - (t18 * t41 + k(2.0) * t36 * t39);
-        let t47 = bob_ry - (bob_ry + (k(0.8) * t28 - (k(0.04) * t12 + k(0.06) * t34)));
-        let t48 = t0 * t44 - t1 * t47 + (t6 * t42 + (k(2.0) * t27 * t41 - t9 * t39));
+            - (t32 - t30 * t13);
+        let t34 = t21 + t20;
+        let t35 = t0 * (k(0.06) * t5 - k(0.04) * t34)
+            + t2 * (k(0.04) * t14 - k(0.06) * t22);
+        let t36 = t24 - t23;
+        let t37 = t1 * (k(0.06) * t10 + k(0.04) * t36) - t35;
+        let t38 = t15 * t31 * (t37 - t33) + t30 * t31 * (t29 + t19);
+        let t39 = t29 - t30 * t38;
+        let t40 = t0 * (k(0.06) * t26 + k(0.8) * t34)
+            + t2 * (k(0.06) * t25 - k(0.8) * t14);
+        let t41 = t1 * (k(0.06) * t28 - k(0.8) * t36) - t40;
+        let t42 = t37 - t15 * t38;
+        let t43 = k(2.0) * t26 * t42 - (t6 * t41 - k(2.0) * t34 * t39);
+        let t44 = bob_rz - (bob_rz - (k(0.8) * t28 - (k(0.04) * t10 - k(0.06) * t36)));
+        let t45 = bob_rx - (bob_rx + (k(0.8) * t25 + (k(0.04) * t22 + k(0.06) * t14)));
+        let t46 = k(2.0) * t28 * t42 - (t11 * t41 + k(2.0) * t36 * t39);
+        let t47 = bob_ry - (bob_ry + (k(0.8) * t26 - (k(0.04) * t5 + k(0.06) * t34)));
+        let t48 = t0 * t44 - t1 * t47 + (t30 * t42 + (k(2.0) * t22 * t41 - t15 * t39));
         *out = [
             t0,
             t1,

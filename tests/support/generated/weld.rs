@@ -19,7 +19,7 @@
 //! | gamma | γ | 93 | 144 | 0 | 237 | 0 of 11 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 69 | 96 | 0 | 165 | 0 of 11 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 8 | 0 | 8 | 6 of 12 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 209 | 318 | 3 | 530 | 0 of 12 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 191 | 291 | 3 | 485 | 0 of 12 |
 //! | multipliers | λ, the accelerations being known | 70 | 129 | 2 | 201 | 0 of 11 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 16 | 32 | 0 | 48 | 0 of 14 |
 //! | energy | T and V | 12 | 22 | 0 | 34 | 0 of 2 |
@@ -35,6 +35,7 @@
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 2 | 2 | 0 | 4 | 0 of 1 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 52 | 74 | 0 | 126 | 0 of 12 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 39 | 59 | 0 | 98 | 0 of 11 |
+//! | corrected_solution | both | 75 | 115 | 0 | 190 | 0 of 23 |
 //!
 //! # Proof
 //!
@@ -51,7 +52,7 @@
 //! * joint_derivative: eqs. (14) and (16) on the constraints
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
-//! * corrected_multipliers: eq. (17) on the constraints
+//! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //!
 //! All of it holds but with a probability below 1e-146.
 //! Not proved: the size of rounding errors.
@@ -1329,7 +1330,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Weld<T> {
             k(0.0),
         ];
     }
-    /// Solves eq. (17): 530 operations (209 ±, 318 ×, 3 ÷).
+    /// Solves eq. (17): 485 operations (191 ±, 291 ×, 3 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let inner_e0 = y[3];
@@ -1346,185 +1347,155 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Weld<T> {
         let outer_wx = y[23];
         let outer_wy = y[24];
         let outer_wz = y[25];
-        let t0 = inner_wx * inner_wz;
-        let t1 = inner_e0 * inner_e3;
-        let t2 = inner_e1 * inner_e2;
-        let t3 = k(2.0) * (t2 + t1);
-        let t4 = inner_wy * inner_wz;
-        let t5 = inner_e0 * inner_e0;
-        let t6 = k(0.5) - (t5 + inner_e2 * inner_e2);
-        let t7 = k(2.0) * t6;
-        let t8 = inner_wx * inner_wx;
-        let t9 = inner_wy * inner_wy;
-        let t10 = t9 + t8;
-        let t11 = inner_e0 * inner_e1;
-        let t12 = inner_e2 * inner_e3;
-        let t13 = t12 - t11;
-        let t14 = k(2.0) * t13;
-        let t15 = t14 * t10 + (t7 * t4 - t3 * t0);
-        let t16 = k(2.0) * (k(0.5) - (t5 + inner_e1 * inner_e1));
-        let t17 = t2 - t1;
-        let t18 = k(2.0) * t17;
-        let t19 = k(1.0) / (t18 * t3 - t16 * t7);
-        let t20 = inner_e0 * inner_e2;
-        let t21 = inner_e1 * inner_e3;
-        let t22 = t21 + t20;
-        let t23 = k(2.0) * t22;
-        let t24 = t23 * t10 - (t18 * t4 - t16 * t0);
-        let t25 = t7 * t19 * t24 + t18 * t19 * t15;
-        let t26 = k(0.5) * t22;
-        let t27 = outer_e0 * outer_e3;
-        let t28 = outer_e1 * outer_e2;
-        let t29 = t28 - t27;
-        let t30 = k(0.3) * t29;
-        let t31 = outer_e0 * outer_e0;
-        let t32 = k(0.5) - (t31 + outer_e1 * outer_e1);
-        let t33 = k(2.0) * t32;
-        let t34 = t28 + t27;
+        let t0 = inner_wy * inner_wy;
+        let t1 = inner_wz * inner_wz;
+        let t2 = t1 + t0;
+        let t3 = inner_e0 * inner_e0;
+        let t4 = k(2.0) * (k(0.5) - (t3 + inner_e1 * inner_e1));
+        let t5 = inner_wx * inner_wy;
+        let t6 = inner_e0 * inner_e3;
+        let t7 = inner_e1 * inner_e2;
+        let t8 = k(2.0) * (t7 - t6);
+        let t9 = inner_wx * inner_wz;
+        let t10 = inner_e0 * inner_e2;
+        let t11 = inner_e1 * inner_e3;
+        let t12 = k(2.0) * (t11 + t10);
+        let t13 = t12 * t9 + (t8 * t5 + t4 * t2);
+        let t14 = k(0.25) * t13;
+        let t15 = k(2.0) * (t7 + t6);
+        let t16 = k(0.5) - (t3 + inner_e2 * inner_e2);
+        let t17 = k(2.0) * t16;
+        let t18 = inner_e0 * inner_e1;
+        let t19 = inner_e2 * inner_e3;
+        let t20 = k(2.0) * (t19 - t18);
+        let t21 = t20 * t9 - (t17 * t5 + t15 * t2);
+        let t22 = k(0.25) * t21;
+        let t23 = k(2.0) * (t11 - t10);
+        let t24 = k(2.0) * (t19 + t18);
+        let t25 = k(0.5) - (t3 + inner_e3 * inner_e3);
+        let t26 = k(2.0) * t25;
+        let t27 = t26 * t9 - (t24 * t5 - t23 * t2);
+        let t28 = k(0.25) * t27;
+        let t29 = t23 * t28 - (t15 * t22 - t4 * t14);
+        let t30 = outer_e0 * outer_e3;
+        let t31 = outer_e1 * outer_e2;
+        let t32 = k(2.0) * (t31 - t30);
+        let t33 = outer_e0 * outer_e0;
+        let t34 = k(0.5) - (t33 + outer_e2 * outer_e2);
         let t35 = k(2.0) * t34;
-        let t36 = outer_e0 * outer_e2;
-        let t37 = outer_e1 * outer_e3;
-        let t38 = t37 - t36;
-        let t39 = k(2.0) * t38;
-        let t40 = k(0.5) - (t5 + inner_e3 * inner_e3);
-        let t41 = k(2.0) * t40;
-        let t42 = t41 * t39 - (t14 * t35 - t23 * t33);
-        let t43 = k(0.3) * t32;
-        let t44 = k(2.0) * t29;
-        let t45 = k(0.5) - (t31 + outer_e2 * outer_e2);
-        let t46 = k(2.0) * t45;
-        let t47 = outer_e0 * outer_e1;
-        let t48 = outer_e2 * outer_e3;
-        let t49 = t48 + t47;
-        let t50 = k(2.0) * t49;
-        let t51 = t41 * t50 + (t14 * t46 - t23 * t44);
-        let t52 = t51 * t43 + t42 * t30;
-        let t53 = k(0.3) * t17 + t52;
-        let t54 = k(0.5) * t17;
-        let t55 = k(0.3) * t45;
-        let t56 = k(0.3) * t34;
-        let t57 = t51 * t56 + t42 * t55;
-        let t58 = k(0.3) * t6 + t57;
-        let t59 = k(0.5) * t6;
-        let t60 = k(0.3) * t49;
-        let t61 = k(0.3) * t38;
-        let t62 = t51 * t61 - t42 * t60;
-        let t63 = t12 + t11;
-        let t64 = k(0.3) * t63 - t62;
-        let t65 = k(0.5) * t63;
-        let t66 = k(2.0) * (t37 + t36);
-        let t67 = k(2.0) * (t48 - t47);
-        let t68 = k(2.0) * (k(0.5) - (t31 + outer_e3 * outer_e3));
-        let t69 = t41 * t68 + (t14 * t67 + t23 * t66);
-        let t70 = t69 * (k(5e-5) * t69)
-            + (t51 * (k(0.05) * t51) + t42 * (k(0.05) * t42));
-        let t71 = k(0.0375) + t70 - k(2.0) * (t65 * t62 - (t59 * t57 + t54 * t52));
-        let t72 = k(0.075) + (k(0.0125) + t71)
-            + k(2.0) * (t65 * t64 + (t59 * t58 + t54 * t53));
-        let t73 = outer_wy * outer_wz;
-        let t74 = outer_wx * outer_wz;
-        let t75 = outer_wx * outer_wx;
-        let t76 = outer_wy * outer_wy;
-        let t77 = t76 + t75;
-        let t78 = inner_wz * inner_wz;
-        let t79 = t78 + t9;
-        let t80 = inner_wx * inner_wy;
-        let t81 = t23 * t0 + (t18 * t80 + t16 * t79);
-        let t82 = t81 - (t66 * t77 - (t44 * t73 - t33 * t74));
-        let t83 = k(0.25) * t82;
-        let t84 = t14 * t0 - (t7 * t80 + t3 * t79);
-        let t85 = t84 - (t67 * t77 + (t46 * t73 - t35 * t74));
-        let t86 = k(0.25) * t85;
-        let t87 = k(2.0) * (t21 - t20);
-        let t88 = k(2.0) * t63;
-        let t89 = t41 * t0 - (t88 * t80 - t87 * t79);
-        let t90 = t89 - (t68 * t77 + (t50 * t73 + t39 * t74));
-        let t91 = k(0.25) * t90;
-        let t92 = t87 * t50 - (t3 * t46 + t16 * t44);
-        let t93 = t88 * t50 + (t7 * t46 + t18 * t44);
-        let t94 = t88 * t39 - (t7 * t35 + t18 * t33);
-        let t95 = t88 * t68 + (t7 * t67 - t18 * t66);
-        let t96 = outer_wx * t69 + outer_wz * t42;
-        let t97 = k(2.0)
-            * (inner_wy * t96 + inner_wz * (outer_wx * t95 + outer_wz * t94));
-        let t98 = t87 * t39 + (t3 * t35 + t16 * t33);
-        let t99 = outer_wx * outer_wy;
-        let t100 = outer_wz * outer_wz;
-        let t101 = t100 + t75;
-        let t102 = t87 * t68 - (t3 * t67 - t16 * t66);
-        let t103 = t73 * t102 + (t101 * t92 - t99 * t98) + t97
-            + (t0 * t51 - (t80 * t93 - t79 * t92));
-        let t104 = t102 * t94;
-        let t105 = t98 * t95 - t104;
-        let t106 = k(1.0) / (t102 * t105);
-        let t107 = k(2.0)
-            * (inner_wx * t96 + inner_wz * (outer_wx * t102 + outer_wz * t98));
-        let t108 = t73 * t95 + (t101 * t93 - t99 * t94) - t107
-            + (t4 * t51 + ((t78 + t8) * t93 - t80 * t92));
-        let t109 = t106 * (t102 * t98) * t108 - t104 * t106 * t103;
-        let t110 = k(0.05) * t109 - (t91 * t60 + (t86 * t55 - t83 * t30));
-        let t111 = inner_wy * (outer_wy * t69 + outer_wz * t51)
-            + inner_wz * (outer_wy * t95 + outer_wz * t93);
-        let t112 = t74 * t102 - (t99 * t92 - (t100 + t76) * t98) - k(2.0) * t111;
-        let t113 = t105 * t106 * (t112 + (t0 * t42 - (t80 * t94 - t79 * t98)));
-        let t114 = t106 * (t102 * t92) * t108 - t106 * (t95 * t92) * t103;
-        let t115 = t114 - t113;
-        let t116 = k(0.05) * t115 + (t91 * t61 - (t86 * t56 - t83 * t43));
-        let t117 = t51 * (t116 - (k(0.01245) * t74 + k(2.943) * t34))
-            + t42 * (t110 + (k(0.01245) * t73 - k(2.943) * t45));
-        let t118 = t106 * (t102 * t102) * t108 - t106 * (t102 * t95) * t103;
-        let t119 = k(5.886) - (t56 * t115 + t55 * t109 - k(0.15) * t85);
-        let t120 = t54 * (t43 * t115 + t30 * t109 + k(0.15) * t82);
-        let t121 = t65 * (t61 * t115 - t60 * t109 + k(0.15) * t90);
-        let t122 = t121 - (t120 - t59 * t119) - (t69 * (k(5e-5) * t118) + t117);
-        let t123 = t59 * (k(5.886) + t119) - t120 + t121 - (k(0.01245) * t80 - t122);
-        let t124 = k(0.25) * t81;
-        let t125 = k(0.25) * t84;
-        let t126 = t125 * (t58 + k(0.6) * t6) - t124 * (t53 + k(0.6) * t17);
-        let t127 = k(0.25) * t89;
-        let t128 = t69 * (k(5e-5) * t102)
-            + (t51 * (k(0.05) * t92) + t42 * (k(0.05) * t98));
-        let t129 = t59 * (t92 * t56 + t98 * t55) + t54 * (t92 * t43 + t98 * t30);
-        let t130 = t65 * (t92 * t61 - t98 * t60) - t129;
-        let t131 = t3 * t19 * t24 + t16 * t19 * t15;
-        let t132 = t69 * (k(5e-5) * t95)
-            + (t51 * (k(0.05) * t93) + t42 * (k(0.05) * t94));
-        let t133 = k(0.5) * t13;
-        let t134 = k(0.5) * t40;
-        let t135 = t93 * t43 + t94 * t30;
-        let t136 = t93 * t56 + t94 * t55;
-        let t137 = t93 * t61 - t94 * t60;
-        let t138 = t65 * t137 - (t59 * t136 + t54 * t135)
-            - (t134 * t62 - (t133 * t57 - t26 * t52));
-        let t139 = t59 * (k(0.3) * t13 - t136) - t54 * (k(0.3) * t22 + t135);
-        let t140 = t65 * (k(0.3) * t40 + t137) + t139
-            + (t134 * t64 + (t133 * t58 - t26 * t53));
-        let t141 = t25 * (t140 + (t138 - t132)) - t131 * (t130 + (t130 - t128));
-        let t142 = (t141 - (t127 * (t64 + k(0.6) * t63) + t126) - t123) / t72;
-        let t143 = t54 * t142 + t26 * t25;
-        let t144 = t124 - t143;
-        let t145 = t59 * t142 - t133 * t25;
-        let t146 = t125 + t145;
-        let t147 = t65 * t142 - t134 * t25;
-        let t148 = t127 + t147;
-        let t149 = t109 - (t42 * t142 + (t94 * t25 - t98 * t131));
-        let t150 = t115 - (t51 * t142 + (t93 * t25 - t92 * t131));
-        let t151 = k(0.5) * t32 * t150 + k(0.5) * t29 * t149 + (t83 - (t143 - t144));
-        let t152 = k(0.5) * t34 * t150 + k(0.5) * t45 * t149 - (t86 + (t145 + t146));
-        let t153 = k(0.5) * t38 * t150 - k(0.5) * t49 * t149 + (t91 + (t147 + t148));
+        let t36 = outer_e0 * outer_e1;
+        let t37 = outer_e2 * outer_e3;
+        let t38 = k(2.0) * (t37 + t36);
+        let t39 = t24 * t38 + (t17 * t35 + t8 * t32);
+        let t40 = k(0.15) * t39;
+        let t41 = k(2.0) * (k(0.5) - (t33 + outer_e1 * outer_e1));
+        let t42 = t31 + t30;
+        let t43 = k(2.0) * t42;
+        let t44 = outer_e0 * outer_e2;
+        let t45 = outer_e1 * outer_e3;
+        let t46 = k(2.0) * (t45 - t44);
+        let t47 = t26 * t46 - (t20 * t43 - t12 * t41);
+        let t48 = t24 * t46 - (t17 * t43 + t8 * t41);
+        let t49 = k(0.15) * t48;
+        let t50 = t26 * t38 + (t20 * t35 - t12 * t32);
+        let t51 = t50 * t49 - t47 * t40;
+        let t52 = k(0.15) - t51;
+        let t53 = k(2.0) * (t45 + t44);
+        let t54 = t37 - t36;
+        let t55 = k(2.0) * t54;
+        let t56 = k(2.0) * (k(0.5) - (t33 + outer_e3 * outer_e3));
+        let t57 = t26 * t56 + (t20 * t55 + t12 * t53);
+        let t58 = t57 * (k(5e-5) * t57)
+            + (t50 * (k(0.05) * t50) + t47 * (k(0.05) * t47));
+        let t59 = k(0.075) + (k(0.0125) - (k(0.5) * t51 - (k(0.0375) + t58)))
+            + k(0.5) * t52;
+        let t60 = t23 * t38 - (t15 * t35 + t4 * t32);
+        let t61 = t24 * t56 + (t17 * t55 - t8 * t53);
+        let t62 = outer_wx * t57 + outer_wz * t47;
+        let t63 = k(2.0)
+            * (inner_wy * t62 + inner_wz * (outer_wx * t61 + outer_wz * t48));
+        let t64 = t23 * t46 + (t15 * t43 + t4 * t41);
+        let t65 = outer_wx * outer_wy;
+        let t66 = outer_wx * outer_wx;
+        let t67 = outer_wz * outer_wz;
+        let t68 = t67 + t66;
+        let t69 = t23 * t56 - (t15 * t55 - t4 * t53);
+        let t70 = outer_wy * outer_wz;
+        let t71 = t70 * t69 + (t68 * t60 - t65 * t64) + t63
+            + (t9 * t50 - (t5 * t39 - t2 * t60));
+        let t72 = t69 * t48;
+        let t73 = t64 * t61 - t72;
+        let t74 = k(1.0) / (t69 * t73);
+        let t75 = inner_wx * inner_wx;
+        let t76 = inner_wy * inner_wz;
+        let t77 = k(2.0)
+            * (inner_wx * t62 + inner_wz * (outer_wx * t69 + outer_wz * t64));
+        let t78 = t70 * t61 + (t68 * t39 - t65 * t48) - t77
+            + (t76 * t50 + ((t1 + t75) * t39 - t5 * t60));
+        let t79 = t74 * (t69 * t69) * t78 - t74 * (t69 * t61) * t71;
+        let t80 = t74 * (t69 * t64) * t78 - t72 * t74 * t71;
+        let t81 = outer_wx * outer_wz;
+        let t82 = outer_wy * outer_wy;
+        let t83 = t82 + t66;
+        let t84 = k(0.25) * (t13 - (t53 * t83 - (t32 * t70 - t41 * t81)));
+        let t85 = k(0.25) * (t21 - (t55 * t83 + (t35 * t70 - t43 * t81)));
+        let t86 = k(0.25) * (t27 - (t56 * t83 + (t38 * t70 + t46 * t81)));
+        let t87 = t38 * t86 + (t35 * t85 - t32 * t84);
+        let t88 = k(0.15) * t87 - k(0.05) * t80 - (k(0.01245) * t70 - k(2.943) * t34);
+        let t89 = inner_wy * (outer_wy * t57 + outer_wz * t50)
+            + inner_wz * (outer_wy * t61 + outer_wz * t39);
+        let t90 = t81 * t69 - (t65 * t60 - (t67 + t82) * t64) - k(2.0) * t89;
+        let t91 = t73 * t74 * (t90 + (t9 * t47 - (t5 * t48 - t2 * t64)));
+        let t92 = t74 * (t69 * t60) * t78 - t74 * (t61 * t60) * t71;
+        let t93 = t92 - t91;
+        let t94 = t46 * t86 - (t43 * t85 - t41 * t84);
+        let t95 = k(0.15) * t94 + k(0.05) * t93 - (k(0.01245) * t81 + k(2.943) * t42);
+        let t96 = t39 * (k(0.15) * t80 - k(0.6) * t87 - k(11.772) * t34)
+            - t48 * (k(0.15) * t93 + k(0.6) * t94 - k(11.772) * t42);
+        let t97 = t56 * t86 + (t55 * t85 + t53 * t84);
+        let t98 = t61 * (k(0.6) * t97 + k(11.772) * t54) - t96;
+        let t99 = k(0.25) * t98 - (t50 * t95 - t47 * t88 + t57 * (k(5e-5) * t79));
+        let t100 = t24 * t28 + (t17 * t22 - t8 * t14);
+        let t101 = (k(0.3) + t52) * t100
+            - (t50 * (k(0.15) * t64) - t47 * (k(0.15) * t60)) * t29;
+        let t102 = t50 * (k(0.15) * t47) - t47 * (k(0.15) * t50);
+        let t103 = t26 * t28 + (t20 * t22 + t12 * t14);
+        let t104 = (t0 + t75) * (k(0.5) / t25);
+        let t105 = t76 - t24 * t104;
+        let t106 = t57 * (k(5e-5) * t69)
+            + (t50 * (k(0.05) * t60) + t47 * (k(0.05) * t64));
+        let t107 = k(0.25) * (t60 * t49 - t64 * t40);
+        let t108 = k(5e-5) * t61 * t57 + (t50 * (k(0.05) * t39) + t47 * (k(0.05) * t48));
+        let t109 = k(0.25) * (t102 - (t39 * t49 - t48 * t40));
+        let t110 = t9 - t23 * t104;
+        let t111 = t110 * (t109 + (t109 + t108)) + (t107 + (t107 - t106)) * t105;
+        let t112 = t111 + (t103 * t102 - t101)
+            - (k(0.25) * (t98 + k(11.772) * t16) - (k(0.01245) * t5 - t99));
+        let t113 = t112 / t59;
+        let t114 = k(0.25) * t113;
+        let t115 = t100 + t114;
+        let t116 = k(0.25) * t110;
+        let t117 = t116 + t103;
+        let t118 = t114 + t115;
+        let t119 = t116 + t117;
+        let t120 = t93 - (t50 * t113 - (t39 * t110 - t60 * t105));
+        let t121 = k(0.25) * t120 + (t94 + (t47 * t119 + (t48 * t118 + t64 * t29)));
+        let t122 = t80 - (t47 * t113 - (t48 * t110 - t64 * t105));
+        let t123 = k(0.25) * t122 - (t87 + (t50 * t119 + (t39 * t118 + t60 * t29)));
+        let t124 = t97 + (t57 * t119 + (t61 * t118 + t69 * t29));
         *out = [
-            t144,
-            t146,
-            -t148,
-            -t131,
-            t25,
-            -t142,
-            t151,
-            -t152,
-            -t153,
-            -t149,
-            -t150,
-            t118 - (t69 * t142 + (t95 * t25 - t102 * t131)),
+            t12 * t117 - (t8 * t115 - t4 * t29),
+            t20 * t117 + (t17 * t115 - t15 * t29),
+            -(t26 * t117 + (t24 * t115 + t23 * t29)),
+            t105,
+            -t110,
+            -t113,
+            t53 * t124 + (t32 * t123 + t41 * t121),
+            t55 * t124 - (t35 * t123 + t43 * t121),
+            t38 * t123 - t46 * t121 - t56 * t124,
+            -t122,
+            -t120,
+            t79 - (t57 * t113 - (t61 * t110 - t69 * t105)),
         ];
     }
     /// Writes λ: 201 operations (70 ±, 129 ×, 2 ÷).
@@ -1644,12 +1615,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Weld<T> {
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Weld<T> {
     type Joints = [T; 2];
     type Rates = [T; 1];
+    type Solution = [T; 23];
     fn joint_start(&self) -> Self::Joints {
         let k = T::constant;
         [k(1.5707963267948966), k(0.0)]
     }
     fn rates(&self) -> Self::Rates {
         [T::constant(0.0); 1]
+    }
+    fn solution(&self) -> Self::Solution {
+        [T::constant(0.0); 23]
     }
     /// Writes u̇: 1 operations (0 ±, 1 ×, 0 ÷) and 1 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
@@ -1892,6 +1867,119 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Weld<T> {
             t16,
             k(5e-5) * outer_dwz,
             t21,
+        ];
+    }
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 190 operations (75 ±, 115 ×, 0 ÷).
+    fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
+        let k = T::constant;
+        let inner_e0 = y[3];
+        let inner_e1 = y[4];
+        let inner_e2 = y[5];
+        let inner_e3 = y[6];
+        let outer_e0 = y[10];
+        let outer_e1 = y[11];
+        let outer_e2 = y[12];
+        let outer_e3 = y[13];
+        let inner_wx = y[17];
+        let inner_wy = y[18];
+        let inner_wz = y[19];
+        let outer_wx = y[23];
+        let outer_wy = y[24];
+        let outer_wz = y[25];
+        let t0 = k(0.25) * inner_wz;
+        let t1 = k(0.25) * inner_wy;
+        let t2 = inner_wy * t1 + inner_wz * t0;
+        let t3 = inner_e0 * inner_e0;
+        let t4 = inner_e0 + inner_e3;
+        let t5 = t4 * (inner_e0 - inner_e3);
+        let t6 = k(3.67875) * t5;
+        let t7 = inner_wx * t1;
+        let t8 = t7 - t6;
+        let t9 = inner_e0 * inner_e3;
+        let t10 = inner_e1 * inner_e2;
+        let t11 = k(2.0) * (t10 - t9) * t8
+            + k(2.0) * (k(0.5) - (t3 + inner_e1 * inner_e1)) * t2;
+        let t12 = inner_wx * inner_wz;
+        let t13 = k(0.25) * t12;
+        let t14 = inner_wx * t0;
+        let t15 = t14 + t13;
+        let t16 = inner_e0 * inner_e2;
+        let t17 = inner_e1 * inner_e3;
+        let t18 = t17 + t16;
+        let t19 = k(2.0) * t18 * t15 + t11;
+        let t20 = k(2.0) * (k(0.5) - (t3 + inner_e2 * inner_e2)) * t8
+            + k(2.0) * (t10 + t9) * t2;
+        let t21 = inner_e0 * inner_e1;
+        let t22 = inner_e2 * inner_e3;
+        let t23 = t22 - t21;
+        let t24 = k(2.0) * t23 * t15 - t20;
+        let t25 = k(2.0) * (t22 + t21) * t8 - k(2.0) * (t17 - t16) * t2;
+        let t26 = k(0.5) - (t3 + inner_e3 * inner_e3);
+        let t27 = k(2.0) * t26 * t15 - t25;
+        let t28 = inner_wy * inner_wz;
+        let t29 = k(14.715) * t5;
+        let t30 = k(0.25) * outer_wx;
+        let t31 = t6 - (t7 + outer_wz * t30 - (t6 - t8));
+        let t32 = outer_e0 * outer_e0;
+        let t33 = k(0.5) - (t32 + outer_e1 * outer_e1);
+        let t34 = k(0.25) * outer_wy;
+        let t35 = t13 + (t14 + outer_wz * t34 + (t13 + t15));
+        let t36 = outer_e0 * outer_e3;
+        let t37 = outer_e1 * outer_e2;
+        let t38 = t37 - t36;
+        let t39 = t2 + (t2 + (outer_wx * t30 + outer_wy * t34));
+        let t40 = outer_e0 * outer_e2;
+        let t41 = outer_e1 * outer_e3;
+        let t42 = k(2.0) * (t41 + t40) * t39 - (k(2.0) * t38 * t35 + k(2.0) * t33 * t31);
+        let t43 = t37 + t36;
+        let t44 = k(0.5) - (t32 + outer_e2 * outer_e2);
+        let t45 = outer_e0 * outer_e1;
+        let t46 = outer_e2 * outer_e3;
+        let t47 = k(2.0) * (t46 - t45) * t39 + (k(2.0) * t44 * t35 + k(2.0) * t43 * t31);
+        let t48 = t41 - t40;
+        let t49 = t46 + t45;
+        let t50 = k(2.0) * (k(0.5) - (t32 + outer_e3 * outer_e3)) * t39
+            + (k(2.0) * t49 * t35 - k(2.0) * t48 * t31);
+        let t51 = k(0.6) * (t19 - t42);
+        let t52 = k(5.886) - k(0.6) * t47;
+        let t53 = t52 + (k(5.886) + k(0.6) * t24);
+        let t54 = k(0.6) * (t27 - t50);
+        let t55 = k(0.6) * t50;
+        let t56 = k(0.5) * t26;
+        let t57 = k(0.5) * t23;
+        let t58 = k(0.6) * t42;
+        let t59 = k(0.5) * t18;
+        let t60 = k(0.5) * t38 * t58 + k(0.5) * t44 * t52 - k(0.5) * t49 * t55;
+        let t61 = t60 - (k(0.01245) * (outer_wy * outer_wz) + k(0.0125) * t12);
+        let t62 = t61 + (t59 * t58 - t57 * t52 + t56 * t55) - k(0.02495) * t12;
+        let t63 = t59 * t51 + t57 * t53 + t56 * t54 - t62;
+        let t64 = k(1.0) - t4 * t4;
+        let t65 = k(0.0001) * t28;
+        let t66 = k(0.5) * t33 * t58 + k(0.5) * t43 * t52 + k(0.5) * t48 * t55;
+        *out = [
+            t19,
+            t24,
+            -t27,
+            t28,
+            -t12,
+            -t29,
+            -t42,
+            -t47,
+            t50,
+            -t12,
+            -t29,
+            t28,
+            -t51,
+            -t53,
+            t54,
+            t64 * t63 - t5 * t65,
+            t64 * t65 + t5 * t63,
+            t58,
+            -t52,
+            -t55,
+            -t61,
+            k(5e-5) * t28,
+            t66 + (k(0.01245) * (outer_wx * outer_wz) - k(0.1839375) * t5),
         ];
     }
 }

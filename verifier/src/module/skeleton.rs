@@ -31,7 +31,7 @@ pub fn text(
         mechanism(model, type_name, joints.is_some()),
         partition(model, type_name, choice),
         equations(model, type_name),
-        joints.map(|joints| joint_space(type_name, joints)).unwrap_or_default(),
+        joints.map(|joints| joint_space(model, type_name, joints)).unwrap_or_default(),
         ports(model, type_name),
     ]
     .concat()
@@ -381,12 +381,14 @@ fn multipliers(name: &str, accelerations: &str) -> String {
     )
 }
 
-fn joint_space(name: &str, joints: &JointLayout) -> String {
+fn joint_space(model: &Model, name: &str, joints: &JointLayout) -> String {
+    let n_solution = 6 * model.coordinate_bodies().len() + model.rows().len();
     let (n_state, n_rates) = (joints.n_state(), joints.n_rates);
     format!(
         "impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for {name}<T> {{
             type Joints = [T; {n_state}];
             type Rates = [T; {n_rates}];
+            type Solution = [T; {n_solution}];
             fn joint_start(&self) -> Self::Joints {{ HOLE_joint_start }}
             {}
             fn joint_accelerations(&self, ANY_t: T, ANY_x: &Self::Joints, ANY_out: &mut Self::Rates) {{
@@ -397,10 +399,15 @@ fn joint_space(name: &str, joints: &JointLayout) -> String {
             fn to_joints(&self, ANY_t: T, ANY_y: &Self::State, x: &mut Self::Joints) {{ HOLE_to_joints }}
             {}
             {}
+            {}
         }}",
-        buffers(&[("rates", "Rates", &n_rates.to_string())]),
+        buffers(&[
+            ("rates", "Rates", &n_rates.to_string()),
+            ("solution", "Solution", &n_solution.to_string()),
+        ]),
         fillings(&[("joint_accelerations_at", "Rates"), ("corrected_accelerations", "Velocities")]),
         multipliers("corrected_multipliers", "Velocities"),
+        fillings(&[("corrected_solution", "Solution")]),
     )
 }
 

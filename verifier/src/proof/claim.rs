@@ -58,6 +58,8 @@ pub enum Claim {
     CorrectedDerivative,
     /// `corrected_multipliers` satisfy eq. (17) there.
     CorrectedMultipliers,
+    /// `corrected_solution` is both.
+    CorrectedSolution,
 }
 
 impl Claim {
@@ -91,6 +93,7 @@ impl Claim {
                 CorrectedAccelerations,
                 CorrectedDerivative,
                 CorrectedMultipliers,
+                CorrectedSolution,
             ]);
         }
         claims
@@ -122,6 +125,7 @@ impl Claim {
             Self::CorrectedAccelerations => &["corrected_accelerations"],
             Self::CorrectedDerivative => &["corrected_derivative"],
             Self::CorrectedMultipliers => &["corrected_multipliers"],
+            Self::CorrectedSolution => &["corrected_solution"],
         }
     }
 
@@ -151,6 +155,7 @@ impl Claim {
             Self::CorrectedAccelerations => "the proved v̇ at the state of (x, u)",
             Self::CorrectedDerivative => "eqs. (14), (16), v̇, turns; power at the state of (x, u)",
             Self::CorrectedMultipliers => "M v̇ + Φ_π'ᵀ λ = f at the state of (x, u)",
+            Self::CorrectedSolution => "the proved v̇ there, M v̇ + Φ_π'ᵀ λ = f",
         }
     }
 
@@ -170,7 +175,8 @@ impl Claim {
             Self::JointAccelerations
             | Self::JointAccelerationsAt
             | Self::CorrectedAccelerations
-            | Self::CorrectedMultipliers => "eq. (17) on the constraints",
+            | Self::CorrectedMultipliers
+            | Self::CorrectedSolution => "eq. (17) on the constraints",
             Self::JointDerivative | Self::CorrectedDerivative => "eqs. (14) and (16) on the constraints",
         }
     }
@@ -224,6 +230,7 @@ impl Claim {
             Self::CorrectedAccelerations => joints::corrected_accelerations(case),
             Self::CorrectedDerivative => joints::corrected_derivative(case),
             Self::CorrectedMultipliers => joints::corrected_multipliers(case),
+            Self::CorrectedSolution => joints::corrected_solution(case),
         }
     }
 }

@@ -224,6 +224,17 @@ pub fn corrected_derivative<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     Some(residuals)
 }
 
+/// v̇ and λ there.
+pub fn corrected_solution<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
+    let motion = Motion::new(case)?;
+    let found = case.run("corrected_solution", &motion.maximal);
+    let (accelerations, lambda) = found.split_at(6 * case.n_bodies());
+    let textbook = case.textbook(&motion.maximal)?;
+    let mut residuals = differences(accelerations, motion.accelerations());
+    residuals.extend(textbook.residual_of_motion(motion.accelerations(), lambda)?);
+    Some(residuals)
+}
+
 /// λ there, and at v̇.
 pub fn corrected_multipliers<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     let motion = Motion::new(case)?;

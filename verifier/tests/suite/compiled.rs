@@ -109,6 +109,9 @@ where
         let mut lambda = mechanism.rows();
         mechanism.corrected_multipliers(t, &y, &accelerations, &mut lambda);
         same("corrected_multipliers", lambda.as_ref());
+        let mut solution = mechanism.solution();
+        mechanism.corrected_solution(t, &y, &mut solution);
+        same("corrected_solution", solution.as_ref());
         mechanism.corrected_derivative(t, &y, &mut dy);
         same("corrected_derivative", dy.as_ref());
     }
