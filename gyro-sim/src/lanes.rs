@@ -96,6 +96,13 @@ const fn all<T: Lanes>() -> u32 {
     (1 << T::COUNT) - 1
 }
 
+/// Where all of these numbers are finite.
+fn are_finite<T: Lanes>(numbers: &[T]) -> T::Mask {
+    // Zero times anything else is no number, and stays none in a sum.
+    let zero = T::constant(0.0);
+    numbers.iter().fold(zero, |sum, x| T::fused(*x, zero, sum)).is_finite()
+}
+
 /// Takes back what has changed in other lanes than these.
 fn keep<T: Lanes>(lanes: u32, now: &mut [T], before: &[T]) {
     if lanes == all::<T>() {

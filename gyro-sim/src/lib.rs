@@ -56,6 +56,7 @@ extern crate self as gyro_sim;
 
 pub mod charts;
 mod error;
+pub mod fused;
 #[cfg(feature = "generated")]
 pub mod generated;
 #[cfg(feature = "lanes")]

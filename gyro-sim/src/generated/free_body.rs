@@ -111,10 +111,30 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for FreeBody<T> {
             body_sx,
             body_sy,
             body_sz,
-            -(k(0.5) * (body_e1 * body_wx + body_e2 * body_wy + body_e3 * body_wz)),
-            k(0.5) * (body_e0 * body_wx - body_e3 * body_wy + body_e2 * body_wz),
-            k(0.5) * (body_e3 * body_wx + body_e0 * body_wy - body_e1 * body_wz),
-            -(k(0.5) * (body_e2 * body_wx - body_e1 * body_wy - body_e0 * body_wz)),
+            -(k(0.5)
+                * T::fused(
+                    body_e3,
+                    body_wz,
+                    T::fused(body_e2, body_wy, body_e1 * body_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    body_e2,
+                    body_wz,
+                    T::fused(-body_e3, body_wy, body_e0 * body_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -body_e1,
+                    body_wz,
+                    T::fused(body_e0, body_wy, body_e3 * body_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -body_e0,
+                    body_wz,
+                    T::fused(-body_e1, body_wy, body_e2 * body_wx),
+                )),
             accelerations[0],
             accelerations[1],
             accelerations[2],
@@ -156,10 +176,30 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for FreeBody<T> {
             body_sx,
             body_sy,
             body_sz,
-            -(k(0.5) * (body_e1 * body_wx + body_e2 * body_wy + body_e3 * body_wz)),
-            k(0.5) * (body_e0 * body_wx - body_e3 * body_wy + body_e2 * body_wz),
-            k(0.5) * (body_e3 * body_wx + body_e0 * body_wy - body_e1 * body_wz),
-            -(k(0.5) * (body_e2 * body_wx - body_e1 * body_wy - body_e0 * body_wz)),
+            -(k(0.5)
+                * T::fused(
+                    body_e3,
+                    body_wz,
+                    T::fused(body_e2, body_wy, body_e1 * body_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    body_e2,
+                    body_wz,
+                    T::fused(-body_e3, body_wy, body_e0 * body_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -body_e1,
+                    body_wz,
+                    T::fused(body_e0, body_wy, body_e3 * body_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -body_e0,
+                    body_wz,
+                    T::fused(-body_e1, body_wy, body_e2 * body_wx),
+                )),
             accelerations[0],
             accelerations[1],
             accelerations[2],
@@ -175,8 +215,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for FreeBody<T> {
         let body_e1 = y[4];
         let body_e2 = y[5];
         let body_e3 = y[6];
-        let t0 = body_e3 * body_e3
-            + (body_e0 * body_e0 + body_e1 * body_e1 + body_e2 * body_e2);
+        let t0 = T::fused(
+            body_e3,
+            body_e3,
+            T::fused(body_e2, body_e2, T::fused(body_e1, body_e1, body_e0 * body_e0)),
+        );
         *out = [t0 - k(1.0)];
     }
     /// Writes Φ_r s + Φ_π' w' − ν: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -192,10 +235,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for FreeBody<T> {
         let body_wx = y[10];
         let body_wy = y[11];
         let body_wz = y[12];
-        let t0 = body_wx * (k(0.0003) * body_wx) + body_wy * (k(0.0003) * body_wy)
-            + body_wz * (k(0.0004) * body_wz);
-        let t1 = t0
-            + k(0.1) * (body_sx * body_sx + body_sy * body_sy + body_sz * body_sz);
+        let t0 = T::fused(
+            body_wz,
+            k(0.0004) * body_wz,
+            T::fused(body_wy, k(0.0003) * body_wy, body_wx * (k(0.0003) * body_wx)),
+        );
+        let t1 = T::fused(
+            k(0.1),
+            T::fused(body_sz, body_sz, T::fused(body_sy, body_sy, body_sx * body_sx)),
+            t0,
+        );
         gyro_sim::Energy {
             kinetic: k(0.5) * t1,
             potential: k(0.0),
@@ -270,15 +319,21 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for FreeBody<T> {
         let chart0_1 = charts[0][1];
         let chart0_2 = charts[0][2];
         let chart0_3 = charts[0][3];
-        let t0 = body_e0 * chart0_0 + body_e1 * chart0_1 + body_e2 * chart0_2
-            + body_e3 * chart0_3;
-        let t1 = body_e3 * body_e3
-            + (body_e0 * body_e0 + body_e1 * body_e1 + body_e2 * body_e2);
+        let t0 = T::fused(
+            body_e3,
+            chart0_3,
+            T::fused(body_e2, chart0_2, T::fused(body_e1, chart0_1, body_e0 * chart0_0)),
+        );
+        let t1 = T::fused(
+            body_e3,
+            body_e3,
+            T::fused(body_e2, body_e2, T::fused(body_e1, body_e1, body_e0 * body_e0)),
+        );
         let t2 = (k(1.0) - t1) * (k(0.5) / t0);
-        y[3] = body_e0 + chart0_0 * t2;
-        y[4] = body_e1 + chart0_1 * t2;
-        y[5] = body_e2 + chart0_2 * t2;
-        y[6] = body_e3 + chart0_3 * t2;
+        y[3] = T::fused(chart0_0, t2, body_e0);
+        y[4] = T::fused(chart0_1, t2, body_e1);
+        y[5] = T::fused(chart0_2, t2, body_e2);
+        y[6] = T::fused(chart0_3, t2, body_e3);
     }
     /// Solves eq. (19) for the dependent velocities: 0 operations (0 ±, 0 ×, 0 ÷).
     fn solve_velocities_on(&self, _t: T, _charts: &Self::Vectors, _y: &mut Self::State) {}
@@ -468,10 +523,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for FreeBody<T> {
             u0,
             u1,
             u2,
-            -(k(0.5) * (x4 * u3 + x5 * u4 + x6 * u5)),
-            k(0.5) * (x3 * u3 - x6 * u4 + x5 * u5),
-            k(0.5) * (x6 * u3 + x3 * u4 - x4 * u5),
-            -(k(0.5) * (x5 * u3 - x4 * u4 - x3 * u5)),
+            -(k(0.5) * T::fused(x6, u5, T::fused(x5, u4, x4 * u3))),
+            k(0.5) * T::fused(x5, u5, T::fused(-x6, u4, x3 * u3)),
+            k(0.5) * T::fused(-x4, u5, T::fused(x3, u4, x6 * u3)),
+            -(k(0.5) * T::fused(-x3, u5, T::fused(-x4, u4, x5 * u3))),
             rates[0],
             rates[1],
             rates[2],

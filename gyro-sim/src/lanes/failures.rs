@@ -1,6 +1,6 @@
 //! Which lanes have failed.
 
-use super::{Lanes, all};
+use super::{Lanes, all, are_finite};
 use crate::{Error, Real};
 
 /// The largest number of lanes in a pack.
@@ -37,8 +37,7 @@ impl Failures {
 
     /// Notes the running lanes whose state is no longer finite.
     pub(super) fn note_not_finite<T: Lanes>(&mut self, t: T, state: &[T]) {
-        let finite = state.iter().fold(T::mask(all::<T>()), |finite, x| finite & x.is_finite());
-        let failed = self.running::<T>() & !T::bits(finite);
+        let failed = self.running::<T>() & !T::bits(are_finite(state));
         self.note(failed, |lane| {
             let index = (0u16..).zip(state).find(|(_, x)| !x.lane(lane).is_finite());
             Error::NotFinite { t: t.lane(lane).to_f64(), index: index.map_or(0, |(index, _)| index) }

@@ -2,6 +2,7 @@
 
 use super::{Lanes, sine};
 use crate::Scalar;
+use crate::fused::IS_FUSED;
 use wide::{f32x8, f64x4, f64x8};
 
 /// A function that is left to libm, lane after lane.
@@ -15,6 +16,10 @@ macro_rules! pack {
             #[inline(always)]
             fn constant(value: f64) -> Self {
                 Self::splat(Scalar::constant(value))
+            }
+            #[inline(always)]
+            fn fused(a: Self, b: Self, c: Self) -> Self {
+                if IS_FUSED { a.mul_add(b, c) } else { a * b + c }
             }
             #[inline]
             fn sqrt(self) -> Self {

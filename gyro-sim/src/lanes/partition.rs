@@ -1,6 +1,6 @@
 //! Direct integration and coordinate partitioning of all lanes at once: what [`crate::Direct`] and [`crate::Partitioned`] do, lane by lane.
 
-use super::{Failures, Lanes, all, keep};
+use super::{Failures, Lanes, are_finite, keep};
 use crate::partition::{CONVERGED_EPSILONS, Corrected, MAX_ITERATIONS};
 use crate::violation::constraint_violation;
 use crate::{Charted, Error, Mechanism, Ode, Owner, Real, Rk4, Scalar, Storage, charts};
@@ -99,8 +99,11 @@ impl<M: Charted<Scalar: Lanes>> Partitioned<M> {
             keep(active, y.as_mut(), self.direct.before.as_ref());
             mechanism.phi(t, y, &mut self.phi);
             let (worst, is_finite) = violation(mechanism, self.phi.as_ref());
-            let is_met = worst.at_most(tolerance) | worst.at_most(tolerance * reach(mechanism, y));
-            active &= !M::Scalar::bits(is_met & is_finite);
+            active &= !M::Scalar::bits(worst.at_most(tolerance) & is_finite);
+            if active != 0 {
+                let is_met = worst.at_most(tolerance * reach(mechanism, y));
+                active &= !M::Scalar::bits(is_met & is_finite);
+            }
         }
         let phi = self.phi.as_ref();
         self.direct.failures.note(active, |lane| {
@@ -138,13 +141,16 @@ fn violation<M: Mechanism<Scalar: Lanes>>(
     mechanism: &M,
     phi: &[M::Scalar],
 ) -> (M::Scalar, <M::Scalar as Lanes>::Mask) {
-    let (size, n_rows) = (mechanism.size(), phi.len().saturating_sub(mechanism.n_bodies()));
-    let start = (M::Scalar::constant(0.0), M::Scalar::mask(all::<M::Scalar>()));
-    phi.iter().enumerate().fold(start, |(worst, is_finite), (index, &value)| {
+    let n_rows = phi.len().saturating_sub(mechanism.n_bodies());
+    let mut worst = [M::Scalar::constant(0.0); 2];
+    for (index, value) in phi.iter().enumerate() {
         let is_length = index < n_rows && mechanism.row(index).is_length;
-        let value = if is_length { (value / size).abs() } else { value.abs() };
-        (larger(worst, value), is_finite & value.is_finite())
-    })
+        let worst = &mut worst[usize::from(is_length)];
+        *worst = larger(*worst, value.abs());
+    }
+    // The largest of quotients by one number is the quotient of the largest.
+    let [number, length] = worst;
+    (larger(number, length / mechanism.size()), are_finite(phi))
 }
 
 /// The largest coordinate of a mass centre in units of the mechanism's size.
