@@ -11,11 +11,18 @@ use std::hint::black_box;
 /// The scalar runs, then the pack.
 pub type Pair<'a> = [Kernel<'a>; 2];
 
-/// All pairs: single kernels, and whole runs.
+/// All pairs: single kernels, and whole runs; what computes the same is together.
 pub fn pairs() -> (Vec<Pair<'static>>, Vec<Pair<'static>>) {
     let packs = [of::<f64x4>("f64x4"), of::<f64x8>("f64x8"), of::<f32x8>("f32x8")];
     let (kernels, runs): (Vec<_>, Vec<_>) = packs.into_iter().unzip();
-    (kernels.into_iter().flatten().collect(), runs.into_iter().flatten().collect())
+    (together(kernels), together(runs))
+}
+
+/// The first of all lists, then the second of all, and so on.
+fn together<T>(lists: Vec<Vec<T>>) -> Vec<T> {
+    let mut items: Vec<_> = lists.into_iter().flat_map(|list| list.into_iter().enumerate()).collect();
+    items.sort_by_key(|(place, _)| *place);
+    items.into_iter().map(|(_, item)| item).collect()
 }
 
 fn of<T>(side: &'static str) -> (Vec<Pair<'static>>, Vec<Pair<'static>>)
@@ -26,6 +33,7 @@ where
     let scenarios = Scenarios::<T>::new(side);
     let kernels = vec![
         scenarios.joint_accelerations(),
+        Scenarios::<T>::at(side, ALL_ROUND).joint_accelerations_all_round(),
         scenarios.corrected_derivative(),
         scenarios.accelerations(),
         scenarios.newton_step(),
@@ -46,14 +54,21 @@ struct Scenarios<T: Lanes> {
 /// In the middle of the paper's second, or nearly so.
 const MIDDLE: [f64; 6] = [0.037, 0.0008, 37.0, 0.1, -0.05, 100.0];
 
+/// The inner ring far round.
+const ALL_ROUND: [f64; 6] = [2.0, 37.0, 37.0, 0.1, -0.05, 100.0];
+
 impl<T> Scenarios<T>
 where
     T: Lanes + 'static,
     T::Lane: 'static,
 {
     fn new(side: &'static str) -> Self {
+        Self::at(side, MIDDLE)
+    }
+
+    fn at(side: &'static str, state: [f64; 6]) -> Self {
         let scene = Gyroscope::<T::Lane>::default();
-        let joint = |lane: usize| MIDDLE.map(|x| T::Lane::constant(x * (1.0 + 0.01 * lane as f64)));
+        let joint = |lane: usize| state.map(|x| T::Lane::constant(x * (1.0 + 0.01 * lane as f64)));
         let joints: Vec<_> = (0..T::COUNT).map(joint).collect();
         let maximal = |x: &[T::Lane; 6]| {
             let mut y = scene.start();
@@ -76,8 +91,16 @@ where
     }
 
     fn joint_accelerations(&self) -> Pair<'static> {
+        self.joint_accelerations_named("joint accelerations in joint coordinates")
+    }
+
+    fn joint_accelerations_all_round(&self) -> Pair<'static> {
+        self.joint_accelerations_named("the same at angles all round")
+    }
+
+    fn joint_accelerations_named(&self, what: &'static str) -> Pair<'static> {
         self.pair(
-            "joint accelerations in joint coordinates",
+            what,
             for_each(self.joints.clone(), Gyroscope::<T::Lane>::default().rates(), |x, out| {
                 Gyroscope::default().joint_accelerations(T::Lane::constant(0.0), x, out);
             }),

@@ -9,6 +9,7 @@ mod fit;
 mod generate;
 mod inputs;
 mod json;
+mod lanes;
 mod linear;
 mod nested;
 mod performance;
