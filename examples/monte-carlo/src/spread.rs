@@ -86,7 +86,8 @@ fn draw<B: DrawingBackend<ErrorType: 'static>>(
         let outline: Vec<_> = points(lower).chain(points(upper).rev()).collect();
         chart.draw_series(std::iter::once(Polygon::new(outline, COLOUR.mix(0.25))))?;
     }
-    chart.draw_series(LineSeries::new(points(2), COLOUR.stroke_width(2)))?;
+    let median = PathElement::new(points(2).collect::<Vec<_>>(), COLOUR.stroke_width(2));
+    chart.draw_series(std::iter::once(median))?;
     Ok(())
 }
 
