@@ -32,7 +32,7 @@ impl<S: Clone> Rk4<S> {
         self.go_on(y, third, h);
         system.derivative(t + h, &self.stage, &mut self.slope);
         for ((y, sum), slope) in y.as_mut().iter_mut().zip(self.sum.as_ref()).zip(self.slope.as_ref()) {
-            *y = *sum + sixth * *slope;
+            *y = O::Scalar::fused(sixth, *slope, *sum);
         }
     }
 
@@ -44,8 +44,8 @@ impl<S: Clone> Rk4<S> {
     {
         let results = self.sum.as_mut().iter_mut().zip(self.stage.as_mut());
         for (((sum, stage), slope), y) in results.zip(self.slope.as_ref()).zip(y.as_ref()) {
-            *sum = *y + weight * *slope;
-            *stage = *y + step * *slope;
+            *sum = T::fused(weight, *slope, *y);
+            *stage = T::fused(step, *slope, *y);
         }
     }
 
@@ -57,8 +57,8 @@ impl<S: Clone> Rk4<S> {
     {
         let results = self.sum.as_mut().iter_mut().zip(self.stage.as_mut());
         for (((sum, stage), slope), y) in results.zip(self.slope.as_ref()).zip(y.as_ref()) {
-            *sum = *sum + weight * *slope;
-            *stage = *y + step * *slope;
+            *sum = T::fused(weight, *slope, *sum);
+            *stage = T::fused(step, *slope, *y);
         }
     }
 }

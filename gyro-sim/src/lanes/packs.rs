@@ -25,11 +25,11 @@ macro_rules! pack {
             fn sqrt(self) -> Self {
                 Self::sqrt(self)
             }
-            #[inline]
+            #[inline(always)]
             fn sin(self) -> Self {
                 $sin(self)
             }
-            #[inline]
+            #[inline(always)]
             fn cos(self) -> Self {
                 $cos(self)
             }

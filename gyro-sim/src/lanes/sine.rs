@@ -5,6 +5,8 @@
 //! argument; here every lane goes the way of most arguments, with the same operations in the same order, and libm does again the few
 //! lanes whose argument is *hard*: large, close to a multiple of π/2 other than zero, where libm subtracts in more parts, or close to an odd
 //! multiple of π/4, where it tells the quadrant by other means. So errors are libm's: below one unit in the last place.
+//!
+//! All of it is inlined, so that the compiler reduces an argument once where a kernel takes its sine and its cosine.
 
 use super::{Lanes, MAX_LANES};
 use crate::Real;
@@ -25,7 +27,7 @@ struct Reduced<V: Lanes> {
 }
 
 /// n, and n less a multiple of four.
-#[inline]
+#[inline(always)]
 fn quadrant<V: Lanes>(x: V) -> (V, V) {
     let rounded = |x: V| (x + V::constant(ROUNDING)) - V::constant(ROUNDING);
     let n = rounded(x * V::constant(FRAC_2_PI));
@@ -34,14 +36,14 @@ fn quadrant<V: Lanes>(x: V) -> (V, V) {
 
 impl<V: Lanes> Reduced<V> {
     /// The one for odd n, the other for even n.
-    #[inline]
+    #[inline(always)]
     fn by_parity(&self, odd: V, even: V) -> V {
         let size = self.quadrant.abs();
         V::select(size.greater(V::constant(0.5)) & V::constant(1.5).greater(size), odd, even)
     }
 
     /// Sine, given the sine and the cosine of what is left.
-    #[inline]
+    #[inline(always)]
     fn sine(&self, sine: V, cosine: V) -> V {
         let value = self.by_parity(cosine, sine);
         let q = self.quadrant;
@@ -49,7 +51,7 @@ impl<V: Lanes> Reduced<V> {
     }
 
     /// Cosine, given the sine and the cosine of what is left.
-    #[inline]
+    #[inline(always)]
     fn cosine(&self, sine: V, cosine: V) -> V {
         let value = self.by_parity(sine, cosine);
         let q = self.quadrant;
@@ -81,7 +83,7 @@ fn again<T: Real>(lanes: u32, mut x: [T; MAX_LANES], function: impl Fn(T) -> T) 
 const TINY: f64 = 1.490_116_119_384_765_6e-8;
 
 /// Sine.
-#[inline]
+#[inline(always)]
 pub(super) fn sin<V: Lanes<Lane = f64>>(x: V) -> V {
     if is_small(x) {
         return V::select(V::constant(TINY).greater(x.abs()), x, sine_of_double(x));
@@ -92,7 +94,7 @@ pub(super) fn sin<V: Lanes<Lane = f64>>(x: V) -> V {
 }
 
 /// Cosine.
-#[inline]
+#[inline(always)]
 pub(super) fn cos<V: Lanes<Lane = f64>>(x: V) -> V {
     if is_small(x) {
         return cosine_of_double(x, V::constant(0.0));
@@ -102,7 +104,7 @@ pub(super) fn cos<V: Lanes<Lane = f64>>(x: V) -> V {
 }
 
 /// Whether nothing need be subtracted in any lane: so it is with the angles of a gimbal near its rest, for instance.
-#[inline]
+#[inline(always)]
 fn is_small<V: Lanes<Lane = f64>>(x: V) -> bool {
     V::bits(x.abs().greater(V::constant(EDGE))) == 0
 }
@@ -117,7 +119,7 @@ const CANCELLED: f64 = 32768.0;
 const LARGE: f64 = 1.6e6;
 
 /// The reduced arguments, their sines and cosines.
-#[inline]
+#[inline(always)]
 fn doubles<V: Lanes<Lane = f64>>(x: V) -> (Reduced<V>, V, V) {
     let (n, quadrant) = quadrant(x);
     let left = x - n * V::constant(PART[0]);
@@ -134,14 +136,14 @@ fn doubles<V: Lanes<Lane = f64>>(x: V) -> (Reduced<V>, V, V) {
 }
 
 /// `k_sin.c` where nothing was subtracted.
-#[inline]
+#[inline(always)]
 fn sine_of_double<V: Lanes>(x: V) -> V {
     let (s1, z, r) = sine_series(x);
     x + z * x * (s1 + z * r)
 }
 
 /// `k_sin.c` with a second part of the argument.
-#[inline]
+#[inline(always)]
 fn corrected_sine<V: Lanes>(x: V, rest: V) -> V {
     let (s1, z, r) = sine_series(x);
     let v = z * x;
@@ -149,7 +151,7 @@ fn corrected_sine<V: Lanes>(x: V, rest: V) -> V {
 }
 
 /// The first coefficient, the square of the argument, and the sum of the rest of the series.
-#[inline]
+#[inline(always)]
 fn sine_series<V: Lanes>(x: V) -> (V, V, V) {
     let [s1, s2, s3, s4, s5, s6] = [
         -0.166_666_666_666_666_32,
@@ -166,7 +168,7 @@ fn sine_series<V: Lanes>(x: V) -> (V, V, V) {
 }
 
 /// `k_cos.c`.
-#[inline]
+#[inline(always)]
 fn cosine_of_double<V: Lanes>(x: V, rest: V) -> V {
     let [c1, c2, c3, c4, c5, c6] = [
         0.041_666_666_666_666_6,
@@ -189,7 +191,7 @@ fn cosine_of_double<V: Lanes>(x: V, rest: V) -> V {
 const TINY_SINGLE: f64 = 0.000_244_140_625;
 
 /// Sine in single precision, evaluated in double precision.
-#[inline]
+#[inline(always)]
 pub(super) fn sin_of_singles(x: f32x8) -> f32x8 {
     let wide = widened(x);
     let is_tiny = f64x8::splat(TINY_SINGLE).greater(Lanes::abs(wide));
@@ -202,7 +204,7 @@ pub(super) fn sin_of_singles(x: f32x8) -> f32x8 {
 }
 
 /// Cosine in single precision, evaluated in double precision.
-#[inline]
+#[inline(always)]
 pub(super) fn cos_of_singles(x: f32x8) -> f32x8 {
     let wide = widened(x);
     if is_small(wide) {
@@ -212,12 +214,12 @@ pub(super) fn cos_of_singles(x: f32x8) -> f32x8 {
     unless_hard(f64x8::bits(reduced.is_hard), x, narrowed(reduced.cosine(sine, cosine)), libm::cosf)
 }
 
-#[inline]
+#[inline(always)]
 fn widened(x: f32x8) -> f64x8 {
     f64x8::new(x.to_array().map(f64::from))
 }
 
-#[inline]
+#[inline(always)]
 #[expect(clippy::cast_possible_truncation, reason = "rounding to the nearest f32 is what is meant")]
 fn narrowed(x: f64x8) -> f32x8 {
     f32x8::new(x.to_array().map(|x| x as f32))
@@ -233,7 +235,7 @@ const NEAR: f64 = 7.068_583_011_627_197;
 const LARGE_SINGLE: f64 = 4.2e8;
 
 /// The reduced arguments, their sines and cosines, for `f32`.
-#[inline]
+#[inline(always)]
 fn singles<V: Lanes<Lane = f64>>(x: V) -> (Reduced<V>, V, V) {
     let (n, quadrant) = quadrant(x);
     let in_one = x - n * V::constant(FRAC_PI_2);
@@ -246,7 +248,7 @@ fn singles<V: Lanes<Lane = f64>>(x: V) -> (Reduced<V>, V, V) {
 }
 
 /// `k_sinf.c`.
-#[inline]
+#[inline(always)]
 fn sine_of_single<V: Lanes>(x: V) -> V {
     let [s1, s2, s3, s4] = [
         -0.166_666_666_416_265_24,
@@ -263,7 +265,7 @@ fn sine_of_single<V: Lanes>(x: V) -> V {
 }
 
 /// `k_cosf.c`.
-#[inline]
+#[inline(always)]
 fn cosine_of_single<V: Lanes>(x: V) -> V {
     let [c0, c1, c2, c3] = [
         -0.499_999_997_251_031,
