@@ -239,6 +239,9 @@ pub(crate) struct PerformanceArgs {
     /// Bodies of the longest chain; 0 leaves the chains and their table alone
     #[arg(long, value_name = "N", default_value_t = 64)]
     pub(crate) bodies: usize,
+    /// Measure packs of lanes alone and leave the other tables alone
+    #[arg(long, conflicts_with = "bodies")]
+    pub(crate) only_lanes: bool,
 }
 
 /// What is fed into an input.

@@ -10,6 +10,7 @@ mod generate;
 mod inputs;
 mod inspect;
 mod json;
+mod lanes;
 mod linear;
 mod machine_code;
 mod nested;
