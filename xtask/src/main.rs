@@ -3,6 +3,7 @@
 mod args;
 mod columns;
 mod compare;
+mod embedded;
 mod failure;
 mod files;
 mod fit;
@@ -35,6 +36,7 @@ fn main() -> ExitCode {
         Command::Simulate(args) => simulate::simulate(&args),
         Command::Import(args) => urdf::import(&args),
         Command::Performance(args) => performance::performance(&args),
+        Command::Embedded(args) => embedded::embedded(&args),
         Command::Verify(args) => verify::verify_models(&args),
     };
     match outcome {

@@ -18,7 +18,7 @@ fn print<T: Bits>() -> Result<(), gyro_sim::Error> {
         let outcome = run()?;
         print!("run {} {name} {:016x}", T::NAME, outcome.digest);
         outcome.joints.iter().for_each(|x| print!(" {:016x}", x.bits()));
-        println!("   {:?}", outcome.joints);
+        println!();
     }
     Ok(())
 }

@@ -42,9 +42,12 @@ pub struct Outcome<T> {
 pub type Run<T> = (&'static str, fn() -> Result<Outcome<T>, Error>);
 
 /// All of them.
-pub fn runs<T: Bits>() -> [Run<T>; 7] {
+pub fn runs<T: Bits>() -> [Run<T>; 10] {
     [
         ("paper maximal", || maximal(&Gyroscope::default(), PAPER)),
+        ("paper 2e-4 maximal", || maximal(&Gyroscope::default(), Settings { step: 2e-4, intervals: 1000 })),
+        ("paper 5e-4 maximal", || maximal(&Gyroscope::default(), Settings { step: 5e-4, intervals: 400 })),
+        ("paper 1e-3 maximal", || maximal(&Gyroscope::default(), Settings { step: 1e-3, intervals: 200 })),
         ("paper joint", || joint(&Gyroscope::default(), PAPER)),
         ("misaligned maximal", || maximal(&GyroscopeCombinedOffsets::default(), PAPER)),
         ("misaligned joint", || joint(&GyroscopeCombinedOffsets::default(), PAPER)),
