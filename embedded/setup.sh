@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Fetches the tools of `cargo xtask embedded`: a compiler for bare machines, linkers, QEMU, and gcc for Arm.
+# Fetches the tools of `cargo xtask embedded`: a compiler for bare machines, linkers, QEMU, gcc for Arm, and Node.
 #
 # They are Debian's packages (of Debian 12, where `rustc-web` is), unpacked into a folder of this clone. Nothing is installed, nothing
 # is removed, and root is not needed: the package lists are kept in that folder too. `cargo clean` removes all of it.
@@ -8,8 +8,10 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-PACKAGES=(rustc-web cargo-web rust-web-src lld qemu-system-arm gcc-arm-none-eabi libnewlib-arm-none-eabi)
-COMMANDS=(rustc cargo ld.lld wasm-ld qemu-system-arm arm-none-eabi-gcc arm-none-eabi-nm arm-none-eabi-objdump)
+PACKAGES=(rustc-web cargo-web rust-web-src lld qemu-system-arm gcc-arm-none-eabi nodejs)
+COMMANDS=(rustc cargo ld.lld wasm-ld qemu-system-arm arm-none-eabi-gcc arm-none-eabi-objdump node)
+# Documentation, and libraries for chips of other kinds.
+UNUSED=('./usr/share/doc/*' './usr/lib/gcc/arm-none-eabi/*/thumb/*' './usr/lib/gcc/arm-none-eabi/*/arm/*')
 
 tools=${1:-${CARGO_TARGET_DIR:-target}/embedded/tools}
 mkdir -p "$tools"/{root,bin,lists/partial,archives/partial}
@@ -36,7 +38,7 @@ unpack() {
     [ -e "$tools/lists/.$package" ] && return
     rm -f "$tools"/archives/"${package%%:*}"_*.deb
     (cd "$tools/archives" && apt download "$package")
-    dpkg-deb -x "$tools"/archives/"${package%%:*}"_*.deb "$root"
+    dpkg-deb --fsys-tarfile "$tools"/archives/"${package%%:*}"_*.deb | tar -x -C "$root" "${UNUSED[@]/#/--exclude=}"
     rm -f "$tools"/archives/"${package%%:*}"_*.deb
     touch "$tools/lists/.$package"
 }

@@ -2,10 +2,13 @@
 
 use crate::digest::Digest;
 use crate::mechanisms::chain::Chain;
+use crate::mechanisms::gimbal::Gimbal;
 use crate::{Simulator, demand};
 use gyro_sim::generated::gyroscope::Gyroscope;
 use gyro_sim::generated::gyroscope_combined_offsets::GyroscopeCombinedOffsets;
-use gyro_sim::{Error, JointForm, JointSpace, Ode, Partition, Partitioned, Real, Scalar};
+use gyro_sim::{
+    Error, JointCoordinate, JointForm, JointSpace, Ode, Partition, Partitioned, Real, Scalar, Turns,
+};
 
 /// A number whose bits can be looked at.
 pub trait Bits: Real {
@@ -42,7 +45,7 @@ pub struct Outcome<T> {
 pub type Run<T> = (&'static str, fn() -> Result<Outcome<T>, Error>);
 
 /// All of them.
-pub fn runs<T: Bits>() -> [Run<T>; 10] {
+pub fn runs<T: Bits>() -> [Run<T>; 11] {
     [
         ("paper maximal", || maximal(&Gyroscope::default(), PAPER)),
         ("paper 2e-4 maximal", || maximal(&Gyroscope::default(), Settings { step: 2e-4, intervals: 1000 })),
@@ -54,6 +57,7 @@ pub fn runs<T: Bits>() -> [Run<T>; 10] {
         ("chain maximal", || maximal(&Chain::default(), CHAIN)),
         ("chain joint", || joint(&Chain::default(), CHAIN)),
         ("control", control),
+        ("driven", driven),
     ]
 }
 
@@ -121,6 +125,33 @@ fn control<T: Bits>() -> Result<Outcome<T>, Error> {
         add(&mut digest, simulator.state());
     }
     Ok(Outcome { digest: digest.0, joints: [angles.alpha, angles.beta, angles.phi] })
+}
+
+/// A heavier rotor, and a motor that pushes one way, then the other: what the examples in C and JavaScript do.
+fn driven<T: Bits>() -> Result<Outcome<T>, Error> {
+    let k = T::constant;
+    let mut gimbal = Gimbal { rotor_mass: k(0.085), ..Gimbal::default() };
+    let mut state = gimbal.start();
+    let mut solver = Partitioned::new(&gimbal, &state);
+    let mut turns = Turns::new(&gimbal, k(0.0), &state, &[]);
+    let (mut digest, mut joints) = (Digest::new(), [k(0.0); 3]);
+    for interval in 0..PAPER.intervals {
+        gimbal.torque = k(match interval {
+            0..600 => 1e-4,
+            600..1200 => -1e-4,
+            _ => 0.0,
+        });
+        solver.advance(&gimbal, time(PAPER.step, interval), k(PAPER.step), STEPS, &mut state)?;
+        let length = k(PAPER.step * f64::from(STEPS));
+        turns.update(&gimbal, time(PAPER.step, interval + 1), length, &state);
+        for (joint, place) in joints.iter_mut().enumerate() {
+            if let Some(JointCoordinate::Angle { position, rate }) = turns.coordinate(&gimbal, joint, 0) {
+                *place = position;
+                add(&mut digest, &[position, rate]);
+            }
+        }
+    }
+    Ok(Outcome { digest: digest.0, joints })
 }
 
 pub(crate) fn time<T: Real>(step: f64, interval: u32) -> T {

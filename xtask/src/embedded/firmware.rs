@@ -68,7 +68,7 @@ pub(crate) const TRIPLE: &str = "thumbv7em-none-eabihf";
 /// The command that builds the firmware.
 pub(crate) fn cargo(tools: &Tools, chip: Chip) -> Command {
     let flags = format!("-Ctarget-cpu={} -Clinker-flavor=ld.lld -Zemit-stack-sizes", chip.cpu());
-    let mut command = tools.cargo(TRIPLE, "ld.lld", &flags);
+    let mut command = tools.cargo("build", TRIPLE, "ld.lld", &flags);
     command.args(["--package", "firmware"]);
     command
 }

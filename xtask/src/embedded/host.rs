@@ -3,7 +3,7 @@
 use super::output::{Output, Run};
 use super::{folder, target};
 use crate::failure::Failure;
-use crate::performance::{cargo, output};
+use crate::performance::{self, output};
 use crate::progress::Spinner;
 use std::path::Path;
 use std::process::Command;
@@ -26,33 +26,48 @@ pub(crate) fn run() -> Result<Expected, Failure> {
 /// A build of its own: in the main workspace, features of others would be on.
 fn with(name: &str, flags: &str) -> Result<Output, Failure> {
     let target = target().join(name);
-    let mut command = Command::new(cargo());
-    command
-        .args(["build", "--quiet", "--release", "--locked", "--package", "embedded-host", "--target-dir"])
-        .arg(&target)
-        .env("RUSTFLAGS", flags)
-        .env_remove("CARGO_BUILD_TARGET")
-        .current_dir(folder());
+    let mut command = cargo("build", flags);
+    command.args(["--release", "--package", "embedded-host", "--target-dir"]).arg(&target);
     output(&mut command)?;
     let program = Path::new("release").join(format!("embedded-host{}", std::env::consts::EXE_SUFFIX));
     let text = output(&mut Command::new(target.join(program)))?;
     Output::parse(&text).map_err(Failure::Run)
 }
 
+/// A command of Cargo for this machine, on the firmware's workspace.
+pub(crate) fn cargo(subcommand: &str, flags: &str) -> Command {
+    let mut command = Command::new(performance::cargo());
+    command.args([subcommand, "--quiet", "--locked"]).env("RUSTFLAGS", flags);
+    for name in ["CARGO_BUILD_TARGET", "CARGO_ENCODED_RUSTFLAGS", "RUSTC_BOOTSTRAP"] {
+        command.env_remove(name);
+    }
+    command.current_dir(folder());
+    command
+}
+
 impl Expected {
+    /// Whether these runs, one at least, have the bits of this machine.
+    pub(crate) fn has(&self, runs: &[Run]) -> Result<(), String> {
+        if runs.is_empty() {
+            return Err("no run at all".to_owned());
+        }
+        runs.iter().try_for_each(|run| self.is_same(run))
+    }
+
+    fn is_same(&self, run: &Run) -> Result<(), String> {
+        match self.0.iter().find(|own| own.precision == run.precision && own.name == run.name) {
+            None => Err(format!("{} {} is not known to the host", run.precision, run.name)),
+            Some(own) if own != run => {
+                Err(format!("{} {}: {run:x?}, on the host {own:x?}", run.precision, run.name))
+            }
+            Some(_) => Ok(()),
+        }
+    }
+
     /// The number of runs that others made, all with the same bits; or the first that differs or is missing.
     pub(crate) fn compare(&self, others: &[&Output]) -> Result<usize, String> {
         let made: Vec<&Run> = others.iter().flat_map(|output| &output.runs).collect();
-        for run in &made {
-            let same = self.0.iter().find(|own| own.precision == run.precision && own.name == run.name);
-            match same {
-                None => return Err(format!("{} {} is not known to the host", run.precision, run.name)),
-                Some(own) if own != *run => {
-                    return Err(format!("{} {}: {run:x?}, on the host {own:x?}", run.precision, run.name));
-                }
-                Some(_) => {}
-            }
-        }
+        made.iter().try_for_each(|run| self.is_same(run))?;
         for precision in made.iter().map(|run| &run.precision) {
             let n = |runs: &mut dyn Iterator<Item = &Run>| runs.filter(|r| r.precision == *precision).count();
             let (here, there) = (n(&mut self.0.iter()), n(&mut made.iter().copied()));

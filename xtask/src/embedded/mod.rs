@@ -4,6 +4,7 @@
 mod budget;
 mod elf;
 mod firmware;
+mod foreign;
 mod host;
 mod output;
 mod proof;
@@ -38,11 +39,18 @@ pub(crate) fn embedded(args: &EmbeddedArgs) -> Result<(), Failure> {
     }
     proof::faults_are_caught(&tools)?;
     check_clocks(&boards)?;
+    let header = foreign::header()?;
+    if args.print {
+        foreign::check_header(&header)?;
+    } else {
+        files::write(&foreign::header_path(), &header)?;
+    }
+    let foreign = foreign::check(&tools, &host)?;
     let limits = budget::lines(&tools, &boards)?;
     let tables = [
         ("tools", tools.versions()?),
         ("counts", tables::counts(&boards)),
-        ("sizes", tables::sizes(&boards)?),
+        ("sizes", tables::sizes(&boards, &foreign)?),
         ("precision", tables::precision(&boards)),
         ("budget", budget::table(&limits)),
     ];

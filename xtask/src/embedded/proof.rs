@@ -35,7 +35,8 @@ pub(crate) fn no_panic(board: &Board) -> Result<(), Failure> {
     Ok(())
 }
 
-fn forbidden(program: &Program) -> Result<Vec<String>, Failure> {
+/// The symbols of a program that it must not have.
+pub(crate) fn forbidden(program: &Program) -> Result<Vec<String>, Failure> {
     let symbols = Elf::read(&program.path)?.symbols();
     if symbols.is_empty() {
         return Err(Failure::Run(format!("{} has no symbols to look at", program.name)));

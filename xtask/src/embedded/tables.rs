@@ -1,5 +1,6 @@
 //! The tables of docs/embedded.md.
 
+use super::foreign::Sizes;
 use super::{Board, Ran, budget};
 use crate::failure::Failure;
 use std::fmt::Write as _;
@@ -36,7 +37,7 @@ pub(crate) fn counts(boards: &[Board]) -> String {
 }
 
 /// Flash, RAM and stack of the control loop.
-pub(crate) fn sizes(boards: &[Board]) -> Result<String, Failure> {
+pub(crate) fn sizes(boards: &[Board], foreign: &Sizes) -> Result<String, Failure> {
     let mut text =
         "| program | text | constants | statics | state and workspace | stack used | stack, bound |\n\
                     |---|---|---|---|---|---|---|\n"
@@ -58,6 +59,9 @@ pub(crate) fn sizes(boards: &[Board]) -> Result<String, Failure> {
             );
         }
     }
+    let Sizes { c, wasm } = foreign;
+    let _ = writeln!(text, "| example in C, Cortex-M7 | {c} | | | | | |");
+    let _ = writeln!(text, "| module of WebAssembly, whole file | {wasm} | | | | | |");
     Ok(text)
 }
 

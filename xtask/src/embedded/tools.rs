@@ -13,8 +13,16 @@ pub(crate) struct Tools {
 }
 
 /// What the commands of this module need.
-const NEEDED: [&str; 7] =
-    ["rustc", "cargo", "ld.lld", "wasm-ld", "qemu-system-arm", "arm-none-eabi-gcc", "arm-none-eabi-objdump"];
+const NEEDED: [&str; 8] = [
+    "rustc",
+    "cargo",
+    "ld.lld",
+    "wasm-ld",
+    "qemu-system-arm",
+    "arm-none-eabi-gcc",
+    "arm-none-eabi-objdump",
+    "node",
+];
 
 impl Tools {
     /// The tools, or a word about what is missing and how to get it.
@@ -42,8 +50,8 @@ impl Tools {
         Command::new(self.path(name))
     }
 
-    /// Cargo for a target without an operating system, on the firmware's workspace; `core` is built from its source.
-    pub(crate) fn cargo(&self, triple: &str, linker: &str, flags: &str) -> Command {
+    /// A command of Cargo for a target without an operating system, on the firmware's workspace; `core` is built from its source.
+    pub(crate) fn cargo(&self, subcommand: &str, triple: &str, linker: &str, flags: &str) -> Command {
         let variable = triple.to_uppercase().replace('-', "_");
         let mut command = self.command("cargo");
         for name in ["RUSTFLAGS", "CARGO_ENCODED_RUSTFLAGS", "RUSTUP_TOOLCHAIN", "RUSTC_WRAPPER"] {
@@ -56,7 +64,7 @@ impl Tools {
             .env(format!("CARGO_TARGET_{variable}_LINKER"), self.path(linker))
             .env(format!("CARGO_TARGET_{variable}_RUSTFLAGS"), flags)
             .current_dir(super::folder())
-            .args(["build", "--quiet", "--release", "--locked", "-Zbuild-std=core", "--target", triple])
+            .args([subcommand, "--quiet", "--release", "--locked", "-Zbuild-std=core", "--target", triple])
             .arg("--target-dir")
             .arg(target().join("target"));
         command
@@ -68,7 +76,7 @@ impl Tools {
             let text = output(self.command(name).arg("--version"))?;
             Ok(text.lines().next().unwrap_or_default().trim().to_owned())
         };
-        let names = ["rustc", "qemu-system-arm", "arm-none-eabi-gcc"];
+        let names = ["rustc", "qemu-system-arm", "arm-none-eabi-gcc", "node"];
         let versions: Result<Vec<String>, Failure> = names.into_iter().map(first).collect();
         Ok(format!("{}.\n", versions?.join("; ")))
     }
