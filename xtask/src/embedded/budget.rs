@@ -120,3 +120,27 @@ fn best_error(boards: &[Board]) -> Result<f64, Failure> {
         .map(error)
         .fold(f64::NAN, f64::min))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn line(value: f64) -> [Line; 1] {
+        [Line { what: "a step", unit: "instructions", limit: 1500.0, value }]
+    }
+
+    #[test]
+    fn what_is_over_its_limit_or_was_not_measured_fails() {
+        assert!(check(&line(1500.0)).is_ok());
+        assert!(matches!(check(&line(1500.5)), Err(Failure::Run(words)) if words.contains("over 1500")));
+        assert!(check(&line(f64::NAN)).is_err());
+        assert!(spread(&[]).is_nan() && overruns(&[]).is_nan());
+        assert!(table(&line(550.0)).ends_with("| a step | 550 instructions | 1500 instructions |\n"));
+    }
+
+    #[test]
+    fn the_reference_has_the_papers_second() {
+        let (alpha, beta) = reference().unwrap();
+        assert!((alpha - 0.1).abs() < 1e-3 && beta.abs() < 1e-4);
+    }
+}

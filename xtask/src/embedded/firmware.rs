@@ -1,7 +1,8 @@
 //! Builds the firmware for a chip and runs it under QEMU.
 
+use super::process::within;
+use super::target;
 use super::tools::Tools;
-use super::{target, within};
 use crate::failure::Failure;
 use crate::performance::said;
 use crate::progress::Spinner;

@@ -3,8 +3,9 @@
 use super::firmware::{self, BUILDING, Chip, Program, TRIPLE};
 use super::host::{self, Expected};
 use super::output::Output;
+use super::process::within;
 use super::tools::Tools;
-use super::{folder, proof, say, target, within};
+use super::{folder, proof, say, target};
 use crate::failure::Failure;
 use crate::files;
 use crate::performance::{output, said};

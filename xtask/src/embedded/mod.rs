@@ -7,6 +7,7 @@ mod firmware;
 mod foreign;
 mod host;
 mod output;
+mod process;
 mod proof;
 mod stack;
 mod tables;
@@ -21,8 +22,6 @@ use firmware::{Chip, Program};
 use output::Output;
 use std::io::Write as _;
 use std::path::PathBuf;
-use std::process::Command;
-use std::time::Duration;
 use tools::Tools;
 
 /// Builds, runs, compares and writes the page.
@@ -143,42 +142,4 @@ fn folder() -> PathBuf {
 fn target() -> PathBuf {
     let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| "target".into(), PathBuf::from);
     files::root().join(target).join("embedded")
-}
-
-/// Runs a command for at most so long; what it wrote on both streams, and whether it succeeded.
-fn within(limit: Duration, command: &mut Command) -> Result<(bool, String), Failure> {
-    use std::process::Stdio;
-    let name = command.get_program().to_string_lossy().into_owned();
-    let said = |e: std::io::Error| Failure::Run(format!("{name}: {e}"));
-    let mut child =
-        command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().map_err(said)?;
-    let streams: [Box<dyn std::io::Read + Send>; 2] = [
-        Box::new(child.stdout.take().expect("standard output is piped")),
-        Box::new(child.stderr.take().expect("standard error is piped")),
-    ];
-    let readers = streams.map(|mut stream| {
-        std::thread::spawn(move || {
-            let mut text = Vec::new();
-            // What was read before an error is all there is to show.
-            let _ = stream.read_to_end(&mut text);
-            String::from_utf8_lossy(&text).into_owned()
-        })
-    });
-    let end = std::time::Instant::now() + limit;
-    let status = loop {
-        if let Some(status) = child.try_wait().map_err(said)? {
-            break Some(status);
-        }
-        if std::time::Instant::now() > end {
-            let _ = child.kill();
-            let _ = child.wait();
-            break None;
-        }
-        std::thread::sleep(Duration::from_millis(20));
-    };
-    let text: String = readers.into_iter().filter_map(|reader| reader.join().ok()).collect();
-    match status {
-        Some(status) => Ok((status.success(), text)),
-        None => Err(Failure::Run(format!("{name} did not end within {} s\n{text}", limit.as_secs()))),
-    }
 }

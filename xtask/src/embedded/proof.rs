@@ -2,9 +2,10 @@
 
 use super::elf::Elf;
 use super::firmware::{self, BUILDING, Chip, Program};
+use super::process::within;
 use super::stack;
 use super::tools::Tools;
-use super::{Board, failed, say, target, within};
+use super::{Board, failed, say, target};
 use crate::failure::Failure;
 use crate::progress::Spinner;
 
