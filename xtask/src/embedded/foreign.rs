@@ -1,6 +1,6 @@
 //! The gimbal from C, on this machine and on the Cortex-M7, and from JavaScript: the same bits as from Rust.
 
-use super::firmware::{self, BUILDING, Chip, Program, TRIPLE};
+use super::firmware::{self, BUILDING, Chip, Program, RUNNING, TRIPLE};
 use super::host::{self, Expected};
 use super::output::Output;
 use super::process::within;
@@ -95,7 +95,7 @@ fn c_on_host() -> Result<String, Failure> {
         .arg(&program)
         .current_dir(source());
     output(&mut compiler)?;
-    output(&mut Command::new(&program))
+    said_by("the example in C", &mut Command::new(&program))
 }
 
 fn c_for_target(tools: &Tools) -> Result<Program, Failure> {
@@ -131,7 +131,15 @@ fn wasm(tools: &Tools) -> Result<PathBuf, Failure> {
 }
 
 fn node(tools: &Tools, module: &Path) -> Result<String, Failure> {
-    output(tools.command("node").arg(source().join("example.mjs")).arg(module))
+    said_by("the example in JavaScript", tools.command("node").arg(source().join("example.mjs")).arg(module))
+}
+
+/// What an example prints, under a time limit; its failure is this command's.
+fn said_by(what: &str, command: &mut Command) -> Result<String, Failure> {
+    match within(RUNNING, command)? {
+        (true, text) => Ok(text),
+        (false, text) => Err(Failure::Run(format!("{what} failed\n{text}"))),
+    }
 }
 
 fn build(command: &mut Command) -> Result<(), Failure> {
