@@ -3,6 +3,7 @@
 mod args;
 mod columns;
 mod compare;
+mod embedded;
 mod failure;
 mod files;
 mod fit;
@@ -41,6 +42,7 @@ fn main() -> ExitCode {
         Command::Inspect(args) => inspect::inspect(&args),
         Command::Import(args) => urdf::import(&args),
         Command::Performance(args) => performance::performance(&args),
+        Command::Embedded(args) => embedded::embedded(&args),
         Command::Verify(args) => verify::verify_models(&args),
     };
     match outcome {

@@ -208,7 +208,7 @@ fn machine() -> Result<String, Failure> {
 }
 
 /// The page with what stands between the marks of this name replaced.
-fn replaced(page: &str, name: &str, text: &str) -> Result<String, Failure> {
+pub(crate) fn replaced(page: &str, name: &str, text: &str) -> Result<String, Failure> {
     let (begin, end) = (format!("<!-- begin {name} -->\n"), format!("<!-- end {name} -->"));
     let missing = |mark: &str| Failure::Usage(format!("the page has no line `{}`", mark.trim()));
     let (before, rest) = page.split_once(&begin).ok_or_else(|| missing(&begin))?;

@@ -8,32 +8,41 @@
 //! * unknowns of eq. (17): 33
 //! * non-zeros: Φ_q 77 of 378, (Φ_r, Φ_π') 41 of 270
 //! * left out: coordinates of `base` (driven: a function of time)
+//! * left out: the turning of `rotor` from u̇ (it looks the same all around its axis)
+//! * left out: parameters (all numbers are folded)
+//! * left out: outputs (the page asks for none)
+//! * accelerations: by relative Euler parameters, 485 operations, not rotations of the bodies 486
+//! * joint_accelerations: by normal form, 68 operations, not recursion 84
+//! * joint_accelerations_at: by recursion on the bodies' spins, 105 operations, not recursion 115, normal form 99
+//! * corrected_accelerations: by elimination in maximal coordinates, 486 operations, not recursion in the bodies' frames 227, recursion in the global frame 229, normal form in the bodies' frames 214, normal form in the global frame 216, recursion on the bodies' spins in the bodies' frames 203, recursion on the bodies' spins in the global frame 205
 //!
-//! | function | computes | + − | × | ÷ | total | zeros |
-//! |---|---|---|---|---|---|---|
-//! | phi | Φ | 51 | 62 | 0 | 113 | 0 of 18 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 70 | 145 | 0 | 215 | 0 of 77 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 66 | 111 | 0 | 177 | 0 of 41 |
-//! | nu | ν | 4 | 13 | 0 | 17 | 14 of 15 |
-//! | gamma | γ | 135 | 216 | 0 | 351 | 6 of 15 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 94 | 139 | 0 | 233 | 0 of 15 |
-//! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 192 | 288 | 5 | 485 | 7 of 18 |
-//! | multipliers | λ, the accelerations being known | 116 | 193 | 3 | 312 | 0 of 15 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 121 | 210 | 1 | 332 | 0 of 22 |
-//! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
-//! | read_joints | joint coordinates and rates | 56 | 65 | 0 | 121 | 0 of 9 |
-//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
-//! | newton_step | dependent positions, one Newton step | 200 | 330 | 3 | 533 | 6 of 21 |
-//! | solve_velocities | dependent velocities, eq. (19) | 102 | 173 | 3 | 278 | 6 of 18 |
-//! | joint_accelerations | u̇ in joint coordinates | 21 | 48 | 1 | 70 | 0 of 3 |
-//! | joint_derivative | ẋ but for u̇ | 160 | 287 | 2 | 449 | 0 of 4 |
-//! | to_maximal | (q, v) of a joint state | 32 | 72 | 0 | 104 | 12 of 39 |
-//! | to_joints | (x, u) of a maximal state | 65 | 77 | 0 | 142 | 0 of 6 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 34 | 70 | 1 | 105 | 0 of 3 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 192 | 289 | 5 | 486 | 7 of 18 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 56 | 86 | 0 | 142 | 0 of 15 |
-//! | corrected_solution | both | 233 | 348 | 5 | 586 | 7 of 33 |
+//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
+//!
+//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
+//! |---|---|---|---|---|---|---|---|---|
+//! | phi | Φ | 51 | 62 | 0 | 113 | 0 of 18 | 190 | 113 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 70 | 145 | 0 | 215 | 0 of 77 | 612 | 215 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 66 | 111 | 0 | 177 | 0 of 41 | 562 | 177 |
+//! | nu | ν | 4 | 13 | 0 | 17 | 14 of 15 | 22 | 17 |
+//! | gamma | γ | 135 | 216 | 0 | 351 | 6 of 15 | 1631 | 351 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 94 | 139 | 0 | 233 | 0 of 15 | 636 | 233 |
+//! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 | 12 | 12 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 192 | 288 | 5 | 485 | 7 of 18 | 514002 | 489 |
+//! | multipliers | λ, the accelerations being known | 116 | 193 | 3 | 312 | 0 of 15 | 3929 | 312 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 121 | 210 | 1 | 332 | 0 of 22 | 1141 | 332 |
+//! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 | 52 | 52 |
+//! | read_joints | joint coordinates and rates | 56 | 65 | 0 | 121 | 0 of 9 | 227 | 121 |
+//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 | 0 | 0 |
+//! | newton_step | dependent positions, one Newton step | 200 | 330 | 3 | 533 | 6 of 21 | 1.5e9 | 533 |
+//! | solve_velocities | dependent velocities, eq. (19) | 102 | 173 | 3 | 278 | 6 of 18 | 13921 | 278 |
+//! | joint_accelerations | u̇ in joint coordinates | 20 | 47 | 1 | 68 | 0 of 3 | 143 | 69 |
+//! | joint_derivative | ẋ but for u̇ | 159 | 286 | 2 | 447 | 0 of 4 | 23620 | 448 |
+//! | to_maximal | (q, v) of a joint state | 32 | 72 | 0 | 104 | 12 of 39 | 962 | 104 |
+//! | to_joints | (x, u) of a maximal state | 65 | 77 | 0 | 142 | 0 of 6 | 473 | 142 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 34 | 70 | 1 | 105 | 0 of 3 | 697 | 106 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 192 | 289 | 5 | 486 | 7 of 18 | 497223 | 490 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 56 | 86 | 0 | 142 | 0 of 15 | 771 | 142 |
+//! | corrected_solution | both | 233 | 348 | 5 | 586 | 7 of 33 | 4.1e6 | 590 |
 //!
 //! # Proof
 //!
@@ -3054,7 +3063,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for DrivenGyroscope<T> {
     fn solution(&self) -> Self::Solution {
         [T::constant(0.0); 33]
     }
-    /// Writes u̇: 70 operations (21 ±, 48 ×, 1 ÷) and 8 functions.
+    /// Writes u̇: 68 operations (20 ±, 47 ×, 1 ÷) and 8 functions.
     fn joint_accelerations(&self, t: T, x: &Self::Joints, out: &mut Self::Rates) {
         let k = T::constant;
         let x0 = x[0];
@@ -3062,59 +3071,79 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for DrivenGyroscope<T> {
         let u0 = x[3];
         let u1 = x[4];
         let u2 = x[5];
-        let t0 = k(12.566370614359172) * t;
-        let t1 = t0.sin();
-        let t2 = T::fused(-k(6.314572895816972e-6), t1 * t1, k(6.314572895816972e-6));
-        let t3 = x0.sin();
-        let t4 = t3 * t2;
-        let t5 = x1.cos();
-        let t6 = k(0.1) * t1;
-        let t7 = T::fused(t5, t4, k(0.0001) * t6.sin());
-        let t8 = k(9.476794145926002e-5) * t1;
+        let t0 = x0.cos();
+        let t1 = k(12.566370614359172) * t;
+        let t2 = t1.sin();
+        let t3 = k(0.1) * t2;
+        let t4 = t3.sin();
+        let t5 = t1.cos();
+        let t6 = t5 * t0;
+        let t7 = x1.cos();
+        let t8 = t7 * t6;
         let t9 = x1.sin();
-        let t10 = x0.cos();
-        let t11 = t0.cos();
-        let t12 = t11 * t10;
-        let t13 = u0 * t9;
-        let t14 = t11 * t3;
-        let t15 = T::fused(
-            u1,
-            T::fused(-k(0.20025), T::fused(k(1.2566370614359172), t5 * t12, t13), u2),
-            k(1.2566370614359172) * ((u2 + t13) * t14),
+        let t10 = u0 * t9;
+        let t11 = T::fused(
+            -t4,
+            t0,
+            k(0.020025)
+                * (u1
+                    * T::fused(
+                        -k(1.2566370614359172),
+                        T::fused(k(3.9739061945541905), u2, -t8),
+                        t10,
+                    )),
         );
-        let t16 = k(1e-5) * t5;
-        let t17 = T::fused(
-            t10,
-            T::fused(k(0.5001562988433885), t4, t5 * T::fused(t9, t8, t7)),
-            t16 * t15,
+        let t12 = t2 * t0;
+        let t13 = x0.sin();
+        let t14 = t5 * t13;
+        let t15 = T::fused(k(6.314572895816972e-6), t8, k(1.2566370614359173e-5) * u2);
+        let t16 = T::fused(
+            k(9.476794145926002e-5),
+            t7 * T::fused(-k(1.05520916103247), t11, t9 * t12),
+            T::fused(
+                t7,
+                T::fused(k(1.2566370614359173e-5), t10, t15),
+                k(3.1582734083485947e-6) * t6,
+            ) * t14,
         );
-        let t18 = t5 * t5;
-        let t19 = t17 / T::fused(k(6.00125e-6), t18, k(2e-6));
+        let t17 = t7 * t7;
+        let t18 = t16 / T::fused(k(6.00125e-6), t17, k(2e-6));
+        let t19 = T::fused(
+            -t7,
+            T::fused(
+                -k(0.0399875),
+                u0 * T::fused(k(2.500781494216943), u2, t10),
+                t3.cos(),
+            ),
+            t13 * T::fused(t4, t9, k(0.9476794145926002) * t2),
+        );
         let t20 = T::fused(
-            t9,
-            T::fused(-k(3.99875e-6), u0 * u0, t2),
-            k(0.0001) * t6.cos(),
+            -k(0.0001),
+            t19,
+            t6
+                * T::fused(
+                    k(1.0049954898833748e-5),
+                    u0 * (k(1.2503907471084714) - t17),
+                    t9 * t15,
+                ),
         );
-        let t21 = T::fused(-k(1.2566370614359173e-5), t9 * t12, u0 * t16);
-        let t22 = T::fused(-t5, t20, T::fused(t3, T::fused(t9, t7, t8), u2 * t21));
-        let t23 = T::fused(
-            -u1,
-            t21,
-            k(1.2566370614359173e-5)
-                * (t5 * T::fused(u0, t14, k(12.566370614359172) * (t1 * t10))),
+        let t21 = T::fused(
+            k(0.00015791367041742975),
+            t7
+                * T::fused(
+                    -k(0.06332573977646111),
+                    u0 * T::fused(-k(1.2566370614359172), t14, u1),
+                    t12,
+                ),
+            k(1.2566370614359173e-5) * (t6 * (u1 * t9)),
         );
         *out = [
-            -t19,
-            k(166631.95167673402)
-                * T::fused(
-                    -k(1.0049954898833748e-5),
-                    t12 * (u0 * (k(1.2503907471084714) - t18)),
-                    t22,
-                ),
-            T::fused(k(100000.0), t23, t9 * t19),
+            -t18,
+            -(k(166631.95167673402) * t20),
+            T::fused(k(100000.0), t21, t9 * t18),
         ];
     }
-    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 449 operations (160 ±, 287 ×, 2 ÷) and 18 functions.
+    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 447 operations (159 ±, 286 ×, 2 ÷) and 18 functions.
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
         let mut rates = gyro_sim::JointSpace::rates(self);
         gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
@@ -3191,200 +3220,213 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for DrivenGyroscope<T> {
         let t55 = T::fused(-t37, t53, k(1.0));
         let t56 = T::fused(-t54, t52, u0 * t55);
         let t57 = x1.cos();
-        let t58 = T::fused(-k(6.314572895816972e-6), t3 * t3, k(6.314572895816972e-6));
-        let t59 = x0.sin();
-        let t60 = t59 * t58;
-        let t61 = T::fused(t57, t60, k(0.0001) * t15);
-        let t62 = k(9.476794145926002e-5) * t3;
-        let t63 = x1.sin();
-        let t64 = t16 * t33;
-        let t65 = u0 * t63;
-        let t66 = t16 * t59;
-        let t67 = T::fused(
-            u1,
-            T::fused(-k(0.20025), T::fused(k(1.2566370614359172), t57 * t64, t65), u2),
-            k(1.2566370614359172) * ((u2 + t65) * t66),
-        );
-        let t68 = k(1e-5) * t57;
-        let t69 = T::fused(
+        let t58 = t16 * t33;
+        let t59 = t57 * t58;
+        let t60 = x1.sin();
+        let t61 = u0 * t60;
+        let t62 = T::fused(
+            -t15,
             t33,
-            T::fused(k(0.5001562988433885), t60, t57 * T::fused(t63, t62, t61)),
-            t68 * t67,
+            k(0.020025)
+                * (u1
+                    * T::fused(
+                        -k(1.2566370614359172),
+                        T::fused(k(3.9739061945541905), u2, -t59),
+                        t61,
+                    )),
         );
-        let t70 = t57 * t57;
-        let t71 = t69 / T::fused(k(6.00125e-6), t70, k(2e-6));
-        let t72 = t63 * t71;
-        let t73 = T::fused(-u1, t56, T::fused(t57, t35, t72));
-        let t74 = k(0.5) * x2;
-        let t75 = t74.sin();
-        let t76 = t74.cos();
-        let t77 = T::fused(t40, t75, t39 * t76);
-        let t78 = T::fused(-t39, t75, t40 * t76);
-        let t79 = t78 * t78;
-        let t80 = k(2.0) * (k(0.5) - T::fused(t77, t77, t79));
-        let t81 = T::fused(-t45, t75, t43 * t76);
-        let t82 = t78 * t81;
-        let t83 = T::fused(t43, t75, t45 * t76);
-        let t84 = t77 * t83;
-        let t85 = k(2.0) * (t84 + t82);
-        let t86 = t78 * t83;
-        let t87 = t77 * t81;
-        let t88 = k(2.0) * (t87 - t86);
-        let t89 = T::fused(-k(1.2566370614359173e-5), t63 * t64, u0 * t68);
-        let t90 = T::fused(
-            -u1,
-            t89,
-            k(1.2566370614359173e-5)
-                * (t57 * T::fused(u0, t66, k(12.566370614359172) * (t3 * t33))),
-        );
-        let t91 = k(1e-5) * (T::fused(k(100000.0), t90, t72) - t73);
-        let t92 = k(2.0) * (t84 - t82);
-        let t93 = k(2.0) * (k(0.5) - T::fused(t83, t83, t79));
-        let t94 = t78 * t77;
-        let t95 = t83 * t81;
-        let t96 = k(2.0) * (t95 + t94);
-        let t97 = k(2.0) * t75;
-        let t98 = t76 * t97;
-        let t99 = T::fused(-t75, t97, k(1.0));
-        let t100 = T::fused(-t98, t56, t99 * t51);
-        let t101 = T::fused(t55, t52, u0 * t54);
-        let t102 = u2 + t101;
-        let t103 = T::fused(u1, t101, T::fused(-t63, t35, t57 * t71));
-        let t104 = x2.cos();
-        let t105 = u0 * t52;
-        let t106 = T::fused(t34, t59, -t105);
-        let t107 = T::fused(
-            -t57,
-            T::fused(t63, T::fused(-k(3.99875e-6), u0 * u0, t58), k(0.0001) * t19),
-            T::fused(t59, T::fused(t63, t61, t62), u2 * t89),
-        );
-        let t108 = T::fused(
-            k(166631.95167673402),
+        let t63 = t3 * t33;
+        let t64 = x0.sin();
+        let t65 = t16 * t64;
+        let t66 = T::fused(k(6.314572895816972e-6), t59, k(1.2566370614359173e-5) * u2);
+        let t67 = T::fused(
+            k(9.476794145926002e-5),
+            t57 * T::fused(-k(1.05520916103247), t62, t60 * t63),
             T::fused(
-                -k(1.0049954898833748e-5),
-                t64 * (u0 * (k(1.2503907471084714) - t70)),
-                t107,
-            ),
-            -t106,
+                t57,
+                T::fused(k(1.2566370614359173e-5), t61, t66),
+                k(3.1582734083485947e-6) * t58,
+            ) * t65,
         );
-        let t109 = x2.sin();
+        let t68 = t57 * t57;
+        let t69 = t67 / T::fused(k(6.00125e-6), t68, k(2e-6));
+        let t70 = t60 * t69;
+        let t71 = T::fused(-u1, t56, T::fused(t57, t35, t70));
+        let t72 = k(0.5) * x2;
+        let t73 = t72.sin();
+        let t74 = t72.cos();
+        let t75 = T::fused(t40, t73, t39 * t74);
+        let t76 = T::fused(-t39, t73, t40 * t74);
+        let t77 = t76 * t76;
+        let t78 = k(2.0) * (k(0.5) - T::fused(t75, t75, t77));
+        let t79 = T::fused(-t45, t73, t43 * t74);
+        let t80 = t76 * t79;
+        let t81 = T::fused(t43, t73, t45 * t74);
+        let t82 = t75 * t81;
+        let t83 = k(2.0) * (t82 + t80);
+        let t84 = t76 * t81;
+        let t85 = t75 * t79;
+        let t86 = k(2.0) * (t85 - t84);
+        let t87 = T::fused(
+            k(0.00015791367041742975),
+            t57
+                * T::fused(
+                    -k(0.06332573977646111),
+                    u0 * T::fused(-k(1.2566370614359172), t65, u1),
+                    t63,
+                ),
+            k(1.2566370614359173e-5) * (t58 * (u1 * t60)),
+        );
+        let t88 = k(1e-5) * (T::fused(k(100000.0), t87, t70) - t71);
+        let t89 = k(2.0) * (t82 - t80);
+        let t90 = k(2.0) * (k(0.5) - T::fused(t81, t81, t77));
+        let t91 = t76 * t75;
+        let t92 = t81 * t79;
+        let t93 = k(2.0) * (t92 + t91);
+        let t94 = k(2.0) * t73;
+        let t95 = t74 * t94;
+        let t96 = T::fused(-t73, t94, k(1.0));
+        let t97 = T::fused(-t95, t56, t96 * t51);
+        let t98 = T::fused(t55, t52, u0 * t54);
+        let t99 = u2 + t98;
+        let t100 = T::fused(u1, t98, T::fused(-t60, t35, t57 * t69));
+        let t101 = x2.cos();
+        let t102 = u0 * t52;
+        let t103 = T::fused(t34, t64, -t102);
+        let t104 = T::fused(
+            -t57,
+            T::fused(-k(0.0399875), u0 * T::fused(k(2.500781494216943), u2, t61), t19),
+            t64 * T::fused(t15, t60, k(0.9476794145926002) * t3),
+        );
+        let t105 = T::fused(
+            -k(0.0001),
+            t104,
+            t58
+                * T::fused(
+                    k(1.0049954898833748e-5),
+                    u0 * (k(1.2503907471084714) - t68),
+                    t60 * t66,
+                ),
+        );
+        let t106 = T::fused(k(166631.95167673402), t105, t103);
+        let t107 = x2.sin();
+        let t108 = T::fused(
+            -t99,
+            t97,
+            T::fused(-u2, t97, T::fused(t101, t100, t107 * t106)),
+        );
+        let t109 = k(5e-6) * t108;
         let t110 = T::fused(
-            t102,
-            t100,
-            T::fused(u2, t100, T::fused(-t104, t103, t109 * t108)),
+            -t88,
+            T::fused(t50, t86, T::fused(t42, t78, t47 * t83)),
+            t109 * T::fused(t50, t93, -T::fused(t42, t89, t47 * t90)),
         );
-        let t111 = k(5e-6) * t110;
-        let t112 = T::fused(
-            t91,
-            T::fused(t50, t88, T::fused(t42, t80, t47 * t85)),
-            t111 * T::fused(t50, t96, -T::fused(t42, t92, t47 * t93)),
+        let t111 = k(2.0) * (t85 + t84);
+        let t112 = k(2.0) * (t92 - t91);
+        let t113 = k(2.0) * (k(0.5) - T::fused(t79, t79, t77));
+        let t114 = T::fused(t96, t56, t95 * t51);
+        let t115 = T::fused(
+            t99,
+            t114,
+            T::fused(u2, t114, T::fused(-t107, t100, t101 * t106)),
         );
-        let t113 = k(2.0) * (t87 + t86);
-        let t114 = k(2.0) * (t95 - t94);
-        let t115 = k(2.0) * (k(0.5) - T::fused(t81, t81, t79));
-        let t116 = T::fused(t99, t56, t98 * t51);
+        let t116 = k(5e-6) * t115;
         let t117 = T::fused(
-            -t102,
             t116,
-            T::fused(-u2, t116, T::fused(t109, t103, t104 * t108)),
+            T::fused(t50, t113, -T::fused(-t42, t111, t47 * t112)),
+            -t110,
         );
-        let t118 = k(5e-6) * t117;
-        let t119 = T::fused(
-            t118,
-            T::fused(t50, t115, -T::fused(-t42, t113, t47 * t114)),
-            -t112,
-        );
-        let t120 = T::fused(k(1e-6), T::fused(t56, t51, t73), t119);
-        let t121 = t46 - t44;
+        let t118 = T::fused(-k(1e-6), T::fused(t56, t51, t71), t117);
+        let t119 = t46 - t44;
+        let t120 = k(2.0) * t119;
+        let t121 = k(0.5) - T::fused(t45, t45, t41);
         let t122 = k(2.0) * t121;
-        let t123 = k(0.5) - T::fused(t45, t45, t41);
-        let t124 = k(2.0) * t123;
-        let t125 = t40 * t39;
-        let t126 = t45 * t43;
-        let t127 = t126 + t125;
-        let t128 = k(2.0) * t127;
-        let t129 = T::fused(
-            t91,
-            T::fused(t128, t88, -T::fused(t122, t80, t124 * t85)),
-            t111 * T::fused(t128, t96, T::fused(t122, t92, t124 * t93)),
+        let t123 = t40 * t39;
+        let t124 = t45 * t43;
+        let t125 = t124 + t123;
+        let t126 = k(2.0) * t125;
+        let t127 = T::fused(
+            -t88,
+            T::fused(t126, t86, -T::fused(t120, t78, t122 * t83)),
+            t109 * T::fused(t126, t93, T::fused(t120, t89, t122 * t90)),
         );
-        let t130 = T::fused(
-            t118,
-            T::fused(t128, t115, T::fused(-t122, t113, t124 * t114)),
-            -t129,
+        let t128 = T::fused(
+            t116,
+            T::fused(t126, t113, T::fused(-t120, t111, t122 * t112)),
+            -t127,
         );
-        let t131 = k(0.000125) * t56;
-        let t132 = k(0.000125) * t51;
-        let t133 = T::fused(t56, t131, t51 * t132);
-        let t134 = t131 * t101;
-        let t135 = t132 * t101;
-        let t136 = t49 + t48;
-        let t137 = k(2.0) * t136;
-        let t138 = k(0.00025) * t136;
-        let t139 = k(0.00025) * t121;
-        let t140 = T::fused(t103, t138, t108 * t139)
-            + T::fused(t137, t135, T::fused(t42, t133, t122 * t134));
-        let t141 = k(0.08) * t140;
-        let t142 = t126 - t125;
-        let t143 = k(2.0) * t142;
-        let t144 = k(0.00025) * t142;
-        let t145 = k(0.00025) * t123;
-        let t146 = T::fused(-t103, t144, t108 * t145)
-            - T::fused(t143, t135, -T::fused(t47, t133, t124 * t134));
-        let t147 = T::fused(-k(0.08), t146, k(0.8));
-        let t148 = k(0.5) - T::fused(t43, t43, t41);
-        let t149 = k(2.0) * t148;
-        let t150 = k(0.00025) * t148;
-        let t151 = k(0.00025) * t127;
-        let t152 = T::fused(-t103, t150, t108 * t151)
-            - T::fused(t149, t135, -T::fused(-t50, t133, t128 * t134));
-        let t153 = k(0.08) * t152;
+        let t129 = k(0.000125) * t56;
+        let t130 = k(0.000125) * t51;
+        let t131 = T::fused(t56, t129, t51 * t130);
+        let t132 = t129 * t98;
+        let t133 = t130 * t98;
+        let t134 = t49 + t48;
+        let t135 = k(2.0) * t134;
+        let t136 = k(0.00025) * t134;
+        let t137 = k(0.00025) * t119;
+        let t138 = T::fused(-t100, t136, t106 * t137)
+            - T::fused(t135, t133, T::fused(t42, t131, t120 * t132));
+        let t139 = k(0.08) * t138;
+        let t140 = t124 - t123;
+        let t141 = k(2.0) * t140;
+        let t142 = k(0.00025) * t140;
+        let t143 = k(0.00025) * t121;
+        let t144 = T::fused(t100, t142, t106 * t143)
+            + T::fused(t141, t133, -T::fused(t47, t131, t122 * t132));
+        let t145 = T::fused(k(0.08), t144, k(0.8));
+        let t146 = k(0.5) - T::fused(t43, t43, t41);
+        let t147 = k(2.0) * t146;
+        let t148 = k(0.00025) * t146;
+        let t149 = k(0.00025) * t125;
+        let t150 = T::fused(t100, t148, t106 * t149)
+            + T::fused(t147, t133, -T::fused(-t50, t131, t126 * t132));
+        let t151 = k(0.08) * t150;
+        let t152 = T::fused(
+            k(2e-6),
+            t100,
+            T::fused(t148, t151, T::fused(-t136, t139, t142 * t145)) - t128,
+        );
+        let t153 = T::fused(
+            -t118,
+            T::fused(t27, t50, T::fused(t23, t42, t24 * t47)),
+            t152 * T::fused(t27, t126, -T::fused(t23, t120, t24 * t122)),
+        );
         let t154 = T::fused(
-            -k(2e-6),
-            t103,
-            T::fused(t150, t153, -T::fused(t138, t141, t144 * t147)) - t130,
+            -t88,
+            T::fused(t147, t86, -T::fused(-t135, t78, t141 * t83)),
+            t109 * T::fused(t147, t93, T::fused(-t135, t89, t141 * t90)),
         );
         let t155 = T::fused(
-            -t120,
-            T::fused(t27, t50, T::fused(t23, t42, t24 * t47)),
-            t154 * T::fused(t27, t128, -T::fused(t23, t122, t24 * t124)),
+            t116,
+            T::fused(t147, t113, T::fused(t135, t111, t141 * t112)),
+            -t154,
         );
         let t156 = T::fused(
-            t91,
-            T::fused(t149, t88, -T::fused(-t137, t80, t143 * t85)),
-            t111 * T::fused(t149, t96, T::fused(-t137, t92, t143 * t93)),
+            k(1e-6),
+            T::fused(-t56, t98, t106),
+            T::fused(t149, t151, T::fused(t137, t139, t143 * t145)) + t155,
         );
         let t157 = T::fused(
-            t118,
-            T::fused(t149, t115, T::fused(t137, t113, t143 * t114)),
-            -t156,
+            t156,
+            T::fused(t27, t147, -T::fused(-t23, t135, t24 * t141)),
+            -t153,
         );
         let t158 = T::fused(
-            k(1e-6),
-            T::fused(t56, t101, t108),
-            T::fused(t151, t153, -T::fused(-t139, t141, t145 * t147)) + t157,
+            -t118,
+            T::fused(t22, t50, -T::fused(-t28, t42, t21 * t47)),
+            t152 * T::fused(t22, t126, T::fused(-t28, t120, t21 * t122)),
         );
         let t159 = T::fused(
-            t158,
-            T::fused(t27, t149, -T::fused(-t23, t137, t24 * t143)),
-            -t155,
+            t156,
+            T::fused(t22, t147, T::fused(t28, t135, t21 * t141)),
+            -t158,
         );
         let t160 = T::fused(
-            -t120,
-            T::fused(t22, t50, -T::fused(-t28, t42, t21 * t47)),
-            t154 * T::fused(t22, t128, T::fused(-t28, t122, t21 * t124)),
-        );
-        let t161 = T::fused(
-            t158,
-            T::fused(t22, t149, T::fused(t28, t137, t21 * t143)),
-            -t160,
-        );
-        let t162 = T::fused(
-            T::fused(k(2e-6), t35, t159),
+            T::fused(-k(2e-6), t35, t157),
             t23 * t30,
-            T::fused(-k(1e-6), t105 + t106, t161) * (t28 * t30),
+            T::fused(k(1e-6), t102 + t103, t159) * (t28 * t30),
         );
-        *dx = [u0, u1, u2, rates[0], rates[1], rates[2], t162 * t20];
+        *dx = [u0, u1, u2, rates[0], rates[1], rates[2], -(t160 * t20)];
     }
     /// Writes the maximal state of a joint state: 104 operations (32 ±, 72 ×, 0 ÷) and 10 functions.
     fn to_maximal(&self, t: T, x: &Self::Joints, y: &mut Self::State) {

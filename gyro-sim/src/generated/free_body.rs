@@ -9,25 +9,33 @@
 //! * non-zeros: Φ_q 4 of 7, (Φ_r, Φ_π') 0 of 0
 //! * left out: gravity
 //! * left out: the work of non-conservative forces (there are none)
+//! * left out: parameters (all numbers are folded)
+//! * left out: outputs (the page asks for none)
+//! * accelerations: by rotations of the bodies, 4 operations, not relative Euler parameters 4
+//! * joint_accelerations: by recursion, 4 operations, alone
+//! * joint_accelerations_at: by recursion, 4 operations, not recursion on the bodies' spins 4
+//! * corrected_accelerations: by recursion in the bodies' frames, 4 operations, not recursion in the global frame 4, recursion on the bodies' spins in the bodies' frames 4, recursion on the bodies' spins in the global frame 4, elimination in maximal coordinates 4
 //!
-//! | function | computes | + − | × | ÷ | total | zeros |
-//! |---|---|---|---|---|---|---|
-//! | phi | Φ | 4 | 4 | 0 | 8 | 0 of 1 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 0 | 4 | 0 | 4 | 0 of 4 |
-//! | applied_force | (f, n' − w̃'J'w') | 0 | 4 | 0 | 4 | 4 of 6 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 0 | 4 | 0 | 4 | 4 of 6 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 |
-//! | energy | T and V | 5 | 11 | 0 | 16 | 1 of 2 |
-//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 4 |
-//! | newton_step | dependent positions, one Newton step | 11 | 13 | 1 | 25 | 0 of 7 |
-//! | solve_velocities | dependent velocities, eq. (19) | 0 | 0 | 0 | 0 | 0 of 6 |
-//! | joint_accelerations | u̇ in joint coordinates | 0 | 4 | 0 | 4 | 4 of 6 |
-//! | joint_derivative | ẋ but for u̇ | 8 | 16 | 0 | 24 | 0 of 7 |
-//! | to_maximal | (q, v) of a joint state | 0 | 0 | 0 | 0 | 0 of 13 |
-//! | to_joints | (x, u) of a maximal state | 0 | 0 | 0 | 0 | 0 of 13 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 0 | 4 | 0 | 4 | 4 of 6 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 0 | 4 | 0 | 4 | 4 of 6 |
-//! | corrected_solution | both | 0 | 4 | 0 | 4 | 4 of 6 |
+//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
+//!
+//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
+//! |---|---|---|---|---|---|---|---|---|
+//! | phi | Φ | 4 | 4 | 0 | 8 | 0 of 1 | 8 | 8 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 0 | 4 | 0 | 4 | 0 of 4 | 4 | 4 |
+//! | applied_force | (f, n' − w̃'J'w') | 0 | 4 | 0 | 4 | 4 of 6 | 4 | 4 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 0 | 4 | 0 | 4 | 4 of 6 | 4 | 4 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 | 24 | 24 |
+//! | energy | T and V | 5 | 11 | 0 | 16 | 1 of 2 | 16 | 16 |
+//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 4 | 0 | 0 |
+//! | newton_step | dependent positions, one Newton step | 11 | 13 | 1 | 25 | 0 of 7 | 80 | 26 |
+//! | solve_velocities | dependent velocities, eq. (19) | 0 | 0 | 0 | 0 | 0 of 6 | 0 | 0 |
+//! | joint_accelerations | u̇ in joint coordinates | 0 | 4 | 0 | 4 | 4 of 6 | 4 | 4 |
+//! | joint_derivative | ẋ but for u̇ | 8 | 16 | 0 | 24 | 0 of 7 | 24 | 24 |
+//! | to_maximal | (q, v) of a joint state | 0 | 0 | 0 | 0 | 0 of 13 | 0 | 0 |
+//! | to_joints | (x, u) of a maximal state | 0 | 0 | 0 | 0 | 0 of 13 | 0 | 0 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 0 | 4 | 0 | 4 | 4 of 6 | 4 | 4 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 0 | 4 | 0 | 4 | 4 of 6 | 4 | 4 |
+//! | corrected_solution | both | 0 | 4 | 0 | 4 | 4 of 6 | 4 | 4 |
 //!
 //! # Proof
 //!

@@ -8,33 +8,42 @@
 //! * unknowns of eq. (17): 33
 //! * non-zeros: Φ_q 77 of 378, (Φ_r, Φ_π') 41 of 270
 //! * left out: coordinates of `base` (fixed: folded into constants)
+//! * left out: the turning of `rotor` from u̇ (it looks the same all around its axis)
 //! * left out: the work of non-conservative forces (there are none)
+//! * left out: parameters (all numbers are folded)
+//! * left out: outputs (the page asks for none)
+//! * accelerations: by relative Euler parameters, 436 operations, not rotations of the bodies 456
+//! * joint_accelerations: by normal form, 20 operations, not recursion 39
+//! * joint_accelerations_at: by normal form, 40 operations, not recursion 59, recursion on the bodies' spins 77
+//! * corrected_accelerations: by normal form in the bodies' frames, 150 operations, not recursion in the bodies' frames 169, recursion in the global frame 171, normal form in the global frame 152, recursion on the bodies' spins in the bodies' frames 175, recursion on the bodies' spins in the global frame 177, elimination in maximal coordinates 456
 //!
-//! | function | computes | + − | × | ÷ | total | zeros |
-//! |---|---|---|---|---|---|---|
-//! | phi | Φ | 50 | 58 | 0 | 108 | 0 of 18 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 68 | 137 | 0 | 205 | 0 of 77 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 64 | 105 | 0 | 169 | 0 of 41 |
-//! | nu | ν | 0 | 0 | 0 | 0 | 15 of 15 |
-//! | gamma | γ | 122 | 193 | 0 | 315 | 6 of 15 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 90 | 128 | 0 | 218 | 0 of 15 |
-//! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 172 | 259 | 5 | 436 | 7 of 18 |
-//! | multipliers | λ, the accelerations being known | 114 | 187 | 3 | 304 | 0 of 15 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
-//! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
-//! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 |
-//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
-//! | newton_step | dependent positions, one Newton step | 193 | 318 | 3 | 514 | 6 of 21 |
-//! | solve_velocities | dependent velocities, eq. (19) | 96 | 158 | 3 | 257 | 6 of 18 |
-//! | joint_accelerations | u̇ in joint coordinates | 5 | 12 | 1 | 18 | 0 of 3 |
-//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 |
-//! | to_maximal | (q, v) of a joint state | 24 | 54 | 0 | 78 | 16 of 39 |
-//! | to_joints | (x, u) of a maximal state | 63 | 72 | 0 | 135 | 0 of 6 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 14 | 23 | 1 | 38 | 0 of 3 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 56 | 92 | 1 | 149 | 6 of 18 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 54 | 80 | 0 | 134 | 0 of 15 |
-//! | corrected_solution | both | 88 | 142 | 1 | 231 | 6 of 33 |
+//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
+//!
+//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
+//! |---|---|---|---|---|---|---|---|---|
+//! | phi | Φ | 50 | 58 | 0 | 108 | 0 of 18 | 178 | 108 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 68 | 137 | 0 | 205 | 0 of 77 | 590 | 205 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 64 | 105 | 0 | 169 | 0 of 41 | 540 | 169 |
+//! | nu | ν | 0 | 0 | 0 | 0 | 15 of 15 | 0 | 0 |
+//! | gamma | γ | 122 | 193 | 0 | 315 | 6 of 15 | 1486 | 315 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 90 | 128 | 0 | 218 | 0 of 15 | 595 | 218 |
+//! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 | 12 | 12 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 172 | 259 | 5 | 436 | 7 of 18 | 505202 | 440 |
+//! | multipliers | λ, the accelerations being known | 114 | 187 | 3 | 304 | 0 of 15 | 3819 | 304 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 | 72 | 72 |
+//! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 | 52 | 52 |
+//! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 | 216 | 114 |
+//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 | 0 | 0 |
+//! | newton_step | dependent positions, one Newton step | 193 | 318 | 3 | 514 | 6 of 21 | 1.1e9 | 514 |
+//! | solve_velocities | dependent velocities, eq. (19) | 96 | 158 | 3 | 257 | 6 of 18 | 10561 | 257 |
+//! | joint_accelerations | u̇ in joint coordinates | 5 | 14 | 1 | 20 | 0 of 3 | 36 | 21 |
+//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 | 0 | 0 |
+//! | to_maximal | (q, v) of a joint state | 24 | 54 | 0 | 78 | 16 of 39 | 291 | 78 |
+//! | to_joints | (x, u) of a maximal state | 63 | 72 | 0 | 135 | 0 of 6 | 451 | 135 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 14 | 25 | 1 | 40 | 0 of 3 | 242 | 41 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 56 | 93 | 1 | 150 | 6 of 18 | 2540 | 151 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 54 | 80 | 0 | 134 | 0 of 15 | 715 | 134 |
+//! | corrected_solution | both | 88 | 143 | 1 | 232 | 6 of 33 | 22234 | 233 |
 //!
 //! # Proof
 //!
@@ -2637,7 +2646,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gyroscope<T> {
     fn solution(&self) -> Self::Solution {
         [T::constant(0.0); 33]
     }
-    /// Writes u̇: 18 operations (5 ±, 12 ×, 1 ÷) and 2 functions.
+    /// Writes u̇: 20 operations (5 ±, 14 ×, 1 ÷) and 2 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
         let k = T::constant;
         let x1 = x[1];
@@ -2645,16 +2654,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gyroscope<T> {
         let u1 = x[4];
         let u2 = x[5];
         let t0 = x1.cos();
-        let t1 = u1 * t0;
-        let t2 = x1.sin();
-        let t3 = u0 * t2;
-        let t4 = k(1.6663195167673401)
-            * (T::fused(-k(0.20025), t3, u2) / T::fused(-t2, t2, k(1.3332639033534681)));
+        let t1 = k(1e-5) * t0;
+        let t2 = u1 * t1;
+        let t3 = x1.sin();
+        let t4 = u0 * t3;
+        let t5 = T::fused(-k(0.20025), t4, u2) * t2
+            / T::fused(k(6.00125e-6), t0 * t0, k(2e-6));
         *out = [
-            -(t4 * t1),
-            -(k(1.6663195167673401)
-                * (t0 * T::fused(-u0, T::fused(k(0.399875), t3, u2), k(10.0)))),
-            -(t1 * T::fused(-t2, t4, u0)),
+            -t5,
+            -(k(166631.95167673402)
+                * (t1 * T::fused(-u0, T::fused(k(0.399875), t4, u2), k(10.0)))),
+            T::fused(-k(100000.0), u0 * t2, t3 * t5),
         ];
     }
     /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -2855,7 +2865,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gyroscope<T> {
         x[4] = inner_ring_wz - outer_ring_wz;
         x[5] = rotor_wx - inner_ring_wx;
     }
-    /// Writes u̇ at a state that satisfies the constraints: 38 operations (14 ±, 23 ×, 1 ÷).
+    /// Writes u̇ at a state that satisfies the constraints: 40 operations (14 ±, 25 ×, 1 ÷).
     fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2882,8 +2892,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gyroscope<T> {
         );
         let t1 = k(2.0) * t0;
         let t2 = T::fused(-t0, t1, k(1.0));
-        let t3 = (outer_ring_wz - inner_ring_wz) * t2;
-        let t4 = T::fused(
+        let t3 = k(1e-5) * t2;
+        let t4 = (outer_ring_wz - inner_ring_wz) * t3;
+        let t5 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -2892,20 +2903,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gyroscope<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t5 = t4 * t1;
-        let t6 = outer_ring_wy * t5;
-        let t7 = inner_ring_wx - rotor_wx;
-        let t8 = k(1.6663195167673401)
-            * (T::fused(-k(0.20025), t6, t7) / T::fused(-t5, t5, k(1.3332639033534681)));
+        let t6 = t5 * t1;
+        let t7 = outer_ring_wy * t6;
+        let t8 = inner_ring_wx - rotor_wx;
+        let t9 = T::fused(-k(0.20025), t7, t8) * t4
+            / T::fused(k(6.00125e-6), t2 * t2, k(2e-6));
         *out = [
-            -(t8 * t3),
-            -(k(1.6663195167673401)
-                * (t2
-                    * T::fused(outer_ring_wy, T::fused(k(0.399875), t6, t7), k(10.0)))),
-            t3 * T::fused(-t5, t8, outer_ring_wy),
+            -t9,
+            -(k(166631.95167673402)
+                * (t3
+                    * T::fused(outer_ring_wy, T::fused(k(0.399875), t7, t8), k(10.0)))),
+            T::fused(-t6, t9, k(100000.0) * (outer_ring_wy * t4)),
         ];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 149 operations (56 ±, 92 ×, 1 ÷).
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 150 operations (56 ±, 93 ×, 1 ÷).
     fn corrected_accelerations(
         &self,
         _t: T,
@@ -2946,9 +2957,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gyroscope<T> {
         );
         let t2 = k(2.0) * t1;
         let t3 = T::fused(-t1, t2, k(1.0));
-        let t4 = outer_ring_wz - inner_ring_wz;
-        let t5 = t4 * t3;
-        let t6 = T::fused(
+        let t4 = k(1e-5) * t3;
+        let t5 = outer_ring_wz - inner_ring_wz;
+        let t6 = t5 * t4;
+        let t7 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -2957,22 +2969,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gyroscope<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t7 = t6 * t2;
-        let t8 = outer_ring_wy * t7;
-        let t9 = inner_ring_wx - rotor_wx;
-        let t10 = k(1.6663195167673401)
-            * (T::fused(-k(0.20025), t8, t9) / T::fused(-t7, t7, k(1.3332639033534681)));
-        let t11 = t10 * t5;
+        let t8 = t7 * t2;
+        let t9 = outer_ring_wy * t8;
+        let t10 = inner_ring_wx - rotor_wx;
+        let t11 = T::fused(-k(0.20025), t9, t10) * t6
+            / T::fused(k(6.00125e-6), t3 * t3, k(2e-6));
         let t12 = outer_ring_wx * outer_ring_wy;
-        let t13 = T::fused(inner_ring_wy, t4, T::fused(-t7, t11, t0 * t3));
-        let t14 = T::fused(inner_ring_wx, t4, -T::fused(t3, t11, t0 * t7));
-        let t15 = T::fused(
-            -k(1.6663195167673401),
-            t3 * T::fused(outer_ring_wy, T::fused(k(0.399875), t8, t9), k(10.0)),
+        let t13 = t8 * t11;
+        let t14 = T::fused(inner_ring_wy, t5, -T::fused(-t0, t3, t13));
+        let t15 = T::fused(inner_ring_wx, t5, -T::fused(t3, t11, t0 * t8));
+        let t16 = T::fused(
+            -k(166631.95167673402),
+            t4 * T::fused(outer_ring_wy, T::fused(k(0.399875), t9, t10), k(10.0)),
             t12,
         );
-        let t16 = k(0.000125) * t15;
-        let t17 = T::fused(
+        let t17 = k(0.000125) * t16;
+        let t18 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -2981,10 +2993,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gyroscope<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t18 = k(2.0) * t17;
-        let t19 = T::fused(-t17, t18, k(1.0));
-        let t20 = k(0.000125) * t14;
-        let t21 = T::fused(
+        let t19 = k(2.0) * t18;
+        let t20 = T::fused(-t18, t19, k(1.0));
+        let t21 = k(0.000125) * t15;
+        let t22 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -2993,32 +3005,32 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gyroscope<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t22 = t21 * t18;
-        let t23 = k(0.000125) * inner_ring_wy;
-        let t24 = inner_ring_wx * t23;
-        let t25 = k(0.000125) * inner_ring_wz;
-        let t26 = inner_ring_wx * t25;
-        let t27 = T::fused(-t24, t19, t26 * t22) - T::fused(t19, t16, t22 * t20);
-        let t28 = rotor_e0 * rotor_e3;
-        let t29 = rotor_e1 * rotor_e2;
-        let t30 = T::fused(inner_ring_wz, t25, inner_ring_wy * t23);
-        let t31 = rotor_e0 * rotor_e0;
-        let t32 = T::fused(
-            -(k(2.0) * (t29 - t28)),
-            t27,
-            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t31)) * t30,
+        let t23 = t22 * t19;
+        let t24 = k(0.000125) * inner_ring_wy;
+        let t25 = inner_ring_wx * t24;
+        let t26 = k(0.000125) * inner_ring_wz;
+        let t27 = inner_ring_wx * t26;
+        let t28 = T::fused(-t25, t20, t27 * t23) - T::fused(t20, t17, t23 * t21);
+        let t29 = rotor_e0 * rotor_e3;
+        let t30 = rotor_e1 * rotor_e2;
+        let t31 = T::fused(inner_ring_wz, t26, inner_ring_wy * t24);
+        let t32 = rotor_e0 * rotor_e0;
+        let t33 = T::fused(
+            -(k(2.0) * (t30 - t29)),
+            t28,
+            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t32)) * t31,
         );
-        let t33 = T::fused(t24, t22, t26 * t19) - T::fused(-t22, t16, t19 * t20);
-        let t34 = rotor_e0 * rotor_e2;
-        let t35 = rotor_e1 * rotor_e3;
-        let t36 = T::fused(
-            -(k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t31))),
-            t27,
-            k(2.0) * (t29 + t28) * t30,
+        let t34 = T::fused(t25, t23, t27 * t20) - T::fused(-t23, t17, t20 * t21);
+        let t35 = rotor_e0 * rotor_e2;
+        let t36 = rotor_e1 * rotor_e3;
+        let t37 = T::fused(
+            -(k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t32))),
+            t28,
+            k(2.0) * (t30 + t29) * t31,
         );
-        let t37 = rotor_e0 * rotor_e1;
-        let t38 = rotor_e2 * rotor_e3;
-        let t39 = T::fused(k(2.0) * (t38 + t37), t27, k(2.0) * (t35 - t34) * t30);
+        let t38 = rotor_e0 * rotor_e1;
+        let t39 = rotor_e2 * rotor_e3;
+        let t40 = T::fused(k(2.0) * (t39 + t38), t28, k(2.0) * (t36 - t35) * t31);
         *out = [
             k(0.0),
             k(0.0),
@@ -3029,15 +3041,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gyroscope<T> {
             k(0.0),
             k(0.0),
             k(0.0),
-            -t13,
-            t14,
+            -t14,
             t15,
-            T::fused(k(2.0) * (t35 + t34), t33, t32),
-            T::fused(k(2.0) * (t38 - t37), t33, -t36),
-            -T::fused(k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t31)), t33, t39),
-            T::fused(t5, T::fused(-t7, t10, outer_ring_wy), -t13),
-            -T::fused(rotor_wz, t9, T::fused(-t19, t14, t22 * t15)),
-            T::fused(rotor_wy, t9, T::fused(t22, t14, t19 * t15)),
+            t16,
+            T::fused(k(2.0) * (t36 + t35), t34, t33),
+            T::fused(k(2.0) * (t39 - t38), t34, -t37),
+            -T::fused(k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t32)), t34, t40),
+            -(T::fused(-k(100000.0), outer_ring_wy * t6, t13) + t14),
+            -T::fused(rotor_wz, t10, T::fused(-t20, t15, t23 * t16)),
+            T::fused(rotor_wy, t10, T::fused(t23, t15, t20 * t16)),
         ];
     }
     /// Writes λ: 134 operations (54 ±, 80 ×, 0 ÷).
@@ -3198,7 +3210,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gyroscope<T> {
             -t21,
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 231 operations (88 ±, 142 ×, 1 ÷).
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 232 operations (88 ±, 143 ×, 1 ÷).
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -3234,9 +3246,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gyroscope<T> {
         );
         let t2 = k(2.0) * t1;
         let t3 = T::fused(-t1, t2, k(1.0));
-        let t4 = outer_ring_wz - inner_ring_wz;
-        let t5 = t4 * t3;
-        let t6 = T::fused(
+        let t4 = k(1e-5) * t3;
+        let t5 = outer_ring_wz - inner_ring_wz;
+        let t6 = t5 * t4;
+        let t7 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -3245,22 +3258,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gyroscope<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t7 = t6 * t2;
-        let t8 = outer_ring_wy * t7;
-        let t9 = inner_ring_wx - rotor_wx;
-        let t10 = k(1.6663195167673401)
-            * (T::fused(-k(0.20025), t8, t9) / T::fused(-t7, t7, k(1.3332639033534681)));
-        let t11 = t10 * t5;
+        let t8 = t7 * t2;
+        let t9 = outer_ring_wy * t8;
+        let t10 = inner_ring_wx - rotor_wx;
+        let t11 = T::fused(-k(0.20025), t9, t10) * t6
+            / T::fused(k(6.00125e-6), t3 * t3, k(2e-6));
         let t12 = outer_ring_wx * outer_ring_wy;
-        let t13 = T::fused(inner_ring_wy, t4, T::fused(-t7, t11, t0 * t3));
-        let t14 = T::fused(inner_ring_wx, t4, -T::fused(t3, t11, t0 * t7));
-        let t15 = T::fused(
-            -k(1.6663195167673401),
-            t3 * T::fused(outer_ring_wy, T::fused(k(0.399875), t8, t9), k(10.0)),
+        let t13 = t8 * t11;
+        let t14 = T::fused(inner_ring_wy, t5, -T::fused(-t0, t3, t13));
+        let t15 = T::fused(inner_ring_wx, t5, -T::fused(t3, t11, t0 * t8));
+        let t16 = T::fused(
+            -k(166631.95167673402),
+            t4 * T::fused(outer_ring_wy, T::fused(k(0.399875), t9, t10), k(10.0)),
             t12,
         );
-        let t16 = k(0.000125) * t15;
-        let t17 = T::fused(
+        let t17 = k(0.000125) * t16;
+        let t18 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -3269,10 +3282,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gyroscope<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t18 = k(2.0) * t17;
-        let t19 = T::fused(-t17, t18, k(1.0));
-        let t20 = k(0.000125) * t14;
-        let t21 = T::fused(
+        let t19 = k(2.0) * t18;
+        let t20 = T::fused(-t18, t19, k(1.0));
+        let t21 = k(0.000125) * t15;
+        let t22 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -3281,88 +3294,88 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gyroscope<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t22 = t21 * t18;
-        let t23 = k(0.000125) * inner_ring_wy;
-        let t24 = inner_ring_wx * t23;
-        let t25 = k(0.000125) * inner_ring_wz;
-        let t26 = inner_ring_wx * t25;
-        let t27 = T::fused(-t24, t19, t26 * t22) - T::fused(t19, t16, t22 * t20);
-        let t28 = rotor_e0 * rotor_e3;
-        let t29 = rotor_e1 * rotor_e2;
-        let t30 = T::fused(inner_ring_wz, t25, inner_ring_wy * t23);
-        let t31 = rotor_e0 * rotor_e0;
-        let t32 = T::fused(
-            -(k(2.0) * (t29 - t28)),
-            t27,
-            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t31)) * t30,
+        let t23 = t22 * t19;
+        let t24 = k(0.000125) * inner_ring_wy;
+        let t25 = inner_ring_wx * t24;
+        let t26 = k(0.000125) * inner_ring_wz;
+        let t27 = inner_ring_wx * t26;
+        let t28 = T::fused(-t25, t20, t27 * t23) - T::fused(t20, t17, t23 * t21);
+        let t29 = rotor_e0 * rotor_e3;
+        let t30 = rotor_e1 * rotor_e2;
+        let t31 = T::fused(inner_ring_wz, t26, inner_ring_wy * t24);
+        let t32 = rotor_e0 * rotor_e0;
+        let t33 = T::fused(
+            -(k(2.0) * (t30 - t29)),
+            t28,
+            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t32)) * t31,
         );
-        let t33 = T::fused(t24, t22, t26 * t19) - T::fused(-t22, t16, t19 * t20);
-        let t34 = rotor_e0 * rotor_e2;
-        let t35 = rotor_e1 * rotor_e3;
-        let t36 = T::fused(k(2.0) * (t35 + t34), t33, t32);
-        let t37 = T::fused(
-            -(k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t31))),
-            t27,
-            k(2.0) * (t29 + t28) * t30,
+        let t34 = T::fused(t25, t23, t27 * t20) - T::fused(-t23, t17, t20 * t21);
+        let t35 = rotor_e0 * rotor_e2;
+        let t36 = rotor_e1 * rotor_e3;
+        let t37 = T::fused(k(2.0) * (t36 + t35), t34, t33);
+        let t38 = T::fused(
+            -(k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t32))),
+            t28,
+            k(2.0) * (t30 + t29) * t31,
         );
-        let t38 = rotor_e0 * rotor_e1;
-        let t39 = rotor_e2 * rotor_e3;
-        let t40 = T::fused(k(2.0) * (t39 - t38), t33, -t37);
-        let t41 = T::fused(k(2.0) * (t39 + t38), t27, k(2.0) * (t35 - t34) * t30);
-        let t42 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t31)),
-            t33,
-            t41,
+        let t39 = rotor_e0 * rotor_e1;
+        let t40 = rotor_e2 * rotor_e3;
+        let t41 = T::fused(k(2.0) * (t40 - t39), t34, -t38);
+        let t42 = T::fused(k(2.0) * (t40 + t39), t28, k(2.0) * (t36 - t35) * t31);
+        let t43 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t32)),
+            t34,
+            t42,
         );
-        let t43 = T::fused(t5, T::fused(-t7, t10, outer_ring_wy), -t13);
-        let t44 = T::fused(rotor_wz, t9, T::fused(-t19, t14, t22 * t15));
-        let t45 = T::fused(rotor_wy, t9, T::fused(t22, t14, t19 * t15));
-        let t46 = k(0.08) * t36;
-        let t47 = T::fused(k(0.08), t40, k(0.8));
-        let t48 = k(0.1) + t47;
-        let t49 = k(0.08) * t42;
-        let t50 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -t45);
-        let t51 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t44);
-        let t52 = T::fused(t19, t50, t22 * t51);
-        let t53 = inner_ring_e0 * inner_ring_e1;
-        let t54 = inner_ring_e2 * inner_ring_e3;
-        let t55 = inner_ring_e0 * inner_ring_e0;
-        let t56 = T::fused(
-            -(k(0.00025) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t55))),
-            t47,
+        let t44 = T::fused(-k(100000.0), outer_ring_wy * t6, t13) + t14;
+        let t45 = T::fused(rotor_wz, t10, T::fused(-t20, t15, t23 * t16));
+        let t46 = T::fused(rotor_wy, t10, T::fused(t23, t15, t20 * t16));
+        let t47 = k(0.08) * t37;
+        let t48 = T::fused(k(0.08), t41, k(0.8));
+        let t49 = k(0.1) + t48;
+        let t50 = k(0.08) * t43;
+        let t51 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -t46);
+        let t52 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t45);
+        let t53 = T::fused(t20, t51, t23 * t52);
+        let t54 = inner_ring_e0 * inner_ring_e1;
+        let t55 = inner_ring_e2 * inner_ring_e3;
+        let t56 = inner_ring_e0 * inner_ring_e0;
+        let t57 = T::fused(
+            -(k(0.00025) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t56))),
+            t48,
             k(0.00025)
                 * T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2)
-                * t46,
+                * t47,
         );
-        let t57 = T::fused(
+        let t58 = T::fused(
             k(1e-6),
-            T::fused(inner_ring_wx, inner_ring_wy, t15),
-            T::fused(-(k(0.00025) * (t54 + t53)), t49, t56) - t52,
+            T::fused(inner_ring_wx, inner_ring_wy, t16),
+            T::fused(-(k(0.00025) * (t55 + t54)), t50, t57) - t53,
         );
-        let t58 = k(2.0) * outer_ring_e2;
-        let t59 = outer_ring_e0 * t58;
-        let t60 = T::fused(-t22, t50, t19 * t51);
-        let t61 = T::fused(
-            k(0.00025) * (t54 - t53),
-            t47,
+        let t59 = k(2.0) * outer_ring_e2;
+        let t60 = outer_ring_e0 * t59;
+        let t61 = T::fused(-t23, t51, t20 * t52);
+        let t62 = T::fused(
+            k(0.00025) * (t55 - t54),
+            t48,
             k(0.00025)
                 * T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3)
-                * t46,
+                * t47,
         );
-        let t62 = T::fused(
-            k(0.00025) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t55)),
-            t49,
-            t61,
-        ) - t60;
-        let t63 = T::fused(-k(2e-6), t14, t62);
-        let t64 = T::fused(
-            -k(1e-6),
-            T::fused(inner_ring_wy, inner_ring_wz, t13),
-            k(1e-5) * t43,
+        let t63 = T::fused(
+            k(0.00025) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t56)),
+            t50,
+            t62,
+        ) - t61;
+        let t64 = T::fused(-k(2e-6), t15, t63);
+        let t65 = T::fused(
+            k(1e-6),
+            T::fused(inner_ring_wy, inner_ring_wz, t14),
+            k(1e-5) * t44,
         );
-        let t65 = T::fused(-t7, t63, t3 * t64);
-        let t66 = T::fused(-k(2e-6), t0, t65);
-        let t67 = T::fused(-outer_ring_e2, t58, k(1.0));
+        let t66 = T::fused(t8, t64, t3 * t65);
+        let t67 = T::fused(k(2e-6), t0, t66);
+        let t68 = T::fused(-outer_ring_e2, t59, k(1.0));
         *out = [
             k(0.0),
             k(0.0),
@@ -3373,30 +3386,30 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gyroscope<T> {
             k(0.0),
             k(0.0),
             k(0.0),
-            -t13,
-            t14,
+            -t14,
             t15,
-            t36,
-            t40,
-            -t42,
-            t43,
+            t16,
+            t37,
+            t41,
+            -t43,
             -t44,
-            t45,
-            -t46,
-            -(k(0.1) + t48),
-            t49,
-            -T::fused(t59, t57, t67 * t66),
-            T::fused(-t59, t66, t67 * t57),
-            -t46,
-            -t48,
-            t49,
-            T::fused(t3, t63, t7 * t64),
-            t65,
-            -t46,
+            -t45,
+            t46,
             -t47,
-            t49,
-            t52,
-            t60,
+            -(k(0.1) + t49),
+            t50,
+            T::fused(-t60, t58, t68 * t67),
+            T::fused(t68, t58, t60 * t67),
+            -t47,
+            -t49,
+            t50,
+            T::fused(-t8, t65, t3 * t64),
+            -t66,
+            -t47,
+            -t48,
+            t50,
+            t53,
+            t61,
         ];
     }
 }

@@ -9,32 +9,40 @@
 //! * non-zeros: Φ_q 91 of 378, (Φ_r, Φ_π') 53 of 270
 //! * left out: coordinates of `base` (fixed: folded into constants)
 //! * left out: the work of non-conservative forces (there are none)
+//! * left out: parameters (all numbers are folded)
+//! * left out: outputs (the page asks for none)
+//! * accelerations: by relative Euler parameters, 785 operations, not rotations of the bodies 805
+//! * joint_accelerations: by normal form, 138 operations, not recursion 366
+//! * joint_accelerations_at: by normal form, 176 operations, not recursion 404, recursion on the bodies' spins 415
+//! * corrected_accelerations: by normal form in the bodies' frames, 321 operations, not recursion in the bodies' frames 547, recursion in the global frame 647, normal form in the global frame 421, recursion on the bodies' spins in the bodies' frames 493, recursion on the bodies' spins in the global frame 608, elimination in maximal coordinates 805
 //!
-//! | function | computes | + − | × | ÷ | total | zeros |
-//! |---|---|---|---|---|---|---|
-//! | phi | Φ | 73 | 75 | 0 | 148 | 0 of 18 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 104 | 167 | 0 | 271 | 0 of 91 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 82 | 135 | 0 | 217 | 0 of 53 |
-//! | nu | ν | 0 | 0 | 0 | 0 | 15 of 15 |
-//! | gamma | γ | 169 | 255 | 0 | 424 | 6 of 15 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 120 | 173 | 0 | 293 | 0 of 15 |
-//! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 324 | 456 | 5 | 785 | 6 of 18 |
-//! | multipliers | λ, the accelerations being known | 144 | 229 | 3 | 376 | 0 of 15 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
-//! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
-//! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 |
-//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
-//! | newton_step | dependent positions, one Newton step | 220 | 343 | 3 | 566 | 6 of 21 |
-//! | solve_velocities | dependent velocities, eq. (19) | 126 | 203 | 3 | 332 | 6 of 18 |
-//! | joint_accelerations | u̇ in joint coordinates | 57 | 79 | 2 | 138 | 0 of 3 |
-//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 |
-//! | to_maximal | (q, v) of a joint state | 69 | 113 | 0 | 182 | 16 of 39 |
-//! | to_joints | (x, u) of a maximal state | 63 | 72 | 0 | 135 | 0 of 6 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 73 | 101 | 2 | 176 | 0 of 3 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 132 | 187 | 2 | 321 | 6 of 18 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 100 | 133 | 0 | 233 | 0 of 15 |
-//! | corrected_solution | both | 198 | 280 | 2 | 480 | 6 of 33 |
+//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
+//!
+//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
+//! |---|---|---|---|---|---|---|---|---|
+//! | phi | Φ | 73 | 75 | 0 | 148 | 0 of 18 | 258 | 148 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 104 | 167 | 0 | 271 | 0 of 91 | 674 | 271 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 82 | 135 | 0 | 217 | 0 of 53 | 688 | 217 |
+//! | nu | ν | 0 | 0 | 0 | 0 | 15 of 15 | 0 | 0 |
+//! | gamma | γ | 169 | 255 | 0 | 424 | 6 of 15 | 1861 | 424 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 120 | 173 | 0 | 293 | 0 of 15 | 800 | 293 |
+//! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 | 12 | 12 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 324 | 456 | 5 | 785 | 6 of 18 | 6.3e7 | 789 |
+//! | multipliers | λ, the accelerations being known | 144 | 229 | 3 | 376 | 0 of 15 | 6241 | 376 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 | 72 | 72 |
+//! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 | 52 | 52 |
+//! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 | 216 | 114 |
+//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 | 0 | 0 |
+//! | newton_step | dependent positions, one Newton step | 220 | 343 | 3 | 566 | 6 of 21 | 1.0e10 | 566 |
+//! | solve_velocities | dependent velocities, eq. (19) | 126 | 203 | 3 | 332 | 6 of 18 | 55373 | 332 |
+//! | joint_accelerations | u̇ in joint coordinates | 57 | 79 | 2 | 138 | 0 of 3 | 2690 | 139 |
+//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 | 0 | 0 |
+//! | to_maximal | (q, v) of a joint state | 69 | 113 | 0 | 182 | 16 of 39 | 1695 | 182 |
+//! | to_joints | (x, u) of a maximal state | 63 | 72 | 0 | 135 | 0 of 6 | 451 | 135 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 73 | 101 | 2 | 176 | 0 of 3 | 23451 | 177 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 132 | 187 | 2 | 321 | 6 of 18 | 458822 | 322 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 100 | 133 | 0 | 233 | 0 of 15 | 1747 | 233 |
+//! | corrected_solution | both | 198 | 280 | 2 | 480 | 6 of 33 | 1.4e7 | 481 |
 //!
 //! # Proof
 //!
@@ -3181,52 +3189,52 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
         let u0 = x[3];
         let u1 = x[4];
         let u2 = x[5];
-        let t0 = x2.cos();
-        let t1 = x2.sin();
-        let t2 = t1 * T::fused(k(4.8e-9), t1, k(1.4e-9) * t0);
-        let t3 = k(2.52e-9) + T::fused(k(4.4e-10), t1, -T::fused(k(1.08e-9), t0, t2));
+        let t0 = x2.sin();
+        let t1 = x2.cos();
+        let t2 = t1 * T::fused(-k(4.8e-9), t1, k(1.4e-9) * t0);
+        let t3 = k(2.28e-9) + T::fused(k(1.08e-9), t1, T::fused(-k(4.4e-10), t0, t2));
         let t4 = x1.sin();
-        let t5 = T::fused(-k(4e-10), t1, k(3e-10) * t0);
-        let t6 = k(6e-11) - t5;
+        let t5 = T::fused(-k(3e-10), t1, k(4e-10) * t0);
+        let t6 = k(6e-11) + t5;
         let t7 = x1.cos();
-        let t8 = T::fused(k(1.6e-9), t0, k(1.2e-9) * t1);
-        let t9 = t1 * T::fused(-k(1.4e-9), t1, k(4.8e-9) * t0);
+        let t8 = T::fused(k(1.6e-9), t1, k(1.2e-9) * t0);
+        let t9 = t1 * T::fused(k(1.4e-9), t1, k(4.8e-9) * t0);
         let t10 = t9 - t8;
-        let t11 = k(4.00335e-6) + t10;
+        let t11 = k(4.00195e-6) + t10;
         let t12 = k(0.5) * t8;
         let t13 = k(2e-10) - t12;
         let t14 = t4 * t13;
         let t15 = u0 * T::fused(-k(2.0), t4 * T::fused(t7, t11, t14), t13);
         let t16 = t7 * t5;
-        let t17 = k(2.4e-9) - t2;
+        let t17 = k(2.4e-9) + t2;
         let t18 = T::fused(k(2.0), t5, -t17);
-        let t19 = u0 * (t17 - T::fused(k(0.3), t8, t4 * T::fused(-t4, t18, t16)));
+        let t19 = u0 * (t17 - T::fused(-k(0.3), t8, t4 * T::fused(-t4, t18, t16)));
         let t20 = T::fused(
             -u2,
-            T::fused(k(1.16e-9), t4 * T::fused(-k(0.10344827586206896), t0, t1), t16),
+            T::fused(k(1.2e-10), t4 * T::fused(-k(9.666666666666666), t0, t1), t16),
             k(2.0)
                 * T::fused(
-                    T::fused(-k(1.2), k(4.168166666666667e-6) - t5, t9),
+                    -T::fused(-k(1.2), k(4.1693333333333335e-6) + t5, t9),
                     u1 * t7,
                     t19,
                 ),
         );
-        let t21 = T::fused(u1, T::fused(-u1, T::fused(-t4, t3, t7 * t6), t15), u2 * t20);
+        let t21 = T::fused(-u1, T::fused(-u1, T::fused(t4, t3, t7 * t6), t15), u2 * t20);
         let t22 = u1 * t18;
         let t23 = t7 * t8;
         let t24 = u0
-            * (t23 + T::fused(-t7, T::fused(k(2.0), t9, k(1.00064e-5)), t4 * t12));
-        let t25 = T::fused(-u0, t19, T::fused(u1, t24 - t22, k(400000.0) * t16));
+            * (t23 + T::fused(-t7, T::fused(k(2.0), t9, k(1.00036e-5)), t4 * t12));
+        let t25 = T::fused(-u0, t19, T::fused(-u1, t24 + t22, k(400000.0) * t16));
         let t26 = T::fused(
-            -k(1.2e-10),
-            t4 * T::fused(k(9.666666666666666), t0, t1 - k(83375.0)),
+            -k(1.16e-9),
+            t4 * T::fused(k(0.10344827586206896), t0, t1 - k(8625.0)),
             k(0.25) * t23,
         );
         let t27 = k(99950.02498750624) * t26;
         let t28 = T::fused(
             k(2e-5),
             t7,
-            u2 * T::fused(k(0.25), u2 * t8, T::fused(-k(2.0), t22, t24)),
+            u2 * T::fused(k(0.25), u2 * t8, T::fused(k(2.0), t22, t24)),
         );
         let t29 = k(99950.02498750624) * t5;
         let t30 = T::fused(
@@ -3234,21 +3242,21 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
             t25,
             -T::fused(-k(200000.0), t14, T::fused(k(0.5), u0 * t15, t28)),
         );
-        let t31 = T::fused(t29, t26, T::fused(t4, t6, t7 * t3));
-        let t32 = k(1.0) / T::fused(t5, t29, -(k(6.00345e-6) + t10));
+        let t31 = T::fused(t29, t26, T::fused(-t4, t6, t7 * t3));
+        let t32 = k(1.0) / T::fused(t5, t29, -(k(6.00205e-6) + t10));
         let t33 = t32 * t31;
         let t34 = T::fused(
             -t4,
             T::fused(-t4, t11, t7 * t13),
-            T::fused(-k(2.4), t5, k(8.001922e-6)),
+            T::fused(k(2.4), t5, k(8.003322e-6)),
         );
         let t35 = T::fused(t33, t30, -T::fused(t27, t25, -t21))
             / T::fused(t31, t33, -T::fused(t26, t27, t9 - t34));
         let t36 = T::fused(-t32, t30, t33 * t35);
         *out = [
-            t35,
+            -t35,
             t36,
-            T::fused(t29, t36, -T::fused(-k(99950.02498750624), t25, t27 * t35)),
+            T::fused(-t29, t36, T::fused(-k(99950.02498750624), t25, t27 * t35)),
         ];
     }
     /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -3540,8 +3548,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
             ),
         );
         let t1 = k(2.0) * t0;
-        let t2 = T::fused(-t0, t1, k(1.0));
-        let t3 = T::fused(
+        let t2 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -3550,9 +3557,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t4 = t3 * t1;
-        let t5 = t4 * T::fused(-k(4.8e-9), t4, k(1.4e-9) * t2);
-        let t6 = k(2.52e-9) - T::fused(k(4.4e-10), t4, -T::fused(-k(1.08e-9), t2, t5));
+        let t3 = t2 * t1;
+        let t4 = T::fused(-t0, t1, k(1.0));
+        let t5 = t4 * T::fused(k(4.8e-9), t4, k(1.4e-9) * t3);
+        let t6 = k(2.28e-9) + T::fused(k(1.08e-9), t4, -T::fused(-k(4.4e-10), t3, t5));
         let t7 = T::fused(
             -outer_ring_e0,
             inner_ring_e3,
@@ -3573,51 +3581,51 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
             ),
         );
         let t10 = t9 * t8;
-        let t11 = T::fused(k(4e-10), t4, k(3e-10) * t2);
+        let t11 = T::fused(k(3e-10), t4, k(4e-10) * t3);
         let t12 = k(6e-11) - t11;
         let t13 = T::fused(-t7, t8, k(1.0));
         let t14 = outer_ring_wz - inner_ring_wz;
-        let t15 = T::fused(-k(1.6e-9), t2, k(1.2e-9) * t4);
-        let t16 = t4 * T::fused(k(1.4e-9), t4, k(4.8e-9) * t2);
+        let t15 = T::fused(-k(1.6e-9), t4, k(1.2e-9) * t3);
+        let t16 = t4 * T::fused(-k(1.4e-9), t4, k(4.8e-9) * t3);
         let t17 = t16 - t15;
-        let t18 = k(4.00335e-6) - t17;
+        let t18 = k(4.00195e-6) - t17;
         let t19 = k(0.5) * t15;
         let t20 = k(2e-10) + t19;
         let t21 = t10 * t20;
         let t22 = outer_ring_wy * T::fused(-k(2.0), t10 * T::fused(-t13, t18, t21), t20);
         let t23 = t13 * t11;
         let t24 = inner_ring_wx - rotor_wx;
-        let t25 = k(2.4e-9) + t5;
-        let t26 = T::fused(k(2.0), t11, -t25);
+        let t25 = k(2.4e-9) - t5;
+        let t26 = T::fused(k(2.0), t11, t25);
         let t27 = outer_ring_wy
-            * (t25 + T::fused(k(0.3), t15, t10 * T::fused(t10, t26, t23)));
+            * (t25 - T::fused(k(0.3), t15, t10 * T::fused(t10, t26, t23)));
         let t28 = T::fused(
-            t24,
-            T::fused(k(1.16e-9), t10 * T::fused(k(0.10344827586206896), t2, t4), t23),
+            -t24,
+            T::fused(k(1.2e-10), t10 * T::fused(k(9.666666666666666), t3, t4), t23),
             k(2.0)
                 * T::fused(
-                    T::fused(k(1.2), k(4.168166666666667e-6) - t11, t16),
+                    -T::fused(k(1.2), k(4.1693333333333335e-6) - t11, t16),
                     t14 * t13,
                     t27,
                 ),
         );
         let t29 = T::fused(
-            t14,
-            T::fused(t14, T::fused(t10, t6, t13 * t12), t22),
+            -t14,
+            T::fused(t14, T::fused(-t10, t6, t13 * t12), t22),
             t24 * t28,
         );
         let t30 = t14 * t26;
         let t31 = t13 * t15;
         let t32 = outer_ring_wy
-            * (t31 - T::fused(-t13, T::fused(-k(2.0), t16, k(1.00064e-5)), t10 * t19));
+            * (t31 - T::fused(-t13, T::fused(-k(2.0), t16, k(1.00036e-5)), t10 * t19));
         let t33 = T::fused(
-            -outer_ring_wy,
+            outer_ring_wy,
             t27,
             T::fused(t14, t32 - t30, k(400000.0) * t23),
         );
         let t34 = T::fused(
-            -k(1.2e-10),
-            t10 * T::fused(k(9.666666666666666), t2, -(t4 + k(83375.0))),
+            k(1.16e-9),
+            t10 * T::fused(k(0.10344827586206896), t3, -(t4 - k(8625.0))),
             k(0.25) * t31,
         );
         let t35 = k(99950.02498750624) * t34;
@@ -3632,15 +3640,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
             t33,
             -T::fused(k(200000.0), t21, T::fused(k(0.5), outer_ring_wy * t22, t36)),
         );
-        let t39 = T::fused(t37, t34, -T::fused(-t10, t12, t13 * t6));
-        let t40 = k(1.0) / T::fused(t11, t37, -(k(6.00345e-6) - t17));
+        let t39 = T::fused(t37, t34, T::fused(t10, t12, t13 * t6));
+        let t40 = k(1.0) / T::fused(t11, t37, -(k(6.00205e-6) - t17));
         let t41 = t40 * t39;
         let t42 = T::fused(
             t10,
             T::fused(t10, t18, t13 * t20),
-            T::fused(-k(2.4), t11, k(8.001922e-6)),
+            T::fused(-k(2.4), t11, k(8.003322e-6)),
         );
-        let t43 = T::fused(t41, t38, -T::fused(t35, t33, -t29))
+        let t43 = T::fused(t41, t38, -T::fused(t35, t33, t29))
             / T::fused(t39, t41, -T::fused(t34, t35, -(t16 + t42)));
         let t44 = T::fused(-t40, t38, t41 * t43);
         *out = [
@@ -3689,8 +3697,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
             ),
         );
         let t2 = k(2.0) * t1;
-        let t3 = T::fused(-t1, t2, k(1.0));
-        let t4 = T::fused(
+        let t3 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -3699,9 +3706,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t5 = t4 * t2;
-        let t6 = t5 * T::fused(-k(4.8e-9), t5, k(1.4e-9) * t3);
-        let t7 = k(2.52e-9) - T::fused(k(4.4e-10), t5, -T::fused(-k(1.08e-9), t3, t6));
+        let t4 = t3 * t2;
+        let t5 = T::fused(-t1, t2, k(1.0));
+        let t6 = t5 * T::fused(k(4.8e-9), t5, k(1.4e-9) * t4);
+        let t7 = k(2.28e-9) + T::fused(k(1.08e-9), t5, -T::fused(-k(4.4e-10), t4, t6));
         let t8 = T::fused(
             -outer_ring_e0,
             inner_ring_e3,
@@ -3722,51 +3730,51 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
             ),
         );
         let t11 = t10 * t9;
-        let t12 = T::fused(k(4e-10), t5, k(3e-10) * t3);
+        let t12 = T::fused(k(3e-10), t5, k(4e-10) * t4);
         let t13 = k(6e-11) - t12;
         let t14 = T::fused(-t8, t9, k(1.0));
         let t15 = outer_ring_wz - inner_ring_wz;
-        let t16 = T::fused(-k(1.6e-9), t3, k(1.2e-9) * t5);
-        let t17 = t5 * T::fused(k(1.4e-9), t5, k(4.8e-9) * t3);
+        let t16 = T::fused(-k(1.6e-9), t5, k(1.2e-9) * t4);
+        let t17 = t5 * T::fused(-k(1.4e-9), t5, k(4.8e-9) * t4);
         let t18 = t17 - t16;
-        let t19 = k(4.00335e-6) - t18;
+        let t19 = k(4.00195e-6) - t18;
         let t20 = k(0.5) * t16;
         let t21 = k(2e-10) + t20;
         let t22 = t11 * t21;
         let t23 = outer_ring_wy * T::fused(-k(2.0), t11 * T::fused(-t14, t19, t22), t21);
         let t24 = t14 * t12;
         let t25 = inner_ring_wx - rotor_wx;
-        let t26 = k(2.4e-9) + t6;
-        let t27 = T::fused(k(2.0), t12, -t26);
+        let t26 = k(2.4e-9) - t6;
+        let t27 = T::fused(k(2.0), t12, t26);
         let t28 = outer_ring_wy
-            * (t26 + T::fused(k(0.3), t16, t11 * T::fused(t11, t27, t24)));
+            * (t26 - T::fused(k(0.3), t16, t11 * T::fused(t11, t27, t24)));
         let t29 = T::fused(
-            t25,
-            T::fused(k(1.16e-9), t11 * T::fused(k(0.10344827586206896), t3, t5), t24),
+            -t25,
+            T::fused(k(1.2e-10), t11 * T::fused(k(9.666666666666666), t4, t5), t24),
             k(2.0)
                 * T::fused(
-                    T::fused(k(1.2), k(4.168166666666667e-6) - t12, t17),
+                    -T::fused(k(1.2), k(4.1693333333333335e-6) - t12, t17),
                     t15 * t14,
                     t28,
                 ),
         );
         let t30 = T::fused(
-            t15,
-            T::fused(t15, T::fused(t11, t7, t14 * t13), t23),
+            -t15,
+            T::fused(t15, T::fused(-t11, t7, t14 * t13), t23),
             t25 * t29,
         );
         let t31 = t15 * t27;
         let t32 = t14 * t16;
         let t33 = outer_ring_wy
-            * (t32 - T::fused(-t14, T::fused(-k(2.0), t17, k(1.00064e-5)), t11 * t20));
+            * (t32 - T::fused(-t14, T::fused(-k(2.0), t17, k(1.00036e-5)), t11 * t20));
         let t34 = T::fused(
-            -outer_ring_wy,
+            outer_ring_wy,
             t28,
             T::fused(t15, t33 - t31, k(400000.0) * t24),
         );
         let t35 = T::fused(
-            -k(1.2e-10),
-            t11 * T::fused(k(9.666666666666666), t3, -(t5 + k(83375.0))),
+            k(1.16e-9),
+            t11 * T::fused(k(0.10344827586206896), t4, -(t5 - k(8625.0))),
             k(0.25) * t32,
         );
         let t36 = k(99950.02498750624) * t35;
@@ -3781,15 +3789,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
             t34,
             -T::fused(k(200000.0), t22, T::fused(k(0.5), outer_ring_wy * t23, t37)),
         );
-        let t40 = T::fused(t38, t35, -T::fused(-t11, t13, t14 * t7));
-        let t41 = k(1.0) / T::fused(t12, t38, -(k(6.00345e-6) - t18));
+        let t40 = T::fused(t38, t35, T::fused(t11, t13, t14 * t7));
+        let t41 = k(1.0) / T::fused(t12, t38, -(k(6.00205e-6) - t18));
         let t42 = t41 * t40;
         let t43 = T::fused(
             t11,
             T::fused(t11, t19, t14 * t21),
-            T::fused(-k(2.4), t12, k(8.001922e-6)),
+            T::fused(-k(2.4), t12, k(8.003322e-6)),
         );
-        let t44 = T::fused(t42, t39, -T::fused(t36, t34, -t30))
+        let t44 = T::fused(t42, t39, -T::fused(t36, t34, t30))
             / T::fused(t40, t42, -T::fused(t35, t36, -(t17 + t43)));
         let t45 = outer_ring_wx * outer_ring_wy;
         let t46 = T::fused(inner_ring_wy, t15, T::fused(-t11, t44, t0 * t14));
@@ -3802,8 +3810,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
         let t53 = T::fused(-k(0.000125), inner_ring_wy, k(5e-5) * inner_ring_wx);
         let t54 = T::fused(-inner_ring_wz, t52, inner_ring_wy * t53)
             - T::fused(-rotor_wz, t50, rotor_wy * t51);
-        let t55 = T::fused(rotor_wz, t25, T::fused(-t3, t47, t5 * t49));
-        let t56 = T::fused(rotor_wy, t25, T::fused(t5, t47, t3 * t49));
+        let t55 = T::fused(rotor_wz, t25, T::fused(-t5, t47, t4 * t49));
+        let t56 = T::fused(rotor_wy, t25, T::fused(t4, t47, t5 * t49));
         let t57 = T::fused(-k(0.00015), t55, k(0.0002) * t56)
             + (t54 - T::fused(k(3e-5), t47, k(5e-5) * t49));
         let t58 = rotor_e0 * rotor_e0;
@@ -3813,11 +3821,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
         let t62 = T::fused(inner_ring_wx, t53, inner_ring_wz * t61);
         let t63 = T::fused(inner_ring_wy, t61, inner_ring_wx * t52);
         let t64 = T::fused(k(0.0002), rotor_wz, k(0.00015) * rotor_wy);
-        let t65 = T::fused(rotor_wx, t51, rotor_wz * t64) - T::fused(t62, t3, t63 * t5);
+        let t65 = T::fused(rotor_wx, t51, rotor_wz * t64) - T::fused(t62, t5, t63 * t4);
         let t66 = T::fused(t38, t48, -T::fused(-k(99950.02498750624), t34, t36 * t44))
             - t46;
         let t67 = T::fused(k(0.00015), t66, k(0.0001) * t56)
-            - (t65 + T::fused(t3, t59, t5 * t60));
+            - (t65 + T::fused(t5, t59, t4 * t60));
         let t68 = rotor_e0 * rotor_e3;
         let t69 = rotor_e1 * rotor_e2;
         let t70 = T::fused(
@@ -3825,9 +3833,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
             t57,
             k(2.0) * (t69 - t68) * t67,
         );
-        let t71 = T::fused(rotor_wy, t64, rotor_wx * t50) - T::fused(-t62, t5, t63 * t3);
+        let t71 = T::fused(rotor_wy, t64, rotor_wx * t50) - T::fused(-t62, t4, t63 * t5);
         let t72 = T::fused(k(0.0002), t66, k(0.0001) * t55)
-            + (t71 + T::fused(-t5, t59, t3 * t60));
+            + (t71 + T::fused(-t4, t59, t5 * t60));
         let t73 = rotor_e0 * rotor_e2;
         let t74 = rotor_e1 * rotor_e3;
         let t75 = T::fused(
@@ -4110,8 +4118,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
             ),
         );
         let t2 = k(2.0) * t1;
-        let t3 = T::fused(-t1, t2, k(1.0));
-        let t4 = T::fused(
+        let t3 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -4120,9 +4127,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t5 = t4 * t2;
-        let t6 = t5 * T::fused(-k(4.8e-9), t5, k(1.4e-9) * t3);
-        let t7 = k(2.52e-9) - T::fused(k(4.4e-10), t5, -T::fused(-k(1.08e-9), t3, t6));
+        let t4 = t3 * t2;
+        let t5 = T::fused(-t1, t2, k(1.0));
+        let t6 = t5 * T::fused(k(4.8e-9), t5, k(1.4e-9) * t4);
+        let t7 = k(2.28e-9) + T::fused(k(1.08e-9), t5, -T::fused(-k(4.4e-10), t4, t6));
         let t8 = T::fused(
             -outer_ring_e0,
             inner_ring_e3,
@@ -4143,51 +4151,51 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
             ),
         );
         let t11 = t10 * t9;
-        let t12 = T::fused(k(4e-10), t5, k(3e-10) * t3);
+        let t12 = T::fused(k(3e-10), t5, k(4e-10) * t4);
         let t13 = k(6e-11) - t12;
         let t14 = T::fused(-t8, t9, k(1.0));
         let t15 = outer_ring_wz - inner_ring_wz;
-        let t16 = T::fused(-k(1.6e-9), t3, k(1.2e-9) * t5);
-        let t17 = t5 * T::fused(k(1.4e-9), t5, k(4.8e-9) * t3);
+        let t16 = T::fused(-k(1.6e-9), t5, k(1.2e-9) * t4);
+        let t17 = t5 * T::fused(-k(1.4e-9), t5, k(4.8e-9) * t4);
         let t18 = t17 - t16;
-        let t19 = k(4.00335e-6) - t18;
+        let t19 = k(4.00195e-6) - t18;
         let t20 = k(0.5) * t16;
         let t21 = k(2e-10) + t20;
         let t22 = t11 * t21;
         let t23 = outer_ring_wy * T::fused(-k(2.0), t11 * T::fused(-t14, t19, t22), t21);
         let t24 = t14 * t12;
         let t25 = inner_ring_wx - rotor_wx;
-        let t26 = k(2.4e-9) + t6;
-        let t27 = T::fused(k(2.0), t12, -t26);
+        let t26 = k(2.4e-9) - t6;
+        let t27 = T::fused(k(2.0), t12, t26);
         let t28 = outer_ring_wy
-            * (t26 + T::fused(k(0.3), t16, t11 * T::fused(t11, t27, t24)));
+            * (t26 - T::fused(k(0.3), t16, t11 * T::fused(t11, t27, t24)));
         let t29 = T::fused(
-            t25,
-            T::fused(k(1.16e-9), t11 * T::fused(k(0.10344827586206896), t3, t5), t24),
+            -t25,
+            T::fused(k(1.2e-10), t11 * T::fused(k(9.666666666666666), t4, t5), t24),
             k(2.0)
                 * T::fused(
-                    T::fused(k(1.2), k(4.168166666666667e-6) - t12, t17),
+                    -T::fused(k(1.2), k(4.1693333333333335e-6) - t12, t17),
                     t15 * t14,
                     t28,
                 ),
         );
         let t30 = T::fused(
-            t15,
-            T::fused(t15, T::fused(t11, t7, t14 * t13), t23),
+            -t15,
+            T::fused(t15, T::fused(-t11, t7, t14 * t13), t23),
             t25 * t29,
         );
         let t31 = t15 * t27;
         let t32 = t14 * t16;
         let t33 = outer_ring_wy
-            * (t32 - T::fused(-t14, T::fused(-k(2.0), t17, k(1.00064e-5)), t11 * t20));
+            * (t32 - T::fused(-t14, T::fused(-k(2.0), t17, k(1.00036e-5)), t11 * t20));
         let t34 = T::fused(
-            -outer_ring_wy,
+            outer_ring_wy,
             t28,
             T::fused(t15, t33 - t31, k(400000.0) * t24),
         );
         let t35 = T::fused(
-            -k(1.2e-10),
-            t11 * T::fused(k(9.666666666666666), t3, -(t5 + k(83375.0))),
+            k(1.16e-9),
+            t11 * T::fused(k(0.10344827586206896), t4, -(t5 - k(8625.0))),
             k(0.25) * t32,
         );
         let t36 = k(99950.02498750624) * t35;
@@ -4202,15 +4210,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
             t34,
             -T::fused(k(200000.0), t22, T::fused(k(0.5), outer_ring_wy * t23, t37)),
         );
-        let t40 = T::fused(t38, t35, -T::fused(-t11, t13, t14 * t7));
-        let t41 = k(1.0) / T::fused(t12, t38, -(k(6.00345e-6) - t18));
+        let t40 = T::fused(t38, t35, T::fused(t11, t13, t14 * t7));
+        let t41 = k(1.0) / T::fused(t12, t38, -(k(6.00205e-6) - t18));
         let t42 = t41 * t40;
         let t43 = T::fused(
             t11,
             T::fused(t11, t19, t14 * t21),
-            T::fused(-k(2.4), t12, k(8.001922e-6)),
+            T::fused(-k(2.4), t12, k(8.003322e-6)),
         );
-        let t44 = T::fused(t42, t39, -T::fused(t36, t34, -t30))
+        let t44 = T::fused(t42, t39, -T::fused(t36, t34, t30))
             / T::fused(t40, t42, -T::fused(t35, t36, -(t17 + t43)));
         let t45 = outer_ring_wx * outer_ring_wy;
         let t46 = T::fused(inner_ring_wy, t15, T::fused(-t11, t44, t0 * t14));
@@ -4223,8 +4231,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
         let t53 = T::fused(-k(0.000125), inner_ring_wy, k(5e-5) * inner_ring_wx);
         let t54 = T::fused(-inner_ring_wz, t52, inner_ring_wy * t53)
             - T::fused(-rotor_wz, t50, rotor_wy * t51);
-        let t55 = T::fused(rotor_wz, t25, T::fused(-t3, t47, t5 * t49));
-        let t56 = T::fused(rotor_wy, t25, T::fused(t5, t47, t3 * t49));
+        let t55 = T::fused(rotor_wz, t25, T::fused(-t5, t47, t4 * t49));
+        let t56 = T::fused(rotor_wy, t25, T::fused(t4, t47, t5 * t49));
         let t57 = T::fused(-k(0.00015), t55, k(0.0002) * t56)
             + (t54 - T::fused(k(3e-5), t47, k(5e-5) * t49));
         let t58 = rotor_e0 * rotor_e0;
@@ -4235,17 +4243,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
         let t63 = T::fused(inner_ring_wx, t53, inner_ring_wz * t62);
         let t64 = T::fused(inner_ring_wy, t62, inner_ring_wx * t52);
         let t65 = T::fused(k(0.0002), rotor_wz, k(0.00015) * rotor_wy);
-        let t66 = T::fused(rotor_wx, t51, rotor_wz * t65) - T::fused(t63, t3, t64 * t5);
+        let t66 = T::fused(rotor_wx, t51, rotor_wz * t65) - T::fused(t63, t5, t64 * t4);
         let t67 = T::fused(t38, t48, -T::fused(-k(99950.02498750624), t34, t36 * t44))
             - t46;
         let t68 = T::fused(k(0.00015), t67, k(0.0001) * t56)
-            - (t66 + T::fused(t3, t60, t5 * t61));
+            - (t66 + T::fused(t5, t60, t4 * t61));
         let t69 = rotor_e0 * rotor_e3;
         let t70 = rotor_e1 * rotor_e2;
         let t71 = t70 - t69;
-        let t72 = T::fused(rotor_wy, t65, rotor_wx * t50) - T::fused(-t63, t5, t64 * t3);
+        let t72 = T::fused(rotor_wy, t65, rotor_wx * t50) - T::fused(-t63, t4, t64 * t5);
         let t73 = T::fused(k(0.0002), t67, k(0.0001) * t55)
-            + (t72 + T::fused(-t5, t60, t3 * t61));
+            + (t72 + T::fused(-t4, t60, t5 * t61));
         let t74 = rotor_e0 * rotor_e2;
         let t75 = rotor_e1 * rotor_e3;
         let t76 = t75 + t74;
@@ -4296,7 +4304,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
             T::fused(rotor_wx, rotor_wz, -t55),
             T::fused(T::fused(-k(0.0003), t84, k(0.0002) * t86), t91, t94),
         );
-        let t96 = T::fused(t3, t93, t5 * t95);
+        let t96 = T::fused(t5, t93, t4 * t95);
         let t97 = inner_ring_e0 * inner_ring_e2;
         let t98 = inner_ring_e1 * inner_ring_e3;
         let t99 = t98 - t97;
@@ -4322,7 +4330,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
         );
         let t112 = k(2.0) * outer_ring_e2;
         let t113 = outer_ring_e0 * t112;
-        let t114 = T::fused(-t5, t93, t3 * t95);
+        let t114 = T::fused(-t4, t93, t5 * t95);
         let t115 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t106);
         let t116 = t101 - t100;
         let t117 = t98 + t97;

@@ -8,34 +8,43 @@
 //! * unknowns of eq. (17): 33
 //! * non-zeros: Φ_q 67 of 378, (Φ_r, Φ_π') 35 of 270
 //! * left out: coordinates of `base` (fixed: folded into constants)
+//! * left out: the turning of `rotor` from u̇ (it looks the same all around its axis)
 //! * left out: gravity
 //! * left out: the work of non-conservative forces (there are none)
+//! * left out: parameters (all numbers are folded)
+//! * left out: outputs (the page asks for none)
+//! * accelerations: by relative Euler parameters, 347 operations, not rotations of the bodies 398
+//! * joint_accelerations: by normal form, 19 operations, not recursion 29
+//! * joint_accelerations_at: by normal form, 39 operations, not recursion 49, recursion on the bodies' spins 67
+//! * corrected_accelerations: by normal form in the bodies' frames, 80 operations, not recursion in the bodies' frames 90, recursion in the global frame 90, normal form in the global frame 80, recursion on the bodies' spins in the bodies' frames 100, recursion on the bodies' spins in the global frame 100, elimination in maximal coordinates 398
 //!
-//! | function | computes | + − | × | ÷ | total | zeros |
-//! |---|---|---|---|---|---|---|
-//! | phi | Φ | 44 | 55 | 0 | 99 | 0 of 18 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 68 | 131 | 0 | 199 | 0 of 67 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 64 | 99 | 0 | 163 | 0 of 35 |
-//! | nu | ν | 0 | 0 | 0 | 0 | 15 of 15 |
-//! | gamma | γ | 115 | 181 | 0 | 296 | 9 of 15 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 84 | 119 | 0 | 203 | 0 of 15 |
-//! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 12 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 138 | 204 | 5 | 347 | 10 of 18 |
-//! | multipliers | λ, the accelerations being known | 105 | 175 | 3 | 283 | 0 of 15 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
-//! | energy | T and V | 17 | 31 | 0 | 48 | 1 of 2 |
-//! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 |
-//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
-//! | newton_step | dependent positions, one Newton step | 189 | 314 | 3 | 506 | 9 of 21 |
-//! | solve_velocities | dependent velocities, eq. (19) | 93 | 149 | 3 | 245 | 9 of 18 |
-//! | joint_accelerations | u̇ in joint coordinates | 4 | 12 | 1 | 17 | 0 of 3 |
-//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 |
-//! | to_maximal | (q, v) of a joint state | 9 | 27 | 0 | 36 | 22 of 39 |
-//! | to_joints | (x, u) of a maximal state | 63 | 72 | 0 | 135 | 0 of 6 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 13 | 23 | 1 | 37 | 0 of 3 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 30 | 48 | 1 | 79 | 9 of 18 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 37 | 59 | 0 | 96 | 0 of 15 |
-//! | corrected_solution | both | 45 | 74 | 1 | 120 | 18 of 33 |
+//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
+//!
+//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
+//! |---|---|---|---|---|---|---|---|---|
+//! | phi | Φ | 44 | 55 | 0 | 99 | 0 of 18 | 162 | 99 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 68 | 131 | 0 | 199 | 0 of 67 | 580 | 199 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 64 | 99 | 0 | 163 | 0 of 35 | 514 | 163 |
+//! | nu | ν | 0 | 0 | 0 | 0 | 15 of 15 | 0 | 0 |
+//! | gamma | γ | 115 | 181 | 0 | 296 | 9 of 15 | 1414 | 296 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 84 | 119 | 0 | 203 | 0 of 15 | 554 | 203 |
+//! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 12 of 18 | 12 | 12 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 138 | 204 | 5 | 347 | 10 of 18 | 293426 | 351 |
+//! | multipliers | λ, the accelerations being known | 105 | 175 | 3 | 283 | 0 of 15 | 3583 | 283 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 | 72 | 72 |
+//! | energy | T and V | 17 | 31 | 0 | 48 | 1 of 2 | 48 | 48 |
+//! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 | 216 | 114 |
+//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 | 0 | 0 |
+//! | newton_step | dependent positions, one Newton step | 189 | 314 | 3 | 506 | 9 of 21 | 1.0e9 | 506 |
+//! | solve_velocities | dependent velocities, eq. (19) | 93 | 149 | 3 | 245 | 9 of 18 | 8018 | 245 |
+//! | joint_accelerations | u̇ in joint coordinates | 4 | 14 | 1 | 19 | 0 of 3 | 35 | 20 |
+//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 | 0 | 0 |
+//! | to_maximal | (q, v) of a joint state | 9 | 27 | 0 | 36 | 22 of 39 | 111 | 36 |
+//! | to_joints | (x, u) of a maximal state | 63 | 72 | 0 | 135 | 0 of 6 | 451 | 135 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 13 | 25 | 1 | 39 | 0 of 3 | 241 | 40 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 30 | 49 | 1 | 80 | 9 of 18 | 1010 | 81 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 37 | 59 | 0 | 96 | 0 of 15 | 571 | 96 |
+//! | corrected_solution | both | 45 | 75 | 1 | 121 | 18 of 33 | 6790 | 122 |
 //!
 //! # Proof
 //!
@@ -2507,7 +2516,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
     fn solution(&self) -> Self::Solution {
         [T::constant(0.0); 33]
     }
-    /// Writes u̇: 17 operations (4 ±, 12 ×, 1 ÷) and 2 functions.
+    /// Writes u̇: 19 operations (4 ±, 14 ×, 1 ÷) and 2 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
         let k = T::constant;
         let x1 = x[1];
@@ -2515,15 +2524,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
         let u1 = x[4];
         let u2 = x[5];
         let t0 = x1.cos();
-        let t1 = u1 * t0;
-        let t2 = x1.sin();
-        let t3 = u0 * t2;
-        let t4 = k(1.6666666666666667)
-            * (T::fused(-k(0.2), t3, u2) / T::fused(-t2, t2, k(1.3333333333333333)));
+        let t1 = k(1e-5) * t0;
+        let t2 = u1 * t1;
+        let t3 = x1.sin();
+        let t4 = u0 * t3;
+        let t5 = T::fused(-k(0.2), t4, u2) * t2 / T::fused(k(6e-6), t0 * t0, k(2e-6));
         *out = [
-            -(t4 * t1),
-            k(1.6666666666666667) * (u0 * t0 * T::fused(k(0.4), t3, u2)),
-            -(t1 * T::fused(-t2, t4, u0)),
+            -t5,
+            k(166666.66666666666) * (t1 * (u0 * T::fused(k(0.4), t4, u2))),
+            T::fused(-k(100000.0), u0 * t2, t3 * t5),
         ];
     }
     /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -2704,7 +2713,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
         x[4] = inner_ring_wz - outer_ring_wz;
         x[5] = rotor_wx - inner_ring_wx;
     }
-    /// Writes u̇ at a state that satisfies the constraints: 37 operations (13 ±, 23 ×, 1 ÷).
+    /// Writes u̇ at a state that satisfies the constraints: 39 operations (13 ±, 25 ×, 1 ÷).
     fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2731,8 +2740,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
         );
         let t1 = k(2.0) * t0;
         let t2 = T::fused(-t0, t1, k(1.0));
-        let t3 = (outer_ring_wz - inner_ring_wz) * t2;
-        let t4 = T::fused(
+        let t3 = k(1e-5) * t2;
+        let t4 = (outer_ring_wz - inner_ring_wz) * t3;
+        let t5 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -2741,18 +2751,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t5 = t4 * t1;
-        let t6 = outer_ring_wy * t5;
-        let t7 = inner_ring_wx - rotor_wx;
-        let t8 = k(1.6666666666666667)
-            * (T::fused(-k(0.2), t6, t7) / T::fused(-t5, t5, k(1.3333333333333333)));
+        let t6 = t5 * t1;
+        let t7 = outer_ring_wy * t6;
+        let t8 = inner_ring_wx - rotor_wx;
+        let t9 = T::fused(-k(0.2), t7, t8) * t4 / T::fused(k(6e-6), t2 * t2, k(2e-6));
         *out = [
-            -(t8 * t3),
-            -(k(1.6666666666666667) * (outer_ring_wy * t2 * T::fused(k(0.4), t6, t7))),
-            t3 * T::fused(-t5, t8, outer_ring_wy),
+            -t9,
+            -(k(166666.66666666666) * (t3 * (outer_ring_wy * T::fused(k(0.4), t7, t8)))),
+            T::fused(-t6, t9, k(100000.0) * (outer_ring_wy * t4)),
         ];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 79 operations (30 ±, 48 ×, 1 ÷).
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 80 operations (30 ±, 49 ×, 1 ÷).
     fn corrected_accelerations(
         &self,
         _t: T,
@@ -2793,9 +2802,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
         );
         let t2 = k(2.0) * t1;
         let t3 = T::fused(-t1, t2, k(1.0));
-        let t4 = outer_ring_wz - inner_ring_wz;
-        let t5 = t4 * t3;
-        let t6 = T::fused(
+        let t4 = k(1e-5) * t3;
+        let t5 = outer_ring_wz - inner_ring_wz;
+        let t6 = t5 * t4;
+        let t7 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -2804,21 +2814,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t7 = t6 * t2;
-        let t8 = outer_ring_wy * t7;
-        let t9 = inner_ring_wx - rotor_wx;
-        let t10 = k(1.6666666666666667)
-            * (T::fused(-k(0.2), t8, t9) / T::fused(-t7, t7, k(1.3333333333333333)));
-        let t11 = t10 * t5;
+        let t8 = t7 * t2;
+        let t9 = outer_ring_wy * t8;
+        let t10 = inner_ring_wx - rotor_wx;
+        let t11 = T::fused(-k(0.2), t9, t10) * t6 / T::fused(k(6e-6), t3 * t3, k(2e-6));
         let t12 = outer_ring_wx * outer_ring_wy;
-        let t13 = T::fused(inner_ring_wy, t4, T::fused(-t7, t11, t0 * t3));
-        let t14 = T::fused(inner_ring_wx, t4, -T::fused(t3, t11, t0 * t7));
-        let t15 = T::fused(
-            -k(1.6666666666666667),
-            outer_ring_wy * t3 * T::fused(k(0.4), t8, t9),
+        let t13 = t8 * t11;
+        let t14 = T::fused(inner_ring_wy, t5, -T::fused(-t0, t3, t13));
+        let t15 = T::fused(inner_ring_wx, t5, -T::fused(t3, t11, t0 * t8));
+        let t16 = T::fused(
+            -k(166666.66666666666),
+            t4 * (outer_ring_wy * T::fused(k(0.4), t9, t10)),
             t12,
         );
-        let t16 = T::fused(
+        let t17 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -2827,9 +2836,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t17 = k(2.0) * t16;
-        let t18 = T::fused(-t16, t17, k(1.0));
-        let t19 = T::fused(
+        let t18 = k(2.0) * t17;
+        let t19 = T::fused(-t17, t18, k(1.0));
+        let t20 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -2838,7 +2847,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t20 = t19 * t17;
+        let t21 = t20 * t18;
         *out = [
             k(0.0),
             k(0.0),
@@ -2849,15 +2858,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
             k(0.0),
             k(0.0),
             k(0.0),
-            -t13,
-            t14,
+            -t14,
             t15,
+            t16,
             k(0.0),
             k(0.0),
             k(0.0),
-            T::fused(t5, T::fused(-t7, t10, outer_ring_wy), -t13),
-            -T::fused(rotor_wz, t9, T::fused(-t18, t14, t20 * t15)),
-            T::fused(rotor_wy, t9, T::fused(t20, t14, t18 * t15)),
+            -(T::fused(-k(100000.0), outer_ring_wy * t6, t13) + t14),
+            -T::fused(rotor_wz, t10, T::fused(-t19, t15, t21 * t16)),
+            T::fused(rotor_wy, t10, T::fused(t21, t15, t19 * t16)),
         ];
     }
     /// Writes λ: 96 operations (37 ±, 59 ×, 0 ÷).
@@ -2996,7 +3005,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
             -t17,
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 120 operations (45 ±, 74 ×, 1 ÷).
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 121 operations (45 ±, 75 ×, 1 ÷).
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -3032,9 +3041,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
         );
         let t2 = k(2.0) * t1;
         let t3 = T::fused(-t1, t2, k(1.0));
-        let t4 = outer_ring_wz - inner_ring_wz;
-        let t5 = t4 * t3;
-        let t6 = T::fused(
+        let t4 = k(1e-5) * t3;
+        let t5 = outer_ring_wz - inner_ring_wz;
+        let t6 = t5 * t4;
+        let t7 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -3043,22 +3053,21 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t7 = t6 * t2;
-        let t8 = outer_ring_wy * t7;
-        let t9 = inner_ring_wx - rotor_wx;
-        let t10 = k(1.6666666666666667)
-            * (T::fused(-k(0.2), t8, t9) / T::fused(-t7, t7, k(1.3333333333333333)));
-        let t11 = t10 * t5;
+        let t8 = t7 * t2;
+        let t9 = outer_ring_wy * t8;
+        let t10 = inner_ring_wx - rotor_wx;
+        let t11 = T::fused(-k(0.2), t9, t10) * t6 / T::fused(k(6e-6), t3 * t3, k(2e-6));
         let t12 = outer_ring_wx * outer_ring_wy;
-        let t13 = T::fused(inner_ring_wy, t4, T::fused(-t7, t11, t0 * t3));
-        let t14 = T::fused(inner_ring_wx, t4, -T::fused(t3, t11, t0 * t7));
-        let t15 = T::fused(
-            -k(1.6666666666666667),
-            outer_ring_wy * t3 * T::fused(k(0.4), t8, t9),
+        let t13 = t8 * t11;
+        let t14 = T::fused(inner_ring_wy, t5, -T::fused(-t0, t3, t13));
+        let t15 = T::fused(inner_ring_wx, t5, -T::fused(t3, t11, t0 * t8));
+        let t16 = T::fused(
+            -k(166666.66666666666),
+            t4 * (outer_ring_wy * T::fused(k(0.4), t9, t10)),
             t12,
         );
-        let t16 = T::fused(t5, T::fused(-t7, t10, outer_ring_wy), -t13);
-        let t17 = T::fused(
+        let t17 = T::fused(-k(100000.0), outer_ring_wy * t6, t13) + t14;
+        let t18 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -3067,9 +3076,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t18 = k(2.0) * t17;
-        let t19 = T::fused(-t17, t18, k(1.0));
-        let t20 = T::fused(
+        let t19 = k(2.0) * t18;
+        let t20 = T::fused(-t18, t19, k(1.0));
+        let t21 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -3078,25 +3087,25 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t21 = t20 * t18;
-        let t22 = T::fused(rotor_wz, t9, T::fused(-t19, t14, t21 * t15));
-        let t23 = T::fused(rotor_wy, t9, T::fused(t21, t14, t19 * t15));
-        let t24 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -t23);
-        let t25 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t22);
-        let t26 = T::fused(t19, t24, t21 * t25);
-        let t27 = T::fused(-k(1e-6), T::fused(inner_ring_wx, inner_ring_wy, t15), t26);
-        let t28 = k(2.0) * outer_ring_e2;
-        let t29 = outer_ring_e0 * t28;
-        let t30 = T::fused(-t21, t24, t19 * t25);
-        let t31 = T::fused(k(2e-6), t14, t30);
-        let t32 = T::fused(
-            -k(1e-6),
-            T::fused(inner_ring_wy, inner_ring_wz, t13),
-            k(1e-5) * t16,
+        let t22 = t21 * t19;
+        let t23 = T::fused(rotor_wz, t10, T::fused(-t20, t15, t22 * t16));
+        let t24 = T::fused(rotor_wy, t10, T::fused(t22, t15, t20 * t16));
+        let t25 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -t24);
+        let t26 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t23);
+        let t27 = T::fused(t20, t25, t22 * t26);
+        let t28 = T::fused(-k(1e-6), T::fused(inner_ring_wx, inner_ring_wy, t16), t27);
+        let t29 = k(2.0) * outer_ring_e2;
+        let t30 = outer_ring_e0 * t29;
+        let t31 = T::fused(-t22, t25, t20 * t26);
+        let t32 = T::fused(k(2e-6), t15, t31);
+        let t33 = T::fused(
+            k(1e-6),
+            T::fused(inner_ring_wy, inner_ring_wz, t14),
+            k(1e-5) * t17,
         );
-        let t33 = T::fused(t7, t31, t3 * t32);
-        let t34 = T::fused(-k(2e-6), t0, t33);
-        let t35 = T::fused(-outer_ring_e2, t28, k(1.0));
+        let t34 = T::fused(-t8, t32, t3 * t33);
+        let t35 = T::fused(k(2e-6), t0, t34);
+        let t36 = T::fused(-outer_ring_e2, t29, k(1.0));
         *out = [
             k(0.0),
             k(0.0),
@@ -3107,30 +3116,30 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
             k(0.0),
             k(0.0),
             k(0.0),
-            -t13,
-            t14,
+            -t14,
             t15,
-            k(0.0),
-            k(0.0),
-            k(0.0),
             t16,
-            -t22,
-            t23,
             k(0.0),
             k(0.0),
             k(0.0),
-            T::fused(-t35, t34, t29 * t27),
-            -T::fused(t35, t27, t29 * t34),
+            -t17,
+            -t23,
+            t24,
             k(0.0),
             k(0.0),
             k(0.0),
-            T::fused(-t3, t31, t7 * t32),
-            t33,
+            T::fused(t30, t28, t36 * t35),
+            T::fused(-t36, t28, t30 * t35),
             k(0.0),
             k(0.0),
             k(0.0),
-            t26,
-            t30,
+            -T::fused(t3, t32, t8 * t33),
+            -t34,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t27,
+            t31,
         ];
     }
 }

@@ -7,33 +7,42 @@
 //! * degrees of freedom: 3
 //! * unknowns of eq. (17): 45
 //! * non-zeros: Φ_q 98 of 700, (Φ_r, Φ_π') 60 of 504
+//! * left out: the turning of `rotor` from u̇ (it looks the same all around its axis)
 //! * left out: the work of non-conservative forces (there are none)
+//! * left out: parameters (all numbers are folded)
+//! * left out: outputs (the page asks for none)
+//! * accelerations: by relative Euler parameters, 616 operations, not rotations of the bodies 664
+//! * joint_accelerations: by normal form, 20 operations, not recursion 39
+//! * joint_accelerations_at: by normal form, 41 operations, not recursion 60, recursion on the bodies' spins 78
+//! * corrected_accelerations: by normal form in the bodies' frames, 151 operations, not recursion in the bodies' frames 170, recursion in the global frame 172, normal form in the global frame 153, recursion on the bodies' spins in the bodies' frames 176, recursion on the bodies' spins in the global frame 178, elimination in maximal coordinates 664
 //!
-//! | function | computes | + − | × | ÷ | total | zeros |
-//! |---|---|---|---|---|---|---|
-//! | phi | Φ | 68 | 80 | 0 | 148 | 0 of 25 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 100 | 195 | 0 | 295 | 0 of 98 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 90 | 149 | 0 | 239 | 0 of 60 |
-//! | nu | ν | 0 | 0 | 0 | 0 | 21 of 21 |
-//! | gamma | γ | 181 | 291 | 0 | 472 | 9 of 21 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 129 | 184 | 0 | 313 | 0 of 21 |
-//! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 14 of 24 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 242 | 368 | 6 | 616 | 10 of 24 |
-//! | multipliers | λ, the accelerations being known | 180 | 291 | 4 | 475 | 0 of 21 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 32 | 64 | 0 | 96 | 0 of 28 |
-//! | energy | T and V | 26 | 45 | 0 | 71 | 0 of 2 |
-//! | read_joints | joint coordinates and rates | 73 | 83 | 0 | 156 | 0 of 9 |
-//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
-//! | newton_step | dependent positions, one Newton step | 193 | 318 | 3 | 514 | 12 of 28 |
-//! | solve_velocities | dependent velocities, eq. (19) | 112 | 185 | 3 | 300 | 12 of 24 |
-//! | joint_accelerations | u̇ in joint coordinates | 5 | 12 | 1 | 18 | 0 of 3 |
-//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 |
-//! | to_maximal | (q, v) of a joint state | 24 | 54 | 0 | 78 | 28 of 52 |
-//! | to_joints | (x, u) of a maximal state | 82 | 95 | 0 | 177 | 0 of 6 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 15 | 23 | 1 | 39 | 0 of 3 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 57 | 92 | 1 | 150 | 12 of 24 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 86 | 125 | 1 | 212 | 0 of 21 |
-//! | corrected_solution | both | 117 | 183 | 2 | 302 | 12 of 45 |
+//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
+//!
+//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
+//! |---|---|---|---|---|---|---|---|---|
+//! | phi | Φ | 68 | 80 | 0 | 148 | 0 of 25 | 243 | 148 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 100 | 195 | 0 | 295 | 0 of 98 | 866 | 295 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 90 | 149 | 0 | 239 | 0 of 60 | 779 | 239 |
+//! | nu | ν | 0 | 0 | 0 | 0 | 21 of 21 | 0 | 0 |
+//! | gamma | γ | 181 | 291 | 0 | 472 | 9 of 21 | 2196 | 472 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 129 | 184 | 0 | 313 | 0 of 21 | 854 | 313 |
+//! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 14 of 24 | 12 | 12 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 242 | 368 | 6 | 616 | 10 of 24 | 642879 | 620 |
+//! | multipliers | λ, the accelerations being known | 180 | 291 | 4 | 475 | 0 of 21 | 18384 | 475 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 32 | 64 | 0 | 96 | 0 of 28 | 96 | 96 |
+//! | energy | T and V | 26 | 45 | 0 | 71 | 0 of 2 | 71 | 71 |
+//! | read_joints | joint coordinates and rates | 73 | 83 | 0 | 156 | 0 of 9 | 297 | 156 |
+//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 | 0 | 0 |
+//! | newton_step | dependent positions, one Newton step | 193 | 318 | 3 | 514 | 12 of 28 | 1.1e9 | 514 |
+//! | solve_velocities | dependent velocities, eq. (19) | 112 | 185 | 3 | 300 | 12 of 24 | 23546 | 300 |
+//! | joint_accelerations | u̇ in joint coordinates | 5 | 14 | 1 | 20 | 0 of 3 | 36 | 21 |
+//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 | 0 | 0 |
+//! | to_maximal | (q, v) of a joint state | 24 | 54 | 0 | 78 | 28 of 52 | 291 | 78 |
+//! | to_joints | (x, u) of a maximal state | 82 | 95 | 0 | 177 | 0 of 6 | 612 | 177 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 15 | 25 | 1 | 41 | 0 of 3 | 247 | 42 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 57 | 93 | 1 | 151 | 12 of 24 | 2594 | 152 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 86 | 125 | 1 | 212 | 0 of 21 | 2605 | 213 |
+//! | corrected_solution | both | 117 | 184 | 2 | 303 | 12 of 45 | 60646 | 305 |
 //!
 //! # Proof
 //!
@@ -3357,7 +3366,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
     fn solution(&self) -> Self::Solution {
         [T::constant(0.0); 45]
     }
-    /// Writes u̇: 18 operations (5 ±, 12 ×, 1 ÷) and 2 functions.
+    /// Writes u̇: 20 operations (5 ±, 14 ×, 1 ÷) and 2 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
         let k = T::constant;
         let x1 = x[1];
@@ -3365,16 +3374,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
         let u1 = x[4];
         let u2 = x[5];
         let t0 = x1.cos();
-        let t1 = u1 * t0;
-        let t2 = x1.sin();
-        let t3 = u0 * t2;
-        let t4 = k(1.6663195167673401)
-            * (T::fused(-k(0.20025), t3, u2) / T::fused(-t2, t2, k(1.3332639033534681)));
+        let t1 = k(1e-5) * t0;
+        let t2 = u1 * t1;
+        let t3 = x1.sin();
+        let t4 = u0 * t3;
+        let t5 = T::fused(-k(0.20025), t4, u2) * t2
+            / T::fused(k(6.00125e-6), t0 * t0, k(2e-6));
         *out = [
-            -(t4 * t1),
-            -(k(1.6663195167673401)
-                * (t0 * T::fused(-u0, T::fused(k(0.399875), t3, u2), k(10.0)))),
-            -(t1 * T::fused(-t2, t4, u0)),
+            -t5,
+            -(k(166631.95167673402)
+                * (t1 * T::fused(-u0, T::fused(k(0.399875), t4, u2), k(10.0)))),
+            T::fused(-k(100000.0), u0 * t2, t3 * t5),
         ];
     }
     /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -3609,7 +3619,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
         x[4] = inner_ring_wz - outer_ring_wz;
         x[5] = rotor_wx - inner_ring_wx;
     }
-    /// Writes u̇ at a state that satisfies the constraints: 39 operations (15 ±, 23 ×, 1 ÷).
+    /// Writes u̇ at a state that satisfies the constraints: 41 operations (15 ±, 25 ×, 1 ÷).
     fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let outer_ring_e0 = y[10];
@@ -3637,8 +3647,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
         );
         let t1 = k(2.0) * t0;
         let t2 = T::fused(-t0, t1, k(1.0));
-        let t3 = (outer_ring_wz - inner_ring_wz) * t2;
-        let t4 = T::fused(
+        let t3 = k(1e-5) * t2;
+        let t4 = (outer_ring_wz - inner_ring_wz) * t3;
+        let t5 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -3647,20 +3658,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t5 = t4 * t1;
-        let t6 = base_wy - outer_ring_wy;
-        let t7 = t6 * t5;
-        let t8 = inner_ring_wx - rotor_wx;
-        let t9 = k(1.6663195167673401)
-            * (T::fused(k(0.20025), t7, t8) / T::fused(-t5, t5, k(1.3332639033534681)));
+        let t6 = t5 * t1;
+        let t7 = base_wy - outer_ring_wy;
+        let t8 = t7 * t6;
+        let t9 = inner_ring_wx - rotor_wx;
+        let t10 = T::fused(k(0.20025), t8, t9) * t4
+            / T::fused(k(6.00125e-6), t2 * t2, k(2e-6));
         *out = [
-            -(t9 * t3),
-            -(k(1.6663195167673401)
-                * (t2 * T::fused(-t6, T::fused(-k(0.399875), t7, t8), k(10.0)))),
-            -(t3 * T::fused(t5, t9, t6)),
+            -t10,
+            -(k(166631.95167673402)
+                * (t3 * T::fused(-t7, T::fused(-k(0.399875), t8, t9), k(10.0)))),
+            -T::fused(k(100000.0), t7 * t4, t6 * t10),
         ];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 150 operations (57 ±, 92 ×, 1 ÷).
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 151 operations (57 ±, 93 ×, 1 ÷).
     fn corrected_accelerations(
         &self,
         _t: T,
@@ -3703,9 +3714,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
         );
         let t3 = k(2.0) * t2;
         let t4 = T::fused(-t2, t3, k(1.0));
-        let t5 = outer_ring_wz - inner_ring_wz;
-        let t6 = t5 * t4;
-        let t7 = T::fused(
+        let t5 = k(1e-5) * t4;
+        let t6 = outer_ring_wz - inner_ring_wz;
+        let t7 = t6 * t5;
+        let t8 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -3714,22 +3726,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t8 = t7 * t3;
-        let t9 = t0 * t8;
-        let t10 = inner_ring_wx - rotor_wx;
-        let t11 = k(1.6663195167673401)
-            * (T::fused(k(0.20025), t9, t10) / T::fused(-t8, t8, k(1.3332639033534681)));
-        let t12 = t11 * t6;
+        let t9 = t8 * t3;
+        let t10 = t0 * t9;
+        let t11 = inner_ring_wx - rotor_wx;
+        let t12 = T::fused(k(0.20025), t10, t11) * t7
+            / T::fused(k(6.00125e-6), t4 * t4, k(2e-6));
         let t13 = outer_ring_wx * t0;
-        let t14 = T::fused(inner_ring_wy, t5, -T::fused(t8, t12, t4 * t1));
-        let t15 = T::fused(inner_ring_wx, t5, T::fused(-t4, t12, t8 * t1));
-        let t16 = T::fused(
-            k(1.6663195167673401),
-            t4 * T::fused(-t0, T::fused(-k(0.399875), t9, t10), k(10.0)),
+        let t14 = t9 * t12;
+        let t15 = T::fused(inner_ring_wy, t6, -T::fused(t4, t1, t14));
+        let t16 = T::fused(inner_ring_wx, t6, T::fused(-t4, t12, t9 * t1));
+        let t17 = T::fused(
+            k(166631.95167673402),
+            t5 * T::fused(-t0, T::fused(-k(0.399875), t10, t11), k(10.0)),
             t13,
         );
-        let t17 = k(0.000125) * t16;
-        let t18 = T::fused(
+        let t18 = k(0.000125) * t17;
+        let t19 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -3738,10 +3750,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t19 = k(2.0) * t18;
-        let t20 = T::fused(-t18, t19, k(1.0));
-        let t21 = k(0.000125) * t15;
-        let t22 = T::fused(
+        let t20 = k(2.0) * t19;
+        let t21 = T::fused(-t19, t20, k(1.0));
+        let t22 = k(0.000125) * t16;
+        let t23 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -3750,32 +3762,32 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t23 = t22 * t19;
-        let t24 = k(0.000125) * inner_ring_wy;
-        let t25 = inner_ring_wx * t24;
-        let t26 = k(0.000125) * inner_ring_wz;
-        let t27 = inner_ring_wx * t26;
-        let t28 = T::fused(-t25, t20, t27 * t23) - T::fused(-t20, t17, t23 * t21);
-        let t29 = rotor_e0 * rotor_e3;
-        let t30 = rotor_e1 * rotor_e2;
-        let t31 = T::fused(inner_ring_wz, t26, inner_ring_wy * t24);
-        let t32 = rotor_e0 * rotor_e0;
-        let t33 = T::fused(
-            -(k(2.0) * (t30 - t29)),
-            t28,
-            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t32)) * t31,
+        let t24 = t23 * t20;
+        let t25 = k(0.000125) * inner_ring_wy;
+        let t26 = inner_ring_wx * t25;
+        let t27 = k(0.000125) * inner_ring_wz;
+        let t28 = inner_ring_wx * t27;
+        let t29 = T::fused(-t26, t21, t28 * t24) - T::fused(-t21, t18, t24 * t22);
+        let t30 = rotor_e0 * rotor_e3;
+        let t31 = rotor_e1 * rotor_e2;
+        let t32 = T::fused(inner_ring_wz, t27, inner_ring_wy * t25);
+        let t33 = rotor_e0 * rotor_e0;
+        let t34 = T::fused(
+            -(k(2.0) * (t31 - t30)),
+            t29,
+            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t33)) * t32,
         );
-        let t34 = T::fused(t25, t23, t27 * t20) - T::fused(t23, t17, t20 * t21);
-        let t35 = rotor_e0 * rotor_e2;
-        let t36 = rotor_e1 * rotor_e3;
-        let t37 = T::fused(
-            -(k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t32))),
-            t28,
-            k(2.0) * (t30 + t29) * t31,
+        let t35 = T::fused(t26, t24, t28 * t21) - T::fused(t24, t18, t21 * t22);
+        let t36 = rotor_e0 * rotor_e2;
+        let t37 = rotor_e1 * rotor_e3;
+        let t38 = T::fused(
+            -(k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t33))),
+            t29,
+            k(2.0) * (t31 + t30) * t32,
         );
-        let t38 = rotor_e0 * rotor_e1;
-        let t39 = rotor_e2 * rotor_e3;
-        let t40 = T::fused(k(2.0) * (t39 + t38), t28, k(2.0) * (t36 - t35) * t31);
+        let t39 = rotor_e0 * rotor_e1;
+        let t40 = rotor_e2 * rotor_e3;
+        let t41 = T::fused(k(2.0) * (t40 + t39), t29, k(2.0) * (t37 - t36) * t32);
         *out = [
             k(0.0),
             k(0.0),
@@ -3792,15 +3804,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
             k(0.0),
             k(0.0),
             k(0.0),
-            -t14,
-            t15,
-            -t16,
-            T::fused(k(2.0) * (t36 + t35), t34, t33),
-            T::fused(k(2.0) * (t39 - t38), t34, -t37),
-            -T::fused(k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t32)), t34, t40),
-            -T::fused(t6, T::fused(t8, t11, t0), t14),
-            T::fused(-rotor_wz, t10, T::fused(t20, t15, t23 * t16)),
-            T::fused(rotor_wy, t10, -T::fused(-t23, t15, t20 * t16)),
+            -t15,
+            t16,
+            -t17,
+            T::fused(k(2.0) * (t37 + t36), t35, t34),
+            T::fused(k(2.0) * (t40 - t39), t35, -t38),
+            -T::fused(k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t33)), t35, t41),
+            -(T::fused(k(100000.0), t0 * t7, t14) + t15),
+            T::fused(-rotor_wz, t11, T::fused(t21, t16, t24 * t17)),
+            T::fused(rotor_wy, t11, -T::fused(-t24, t16, t21 * t17)),
         ];
     }
     /// Writes λ: 212 operations (86 ±, 125 ×, 1 ÷).
@@ -4032,7 +4044,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
             -t24,
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 302 operations (117 ±, 183 ×, 2 ÷).
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 303 operations (117 ±, 184 ×, 2 ÷).
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let base_e0 = y[3];
@@ -4074,9 +4086,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
         );
         let t3 = k(2.0) * t2;
         let t4 = T::fused(-t2, t3, k(1.0));
-        let t5 = outer_ring_wz - inner_ring_wz;
-        let t6 = t5 * t4;
-        let t7 = T::fused(
+        let t5 = k(1e-5) * t4;
+        let t6 = outer_ring_wz - inner_ring_wz;
+        let t7 = t6 * t5;
+        let t8 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -4085,22 +4098,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t8 = t7 * t3;
-        let t9 = t0 * t8;
-        let t10 = inner_ring_wx - rotor_wx;
-        let t11 = k(1.6663195167673401)
-            * (T::fused(k(0.20025), t9, t10) / T::fused(-t8, t8, k(1.3332639033534681)));
-        let t12 = t11 * t6;
+        let t9 = t8 * t3;
+        let t10 = t0 * t9;
+        let t11 = inner_ring_wx - rotor_wx;
+        let t12 = T::fused(k(0.20025), t10, t11) * t7
+            / T::fused(k(6.00125e-6), t4 * t4, k(2e-6));
         let t13 = outer_ring_wx * t0;
-        let t14 = T::fused(inner_ring_wy, t5, -T::fused(t8, t12, t4 * t1));
-        let t15 = T::fused(inner_ring_wx, t5, T::fused(-t4, t12, t8 * t1));
-        let t16 = T::fused(
-            k(1.6663195167673401),
-            t4 * T::fused(-t0, T::fused(-k(0.399875), t9, t10), k(10.0)),
+        let t14 = t9 * t12;
+        let t15 = T::fused(inner_ring_wy, t6, -T::fused(t4, t1, t14));
+        let t16 = T::fused(inner_ring_wx, t6, T::fused(-t4, t12, t9 * t1));
+        let t17 = T::fused(
+            k(166631.95167673402),
+            t5 * T::fused(-t0, T::fused(-k(0.399875), t10, t11), k(10.0)),
             t13,
         );
-        let t17 = k(0.000125) * t16;
-        let t18 = T::fused(
+        let t18 = k(0.000125) * t17;
+        let t19 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -4109,10 +4122,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t19 = k(2.0) * t18;
-        let t20 = T::fused(-t18, t19, k(1.0));
-        let t21 = k(0.000125) * t15;
-        let t22 = T::fused(
+        let t20 = k(2.0) * t19;
+        let t21 = T::fused(-t19, t20, k(1.0));
+        let t22 = k(0.000125) * t16;
+        let t23 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -4121,67 +4134,67 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t23 = t22 * t19;
-        let t24 = k(0.000125) * inner_ring_wy;
-        let t25 = inner_ring_wx * t24;
-        let t26 = k(0.000125) * inner_ring_wz;
-        let t27 = inner_ring_wx * t26;
-        let t28 = T::fused(-t25, t20, t27 * t23) - T::fused(-t20, t17, t23 * t21);
-        let t29 = rotor_e0 * rotor_e3;
-        let t30 = rotor_e1 * rotor_e2;
-        let t31 = T::fused(inner_ring_wz, t26, inner_ring_wy * t24);
-        let t32 = rotor_e0 * rotor_e0;
-        let t33 = T::fused(
-            -(k(2.0) * (t30 - t29)),
-            t28,
-            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t32)) * t31,
+        let t24 = t23 * t20;
+        let t25 = k(0.000125) * inner_ring_wy;
+        let t26 = inner_ring_wx * t25;
+        let t27 = k(0.000125) * inner_ring_wz;
+        let t28 = inner_ring_wx * t27;
+        let t29 = T::fused(-t26, t21, t28 * t24) - T::fused(-t21, t18, t24 * t22);
+        let t30 = rotor_e0 * rotor_e3;
+        let t31 = rotor_e1 * rotor_e2;
+        let t32 = T::fused(inner_ring_wz, t27, inner_ring_wy * t25);
+        let t33 = rotor_e0 * rotor_e0;
+        let t34 = T::fused(
+            -(k(2.0) * (t31 - t30)),
+            t29,
+            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t33)) * t32,
         );
-        let t34 = T::fused(t25, t23, t27 * t20) - T::fused(t23, t17, t20 * t21);
-        let t35 = rotor_e0 * rotor_e2;
-        let t36 = rotor_e1 * rotor_e3;
-        let t37 = T::fused(k(2.0) * (t36 + t35), t34, t33);
-        let t38 = T::fused(
-            -(k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t32))),
-            t28,
-            k(2.0) * (t30 + t29) * t31,
+        let t35 = T::fused(t26, t24, t28 * t21) - T::fused(t24, t18, t21 * t22);
+        let t36 = rotor_e0 * rotor_e2;
+        let t37 = rotor_e1 * rotor_e3;
+        let t38 = T::fused(k(2.0) * (t37 + t36), t35, t34);
+        let t39 = T::fused(
+            -(k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t33))),
+            t29,
+            k(2.0) * (t31 + t30) * t32,
         );
-        let t39 = rotor_e0 * rotor_e1;
-        let t40 = rotor_e2 * rotor_e3;
-        let t41 = T::fused(k(2.0) * (t40 - t39), t34, -t38);
-        let t42 = T::fused(k(2.0) * (t40 + t39), t28, k(2.0) * (t36 - t35) * t31);
-        let t43 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t32)),
-            t34,
-            t42,
+        let t40 = rotor_e0 * rotor_e1;
+        let t41 = rotor_e2 * rotor_e3;
+        let t42 = T::fused(k(2.0) * (t41 - t40), t35, -t39);
+        let t43 = T::fused(k(2.0) * (t41 + t40), t29, k(2.0) * (t37 - t36) * t32);
+        let t44 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t33)),
+            t35,
+            t43,
         );
-        let t44 = T::fused(t6, T::fused(t8, t11, t0), t14);
-        let t45 = T::fused(rotor_wz, t10, -T::fused(t20, t15, t23 * t16));
-        let t46 = T::fused(rotor_wy, t10, -T::fused(-t23, t15, t20 * t16));
-        let t47 = k(0.08) * t37;
-        let t48 = T::fused(k(0.08), t41, k(0.8));
-        let t49 = k(0.1) + t48;
+        let t45 = T::fused(k(100000.0), t0 * t7, t14) + t15;
+        let t46 = T::fused(rotor_wz, t11, -T::fused(t21, t16, t24 * t17));
+        let t47 = T::fused(rotor_wy, t11, -T::fused(-t24, t16, t21 * t17));
+        let t48 = k(0.08) * t38;
+        let t49 = T::fused(k(0.08), t42, k(0.8));
         let t50 = k(0.1) + t49;
-        let t51 = k(0.08) * t43;
-        let t52 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -t46);
-        let t53 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t45);
-        let t54 = T::fused(t20, t52, t23 * t53);
-        let t55 = inner_ring_e0 * inner_ring_e1;
-        let t56 = inner_ring_e2 * inner_ring_e3;
-        let t57 = inner_ring_e0 * inner_ring_e0;
-        let t58 = T::fused(
-            -(k(0.00025) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t57))),
-            t48,
+        let t51 = k(0.1) + t50;
+        let t52 = k(0.08) * t44;
+        let t53 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -t47);
+        let t54 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t46);
+        let t55 = T::fused(t21, t53, t24 * t54);
+        let t56 = inner_ring_e0 * inner_ring_e1;
+        let t57 = inner_ring_e2 * inner_ring_e3;
+        let t58 = inner_ring_e0 * inner_ring_e0;
+        let t59 = T::fused(
+            -(k(0.00025) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t58))),
+            t49,
             k(0.00025)
                 * T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2)
-                * t47,
+                * t48,
         );
-        let t59 = T::fused(
+        let t60 = T::fused(
             k(1e-6),
-            T::fused(inner_ring_wx, inner_ring_wy, -t16),
-            T::fused(-(k(0.00025) * (t56 + t55)), t51, t58) - t54,
+            T::fused(inner_ring_wx, inner_ring_wy, -t17),
+            T::fused(-(k(0.00025) * (t57 + t56)), t52, t59) - t55,
         );
-        let t60 = T::fused(-k(1e-6), T::fused(outer_ring_wx, outer_ring_wy, t13), t59);
-        let t61 = T::fused(
+        let t61 = T::fused(-k(1e-6), T::fused(outer_ring_wx, outer_ring_wy, t13), t60);
+        let t62 = T::fused(
             -base_e1,
             outer_ring_e3,
             T::fused(
@@ -4190,30 +4203,30 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
                 T::fused(base_e3, outer_ring_e1, base_e2 * outer_ring_e0),
             ),
         );
-        let t62 = k(2.0) * t61;
-        let t63 = T::fused(-t61, t62, k(1.0));
-        let t64 = T::fused(-t23, t52, t20 * t53);
-        let t65 = T::fused(
-            k(0.00025) * (t56 - t55),
-            t48,
+        let t63 = k(2.0) * t62;
+        let t64 = T::fused(-t62, t63, k(1.0));
+        let t65 = T::fused(-t24, t53, t21 * t54);
+        let t66 = T::fused(
+            k(0.00025) * (t57 - t56),
+            t49,
             k(0.00025)
                 * T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3)
-                * t47,
+                * t48,
         );
-        let t66 = T::fused(
-            k(0.00025) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t57)),
-            t51,
-            t65,
-        ) - t64;
-        let t67 = T::fused(-k(2e-6), t15, t66);
-        let t68 = T::fused(
+        let t67 = T::fused(
+            k(0.00025) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t58)),
+            t52,
+            t66,
+        ) - t65;
+        let t68 = T::fused(-k(2e-6), t16, t67);
+        let t69 = T::fused(
             k(1e-6),
-            T::fused(inner_ring_wy, inner_ring_wz, t14),
-            k(1e-5) * t44,
+            T::fused(inner_ring_wy, inner_ring_wz, t15),
+            k(1e-5) * t45,
         );
-        let t69 = T::fused(t8, t67, t4 * t68);
-        let t70 = T::fused(-k(2e-6), t1, t69);
-        let t71 = T::fused(
+        let t70 = T::fused(t9, t68, t4 * t69);
+        let t71 = T::fused(-k(2e-6), t1, t70);
+        let t72 = T::fused(
             base_e3,
             outer_ring_e3,
             T::fused(
@@ -4222,29 +4235,29 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
                 T::fused(base_e1, outer_ring_e1, base_e0 * outer_ring_e0),
             ),
         );
-        let t72 = t71 * t62;
-        let t73 = T::fused(-t63, t60, t72 * t70);
-        let t74 = base_e3 * base_e3;
-        let t75 = base_e2 * base_e2;
-        let t76 = base_e0 * base_e0;
-        let t77 = T::fused(base_e1, base_e1, t76);
-        let t78 = k(2.0) / (base_e0 * (t77 + (t75 + t74)));
-        let t79 = base_e0 * base_e2;
-        let t80 = base_e1 * base_e3;
-        let t81 = T::fused(-t4, t67, t8 * t68);
-        let t82 = T::fused(k(1e-6), T::fused(outer_ring_wx, outer_ring_wz, -t12), t81);
-        let t83 = base_e0 * base_e3;
-        let t84 = base_e1 * base_e2;
-        let t85 = T::fused(t72, t60, t63 * t70);
-        let t86 = T::fused(
-            (t80 + t79) * t78,
-            t73,
-            T::fused(-((t84 - t83) * t78), t82, t77 * t78 * t85),
+        let t73 = t72 * t63;
+        let t74 = T::fused(-t64, t61, t73 * t71);
+        let t75 = base_e3 * base_e3;
+        let t76 = base_e2 * base_e2;
+        let t77 = base_e0 * base_e0;
+        let t78 = T::fused(base_e1, base_e1, t77);
+        let t79 = k(2.0) / (base_e0 * (t78 + (t76 + t75)));
+        let t80 = base_e0 * base_e2;
+        let t81 = base_e1 * base_e3;
+        let t82 = T::fused(-t4, t68, t9 * t69);
+        let t83 = T::fused(k(1e-6), T::fused(outer_ring_wx, outer_ring_wz, -t12), t82);
+        let t84 = base_e0 * base_e3;
+        let t85 = base_e1 * base_e2;
+        let t86 = T::fused(t73, t61, t64 * t71);
+        let t87 = T::fused(
+            (t81 + t80) * t79,
+            t74,
+            T::fused(-((t85 - t84) * t79), t83, t78 * t79 * t86),
         );
-        let t87 = base_e0 * base_e1;
-        let t88 = base_e2 * base_e3;
-        let t89 = T::fused(-((t76 + t75) * t78), t82, (t84 + t83) * t78 * t85);
-        let t90 = T::fused(-((t88 + t87) * t78), t82, (t80 - t79) * t78 * t85);
+        let t88 = base_e0 * base_e1;
+        let t89 = base_e2 * base_e3;
+        let t90 = T::fused(-((t77 + t76) * t79), t83, (t85 + t84) * t79 * t86);
+        let t91 = T::fused(-((t89 + t88) * t79), t83, (t81 - t80) * t79 * t86);
         *out = [
             k(0.0),
             k(0.0),
@@ -4261,36 +4274,36 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
             k(0.0),
             k(0.0),
             k(0.0),
-            -t14,
-            t15,
-            -t16,
-            t37,
-            t41,
-            -t43,
+            -t15,
+            t16,
+            -t17,
+            t38,
+            t42,
             -t44,
             -t45,
-            t46,
-            -t47,
-            -(k(0.01) + t50),
-            t51,
-            t86,
-            T::fused((t88 - t87) * t78, t73, t89),
-            T::fused((t76 + t74) * t78, t73, t90),
-            -t47,
-            -t50,
-            t51,
-            t85,
-            -t73,
-            -t47,
-            -t49,
-            t51,
-            -t81,
-            -t69,
-            -t47,
+            -t46,
+            t47,
             -t48,
-            t51,
-            t54,
-            t64,
+            -(k(0.01) + t51),
+            t52,
+            t87,
+            T::fused((t89 - t88) * t79, t74, t90),
+            T::fused((t77 + t75) * t79, t74, t91),
+            -t48,
+            -t51,
+            t52,
+            t86,
+            -t74,
+            -t48,
+            -t50,
+            t52,
+            -t82,
+            -t70,
+            -t48,
+            -t49,
+            t52,
+            t55,
+            t65,
         ];
     }
 }

@@ -9,32 +9,39 @@
 //! * non-zeros: Φ_q 91 of 378, (Φ_r, Φ_π') 53 of 270
 //! * left out: coordinates of `base` (fixed: folded into constants)
 //! * left out: the work of non-conservative forces (there are none)
+//! * left out: outputs (the page asks for none)
+//! * accelerations: by relative Euler parameters, 838 operations, not rotations of the bodies 858
+//! * joint_accelerations: by normal form, 191 operations, not recursion 441
+//! * joint_accelerations_at: by normal form, 229 operations, not recursion 479, recursion on the bodies' spins 490
+//! * corrected_accelerations: by normal form in the bodies' frames, 366 operations, not recursion in the bodies' frames 614, recursion in the global frame 706, normal form in the global frame 458, recursion on the bodies' spins in the bodies' frames 564, recursion on the bodies' spins in the global frame 671, elimination in maximal coordinates 858
 //!
-//! | function | computes | + − | × | ÷ | total | zeros |
-//! |---|---|---|---|---|---|---|
-//! | phi | Φ | 70 | 81 | 0 | 151 | 0 of 18 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 94 | 164 | 0 | 258 | 0 of 91 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 76 | 129 | 0 | 205 | 0 of 53 |
-//! | nu | ν | 0 | 0 | 0 | 0 | 15 of 15 |
-//! | gamma | γ | 160 | 243 | 0 | 403 | 6 of 15 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 114 | 164 | 0 | 278 | 0 of 15 |
-//! | applied_force | (f, n' − w̃'J'w') | 7 | 22 | 0 | 29 | 8 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 336 | 496 | 6 | 838 | 6 of 18 |
-//! | multipliers | λ, the accelerations being known | 150 | 239 | 3 | 392 | 0 of 15 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
-//! | energy | T and V | 23 | 37 | 0 | 60 | 0 of 2 |
-//! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 |
-//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
-//! | newton_step | dependent positions, one Newton step | 213 | 348 | 3 | 564 | 6 of 21 |
-//! | solve_velocities | dependent velocities, eq. (19) | 120 | 194 | 3 | 317 | 6 of 18 |
-//! | joint_accelerations | u̇ in joint coordinates | 70 | 105 | 3 | 178 | 0 of 3 |
-//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 |
-//! | to_maximal | (q, v) of a joint state | 64 | 108 | 0 | 172 | 16 of 39 |
-//! | to_joints | (x, u) of a maximal state | 63 | 72 | 0 | 135 | 0 of 6 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 86 | 127 | 3 | 216 | 0 of 3 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 141 | 209 | 3 | 353 | 6 of 18 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 106 | 161 | 0 | 267 | 0 of 15 |
-//! | corrected_solution | both | 213 | 321 | 3 | 537 | 6 of 33 |
+//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
+//!
+//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
+//! |---|---|---|---|---|---|---|---|---|
+//! | phi | Φ | 70 | 81 | 0 | 151 | 0 of 18 | 257 | 151 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 94 | 164 | 0 | 258 | 0 of 91 | 706 | 258 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 76 | 129 | 0 | 205 | 0 of 53 | 686 | 205 |
+//! | nu | ν | 0 | 0 | 0 | 0 | 15 of 15 | 0 | 0 |
+//! | gamma | γ | 160 | 243 | 0 | 403 | 6 of 15 | 1786 | 403 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 114 | 164 | 0 | 278 | 0 of 15 | 759 | 278 |
+//! | applied_force | (f, n' − w̃'J'w') | 7 | 22 | 0 | 29 | 8 of 18 | 32 | 29 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 336 | 496 | 6 | 838 | 6 of 18 | 6.5e7 | 842 |
+//! | multipliers | λ, the accelerations being known | 150 | 239 | 3 | 392 | 0 of 15 | 6505 | 392 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 | 72 | 72 |
+//! | energy | T and V | 23 | 37 | 0 | 60 | 0 of 2 | 60 | 60 |
+//! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 | 216 | 114 |
+//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 | 0 | 0 |
+//! | newton_step | dependent positions, one Newton step | 213 | 348 | 3 | 564 | 6 of 21 | 7.3e9 | 564 |
+//! | solve_velocities | dependent velocities, eq. (19) | 120 | 194 | 3 | 317 | 6 of 18 | 36786 | 317 |
+//! | joint_accelerations | u̇ in joint coordinates | 76 | 112 | 3 | 191 | 0 of 3 | 6171 | 192 |
+//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 | 0 | 0 |
+//! | to_maximal | (q, v) of a joint state | 64 | 108 | 0 | 172 | 16 of 39 | 1442 | 172 |
+//! | to_joints | (x, u) of a maximal state | 63 | 72 | 0 | 135 | 0 of 6 | 451 | 135 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 92 | 134 | 3 | 229 | 0 of 3 | 34392 | 230 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 147 | 216 | 3 | 366 | 6 of 18 | 572394 | 367 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 106 | 161 | 0 | 267 | 0 of 15 | 1835 | 267 |
+//! | corrected_solution | both | 219 | 328 | 3 | 550 | 6 of 33 | 1.8e7 | 551 |
 //!
 //! # Proof
 //!
@@ -3271,7 +3278,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
     fn solution(&self) -> Self::Solution {
         [T::constant(0.0); 33]
     }
-    /// Writes u̇: 178 operations (70 ±, 105 ×, 3 ÷) and 4 functions.
+    /// Writes u̇: 191 operations (76 ±, 112 ×, 3 ÷) and 4 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
         let k = T::constant;
         let x1 = x[1];
@@ -3279,112 +3286,105 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
         let u0 = x[3];
         let u1 = x[4];
         let u2 = x[5];
-        let t0 = x1.cos();
-        let t1 = k(0.08) * self.imbalance_z;
-        let t2 = self.imbalance_z * t1;
-        let t3 = k(0.08) * self.imbalance_y;
-        let t4 = self.imbalance_y * t3;
-        let t5 = t4 - t2;
+        let t0 = k(0.08) * self.imbalance_y;
+        let t1 = self.imbalance_y * t0;
+        let t2 = self.imbalance_z * self.imbalance_z;
+        let t3 = k(0.08) * t2;
+        let t4 = t3 - t1;
+        let t5 = x2.cos();
         let t6 = x2.sin();
-        let t7 = x2.cos();
-        let t8 = self.imbalance_y * t7;
-        let t9 = k(0.16) * self.imbalance_z;
-        let t10 = t6 * T::fused(t6, t5, t9 * t8);
-        let t11 = T::fused(t1, t7, t3 * t6);
-        let t12 = self.offset_z * t11;
-        let t13 = (k(6.25e-5)
-            + T::fused(-k(12.5), t12 - t10, self.imbalance_z * self.imbalance_z))
-            * (u2 * t0);
-        let t14 = t6 * t9;
-        let t15 = self.offset_y * t11;
-        let t16 = t15
-            - T::fused(
-                -t6,
-                T::fused(-t7, t5, self.imbalance_y * t14),
-                self.imbalance_z * t3,
-            );
-        let t17 = x1.sin();
-        let t18 = k(0.08) * self.offset_x;
-        let t19 = T::fused(k(0.16), t8, -t14);
-        let t20 = k(0.5) * t19;
-        let t21 = k(0.08) * self.offset_y;
-        let t22 = t21 - t20;
-        let t23 = T::fused(-t18, t0, t17 * t22);
-        let t24 = T::fused(
-            self.offset_x,
-            t11,
-            T::fused(self.product_xy, t6, self.product_xz * t7),
+        let t7 = self.imbalance_z * t6;
+        let t8 = k(0.16) * self.imbalance_y;
+        let t9 = T::fused(-t6, T::fused(t5, t4, t8 * t7), self.imbalance_z * t0);
+        let t10 = t5 * t8;
+        let t11 = T::fused(-k(0.16), t7, t10);
+        let t12 = k(0.5) * (self.offset_z * t11);
+        let t13 = t12 - t9;
+        let t14 = x1.sin();
+        let t15 = T::fused(self.product_xy, t6, self.product_xz * t5);
+        let t16 = x1.cos();
+        let t17 = self.offset_y * t14;
+        let t18 = T::fused(-self.offset_x, t16, t17);
+        let t19 = T::fused(k(0.08), self.imbalance_z * t5, t0 * t6);
+        let t20 = T::fused(-t16, t15, t19 * t18);
+        let t21 = k(0.08) * self.offset_z;
+        let t22 = u1 * u1;
+        let t23 = T::fused(-self.offset_z, t19, t3);
+        let t24 = t6 * T::fused(-t6, t4, self.imbalance_z * t10);
+        let t25 = u0 * T::fused(t14, T::fused(t14, t9, -t20), t13);
+        let t26 = t1 - t24;
+        let t27 = self.offset_x * self.offset_x;
+        let t28 = T::fused(
+            k(0.08),
+            T::fused(self.offset_y, self.offset_y, -t27),
+            k(4e-6),
+        ) + t26;
+        let t29 = k(0.16) * self.offset_x;
+        let t30 = k(2.0) * T::fused(-self.product_xy, t5, self.product_xz * t6);
+        let t31 = T::fused(-self.offset_x, t11, t30);
+        let t32 = self.offset_y * t16;
+        let t33 = T::fused(-t14, t31, t11 * t32);
+        let t34 = k(0.08) * self.offset_y;
+        let t35 = T::fused(
+            -t14,
+            T::fused(t16, t28, t29 * t17),
+            T::fused(t14, t33, self.offset_x * t34),
         );
-        let t25 = t0 * t24;
-        let t26 = T::fused(
-            k(0.16),
-            t13,
-            u1 * T::fused(-t17, t16, T::fused(self.offset_z, t23, t25)),
-        );
-        let t27 = T::fused(t0, t16, t17 * t24);
-        let t28 = T::fused(-self.offset_z, t20, t15);
-        let t29 = T::fused(-t0, t27, t28);
-        let t30 = self.offset_y * (t21 - t19);
-        let t31 = self.offset_x * t18;
-        let t32 = t4 - t10;
-        let t33 = k(4e-6) + (t32 - (t31 - t30));
-        let t34 = T::fused(
-            -self.offset_x,
-            t19,
-            k(2.0) * T::fused(-self.product_xy, t7, self.product_xz * t6),
-        );
-        let t35 = T::fused(k(0.16), self.offset_x * self.offset_y, t34);
-        let t36 = T::fused(-t0, T::fused(-t17, t33, t0 * t35), k(0.5) * t35);
+        let t36 = u0 * T::fused(k(0.5), t31, t35);
         let t37 = T::fused(
-            -k(2.0),
-            u0 * T::fused(u2, t29, u1 * t36),
-            u2 * u2 * T::fused(-t17, t28, t25),
+            u2,
+            T::fused(-(k(5e-6) + (t24 + t23)), u1 * t16, t25),
+            u1 * t36,
         );
-        let t38 = u0 * u0;
-        let t39 = u1 * t16;
-        let t40 = T::fused(
-            t17,
-            t34,
-            t0 * (k(1e-5) - T::fused(-k(2.0), t32, self.offset_y * t19)),
+        let t38 = T::fused(
+            -t22,
+            T::fused(t21, t18, -T::fused(t14, t13, t20)),
+            T::fused(-(u2 * u2), T::fused(-t14, t12, t20), k(2.0) * t37),
         );
-        let t41 = u0 * t40;
-        let t42 = T::fused(-t38, t29, T::fused(k(10.0), t0 * t11, u1 * (t41 - t39)));
-        let t43 = t4 + t2;
-        let t44 = k(1e-5) + t43;
-        let t45 = T::fused(
-            -k(0.5),
-            t0 * t34,
-            t17 * (t44 - T::fused(self.offset_y, t20, t12)),
+        let t39 = T::fused(-self.offset_y, t19, t9);
+        let t40 = T::fused(t16, T::fused(k(2.0), t26, k(1e-5)), -t33);
+        let t41 = T::fused(
+            t22,
+            t39,
+            T::fused(k(10.0), t16 * t19, u0 * T::fused(u1, t40, t25)),
         );
-        let t46 = k(1.0) / t44;
-        let t47 = t46 * t45;
-        let t48 = T::fused(
-            k(10.0),
-            t23,
-            u2 * T::fused(-k(0.5), T::fused(-u2, t34, k(4.0) * t39), t41),
+        let t42 = T::fused(t11, t18, t16 * t30);
+        let t43 = k(1e-5) + t1;
+        let t44 = T::fused(-k(0.5), t42, t14 * (t43 + t23));
+        let t45 = k(1.0) / (t3 + t43);
+        let t46 = t45 * t44;
+        let t47 = T::fused(
+            u0,
+            T::fused(u2, t40, -t36),
+            T::fused(-k(5.0), t14 * t11, k(0.8) * t18),
         );
-        let t49 = t46 * t24;
-        let t50 = T::fused(t49, t42, T::fused(t38, t36, t48));
-        let t51 = T::fused(
-            t49,
-            t45,
-            T::fused(self.offset_z, T::fused(t18, t17, t0 * t22), -t27),
+        let t48 = T::fused(k(2.0), u2 * T::fused(u1, t39, k(0.25) * (u2 * t31)), t47);
+        let t49 = T::fused(self.offset_x, t19, t15);
+        let t50 = t45 * t49;
+        let t51 = T::fused(t50, t41, t48);
+        let t52 = T::fused(
+            -(t21 - t19),
+            T::fused(self.offset_x, t14, t32),
+            T::fused(t14, t15, t16 * t13),
         );
-        let t52 = k(1.0) / T::fused(t24, t49, -(t31 + (k(6e-6) + t32 + t30)));
-        let t53 = t52 * t51;
+        let t53 = T::fused(t50, t44, -t52);
         let t54 = T::fused(
-            -t0,
-            T::fused(t0, t33, t17 * t35),
-            T::fused(
-                k(2.0),
-                self.offset_z * T::fused(k(0.04), self.offset_z, -t11),
-                k(1.2e-5) + t43,
-            ),
+            t49,
+            t50,
+            -T::fused(k(0.08), t27, T::fused(self.offset_y, t34 - t11, k(6e-6) + t26)),
         );
-        let t55 = T::fused(t53, t50, -T::fused(t47, t42, T::fused(-u1, t26, t37)))
-            / T::fused(t51, t53, -T::fused(t45, t47, -(t30 + t54)));
-        let t56 = T::fused(-t52, t50, t53 * t55);
-        *out = [-t55, t56, T::fused(-t49, t56, T::fused(-t46, t42, t47 * t55))];
+        let t55 = k(1.0) / t54;
+        let t56 = t55 * t53;
+        let t57 = T::fused(
+            k(0.08),
+            T::fused(self.offset_z, T::fused(-k(25.0), t19, self.offset_z), t2 + t27),
+            k(8e-6),
+        );
+        let t58 = t24 + T::fused(t14, T::fused(t14, t28, -T::fused(t29, t32, t42)), t57);
+        let t59 = T::fused(t56, t51, -T::fused(t46, t41, t38))
+            / T::fused(t53, t56, -T::fused(t44, t46, -t58));
+        let t60 = T::fused(-t55, t51, t56 * t59);
+        *out = [-t59, t60, T::fused(-t50, t60, T::fused(-t45, t41, t46 * t59))];
     }
     /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
@@ -3630,7 +3630,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
         x[4] = inner_ring_wz - outer_ring_wz;
         x[5] = rotor_wx - inner_ring_wx;
     }
-    /// Writes u̇ at a state that satisfies the constraints: 216 operations (86 ±, 127 ×, 3 ÷).
+    /// Writes u̇ at a state that satisfies the constraints: 229 operations (92 ±, 134 ×, 3 ÷).
     fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -3650,24 +3650,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
         let inner_ring_wx = y[30];
         let inner_ring_wz = y[32];
         let rotor_wx = y[36];
-        let t0 = T::fused(
-            -outer_ring_e0,
-            inner_ring_e3,
-            T::fused(
-                outer_ring_e1,
-                inner_ring_e2,
-                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
-            ),
-        );
-        let t1 = k(2.0) * t0;
-        let t2 = T::fused(-t0, t1, k(1.0));
-        let t3 = inner_ring_wx - rotor_wx;
-        let t4 = k(0.08) * self.imbalance_z;
-        let t5 = self.imbalance_z * t4;
-        let t6 = k(0.08) * self.imbalance_y;
-        let t7 = self.imbalance_y * t6;
-        let t8 = t7 - t5;
-        let t9 = T::fused(
+        let t0 = k(0.08) * self.imbalance_y;
+        let t1 = self.imbalance_y * t0;
+        let t2 = self.imbalance_z * self.imbalance_z;
+        let t3 = k(0.08) * t2;
+        let t4 = t3 - t1;
+        let t5 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -3676,8 +3664,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t10 = k(2.0) * t9;
-        let t11 = T::fused(
+        let t6 = k(2.0) * t5;
+        let t7 = T::fused(-t5, t6, k(1.0));
+        let t8 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -3686,25 +3675,25 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t12 = t11 * t10;
-        let t13 = T::fused(-t9, t10, k(1.0));
-        let t14 = self.imbalance_y * t13;
-        let t15 = k(0.16) * self.imbalance_z;
-        let t16 = t12 * T::fused(-t12, t8, t15 * t14);
-        let t17 = T::fused(-t4, t13, t6 * t12);
-        let t18 = self.offset_z * t17;
-        let t19 = (k(6.25e-5)
-            + T::fused(k(12.5), t18 - t16, self.imbalance_z * self.imbalance_z))
-            * (t3 * t2);
-        let t20 = t12 * t15;
-        let t21 = self.offset_y * t17;
-        let t22 = t21
-            + T::fused(
-                -t12,
-                T::fused(t13, t8, self.imbalance_y * t20),
-                self.imbalance_z * t6,
-            );
-        let t23 = T::fused(
+        let t9 = t8 * t6;
+        let t10 = self.imbalance_z * t9;
+        let t11 = k(0.16) * self.imbalance_y;
+        let t12 = T::fused(-t9, T::fused(-t7, t4, t11 * t10), self.imbalance_z * t0);
+        let t13 = t7 * t11;
+        let t14 = T::fused(k(0.16), t10, t13);
+        let t15 = k(0.5) * (self.offset_z * t14);
+        let t16 = t15 - t12;
+        let t17 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
+        let t18 = k(2.0) * t17;
+        let t19 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -3713,91 +3702,100 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t24 = t23 * t1;
-        let t25 = k(0.08) * self.offset_x;
-        let t26 = T::fused(k(0.16), t14, t20);
-        let t27 = k(0.5) * t26;
-        let t28 = k(0.08) * self.offset_y;
-        let t29 = t28 - t27;
-        let t30 = T::fused(t25, t2, t24 * t29);
-        let t31 = T::fused(
-            self.offset_x,
-            t17,
-            -T::fused(-self.product_xy, t12, self.product_xz * t13),
+        let t20 = t19 * t18;
+        let t21 = T::fused(-self.product_xy, t9, self.product_xz * t7);
+        let t22 = T::fused(-t17, t18, k(1.0));
+        let t23 = self.offset_y * t20;
+        let t24 = T::fused(self.offset_x, t22, t23);
+        let t25 = T::fused(-k(0.08), self.imbalance_z * t7, t0 * t9);
+        let t26 = T::fused(-t22, t21, t25 * t24);
+        let t27 = k(0.08) * self.offset_z;
+        let t28 = outer_ring_wz - inner_ring_wz;
+        let t29 = t28 * t28;
+        let t30 = inner_ring_wx - rotor_wx;
+        let t31 = T::fused(self.offset_z, t25, t3);
+        let t32 = t9 * T::fused(t9, t4, self.imbalance_z * t13);
+        let t33 = outer_ring_wy * T::fused(t20, T::fused(t20, t12, t26), t16);
+        let t34 = t1 + t32;
+        let t35 = self.offset_x * self.offset_x;
+        let t36 = T::fused(
+            k(0.08),
+            T::fused(self.offset_y, self.offset_y, -t35),
+            k(4e-6),
+        ) + t34;
+        let t37 = k(0.16) * self.offset_x;
+        let t38 = k(2.0) * T::fused(self.product_xy, t7, self.product_xz * t9);
+        let t39 = T::fused(self.offset_x, t14, t38);
+        let t40 = self.offset_y * t22;
+        let t41 = T::fused(-t20, t39, t14 * t40);
+        let t42 = k(0.08) * self.offset_y;
+        let t43 = T::fused(
+            -t20,
+            T::fused(-t22, t36, t37 * t23),
+            T::fused(-t20, t41, self.offset_x * t42),
         );
-        let t32 = t2 * t31;
-        let t33 = outer_ring_wz - inner_ring_wz;
-        let t34 = T::fused(
-            -k(0.16),
-            t19,
-            t33 * T::fused(t24, t22, T::fused(self.offset_z, t30, t32)),
-        );
-        let t35 = T::fused(-t2, t22, t24 * t31);
-        let t36 = T::fused(self.offset_z, t27, t21);
-        let t37 = T::fused(t2, t35, t36);
-        let t38 = self.offset_y * (t28 - t26);
-        let t39 = self.offset_x * t25;
-        let t40 = t7 + t16;
-        let t41 = k(4e-6) + (t40 - (t39 - t38));
-        let t42 = T::fused(
-            self.offset_x,
-            t26,
-            k(2.0) * T::fused(self.product_xy, t13, self.product_xz * t12),
-        );
-        let t43 = T::fused(k(0.16), self.offset_x * self.offset_y, -t42);
-        let t44 = T::fused(-t2, T::fused(t24, t41, t2 * t43), k(0.5) * t43);
+        let t44 = outer_ring_wy * T::fused(k(0.5), t39, -t43);
         let t45 = T::fused(
-            -k(2.0),
-            outer_ring_wy * T::fused(-t3, t37, t33 * t44),
-            T::fused(t24, t36, t32) * (t3 * t3),
+            -t30,
+            T::fused(k(5e-6) - (t32 - t31), t28 * t22, t33),
+            t28 * t44,
         );
-        let t46 = outer_ring_wy * outer_ring_wy;
-        let t47 = t33 * t22;
-        let t48 = T::fused(
-            t24,
-            t42,
-            t2 * (k(1e-5) - T::fused(-k(2.0), t40, self.offset_y * t26)),
+        let t46 = T::fused(
+            t29,
+            T::fused(t27, t24, T::fused(-t20, t16, t26)),
+            T::fused(-T::fused(t20, t15, t26), t30 * t30, k(2.0) * t45),
         );
-        let t49 = outer_ring_wy * t48;
-        let t50 = T::fused(-t46, t37, T::fused(k(10.0), t2 * t17, t33 * (t49 - t47)));
-        let t51 = t7 + t5;
-        let t52 = k(1e-5) + t51;
-        let t53 = T::fused(
-            -k(0.5),
-            t2 * t42,
-            t24 * (t52 + T::fused(-self.offset_y, t27, t18)),
+        let t47 = T::fused(self.offset_y, t25, t12);
+        let t48 = T::fused(t22, T::fused(k(2.0), t34, k(1e-5)), -t41);
+        let t49 = T::fused(
+            -t47,
+            t29,
+            T::fused(k(10.0), t22 * t25, outer_ring_wy * T::fused(t28, t48, -t33)),
         );
-        let t54 = k(1.0) / t52;
-        let t55 = t54 * t53;
+        let t50 = T::fused(t14, t24, t22 * t38);
+        let t51 = k(1e-5) + t1;
+        let t52 = T::fused(-k(0.5), t50, t20 * (t51 + t31));
+        let t53 = k(1.0) / (t3 + t51);
+        let t54 = t53 * t52;
+        let t55 = T::fused(
+            outer_ring_wy,
+            T::fused(t30, t48, -t44),
+            T::fused(-k(5.0), t20 * t14, k(0.8) * t24),
+        );
         let t56 = T::fused(
-            k(10.0),
-            t30,
-            t3 * T::fused(-k(0.5), T::fused(-t3, t42, k(4.0) * t47), t49),
+            k(2.0),
+            t30 * T::fused(-t28, t47, k(0.25) * (t30 * t39)),
+            t55,
         );
-        let t57 = t54 * t31;
-        let t58 = T::fused(t57, t50, -T::fused(-t46, t44, t56));
-        let t59 = T::fused(
-            t57,
-            t53,
-            T::fused(self.offset_z, T::fused(-t25, t24, t2 * t29), -t35),
+        let t57 = T::fused(self.offset_x, t25, -t21);
+        let t58 = t53 * t57;
+        let t59 = T::fused(t58, t49, -t56);
+        let t60 = T::fused(
+            t27 + t25,
+            T::fused(self.offset_x, t20, -t40),
+            T::fused(-t20, t21, t22 * t16),
         );
-        let t60 = k(1.0) / T::fused(t31, t57, -(t39 + (k(6e-6) + t40 + t38)));
-        let t61 = t60 * t59;
+        let t61 = T::fused(t58, t52, -t60);
         let t62 = T::fused(
-            t2,
-            T::fused(-t2, t41, t24 * t43),
-            T::fused(
-                k(2.0),
-                self.offset_z * T::fused(k(0.04), self.offset_z, t17),
-                k(1.2e-5) + t51,
-            ),
+            t57,
+            t58,
+            -T::fused(k(0.08), t35, T::fused(self.offset_y, t42 - t14, k(6e-6) + t34)),
         );
-        let t63 = T::fused(t61, t58, -T::fused(t55, t50, -T::fused(-t33, t34, t45)))
-            / T::fused(t59, t61, -T::fused(t53, t55, -(t38 + t62)));
-        let t64 = T::fused(-t60, t58, t61 * t63);
-        *out = [-t63, t64, T::fused(t57, t64, -T::fused(-t54, t50, t55 * t63))];
+        let t63 = k(1.0) / t62;
+        let t64 = t63 * t61;
+        let t65 = T::fused(
+            k(0.08),
+            T::fused(self.offset_z, T::fused(k(25.0), t25, self.offset_z), t2 + t35),
+            k(8e-6),
+        );
+        let t66 = t32
+            - T::fused(t20, T::fused(t20, t36, -T::fused(-t37, t40, t50)), t65);
+        let t67 = T::fused(t64, t59, -T::fused(t54, t49, t46))
+            / T::fused(t61, t64, -T::fused(t52, t54, t66));
+        let t68 = T::fused(-t63, t59, t64 * t67);
+        *out = [-t67, t68, T::fused(t58, t68, -T::fused(-t53, t49, t54 * t67))];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 353 operations (141 ±, 209 ×, 3 ÷).
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 366 operations (147 ±, 216 ×, 3 ÷).
     fn corrected_accelerations(
         &self,
         _t: T,
@@ -3827,24 +3825,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
         let rotor_wy = y[37];
         let rotor_wz = y[38];
         let t0 = outer_ring_wy * outer_ring_wz;
-        let t1 = T::fused(
-            -outer_ring_e0,
-            inner_ring_e3,
-            T::fused(
-                outer_ring_e1,
-                inner_ring_e2,
-                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
-            ),
-        );
-        let t2 = k(2.0) * t1;
-        let t3 = T::fused(-t1, t2, k(1.0));
-        let t4 = inner_ring_wx - rotor_wx;
-        let t5 = k(0.08) * self.imbalance_z;
-        let t6 = self.imbalance_z * t5;
-        let t7 = k(0.08) * self.imbalance_y;
-        let t8 = self.imbalance_y * t7;
-        let t9 = t8 - t6;
-        let t10 = T::fused(
+        let t1 = k(0.08) * self.imbalance_y;
+        let t2 = self.imbalance_y * t1;
+        let t3 = self.imbalance_z * self.imbalance_z;
+        let t4 = k(0.08) * t3;
+        let t5 = t4 - t2;
+        let t6 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -3853,8 +3839,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t11 = k(2.0) * t10;
-        let t12 = T::fused(
+        let t7 = k(2.0) * t6;
+        let t8 = T::fused(-t6, t7, k(1.0));
+        let t9 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -3863,25 +3850,25 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t13 = t12 * t11;
-        let t14 = T::fused(-t10, t11, k(1.0));
-        let t15 = self.imbalance_y * t14;
-        let t16 = k(0.16) * self.imbalance_z;
-        let t17 = t13 * T::fused(-t13, t9, t16 * t15);
-        let t18 = T::fused(-t5, t14, t7 * t13);
-        let t19 = self.offset_z * t18;
-        let t20 = (k(6.25e-5)
-            + T::fused(k(12.5), t19 - t17, self.imbalance_z * self.imbalance_z))
-            * (t4 * t3);
-        let t21 = t13 * t16;
-        let t22 = self.offset_y * t18;
-        let t23 = t22
-            + T::fused(
-                -t13,
-                T::fused(t14, t9, self.imbalance_y * t21),
-                self.imbalance_z * t7,
-            );
-        let t24 = T::fused(
+        let t10 = t9 * t7;
+        let t11 = self.imbalance_z * t10;
+        let t12 = k(0.16) * self.imbalance_y;
+        let t13 = T::fused(-t10, T::fused(-t8, t5, t12 * t11), self.imbalance_z * t1);
+        let t14 = t8 * t12;
+        let t15 = T::fused(k(0.16), t11, t14);
+        let t16 = k(0.5) * (self.offset_z * t15);
+        let t17 = t16 - t13;
+        let t18 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
+        let t19 = k(2.0) * t18;
+        let t20 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -3890,160 +3877,164 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t25 = t24 * t2;
-        let t26 = k(0.08) * self.offset_x;
-        let t27 = T::fused(k(0.16), t15, t21);
-        let t28 = k(0.5) * t27;
-        let t29 = k(0.08) * self.offset_y;
-        let t30 = t29 - t28;
-        let t31 = T::fused(t26, t3, t25 * t30);
-        let t32 = T::fused(
-            self.offset_x,
-            t18,
-            -T::fused(-self.product_xy, t13, self.product_xz * t14),
+        let t21 = t20 * t19;
+        let t22 = T::fused(-self.product_xy, t10, self.product_xz * t8);
+        let t23 = T::fused(-t18, t19, k(1.0));
+        let t24 = self.offset_y * t21;
+        let t25 = T::fused(self.offset_x, t23, t24);
+        let t26 = T::fused(-k(0.08), self.imbalance_z * t8, t1 * t10);
+        let t27 = T::fused(-t23, t22, t26 * t25);
+        let t28 = k(0.08) * self.offset_z;
+        let t29 = outer_ring_wz - inner_ring_wz;
+        let t30 = t29 * t29;
+        let t31 = inner_ring_wx - rotor_wx;
+        let t32 = T::fused(self.offset_z, t26, t4);
+        let t33 = t10 * T::fused(t10, t5, self.imbalance_z * t14);
+        let t34 = outer_ring_wy * T::fused(t21, T::fused(t21, t13, t27), t17);
+        let t35 = t2 + t33;
+        let t36 = self.offset_x * self.offset_x;
+        let t37 = T::fused(
+            k(0.08),
+            T::fused(self.offset_y, self.offset_y, -t36),
+            k(4e-6),
+        ) + t35;
+        let t38 = k(0.16) * self.offset_x;
+        let t39 = k(2.0) * T::fused(self.product_xy, t8, self.product_xz * t10);
+        let t40 = T::fused(self.offset_x, t15, t39);
+        let t41 = self.offset_y * t23;
+        let t42 = T::fused(-t21, t40, t15 * t41);
+        let t43 = k(0.08) * self.offset_y;
+        let t44 = T::fused(
+            -t21,
+            T::fused(-t23, t37, t38 * t24),
+            T::fused(-t21, t42, self.offset_x * t43),
         );
-        let t33 = t3 * t32;
-        let t34 = outer_ring_wz - inner_ring_wz;
-        let t35 = T::fused(
-            -k(0.16),
-            t20,
-            t34 * T::fused(t25, t23, T::fused(self.offset_z, t31, t33)),
-        );
-        let t36 = T::fused(-t3, t23, t25 * t32);
-        let t37 = T::fused(self.offset_z, t28, t22);
-        let t38 = T::fused(t3, t36, t37);
-        let t39 = self.offset_y * (t29 - t27);
-        let t40 = self.offset_x * t26;
-        let t41 = t8 + t17;
-        let t42 = k(4e-6) + (t41 - (t40 - t39));
-        let t43 = T::fused(
-            self.offset_x,
-            t27,
-            k(2.0) * T::fused(self.product_xy, t14, self.product_xz * t13),
-        );
-        let t44 = T::fused(k(0.16), self.offset_x * self.offset_y, -t43);
-        let t45 = T::fused(-t3, T::fused(t25, t42, t3 * t44), k(0.5) * t44);
+        let t45 = outer_ring_wy * T::fused(k(0.5), t40, -t44);
         let t46 = T::fused(
-            -k(2.0),
-            outer_ring_wy * T::fused(-t4, t38, t34 * t45),
-            T::fused(t25, t37, t33) * (t4 * t4),
+            -t31,
+            T::fused(k(5e-6) - (t33 - t32), t29 * t23, t34),
+            t29 * t45,
         );
-        let t47 = outer_ring_wy * outer_ring_wy;
-        let t48 = t34 * t23;
-        let t49 = T::fused(
-            t25,
-            t43,
-            t3 * (k(1e-5) - T::fused(-k(2.0), t41, self.offset_y * t27)),
+        let t47 = T::fused(
+            t30,
+            T::fused(t28, t25, T::fused(-t21, t17, t27)),
+            T::fused(-T::fused(t21, t16, t27), t31 * t31, k(2.0) * t46),
         );
-        let t50 = outer_ring_wy * t49;
-        let t51 = T::fused(-t47, t38, T::fused(k(10.0), t3 * t18, t34 * (t50 - t48)));
-        let t52 = t8 + t6;
-        let t53 = k(1e-5) + t52;
-        let t54 = T::fused(
-            -k(0.5),
-            t3 * t43,
-            t25 * (t53 + T::fused(-self.offset_y, t28, t19)),
+        let t48 = T::fused(self.offset_y, t26, t13);
+        let t49 = T::fused(t23, T::fused(k(2.0), t35, k(1e-5)), -t42);
+        let t50 = T::fused(
+            -t48,
+            t30,
+            T::fused(k(10.0), t23 * t26, outer_ring_wy * T::fused(t29, t49, -t34)),
         );
-        let t55 = k(1.0) / t53;
-        let t56 = t55 * t54;
+        let t51 = T::fused(t15, t25, t23 * t39);
+        let t52 = k(1e-5) + t2;
+        let t53 = T::fused(-k(0.5), t51, t21 * (t52 + t32));
+        let t54 = k(1.0) / (t4 + t52);
+        let t55 = t54 * t53;
+        let t56 = T::fused(
+            outer_ring_wy,
+            T::fused(t31, t49, -t45),
+            T::fused(-k(5.0), t21 * t15, k(0.8) * t25),
+        );
         let t57 = T::fused(
-            k(10.0),
-            t31,
-            t4 * T::fused(-k(0.5), T::fused(-t4, t43, k(4.0) * t48), t50),
+            k(2.0),
+            t31 * T::fused(-t29, t48, k(0.25) * (t31 * t40)),
+            t56,
         );
-        let t58 = t55 * t32;
-        let t59 = T::fused(t58, t51, -T::fused(-t47, t45, t57));
-        let t60 = T::fused(
-            t58,
-            t54,
-            T::fused(self.offset_z, T::fused(-t26, t25, t3 * t30), -t36),
+        let t58 = T::fused(self.offset_x, t26, -t22);
+        let t59 = t54 * t58;
+        let t60 = T::fused(t59, t50, -t57);
+        let t61 = T::fused(
+            t28 + t26,
+            T::fused(self.offset_x, t21, -t41),
+            T::fused(-t21, t22, t23 * t17),
         );
-        let t61 = k(1.0) / T::fused(t32, t58, -(t40 + (k(6e-6) + t41 + t39)));
-        let t62 = t61 * t60;
+        let t62 = T::fused(t59, t53, -t61);
         let t63 = T::fused(
-            t3,
-            T::fused(-t3, t42, t25 * t44),
-            T::fused(
-                k(2.0),
-                self.offset_z * T::fused(k(0.04), self.offset_z, t18),
-                k(1.2e-5) + t52,
-            ),
+            t58,
+            t59,
+            -T::fused(k(0.08), t36, T::fused(self.offset_y, t43 - t15, k(6e-6) + t35)),
         );
-        let t64 = T::fused(t62, t59, -T::fused(t56, t51, -T::fused(-t34, t35, t46)))
-            / T::fused(t60, t62, -T::fused(t54, t56, -(t39 + t63)));
-        let t65 = outer_ring_wx * outer_ring_wy;
-        let t66 = T::fused(inner_ring_wy, t34, T::fused(-t25, t64, t0 * t3));
-        let t67 = T::fused(inner_ring_wx, t34, -T::fused(t3, t64, t0 * t25));
-        let t68 = T::fused(-t61, t59, t62 * t64);
-        let t69 = t65 + t68;
-        let t70 = rotor_wx * self.imbalance_z;
-        let t71 = rotor_wx * self.imbalance_y;
-        let t72 = T::fused(-inner_ring_wx, self.offset_z, inner_ring_wz * self.offset_x);
-        let t73 = T::fused(-inner_ring_wy, self.offset_x, inner_ring_wx * self.offset_y);
-        let t74 = T::fused(-inner_ring_wz, t72, inner_ring_wy * t73)
-            - T::fused(rotor_wz, t70, rotor_wy * t71);
-        let t75 = T::fused(rotor_wz, t4, T::fused(-t14, t67, t13 * t69));
-        let t76 = T::fused(rotor_wy, t4, T::fused(t13, t67, t14 * t69));
-        let t77 = T::fused(self.imbalance_z, t75, self.imbalance_y * t76)
-            + (t74 - T::fused(-self.offset_z, t67, self.offset_y * t69));
-        let t78 = rotor_e0 * rotor_e0;
-        let t79 = T::fused(self.offset_z, t66, self.offset_x * t69);
-        let t80 = T::fused(self.offset_y, t66, self.offset_x * t67);
-        let t81 = T::fused(-inner_ring_wz, self.offset_y, inner_ring_wy * self.offset_z);
-        let t82 = T::fused(-inner_ring_wx, t73, inner_ring_wz * t81);
-        let t83 = T::fused(-inner_ring_wy, t81, inner_ring_wx * t72);
-        let t84 = T::fused(-rotor_wz, self.imbalance_y, rotor_wy * self.imbalance_z);
-        let t85 = T::fused(-rotor_wx, t71, rotor_wz * t84)
-            + T::fused(-t82, t14, t83 * t13);
-        let t86 = T::fused(t58, t68, -T::fused(-t55, t51, t56 * t64)) - t66;
-        let t87 = T::fused(
-            self.imbalance_z,
-            t86,
-            -(t85 - T::fused(t14, t79, t13 * t80)),
+        let t64 = k(1.0) / t63;
+        let t65 = t64 * t62;
+        let t66 = T::fused(
+            k(0.08),
+            T::fused(self.offset_z, T::fused(k(25.0), t26, self.offset_z), t3 + t36),
+            k(8e-6),
         );
-        let t88 = rotor_e0 * rotor_e3;
-        let t89 = rotor_e1 * rotor_e2;
-        let t90 = T::fused(
-            -(k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t78))),
-            t77,
-            k(2.0) * (t89 - t88) * t87,
+        let t67 = t33
+            - T::fused(t21, T::fused(t21, t37, -T::fused(-t38, t41, t51)), t66);
+        let t68 = T::fused(t65, t60, -T::fused(t55, t50, t47))
+            / T::fused(t62, t65, -T::fused(t53, t55, t67));
+        let t69 = outer_ring_wx * outer_ring_wy;
+        let t70 = T::fused(inner_ring_wy, t29, T::fused(-t21, t68, t0 * t23));
+        let t71 = T::fused(inner_ring_wx, t29, -T::fused(t23, t68, t0 * t21));
+        let t72 = T::fused(-t64, t60, t65 * t68);
+        let t73 = t69 + t72;
+        let t74 = rotor_wx * self.imbalance_z;
+        let t75 = rotor_wx * self.imbalance_y;
+        let t76 = T::fused(-inner_ring_wx, self.offset_z, inner_ring_wz * self.offset_x);
+        let t77 = T::fused(-inner_ring_wy, self.offset_x, inner_ring_wx * self.offset_y);
+        let t78 = T::fused(-inner_ring_wz, t76, inner_ring_wy * t77)
+            - T::fused(rotor_wz, t74, rotor_wy * t75);
+        let t79 = T::fused(rotor_wz, t31, T::fused(-t8, t71, t10 * t73));
+        let t80 = T::fused(rotor_wy, t31, T::fused(t10, t71, t8 * t73));
+        let t81 = T::fused(self.imbalance_z, t79, self.imbalance_y * t80)
+            + (t78 - T::fused(-self.offset_z, t71, self.offset_y * t73));
+        let t82 = rotor_e0 * rotor_e0;
+        let t83 = T::fused(self.offset_z, t70, self.offset_x * t73);
+        let t84 = T::fused(self.offset_y, t70, self.offset_x * t71);
+        let t85 = T::fused(-inner_ring_wz, self.offset_y, inner_ring_wy * self.offset_z);
+        let t86 = T::fused(-inner_ring_wx, t77, inner_ring_wz * t85);
+        let t87 = T::fused(-inner_ring_wy, t85, inner_ring_wx * t76);
+        let t88 = T::fused(-rotor_wz, self.imbalance_y, rotor_wy * self.imbalance_z);
+        let t89 = T::fused(-rotor_wx, t75, rotor_wz * t88)
+            + T::fused(-t86, t8, t87 * t10);
+        let t90 = T::fused(t59, t72, -T::fused(-t54, t50, t55 * t68)) - t70;
+        let t91 = T::fused(self.imbalance_z, t90, -(t89 - T::fused(t8, t83, t10 * t84)));
+        let t92 = rotor_e0 * rotor_e3;
+        let t93 = rotor_e1 * rotor_e2;
+        let t94 = T::fused(
+            -(k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t82))),
+            t81,
+            k(2.0) * (t93 - t92) * t91,
         );
-        let t91 = T::fused(rotor_wy, t84, rotor_wx * t70)
-            + T::fused(t82, t13, t83 * t14);
-        let t92 = T::fused(
+        let t95 = T::fused(rotor_wy, t88, rotor_wx * t74) + T::fused(t86, t10, t87 * t8);
+        let t96 = T::fused(
             self.imbalance_y,
-            t86,
-            -(t91 - T::fused(-t13, t79, t14 * t80)),
+            t90,
+            -(t95 - T::fused(-t10, t83, t8 * t84)),
         );
-        let t93 = rotor_e0 * rotor_e2;
-        let t94 = rotor_e1 * rotor_e3;
-        let t95 = T::fused(
-            -(k(2.0) * (t89 + t88)),
-            t77,
-            k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t78)) * t87,
+        let t97 = rotor_e0 * rotor_e2;
+        let t98 = rotor_e1 * rotor_e3;
+        let t99 = T::fused(
+            -(k(2.0) * (t93 + t92)),
+            t81,
+            k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t82)) * t91,
         );
-        let t96 = rotor_e0 * rotor_e1;
-        let t97 = rotor_e2 * rotor_e3;
-        let t98 = T::fused(k(2.0) * (t94 - t93), t77, k(2.0) * (t97 + t96) * t87);
+        let t100 = rotor_e0 * rotor_e1;
+        let t101 = rotor_e2 * rotor_e3;
+        let t102 = T::fused(k(2.0) * (t98 - t97), t81, k(2.0) * (t101 + t100) * t91);
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t0,
-            -t64,
-            t65,
-            k(0.0),
-            k(0.0),
-            k(0.0),
-            -t66,
-            t67,
+            -t68,
             t69,
-            T::fused(-(k(2.0) * (t94 + t93)), t92, t90),
-            -T::fused(k(2.0) * (t97 - t96), t92, t95),
-            T::fused(k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t78)), t92, t98),
-            t86,
-            -t75,
-            t76,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t70,
+            t71,
+            t73,
+            T::fused(-(k(2.0) * (t98 + t97)), t96, t94),
+            -T::fused(k(2.0) * (t101 - t100), t96, t99),
+            T::fused(k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t82)), t96, t102),
+            t90,
+            -t79,
+            t80,
         ];
     }
     /// Writes λ: 267 operations (106 ±, 161 ×, 0 ÷).
@@ -4287,7 +4278,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
             -t57,
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 537 operations (213 ±, 321 ×, 3 ÷).
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 550 operations (219 ±, 328 ×, 3 ÷).
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -4312,24 +4303,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
         let rotor_wy = y[37];
         let rotor_wz = y[38];
         let t0 = outer_ring_wy * outer_ring_wz;
-        let t1 = T::fused(
-            -outer_ring_e0,
-            inner_ring_e3,
-            T::fused(
-                outer_ring_e1,
-                inner_ring_e2,
-                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
-            ),
-        );
-        let t2 = k(2.0) * t1;
-        let t3 = T::fused(-t1, t2, k(1.0));
-        let t4 = inner_ring_wx - rotor_wx;
-        let t5 = k(0.08) * self.imbalance_z;
-        let t6 = self.imbalance_z * t5;
-        let t7 = k(0.08) * self.imbalance_y;
-        let t8 = self.imbalance_y * t7;
-        let t9 = t8 - t6;
-        let t10 = T::fused(
+        let t1 = k(0.08) * self.imbalance_y;
+        let t2 = self.imbalance_y * t1;
+        let t3 = self.imbalance_z * self.imbalance_z;
+        let t4 = k(0.08) * t3;
+        let t5 = t4 - t2;
+        let t6 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -4338,8 +4317,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t11 = k(2.0) * t10;
-        let t12 = T::fused(
+        let t7 = k(2.0) * t6;
+        let t8 = T::fused(-t6, t7, k(1.0));
+        let t9 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -4348,25 +4328,25 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t13 = t12 * t11;
-        let t14 = T::fused(-t10, t11, k(1.0));
-        let t15 = self.imbalance_y * t14;
-        let t16 = k(0.16) * self.imbalance_z;
-        let t17 = t13 * T::fused(-t13, t9, t16 * t15);
-        let t18 = T::fused(-t5, t14, t7 * t13);
-        let t19 = self.offset_z * t18;
-        let t20 = (k(6.25e-5)
-            + T::fused(k(12.5), t19 - t17, self.imbalance_z * self.imbalance_z))
-            * (t4 * t3);
-        let t21 = t13 * t16;
-        let t22 = self.offset_y * t18;
-        let t23 = t22
-            + T::fused(
-                -t13,
-                T::fused(t14, t9, self.imbalance_y * t21),
-                self.imbalance_z * t7,
-            );
-        let t24 = T::fused(
+        let t10 = t9 * t7;
+        let t11 = self.imbalance_z * t10;
+        let t12 = k(0.16) * self.imbalance_y;
+        let t13 = T::fused(-t10, T::fused(-t8, t5, t12 * t11), self.imbalance_z * t1);
+        let t14 = t8 * t12;
+        let t15 = T::fused(k(0.16), t11, t14);
+        let t16 = k(0.5) * (self.offset_z * t15);
+        let t17 = t16 - t13;
+        let t18 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
+        let t19 = k(2.0) * t18;
+        let t20 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -4375,284 +4355,288 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t25 = t24 * t2;
-        let t26 = k(0.08) * self.offset_x;
-        let t27 = T::fused(k(0.16), t15, t21);
-        let t28 = k(0.5) * t27;
-        let t29 = k(0.08) * self.offset_y;
-        let t30 = t29 - t28;
-        let t31 = T::fused(t26, t3, t25 * t30);
-        let t32 = T::fused(
-            self.offset_x,
-            t18,
-            -T::fused(-self.product_xy, t13, self.product_xz * t14),
+        let t21 = t20 * t19;
+        let t22 = T::fused(-self.product_xy, t10, self.product_xz * t8);
+        let t23 = T::fused(-t18, t19, k(1.0));
+        let t24 = self.offset_y * t21;
+        let t25 = T::fused(self.offset_x, t23, t24);
+        let t26 = T::fused(-k(0.08), self.imbalance_z * t8, t1 * t10);
+        let t27 = T::fused(-t23, t22, t26 * t25);
+        let t28 = k(0.08) * self.offset_z;
+        let t29 = outer_ring_wz - inner_ring_wz;
+        let t30 = t29 * t29;
+        let t31 = inner_ring_wx - rotor_wx;
+        let t32 = T::fused(self.offset_z, t26, t4);
+        let t33 = t10 * T::fused(t10, t5, self.imbalance_z * t14);
+        let t34 = outer_ring_wy * T::fused(t21, T::fused(t21, t13, t27), t17);
+        let t35 = t2 + t33;
+        let t36 = self.offset_x * self.offset_x;
+        let t37 = T::fused(
+            k(0.08),
+            T::fused(self.offset_y, self.offset_y, -t36),
+            k(4e-6),
+        ) + t35;
+        let t38 = k(0.16) * self.offset_x;
+        let t39 = k(2.0) * T::fused(self.product_xy, t8, self.product_xz * t10);
+        let t40 = T::fused(self.offset_x, t15, t39);
+        let t41 = self.offset_y * t23;
+        let t42 = T::fused(-t21, t40, t15 * t41);
+        let t43 = k(0.08) * self.offset_y;
+        let t44 = T::fused(
+            -t21,
+            T::fused(-t23, t37, t38 * t24),
+            T::fused(-t21, t42, self.offset_x * t43),
         );
-        let t33 = t3 * t32;
-        let t34 = outer_ring_wz - inner_ring_wz;
-        let t35 = T::fused(
-            -k(0.16),
-            t20,
-            t34 * T::fused(t25, t23, T::fused(self.offset_z, t31, t33)),
-        );
-        let t36 = T::fused(-t3, t23, t25 * t32);
-        let t37 = T::fused(self.offset_z, t28, t22);
-        let t38 = T::fused(t3, t36, t37);
-        let t39 = self.offset_y * (t29 - t27);
-        let t40 = self.offset_x * t26;
-        let t41 = t8 + t17;
-        let t42 = k(4e-6) + (t41 - (t40 - t39));
-        let t43 = T::fused(
-            self.offset_x,
-            t27,
-            k(2.0) * T::fused(self.product_xy, t14, self.product_xz * t13),
-        );
-        let t44 = T::fused(k(0.16), self.offset_x * self.offset_y, -t43);
-        let t45 = T::fused(-t3, T::fused(t25, t42, t3 * t44), k(0.5) * t44);
+        let t45 = outer_ring_wy * T::fused(k(0.5), t40, -t44);
         let t46 = T::fused(
-            -k(2.0),
-            outer_ring_wy * T::fused(-t4, t38, t34 * t45),
-            T::fused(t25, t37, t33) * (t4 * t4),
+            -t31,
+            T::fused(k(5e-6) - (t33 - t32), t29 * t23, t34),
+            t29 * t45,
         );
-        let t47 = outer_ring_wy * outer_ring_wy;
-        let t48 = t34 * t23;
-        let t49 = T::fused(
-            t25,
-            t43,
-            t3 * (k(1e-5) - T::fused(-k(2.0), t41, self.offset_y * t27)),
+        let t47 = T::fused(
+            t30,
+            T::fused(t28, t25, T::fused(-t21, t17, t27)),
+            T::fused(-T::fused(t21, t16, t27), t31 * t31, k(2.0) * t46),
         );
-        let t50 = outer_ring_wy * t49;
-        let t51 = T::fused(-t47, t38, T::fused(k(10.0), t3 * t18, t34 * (t50 - t48)));
-        let t52 = t8 + t6;
-        let t53 = k(1e-5) + t52;
-        let t54 = T::fused(
-            -k(0.5),
-            t3 * t43,
-            t25 * (t53 + T::fused(-self.offset_y, t28, t19)),
+        let t48 = T::fused(self.offset_y, t26, t13);
+        let t49 = T::fused(t23, T::fused(k(2.0), t35, k(1e-5)), -t42);
+        let t50 = T::fused(
+            -t48,
+            t30,
+            T::fused(k(10.0), t23 * t26, outer_ring_wy * T::fused(t29, t49, -t34)),
         );
-        let t55 = k(1.0) / t53;
-        let t56 = t55 * t54;
+        let t51 = T::fused(t15, t25, t23 * t39);
+        let t52 = k(1e-5) + t2;
+        let t53 = T::fused(-k(0.5), t51, t21 * (t52 + t32));
+        let t54 = k(1.0) / (t4 + t52);
+        let t55 = t54 * t53;
+        let t56 = T::fused(
+            outer_ring_wy,
+            T::fused(t31, t49, -t45),
+            T::fused(-k(5.0), t21 * t15, k(0.8) * t25),
+        );
         let t57 = T::fused(
-            k(10.0),
-            t31,
-            t4 * T::fused(-k(0.5), T::fused(-t4, t43, k(4.0) * t48), t50),
+            k(2.0),
+            t31 * T::fused(-t29, t48, k(0.25) * (t31 * t40)),
+            t56,
         );
-        let t58 = t55 * t32;
-        let t59 = T::fused(t58, t51, -T::fused(-t47, t45, t57));
-        let t60 = T::fused(
-            t58,
-            t54,
-            T::fused(self.offset_z, T::fused(-t26, t25, t3 * t30), -t36),
+        let t58 = T::fused(self.offset_x, t26, -t22);
+        let t59 = t54 * t58;
+        let t60 = T::fused(t59, t50, -t57);
+        let t61 = T::fused(
+            t28 + t26,
+            T::fused(self.offset_x, t21, -t41),
+            T::fused(-t21, t22, t23 * t17),
         );
-        let t61 = k(1.0) / T::fused(t32, t58, -(t40 + (k(6e-6) + t41 + t39)));
-        let t62 = t61 * t60;
+        let t62 = T::fused(t59, t53, -t61);
         let t63 = T::fused(
-            t3,
-            T::fused(-t3, t42, t25 * t44),
-            T::fused(
-                k(2.0),
-                self.offset_z * T::fused(k(0.04), self.offset_z, t18),
-                k(1.2e-5) + t52,
-            ),
+            t58,
+            t59,
+            -T::fused(k(0.08), t36, T::fused(self.offset_y, t43 - t15, k(6e-6) + t35)),
         );
-        let t64 = T::fused(t62, t59, -T::fused(t56, t51, -T::fused(-t34, t35, t46)))
-            / T::fused(t60, t62, -T::fused(t54, t56, -(t39 + t63)));
-        let t65 = outer_ring_wx * outer_ring_wy;
-        let t66 = T::fused(inner_ring_wy, t34, T::fused(-t25, t64, t0 * t3));
-        let t67 = T::fused(inner_ring_wx, t34, -T::fused(t3, t64, t0 * t25));
-        let t68 = T::fused(-t61, t59, t62 * t64);
-        let t69 = t65 + t68;
-        let t70 = rotor_wx * self.imbalance_z;
-        let t71 = rotor_wx * self.imbalance_y;
-        let t72 = T::fused(-inner_ring_wx, self.offset_z, inner_ring_wz * self.offset_x);
-        let t73 = T::fused(-inner_ring_wy, self.offset_x, inner_ring_wx * self.offset_y);
-        let t74 = T::fused(-inner_ring_wz, t72, inner_ring_wy * t73)
-            - T::fused(rotor_wz, t70, rotor_wy * t71);
-        let t75 = T::fused(rotor_wz, t4, T::fused(-t14, t67, t13 * t69));
-        let t76 = T::fused(rotor_wy, t4, T::fused(t13, t67, t14 * t69));
-        let t77 = T::fused(self.imbalance_z, t75, self.imbalance_y * t76)
-            + (t74 - T::fused(-self.offset_z, t67, self.offset_y * t69));
-        let t78 = rotor_e0 * rotor_e0;
-        let t79 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t78));
-        let t80 = T::fused(self.offset_z, t66, self.offset_x * t69);
-        let t81 = T::fused(self.offset_y, t66, self.offset_x * t67);
-        let t82 = T::fused(-inner_ring_wz, self.offset_y, inner_ring_wy * self.offset_z);
-        let t83 = T::fused(-inner_ring_wx, t73, inner_ring_wz * t82);
-        let t84 = T::fused(-inner_ring_wy, t82, inner_ring_wx * t72);
-        let t85 = T::fused(-rotor_wz, self.imbalance_y, rotor_wy * self.imbalance_z);
-        let t86 = T::fused(-rotor_wx, t71, rotor_wz * t85)
-            + T::fused(-t83, t14, t84 * t13);
-        let t87 = T::fused(t58, t68, -T::fused(-t55, t51, t56 * t64)) - t66;
-        let t88 = T::fused(
-            self.imbalance_z,
-            t87,
-            -(t86 - T::fused(t14, t80, t13 * t81)),
+        let t64 = k(1.0) / t63;
+        let t65 = t64 * t62;
+        let t66 = T::fused(
+            k(0.08),
+            T::fused(self.offset_z, T::fused(k(25.0), t26, self.offset_z), t3 + t36),
+            k(8e-6),
         );
-        let t89 = rotor_e0 * rotor_e3;
-        let t90 = rotor_e1 * rotor_e2;
-        let t91 = k(2.0) * (t90 - t89);
-        let t92 = T::fused(rotor_wy, t85, rotor_wx * t70)
-            + T::fused(t83, t13, t84 * t14);
-        let t93 = T::fused(
+        let t67 = t33
+            - T::fused(t21, T::fused(t21, t37, -T::fused(-t38, t41, t51)), t66);
+        let t68 = T::fused(t65, t60, -T::fused(t55, t50, t47))
+            / T::fused(t62, t65, -T::fused(t53, t55, t67));
+        let t69 = outer_ring_wx * outer_ring_wy;
+        let t70 = T::fused(inner_ring_wy, t29, T::fused(-t21, t68, t0 * t23));
+        let t71 = T::fused(inner_ring_wx, t29, -T::fused(t23, t68, t0 * t21));
+        let t72 = T::fused(-t64, t60, t65 * t68);
+        let t73 = t69 + t72;
+        let t74 = rotor_wx * self.imbalance_z;
+        let t75 = rotor_wx * self.imbalance_y;
+        let t76 = T::fused(-inner_ring_wx, self.offset_z, inner_ring_wz * self.offset_x);
+        let t77 = T::fused(-inner_ring_wy, self.offset_x, inner_ring_wx * self.offset_y);
+        let t78 = T::fused(-inner_ring_wz, t76, inner_ring_wy * t77)
+            - T::fused(rotor_wz, t74, rotor_wy * t75);
+        let t79 = T::fused(rotor_wz, t31, T::fused(-t8, t71, t10 * t73));
+        let t80 = T::fused(rotor_wy, t31, T::fused(t10, t71, t8 * t73));
+        let t81 = T::fused(self.imbalance_z, t79, self.imbalance_y * t80)
+            + (t78 - T::fused(-self.offset_z, t71, self.offset_y * t73));
+        let t82 = rotor_e0 * rotor_e0;
+        let t83 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t82));
+        let t84 = T::fused(self.offset_z, t70, self.offset_x * t73);
+        let t85 = T::fused(self.offset_y, t70, self.offset_x * t71);
+        let t86 = T::fused(-inner_ring_wz, self.offset_y, inner_ring_wy * self.offset_z);
+        let t87 = T::fused(-inner_ring_wx, t77, inner_ring_wz * t86);
+        let t88 = T::fused(-inner_ring_wy, t86, inner_ring_wx * t76);
+        let t89 = T::fused(-rotor_wz, self.imbalance_y, rotor_wy * self.imbalance_z);
+        let t90 = T::fused(-rotor_wx, t75, rotor_wz * t89)
+            + T::fused(-t87, t8, t88 * t10);
+        let t91 = T::fused(t59, t72, -T::fused(-t54, t50, t55 * t68)) - t70;
+        let t92 = T::fused(self.imbalance_z, t91, -(t90 - T::fused(t8, t84, t10 * t85)));
+        let t93 = rotor_e0 * rotor_e3;
+        let t94 = rotor_e1 * rotor_e2;
+        let t95 = k(2.0) * (t94 - t93);
+        let t96 = T::fused(rotor_wy, t89, rotor_wx * t74) + T::fused(t87, t10, t88 * t8);
+        let t97 = T::fused(
             self.imbalance_y,
-            t87,
-            -(t92 - T::fused(-t13, t80, t14 * t81)),
+            t91,
+            -(t96 - T::fused(-t10, t84, t8 * t85)),
         );
-        let t94 = rotor_e0 * rotor_e2;
-        let t95 = rotor_e1 * rotor_e3;
-        let t96 = k(2.0) * (t95 + t94);
-        let t97 = T::fused(t96, t93, -T::fused(-t79, t77, t91 * t88));
-        let t98 = k(2.0) * (t90 + t89);
-        let t99 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t78));
-        let t100 = rotor_e0 * rotor_e1;
-        let t101 = rotor_e2 * rotor_e3;
-        let t102 = k(2.0) * (t101 - t100);
-        let t103 = T::fused(t102, t93, T::fused(-t98, t77, t99 * t88));
-        let t104 = k(2.0) * (t95 - t94);
-        let t105 = k(2.0) * (t101 + t100);
-        let t106 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t78));
-        let t107 = T::fused(t106, t93, T::fused(t104, t77, t105 * t88));
-        let t108 = k(0.08) * t97;
-        let t109 = T::fused(-k(0.08), t103, k(0.8));
-        let t110 = k(0.1) + t109;
-        let t111 = k(0.08) * t107;
-        let t112 = rotor_wx * rotor_wx;
-        let t113 = rotor_wy * self.product_xz;
-        let t114 = T::fused(
+        let t98 = rotor_e0 * rotor_e2;
+        let t99 = rotor_e1 * rotor_e3;
+        let t100 = k(2.0) * (t99 + t98);
+        let t101 = T::fused(t100, t97, -T::fused(-t83, t81, t95 * t92));
+        let t102 = k(2.0) * (t94 + t93);
+        let t103 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t82));
+        let t104 = rotor_e0 * rotor_e1;
+        let t105 = rotor_e2 * rotor_e3;
+        let t106 = k(2.0) * (t105 - t104);
+        let t107 = T::fused(t106, t97, T::fused(-t102, t81, t103 * t92));
+        let t108 = k(2.0) * (t99 - t98);
+        let t109 = k(2.0) * (t105 + t104);
+        let t110 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t82));
+        let t111 = T::fused(t110, t97, T::fused(t108, t81, t109 * t92));
+        let t112 = k(0.08) * t101;
+        let t113 = T::fused(-k(0.08), t107, k(0.8));
+        let t114 = k(0.1) + t113;
+        let t115 = k(0.08) * t111;
+        let t116 = rotor_wx * rotor_wx;
+        let t117 = rotor_wy * self.product_xz;
+        let t118 = T::fused(
             rotor_wz,
-            t113,
+            t117,
             T::fused(
                 self.product_xy,
-                T::fused(rotor_wy, rotor_wy, -t112),
+                T::fused(rotor_wy, rotor_wy, -t116),
                 k(5e-6) * (rotor_wx * rotor_wy),
             ),
         );
-        let t115 = T::fused(
-            t104 * self.imbalance_y,
-            t111,
-            T::fused(t98 * self.imbalance_y, t109, t79 * self.imbalance_y * t108),
+        let t119 = T::fused(
+            t108 * self.imbalance_y,
+            t115,
+            T::fused(t102 * self.imbalance_y, t113, t83 * self.imbalance_y * t112),
         );
-        let t116 = t115 - (t114 - T::fused(self.product_xz, t87, k(5e-6) * t76));
-        let t117 = rotor_wz * self.product_xy;
-        let t118 = T::fused(
+        let t120 = t119 - (t118 - T::fused(self.product_xz, t91, k(5e-6) * t80));
+        let t121 = rotor_wz * self.product_xy;
+        let t122 = T::fused(
             rotor_wy,
-            t117,
+            t121,
             T::fused(
                 self.product_xz,
-                T::fused(rotor_wz, rotor_wz, -t112),
+                T::fused(rotor_wz, rotor_wz, -t116),
                 k(5e-6) * (rotor_wx * rotor_wz),
             ),
         );
-        let t119 = T::fused(
-            t104 * self.imbalance_z,
-            t111,
-            T::fused(t98 * self.imbalance_z, t109, t79 * self.imbalance_z * t108),
+        let t123 = T::fused(
+            t108 * self.imbalance_z,
+            t115,
+            T::fused(t102 * self.imbalance_z, t113, t83 * self.imbalance_z * t112),
         );
-        let t120 = t119 - (t118 - T::fused(-self.product_xy, t87, k(5e-6) * t75));
-        let t121 = T::fused(t14, t116, t13 * t120);
-        let t122 = inner_ring_e0 * inner_ring_e2;
-        let t123 = inner_ring_e1 * inner_ring_e3;
-        let t124 = k(2.0) * (t123 - t122);
-        let t125 = inner_ring_e0 * inner_ring_e1;
-        let t126 = inner_ring_e2 * inner_ring_e3;
-        let t127 = k(2.0) * (t126 + t125);
-        let t128 = inner_ring_e0 * inner_ring_e3;
-        let t129 = inner_ring_e1 * inner_ring_e2;
-        let t130 = k(2.0) * (t129 + t128);
-        let t131 = inner_ring_e0 * inner_ring_e0;
-        let t132 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t131));
-        let t133 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t131));
-        let t134 = k(2.0) * (t129 - t128);
-        let t135 = T::fused(
-            T::fused(t130, self.offset_y, t132 * self.offset_x),
-            t109,
-            T::fused(t133, self.offset_y, t134 * self.offset_x) * t108,
+        let t124 = t123 - (t122 - T::fused(-self.product_xy, t91, k(5e-6) * t79));
+        let t125 = T::fused(t8, t120, t10 * t124);
+        let t126 = inner_ring_e0 * inner_ring_e2;
+        let t127 = inner_ring_e1 * inner_ring_e3;
+        let t128 = k(2.0) * (t127 - t126);
+        let t129 = inner_ring_e0 * inner_ring_e1;
+        let t130 = inner_ring_e2 * inner_ring_e3;
+        let t131 = k(2.0) * (t130 + t129);
+        let t132 = inner_ring_e0 * inner_ring_e3;
+        let t133 = inner_ring_e1 * inner_ring_e2;
+        let t134 = k(2.0) * (t133 + t132);
+        let t135 = inner_ring_e0 * inner_ring_e0;
+        let t136 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t135));
+        let t137 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t135));
+        let t138 = k(2.0) * (t133 - t132);
+        let t139 = T::fused(
+            T::fused(t134, self.offset_y, t136 * self.offset_x),
+            t113,
+            T::fused(t137, self.offset_y, t138 * self.offset_x) * t112,
         );
-        let t136 = T::fused(
+        let t140 = T::fused(
             -k(1e-6),
-            T::fused(inner_ring_wx, inner_ring_wy, t69),
-            T::fused(-T::fused(-t124, self.offset_y, t127 * self.offset_x), t111, t135)
-                - t121,
+            T::fused(inner_ring_wx, inner_ring_wy, t73),
+            T::fused(-T::fused(-t128, self.offset_y, t131 * self.offset_x), t115, t139)
+                - t125,
         );
-        let t137 = k(2.0) * outer_ring_e2;
-        let t138 = outer_ring_e0 * t137;
-        let t139 = T::fused(-t13, t116, t14 * t120);
-        let t140 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t131));
-        let t141 = k(2.0) * (t126 - t125);
-        let t142 = k(2.0) * (t123 + t122);
-        let t143 = T::fused(
-            -T::fused(-t130, self.offset_z, t141 * self.offset_x),
-            t109,
-            T::fused(t133, self.offset_z, t142 * self.offset_x) * t108,
-        );
-        let t144 = T::fused(
-            k(2e-6),
-            t67,
-            T::fused(T::fused(t124, self.offset_z, t140 * self.offset_x), t111, t143)
-                - t139,
-        );
-        let t145 = T::fused(
-            -T::fused(t132, self.offset_z, t141 * self.offset_y),
-            t109,
-            T::fused(-t134, self.offset_z, t142 * self.offset_y) * t108,
-        );
-        let t146 = T::fused(
-            rotor_wx,
-            t113 - t117,
-            T::fused(
-                self.product_xz,
-                t76,
-                -T::fused(-k(1e-5), t87, self.product_xy * t75),
-            ),
-        );
+        let t141 = k(2.0) * outer_ring_e2;
+        let t142 = outer_ring_e0 * t141;
+        let t143 = T::fused(-t10, t120, t8 * t124);
+        let t144 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t135));
+        let t145 = k(2.0) * (t130 - t129);
+        let t146 = k(2.0) * (t127 + t126);
         let t147 = T::fused(
-            -T::fused(t99, self.imbalance_z, t102 * self.imbalance_y),
-            t109,
-            T::fused(-t91, self.imbalance_z, t96 * self.imbalance_y) * t108,
+            -T::fused(-t134, self.offset_z, t145 * self.offset_x),
+            t113,
+            T::fused(t137, self.offset_z, t146 * self.offset_x) * t112,
         );
         let t148 = T::fused(
-            T::fused(t105, self.imbalance_z, t106 * self.imbalance_y),
-            t111,
-            t147,
-        ) + t146
-            - T::fused(T::fused(t127, self.offset_z, t140 * self.offset_y), t111, t145);
-        let t149 = T::fused(-k(1e-6), T::fused(inner_ring_wy, inner_ring_wz, t66), t148);
-        let t150 = T::fused(t25, t144, t3 * t149);
-        let t151 = T::fused(-k(2e-6), t0, t150);
-        let t152 = T::fused(-outer_ring_e2, t137, k(1.0));
+            k(2e-6),
+            t71,
+            T::fused(T::fused(t128, self.offset_z, t144 * self.offset_x), t115, t147)
+                - t143,
+        );
+        let t149 = T::fused(
+            -T::fused(t136, self.offset_z, t145 * self.offset_y),
+            t113,
+            T::fused(-t138, self.offset_z, t146 * self.offset_y) * t112,
+        );
+        let t150 = T::fused(
+            rotor_wx,
+            t117 - t121,
+            T::fused(
+                self.product_xz,
+                t80,
+                -T::fused(-k(1e-5), t91, self.product_xy * t79),
+            ),
+        );
+        let t151 = T::fused(
+            -T::fused(t103, self.imbalance_z, t106 * self.imbalance_y),
+            t113,
+            T::fused(-t95, self.imbalance_z, t100 * self.imbalance_y) * t112,
+        );
+        let t152 = T::fused(
+            T::fused(t109, self.imbalance_z, t110 * self.imbalance_y),
+            t115,
+            t151,
+        ) + t150
+            - T::fused(T::fused(t131, self.offset_z, t144 * self.offset_y), t115, t149);
+        let t153 = T::fused(-k(1e-6), T::fused(inner_ring_wy, inner_ring_wz, t70), t152);
+        let t154 = T::fused(t21, t148, t23 * t153);
+        let t155 = T::fused(-k(2e-6), t0, t154);
+        let t156 = T::fused(-outer_ring_e2, t141, k(1.0));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t0,
-            -t64,
-            t65,
-            k(0.0),
-            k(0.0),
-            k(0.0),
-            -t66,
-            t67,
+            -t68,
             t69,
-            -t97,
-            -t103,
-            t107,
-            t87,
-            -t75,
-            t76,
-            t108,
-            -(k(0.1) + t110),
-            -t111,
-            T::fused(-t152, t151, t138 * t136),
-            -T::fused(t152, t136, t138 * t151),
-            t108,
-            -t110,
-            -t111,
-            T::fused(-t3, t144, t25 * t149),
-            t150,
-            t108,
-            -t109,
-            -t111,
-            -t121,
-            -t139,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t70,
+            t71,
+            t73,
+            -t101,
+            -t107,
+            t111,
+            t91,
+            -t79,
+            t80,
+            t112,
+            -(k(0.1) + t114),
+            -t115,
+            T::fused(-t156, t155, t142 * t140),
+            -T::fused(t156, t140, t142 * t155),
+            t112,
+            -t114,
+            -t115,
+            T::fused(-t23, t148, t21 * t153),
+            t154,
+            t112,
+            -t113,
+            -t115,
+            -t125,
+            -t143,
         ];
     }
 }

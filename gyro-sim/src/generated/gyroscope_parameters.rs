@@ -8,33 +8,41 @@
 //! * unknowns of eq. (17): 33
 //! * non-zeros: Φ_q 77 of 378, (Φ_r, Φ_π') 41 of 270
 //! * left out: coordinates of `base` (fixed: folded into constants)
+//! * left out: the turning of `rotor` from u̇ (it looks the same all around its axis)
 //! * left out: the work of non-conservative forces (there are none)
+//! * left out: outputs (the page asks for none)
+//! * accelerations: by relative Euler parameters, 440 operations, not rotations of the bodies 460
+//! * joint_accelerations: by normal form, 32 operations, not recursion 54
+//! * joint_accelerations_at: by normal form, 52 operations, not recursion 74, recursion on the bodies' spins 88
+//! * corrected_accelerations: by normal form in the bodies' frames, 162 operations, not recursion in the bodies' frames 184, recursion in the global frame 186, normal form in the global frame 164, recursion on the bodies' spins in the bodies' frames 186, recursion on the bodies' spins in the global frame 188, elimination in maximal coordinates 460
 //!
-//! | function | computes | + − | × | ÷ | total | zeros |
-//! |---|---|---|---|---|---|---|
-//! | phi | Φ | 50 | 61 | 0 | 111 | 0 of 18 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 68 | 138 | 0 | 206 | 0 of 77 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 64 | 105 | 0 | 169 | 0 of 41 |
-//! | nu | ν | 0 | 0 | 0 | 0 | 15 of 15 |
-//! | gamma | γ | 122 | 193 | 0 | 315 | 6 of 15 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 90 | 128 | 0 | 218 | 0 of 15 |
-//! | applied_force | (f, n' − w̃'J'w') | 1 | 14 | 0 | 15 | 9 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 173 | 262 | 5 | 440 | 7 of 18 |
-//! | multipliers | λ, the accelerations being known | 115 | 191 | 3 | 309 | 0 of 15 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
-//! | energy | T and V | 19 | 36 | 0 | 55 | 0 of 2 |
-//! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 |
-//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
-//! | newton_step | dependent positions, one Newton step | 193 | 321 | 3 | 517 | 6 of 21 |
-//! | solve_velocities | dependent velocities, eq. (19) | 96 | 158 | 3 | 257 | 6 of 18 |
-//! | joint_accelerations | u̇ in joint coordinates | 12 | 18 | 2 | 32 | 0 of 3 |
-//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 |
-//! | to_maximal | (q, v) of a joint state | 24 | 57 | 0 | 81 | 16 of 39 |
-//! | to_joints | (x, u) of a maximal state | 63 | 72 | 0 | 135 | 0 of 6 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 21 | 29 | 2 | 52 | 0 of 3 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 63 | 97 | 2 | 162 | 6 of 18 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 55 | 90 | 0 | 145 | 0 of 15 |
-//! | corrected_solution | both | 98 | 159 | 2 | 259 | 6 of 33 |
+//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
+//!
+//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
+//! |---|---|---|---|---|---|---|---|---|
+//! | phi | Φ | 50 | 61 | 0 | 111 | 0 of 18 | 181 | 111 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 68 | 138 | 0 | 206 | 0 of 77 | 600 | 206 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 64 | 105 | 0 | 169 | 0 of 41 | 546 | 169 |
+//! | nu | ν | 0 | 0 | 0 | 0 | 15 of 15 | 0 | 0 |
+//! | gamma | γ | 122 | 193 | 0 | 315 | 6 of 15 | 1486 | 315 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 90 | 128 | 0 | 218 | 0 of 15 | 595 | 218 |
+//! | applied_force | (f, n' − w̃'J'w') | 1 | 14 | 0 | 15 | 9 of 18 | 19 | 15 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 173 | 262 | 5 | 440 | 7 of 18 | 506786 | 444 |
+//! | multipliers | λ, the accelerations being known | 115 | 191 | 3 | 309 | 0 of 15 | 3886 | 309 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 | 72 | 72 |
+//! | energy | T and V | 19 | 36 | 0 | 55 | 0 of 2 | 56 | 55 |
+//! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 | 216 | 114 |
+//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 | 0 | 0 |
+//! | newton_step | dependent positions, one Newton step | 193 | 321 | 3 | 517 | 6 of 21 | 1.1e9 | 517 |
+//! | solve_velocities | dependent velocities, eq. (19) | 96 | 158 | 3 | 257 | 6 of 18 | 10561 | 257 |
+//! | joint_accelerations | u̇ in joint coordinates | 11 | 19 | 2 | 32 | 0 of 3 | 70 | 34 |
+//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 | 0 | 0 |
+//! | to_maximal | (q, v) of a joint state | 24 | 57 | 0 | 81 | 16 of 39 | 294 | 81 |
+//! | to_joints | (x, u) of a maximal state | 63 | 72 | 0 | 135 | 0 of 6 | 451 | 135 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 20 | 30 | 2 | 52 | 0 of 3 | 276 | 54 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 62 | 98 | 2 | 162 | 6 of 18 | 2791 | 164 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 55 | 90 | 0 | 145 | 0 of 15 | 758 | 145 |
+//! | corrected_solution | both | 97 | 160 | 2 | 259 | 6 of 33 | 24351 | 261 |
 //!
 //! # Proof
 //!
@@ -2656,7 +2664,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
     fn solution(&self) -> Self::Solution {
         [T::constant(0.0); 33]
     }
-    /// Writes u̇: 32 operations (12 ±, 18 ×, 2 ÷) and 2 functions.
+    /// Writes u̇: 32 operations (11 ±, 19 ×, 2 ÷) and 2 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
         let k = T::constant;
         let x1 = x[1];
@@ -2669,17 +2677,19 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
         let t3 = u0 * t2;
         let t4 = self.rotor_offset * self.rotor_mass;
         let t5 = self.rotor_offset * t4;
-        let t6 = self.ring_axial_inertia + t5;
-        let t7 = self.ring_diametral_inertia - t6;
-        let t8 = self.ring_diametral_inertia + k(5e-6);
-        let t9 = T::fused(k(200000.0), t7 * t3, u2) * t1
-            / (t8 + T::fused(-(k(5e-6) - t7), t2 * t2, t6));
-        let t10 = T::fused(
+        let t6 = self.ring_axial_inertia - (self.ring_diametral_inertia - t5);
+        let t7 = T::fused(-k(200000.0), t6 * t3, u2) * t1
+            / T::fused(k(5e-6) + t6, t0 * t0, k(2.0) * self.ring_diametral_inertia);
+        let t8 = T::fused(
             -u0,
-            T::fused(k(5e-6) + t7, t3, k(1e-5) * u2),
+            T::fused(k(5e-6) - t6, t3, k(1e-5) * u2),
             self.gravity * t4,
         );
-        *out = [-t9, -(t0 * t10 / (t5 + t8)), T::fused(-k(100000.0), u0 * t1, t2 * t9)];
+        *out = [
+            -t7,
+            -(t0 * t8 / (t5 + (self.ring_diametral_inertia + k(5e-6)))),
+            T::fused(-k(100000.0), u0 * t1, t2 * t7),
+        ];
     }
     /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
@@ -2879,7 +2889,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
         x[4] = inner_ring_wz - outer_ring_wz;
         x[5] = rotor_wx - inner_ring_wx;
     }
-    /// Writes u̇ at a state that satisfies the constraints: 52 operations (21 ±, 29 ×, 2 ÷).
+    /// Writes u̇ at a state that satisfies the constraints: 52 operations (20 ±, 30 ×, 2 ÷).
     fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2920,24 +2930,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
         let t6 = outer_ring_wy * t5;
         let t7 = self.rotor_offset * self.rotor_mass;
         let t8 = self.rotor_offset * t7;
-        let t9 = self.ring_axial_inertia + t8;
-        let t10 = self.ring_diametral_inertia - t9;
-        let t11 = inner_ring_wx - rotor_wx;
-        let t12 = self.ring_diametral_inertia + k(5e-6);
-        let t13 = T::fused(k(200000.0), t10 * t6, t11) * t3
-            / (t12 + T::fused(-(k(5e-6) - t10), t5 * t5, t9));
-        let t14 = T::fused(
+        let t9 = self.ring_axial_inertia - (self.ring_diametral_inertia - t8);
+        let t10 = inner_ring_wx - rotor_wx;
+        let t11 = T::fused(-k(200000.0), t9 * t6, t10) * t3
+            / T::fused(k(5e-6) + t9, t2 * t2, k(2.0) * self.ring_diametral_inertia);
+        let t12 = T::fused(
             outer_ring_wy,
-            T::fused(k(1e-5), t11, (k(5e-6) + t10) * t6),
+            T::fused(k(1e-5), t10, (k(5e-6) - t9) * t6),
             self.gravity * t7,
         );
         *out = [
-            -t13,
-            -(t2 * t14 / (t8 + t12)),
-            T::fused(-t5, t13, k(100000.0) * (outer_ring_wy * t3)),
+            -t11,
+            -(t2 * t12 / (t8 + (self.ring_diametral_inertia + k(5e-6)))),
+            T::fused(-t5, t11, k(100000.0) * (outer_ring_wy * t3)),
         ];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 162 operations (63 ±, 97 ×, 2 ÷).
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 162 operations (62 ±, 98 ×, 2 ÷).
     fn corrected_accelerations(
         &self,
         _t: T,
@@ -2993,24 +3001,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
         let t8 = outer_ring_wy * t7;
         let t9 = self.rotor_offset * self.rotor_mass;
         let t10 = self.rotor_offset * t9;
-        let t11 = self.ring_axial_inertia + t10;
-        let t12 = self.ring_diametral_inertia - t11;
-        let t13 = inner_ring_wx - rotor_wx;
-        let t14 = self.ring_diametral_inertia + k(5e-6);
-        let t15 = T::fused(k(200000.0), t12 * t8, t13) * t5
-            / (t14 + T::fused(-(k(5e-6) - t12), t7 * t7, t11));
-        let t16 = outer_ring_wx * outer_ring_wy;
-        let t17 = t7 * t15;
-        let t18 = T::fused(inner_ring_wy, t4, -T::fused(-t0, t3, t17));
-        let t19 = T::fused(inner_ring_wx, t4, -T::fused(t3, t15, t0 * t7));
-        let t20 = T::fused(
+        let t11 = self.ring_axial_inertia - (self.ring_diametral_inertia - t10);
+        let t12 = inner_ring_wx - rotor_wx;
+        let t13 = T::fused(-k(200000.0), t11 * t8, t12) * t5
+            / T::fused(k(5e-6) + t11, t3 * t3, k(2.0) * self.ring_diametral_inertia);
+        let t14 = outer_ring_wx * outer_ring_wy;
+        let t15 = t7 * t13;
+        let t16 = T::fused(inner_ring_wy, t4, -T::fused(-t0, t3, t15));
+        let t17 = T::fused(inner_ring_wx, t4, -T::fused(t3, t13, t0 * t7));
+        let t18 = T::fused(
             outer_ring_wy,
-            T::fused(k(1e-5), t13, (k(5e-6) + t12) * t8),
+            T::fused(k(1e-5), t12, (k(5e-6) - t11) * t8),
             self.gravity * t9,
         );
-        let t21 = t16 - t3 * t20 / (t10 + t14);
-        let t22 = self.rotor_offset * t21;
-        let t23 = T::fused(
+        let t19 = t14 - t3 * t18 / (t10 + (self.ring_diametral_inertia + k(5e-6)));
+        let t20 = self.rotor_offset * t19;
+        let t21 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -3019,10 +3025,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t24 = k(2.0) * t23;
-        let t25 = T::fused(-t23, t24, k(1.0));
-        let t26 = self.rotor_offset * t19;
-        let t27 = T::fused(
+        let t22 = k(2.0) * t21;
+        let t23 = T::fused(-t21, t22, k(1.0));
+        let t24 = self.rotor_offset * t17;
+        let t25 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -3031,51 +3037,51 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t28 = t27 * t24;
-        let t29 = inner_ring_wy * self.rotor_offset;
+        let t26 = t25 * t22;
+        let t27 = inner_ring_wy * self.rotor_offset;
+        let t28 = inner_ring_wx * t27;
+        let t29 = inner_ring_wz * self.rotor_offset;
         let t30 = inner_ring_wx * t29;
-        let t31 = inner_ring_wz * self.rotor_offset;
-        let t32 = inner_ring_wx * t31;
-        let t33 = T::fused(-t30, t25, t32 * t28) - T::fused(t25, t22, t28 * t26);
-        let t34 = rotor_e0 * rotor_e3;
-        let t35 = rotor_e1 * rotor_e2;
-        let t36 = T::fused(inner_ring_wz, t31, inner_ring_wy * t29);
-        let t37 = rotor_e0 * rotor_e0;
-        let t38 = T::fused(
-            -(k(2.0) * (t35 - t34)),
-            t33,
-            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t37)) * t36,
+        let t31 = T::fused(-t28, t23, t30 * t26) - T::fused(t23, t20, t26 * t24);
+        let t32 = rotor_e0 * rotor_e3;
+        let t33 = rotor_e1 * rotor_e2;
+        let t34 = T::fused(inner_ring_wz, t29, inner_ring_wy * t27);
+        let t35 = rotor_e0 * rotor_e0;
+        let t36 = T::fused(
+            -(k(2.0) * (t33 - t32)),
+            t31,
+            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t35)) * t34,
         );
-        let t39 = T::fused(t30, t28, t32 * t25) - T::fused(-t28, t22, t25 * t26);
-        let t40 = rotor_e0 * rotor_e2;
-        let t41 = rotor_e1 * rotor_e3;
-        let t42 = T::fused(
-            -(k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t37))),
-            t33,
-            k(2.0) * (t35 + t34) * t36,
+        let t37 = T::fused(t28, t26, t30 * t23) - T::fused(-t26, t20, t23 * t24);
+        let t38 = rotor_e0 * rotor_e2;
+        let t39 = rotor_e1 * rotor_e3;
+        let t40 = T::fused(
+            -(k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t35))),
+            t31,
+            k(2.0) * (t33 + t32) * t34,
         );
-        let t43 = rotor_e0 * rotor_e1;
-        let t44 = rotor_e2 * rotor_e3;
-        let t45 = T::fused(k(2.0) * (t44 + t43), t33, k(2.0) * (t41 - t40) * t36);
+        let t41 = rotor_e0 * rotor_e1;
+        let t42 = rotor_e2 * rotor_e3;
+        let t43 = T::fused(k(2.0) * (t42 + t41), t31, k(2.0) * (t39 - t38) * t34);
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t0,
-            -t15,
-            t16,
+            -t13,
+            t14,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t18,
+            -t16,
+            t17,
             t19,
-            t21,
-            T::fused(k(2.0) * (t41 + t40), t39, t38),
-            T::fused(k(2.0) * (t44 - t43), t39, -t42),
-            -T::fused(k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t37)), t39, t45),
-            -(T::fused(-k(100000.0), outer_ring_wy * t5, t17) + t18),
-            -T::fused(rotor_wz, t13, T::fused(-t25, t19, t28 * t21)),
-            T::fused(rotor_wy, t13, T::fused(t28, t19, t25 * t21)),
+            T::fused(k(2.0) * (t39 + t38), t37, t36),
+            T::fused(k(2.0) * (t42 - t41), t37, -t40),
+            -T::fused(k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t35)), t37, t43),
+            -(T::fused(-k(100000.0), outer_ring_wy * t5, t15) + t16),
+            -T::fused(rotor_wz, t12, T::fused(-t23, t17, t26 * t19)),
+            T::fused(rotor_wy, t12, T::fused(t26, t17, t23 * t19)),
         ];
     }
     /// Writes λ: 145 operations (55 ±, 90 ×, 0 ÷).
@@ -3245,7 +3251,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
             -t23,
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 259 operations (98 ±, 159 ×, 2 ÷).
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 259 operations (97 ±, 160 ×, 2 ÷).
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -3296,24 +3302,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
         let t8 = outer_ring_wy * t7;
         let t9 = self.rotor_offset * self.rotor_mass;
         let t10 = self.rotor_offset * t9;
-        let t11 = self.ring_axial_inertia + t10;
-        let t12 = self.ring_diametral_inertia - t11;
-        let t13 = inner_ring_wx - rotor_wx;
-        let t14 = self.ring_diametral_inertia + k(5e-6);
-        let t15 = T::fused(k(200000.0), t12 * t8, t13) * t5
-            / (t14 + T::fused(-(k(5e-6) - t12), t7 * t7, t11));
-        let t16 = outer_ring_wx * outer_ring_wy;
-        let t17 = t7 * t15;
-        let t18 = T::fused(inner_ring_wy, t4, -T::fused(-t0, t3, t17));
-        let t19 = T::fused(inner_ring_wx, t4, -T::fused(t3, t15, t0 * t7));
-        let t20 = T::fused(
+        let t11 = self.ring_axial_inertia - (self.ring_diametral_inertia - t10);
+        let t12 = inner_ring_wx - rotor_wx;
+        let t13 = T::fused(-k(200000.0), t11 * t8, t12) * t5
+            / T::fused(k(5e-6) + t11, t3 * t3, k(2.0) * self.ring_diametral_inertia);
+        let t14 = outer_ring_wx * outer_ring_wy;
+        let t15 = t7 * t13;
+        let t16 = T::fused(inner_ring_wy, t4, -T::fused(-t0, t3, t15));
+        let t17 = T::fused(inner_ring_wx, t4, -T::fused(t3, t13, t0 * t7));
+        let t18 = T::fused(
             outer_ring_wy,
-            T::fused(k(1e-5), t13, (k(5e-6) + t12) * t8),
+            T::fused(k(1e-5), t12, (k(5e-6) - t11) * t8),
             self.gravity * t9,
         );
-        let t21 = t16 - t3 * t20 / (t10 + t14);
-        let t22 = self.rotor_offset * t21;
-        let t23 = T::fused(
+        let t19 = t14 - t3 * t18 / (t10 + (self.ring_diametral_inertia + k(5e-6)));
+        let t20 = self.rotor_offset * t19;
+        let t21 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -3322,10 +3326,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t24 = k(2.0) * t23;
-        let t25 = T::fused(-t23, t24, k(1.0));
-        let t26 = self.rotor_offset * t19;
-        let t27 = T::fused(
+        let t22 = k(2.0) * t21;
+        let t23 = T::fused(-t21, t22, k(1.0));
+        let t24 = self.rotor_offset * t17;
+        let t25 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -3334,132 +3338,132 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t28 = t27 * t24;
-        let t29 = inner_ring_wy * self.rotor_offset;
+        let t26 = t25 * t22;
+        let t27 = inner_ring_wy * self.rotor_offset;
+        let t28 = inner_ring_wx * t27;
+        let t29 = inner_ring_wz * self.rotor_offset;
         let t30 = inner_ring_wx * t29;
-        let t31 = inner_ring_wz * self.rotor_offset;
-        let t32 = inner_ring_wx * t31;
-        let t33 = T::fused(-t30, t25, t32 * t28) - T::fused(t25, t22, t28 * t26);
-        let t34 = rotor_e0 * rotor_e3;
-        let t35 = rotor_e1 * rotor_e2;
-        let t36 = T::fused(inner_ring_wz, t31, inner_ring_wy * t29);
-        let t37 = rotor_e0 * rotor_e0;
-        let t38 = T::fused(
-            -(k(2.0) * (t35 - t34)),
-            t33,
-            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t37)) * t36,
+        let t31 = T::fused(-t28, t23, t30 * t26) - T::fused(t23, t20, t26 * t24);
+        let t32 = rotor_e0 * rotor_e3;
+        let t33 = rotor_e1 * rotor_e2;
+        let t34 = T::fused(inner_ring_wz, t29, inner_ring_wy * t27);
+        let t35 = rotor_e0 * rotor_e0;
+        let t36 = T::fused(
+            -(k(2.0) * (t33 - t32)),
+            t31,
+            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t35)) * t34,
         );
-        let t39 = T::fused(t30, t28, t32 * t25) - T::fused(-t28, t22, t25 * t26);
-        let t40 = rotor_e0 * rotor_e2;
-        let t41 = rotor_e1 * rotor_e3;
-        let t42 = T::fused(k(2.0) * (t41 + t40), t39, t38);
-        let t43 = T::fused(
-            -(k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t37))),
-            t33,
-            k(2.0) * (t35 + t34) * t36,
+        let t37 = T::fused(t28, t26, t30 * t23) - T::fused(-t26, t20, t23 * t24);
+        let t38 = rotor_e0 * rotor_e2;
+        let t39 = rotor_e1 * rotor_e3;
+        let t40 = T::fused(k(2.0) * (t39 + t38), t37, t36);
+        let t41 = T::fused(
+            -(k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t35))),
+            t31,
+            k(2.0) * (t33 + t32) * t34,
         );
-        let t44 = rotor_e0 * rotor_e1;
-        let t45 = rotor_e2 * rotor_e3;
-        let t46 = T::fused(k(2.0) * (t45 - t44), t39, -t43);
-        let t47 = T::fused(k(2.0) * (t45 + t44), t33, k(2.0) * (t41 - t40) * t36);
-        let t48 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t37)),
-            t39,
-            t47,
+        let t42 = rotor_e0 * rotor_e1;
+        let t43 = rotor_e2 * rotor_e3;
+        let t44 = T::fused(k(2.0) * (t43 - t42), t37, -t41);
+        let t45 = T::fused(k(2.0) * (t43 + t42), t31, k(2.0) * (t39 - t38) * t34);
+        let t46 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t35)),
+            t37,
+            t45,
         );
-        let t49 = T::fused(-k(100000.0), outer_ring_wy * t5, t17) + t18;
-        let t50 = T::fused(rotor_wz, t13, T::fused(-t25, t19, t28 * t21));
-        let t51 = T::fused(rotor_wy, t13, T::fused(t28, t19, t25 * t21));
-        let t52 = self.rotor_mass * t42;
-        let t53 = T::fused(self.rotor_mass, t46, self.gravity * self.rotor_mass);
-        let t54 = k(0.01) * self.gravity;
-        let t55 = t54 + t53;
-        let t56 = self.rotor_mass * t48;
-        let t57 = self.ring_axial_inertia - self.ring_diametral_inertia;
-        let t58 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -t51);
-        let t59 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t50);
-        let t60 = T::fused(t25, t58, t28 * t59);
-        let t61 = inner_ring_e0 * inner_ring_e1;
-        let t62 = inner_ring_e2 * inner_ring_e3;
-        let t63 = inner_ring_e0 * inner_ring_e0;
-        let t64 = T::fused(
-            -(k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t63))
+        let t47 = T::fused(-k(100000.0), outer_ring_wy * t5, t15) + t16;
+        let t48 = T::fused(rotor_wz, t12, T::fused(-t23, t17, t26 * t19));
+        let t49 = T::fused(rotor_wy, t12, T::fused(t26, t17, t23 * t19));
+        let t50 = self.rotor_mass * t40;
+        let t51 = T::fused(self.rotor_mass, t44, self.gravity * self.rotor_mass);
+        let t52 = k(0.01) * self.gravity;
+        let t53 = t52 + t51;
+        let t54 = self.rotor_mass * t46;
+        let t55 = self.ring_axial_inertia - self.ring_diametral_inertia;
+        let t56 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -t49);
+        let t57 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t48);
+        let t58 = T::fused(t23, t56, t26 * t57);
+        let t59 = inner_ring_e0 * inner_ring_e1;
+        let t60 = inner_ring_e2 * inner_ring_e3;
+        let t61 = inner_ring_e0 * inner_ring_e0;
+        let t62 = T::fused(
+            -(k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t61))
                 * self.rotor_offset),
-            t53,
+            t51,
             k(2.0)
                 * T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2)
-                * self.rotor_offset * t52,
+                * self.rotor_offset * t50,
         );
-        let t65 = T::fused(-(k(2.0) * (t62 + t61) * self.rotor_offset), t56, t64) - t60
+        let t63 = T::fused(-(k(2.0) * (t60 + t59) * self.rotor_offset), t54, t62) - t58
             + T::fused(
                 self.ring_diametral_inertia,
-                t21,
-                inner_ring_wx * inner_ring_wy * t57,
+                t19,
+                inner_ring_wx * inner_ring_wy * t55,
             );
-        let t66 = t65 - T::fused(-t16, self.ring_diametral_inertia, t16 * t57);
-        let t67 = k(2.0) * outer_ring_e2;
-        let t68 = outer_ring_e0 * t67;
-        let t69 = T::fused(-t28, t58, t25 * t59);
-        let t70 = T::fused(
-            k(2.0) * (t62 - t61) * self.rotor_offset,
-            t53,
+        let t64 = t63 - T::fused(-t14, self.ring_diametral_inertia, t14 * t55);
+        let t65 = k(2.0) * outer_ring_e2;
+        let t66 = outer_ring_e0 * t65;
+        let t67 = T::fused(-t26, t56, t23 * t57);
+        let t68 = T::fused(
+            k(2.0) * (t60 - t59) * self.rotor_offset,
+            t51,
             k(2.0)
                 * T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3)
-                * self.rotor_offset * t52,
+                * self.rotor_offset * t50,
         );
-        let t71 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t63))
+        let t69 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t61))
                 * self.rotor_offset,
-            t56,
-            t70,
+            t54,
+            t68,
         );
-        let t72 = T::fused(-self.ring_axial_inertia, t19, t71 - t69);
-        let t73 = T::fused(
+        let t70 = T::fused(-self.ring_axial_inertia, t17, t69 - t67);
+        let t71 = T::fused(
             k(1e-5),
-            t49,
+            t47,
             T::fused(
                 self.ring_diametral_inertia,
-                t18,
-                inner_ring_wy * inner_ring_wz * t57,
+                t16,
+                inner_ring_wy * inner_ring_wz * t55,
             ),
         );
-        let t74 = T::fused(t7, t72, t3 * t73);
-        let t75 = T::fused(t0, self.ring_axial_inertia, t74);
-        let t76 = T::fused(-outer_ring_e2, t67, k(1.0));
+        let t72 = T::fused(t7, t70, t3 * t71);
+        let t73 = T::fused(t0, self.ring_axial_inertia, t72);
+        let t74 = T::fused(-outer_ring_e2, t65, k(1.0));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t0,
-            -t15,
-            t16,
+            -t13,
+            t14,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t18,
+            -t16,
+            t17,
             t19,
-            t21,
-            t42,
-            t46,
+            t40,
+            t44,
+            -t46,
+            -t47,
             -t48,
-            -t49,
+            t49,
             -t50,
-            t51,
-            -t52,
-            -(t54 + t55),
-            t56,
-            T::fused(-t68, t66, t76 * t75),
-            T::fused(t76, t66, t68 * t75),
-            -t52,
-            -t55,
-            t56,
-            T::fused(-t7, t73, t3 * t72),
-            -t74,
-            -t52,
+            -(t52 + t53),
+            t54,
+            T::fused(-t66, t64, t74 * t73),
+            T::fused(t74, t64, t66 * t73),
+            -t50,
             -t53,
-            t56,
-            t60,
-            t69,
+            t54,
+            T::fused(-t7, t71, t3 * t70),
+            -t72,
+            -t50,
+            -t51,
+            t54,
+            t58,
+            t67,
         ];
     }
 }

@@ -9,32 +9,40 @@
 //! * non-zeros: Φ_q 77 of 378, (Φ_r, Φ_π') 41 of 270
 //! * left out: coordinates of `base` (fixed: folded into constants)
 //! * left out: the work of non-conservative forces (there are none)
+//! * left out: parameters (all numbers are folded)
+//! * left out: outputs (the page asks for none)
+//! * accelerations: by relative Euler parameters, 413 operations, not rotations of the bodies 433
+//! * joint_accelerations: by normal form, 61 operations, not recursion 91
+//! * joint_accelerations_at: by normal form, 99 operations, not recursion 129, recursion on the bodies' spins 142
+//! * corrected_accelerations: by normal form in the bodies' frames, 179 operations, not recursion in the bodies' frames 208, recursion in the global frame 222, normal form in the global frame 193, recursion on the bodies' spins in the bodies' frames 205, recursion on the bodies' spins in the global frame 219, elimination in maximal coordinates 433
 //!
-//! | function | computes | + − | × | ÷ | total | zeros |
-//! |---|---|---|---|---|---|---|
-//! | phi | Φ | 51 | 60 | 0 | 111 | 0 of 18 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 68 | 137 | 0 | 205 | 0 of 77 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 64 | 105 | 0 | 169 | 0 of 41 |
-//! | nu | ν | 0 | 0 | 0 | 0 | 15 of 15 |
-//! | gamma | γ | 122 | 195 | 0 | 317 | 6 of 15 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 90 | 128 | 0 | 218 | 0 of 15 |
-//! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 162 | 246 | 5 | 413 | 6 of 18 |
-//! | multipliers | λ, the accelerations being known | 114 | 187 | 3 | 304 | 0 of 15 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
-//! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
-//! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 |
-//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
-//! | newton_step | dependent positions, one Newton step | 193 | 323 | 3 | 519 | 6 of 21 |
-//! | solve_velocities | dependent velocities, eq. (19) | 96 | 158 | 3 | 257 | 6 of 18 |
-//! | joint_accelerations | u̇ in joint coordinates | 19 | 42 | 2 | 63 | 0 of 3 |
-//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 |
-//! | to_maximal | (q, v) of a joint state | 24 | 54 | 0 | 78 | 16 of 39 |
-//! | to_joints | (x, u) of a maximal state | 63 | 72 | 0 | 135 | 0 of 6 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 35 | 64 | 2 | 101 | 0 of 3 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 66 | 113 | 2 | 181 | 6 of 18 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 54 | 80 | 0 | 134 | 0 of 15 |
-//! | corrected_solution | both | 90 | 154 | 2 | 246 | 6 of 33 |
+//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
+//!
+//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
+//! |---|---|---|---|---|---|---|---|---|
+//! | phi | Φ | 51 | 60 | 0 | 111 | 0 of 18 | 178 | 111 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 68 | 137 | 0 | 205 | 0 of 77 | 590 | 205 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 64 | 105 | 0 | 169 | 0 of 41 | 540 | 169 |
+//! | nu | ν | 0 | 0 | 0 | 0 | 15 of 15 | 0 | 0 |
+//! | gamma | γ | 122 | 195 | 0 | 317 | 6 of 15 | 1486 | 317 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 90 | 128 | 0 | 218 | 0 of 15 | 595 | 218 |
+//! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 | 12 | 12 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 162 | 246 | 5 | 413 | 6 of 18 | 568074 | 417 |
+//! | multipliers | λ, the accelerations being known | 114 | 187 | 3 | 304 | 0 of 15 | 4371 | 304 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 | 72 | 72 |
+//! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 | 52 | 52 |
+//! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 | 216 | 114 |
+//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 | 0 | 0 |
+//! | newton_step | dependent positions, one Newton step | 193 | 323 | 3 | 519 | 6 of 21 | 4.2e9 | 519 |
+//! | solve_velocities | dependent velocities, eq. (19) | 96 | 158 | 3 | 257 | 6 of 18 | 17329 | 257 |
+//! | joint_accelerations | u̇ in joint coordinates | 18 | 41 | 2 | 61 | 0 of 3 | 290 | 62 |
+//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 | 0 | 0 |
+//! | to_maximal | (q, v) of a joint state | 24 | 54 | 0 | 78 | 16 of 39 | 633 | 78 |
+//! | to_joints | (x, u) of a maximal state | 63 | 72 | 0 | 135 | 0 of 6 | 451 | 135 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 34 | 63 | 2 | 99 | 0 of 3 | 2548 | 100 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 65 | 112 | 2 | 179 | 6 of 18 | 18438 | 180 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 54 | 80 | 0 | 134 | 0 of 15 | 853 | 134 |
+//! | corrected_solution | both | 89 | 153 | 2 | 244 | 6 of 33 | 214232 | 245 |
 //!
 //! # Proof
 //!
@@ -2626,7 +2634,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
     fn solution(&self) -> Self::Solution {
         [T::constant(0.0); 33]
     }
-    /// Writes u̇: 63 operations (19 ±, 42 ×, 2 ÷) and 4 functions.
+    /// Writes u̇: 61 operations (18 ±, 41 ×, 2 ÷) and 4 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
         let k = T::constant;
         let x1 = x[1];
@@ -2636,45 +2644,41 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
         let u2 = x[5];
         let t0 = x1.sin();
         let t1 = u0 * t0;
-        let t2 = k(6.4e-9) * u2;
-        let t3 = T::fused(k(3.2e-9), t1, t2);
-        let t4 = x2.cos();
-        let t5 = x1.cos();
-        let t6 = u0 * t5;
-        let t7 = x2.sin();
-        let t8 = T::fused(-k(0.00016), t0, t2 * (u1 * t7));
-        let t9 = T::fused(
-            k(1e-5),
-            u1 * T::fused(-k(0.2), t1, u2),
-            t7 * T::fused(t6, t4 * t3, t8),
+        let t2 = x2.cos();
+        let t3 = k(3.2e-9) * t2;
+        let t4 = x1.cos();
+        let t5 = u0 * t4;
+        let t6 = T::fused(-t5, u0 * t3, k(0.00016));
+        let t7 = T::fused(-t0, t6, k(6.4e-9) * (t5 * (u2 * t2)));
+        let t8 = x2.sin();
+        let t9 = t2 * t2;
+        let t10 = k(6.4e-9) * u1;
+        let t11 = u2 * t10;
+        let t12 = T::fused(t11, k(1563.5) - t9, T::fused(-k(2e-6), u1 * t1, t8 * t7));
+        let t13 = T::fused(
+            t2,
+            T::fused(t8, t11, t7),
+            k(1e-5) * (t5 * T::fused(k(0.4), t1, u2)),
         );
-        let t10 = t7 * t7;
-        let t11 = T::fused(
-            -t4,
-            t8,
-            t6
-                * T::fused(
-                    -k(1.00064e-5),
-                    T::fused(k(0.4000639590661976), t1, u2),
-                    t10 * t3,
-                ),
-        );
-        let t12 = k(3.2e-9) * t5;
-        let t13 = t7 * t4;
-        let t14 = t13 * t12;
-        let t15 = k(1.0) / T::fused(-k(3.2e-9), t10, k(6.0032e-6));
-        let t16 = t15 * t14;
-        let t17 = T::fused(t5, t9, t16 * t11)
-            / T::fused(t14, t16, -T::fused(t12, t5 * (k(1875.0) + t10), k(2e-6)));
+        let t14 = t8 * t3;
+        let t15 = t4 * t14;
+        let t16 = k(1.0) / T::fused(t2, t3, k(6e-6));
+        let t17 = t16 * t15;
         let t18 = T::fused(
-            k(0.00016),
-            t5 * T::fused(k(4e-5), u0 * u1 * (k(1563.5) - t10), t7),
-            k(3.2e-9) * (t13 * T::fused(-t6, t6, u1 * u1)),
+            t15,
+            t17,
+            -T::fused(k(3.2e-9), (k(1876.0) - t9) * (t4 * t4), k(2e-6)),
+        );
+        let t19 = T::fused(-t4, t12, t17 * t13) / t18;
+        let t20 = T::fused(
+            t4,
+            T::fused(t8, t6, t10 * (u0 * (k(1562.5) + t9))),
+            u1 * u1 * t14,
         );
         *out = [
-            t17,
-            T::fused(-t15, t11, t16 * t17),
-            -T::fused(k(99968.01023672425), t18, t0 * t17),
+            -t19,
+            T::fused(-t17, t19, t16 * t13),
+            T::fused(-k(99968.01023672425), t20, t0 * t19),
         ];
     }
     /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -2881,7 +2885,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
         x[4] = inner_ring_wz - outer_ring_wz;
         x[5] = rotor_wx - inner_ring_wx;
     }
-    /// Writes u̇ at a state that satisfies the constraints: 101 operations (35 ±, 64 ×, 2 ÷).
+    /// Writes u̇ at a state that satisfies the constraints: 99 operations (34 ±, 63 ×, 2 ÷).
     fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2922,11 +2926,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
         );
         let t3 = t2 * t1;
         let t4 = outer_ring_wy * t3;
-        let t5 = inner_ring_wx - rotor_wx;
-        let t6 = outer_ring_wz - inner_ring_wz;
-        let t7 = k(6.4e-9) * t5;
-        let t8 = T::fused(k(3.2e-9), t4, t7);
-        let t9 = T::fused(
+        let t5 = outer_ring_wz - inner_ring_wz;
+        let t6 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -2935,11 +2936,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t10 = k(2.0) * t9;
-        let t11 = T::fused(-t9, t10, k(1.0));
-        let t12 = T::fused(-t0, t1, k(1.0));
-        let t13 = outer_ring_wy * t12;
-        let t14 = T::fused(
+        let t7 = k(2.0) * t6;
+        let t8 = T::fused(-t6, t7, k(1.0));
+        let t9 = k(3.2e-9) * t8;
+        let t10 = T::fused(-t0, t1, k(1.0));
+        let t11 = outer_ring_wy * t10;
+        let t12 = T::fused(-t11, outer_ring_wy * t9, k(0.00016));
+        let t13 = inner_ring_wx - rotor_wx;
+        let t14 = T::fused(-t3, t12, k(6.4e-9) * (t11 * (t13 * t8)));
+        let t15 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -2948,43 +2953,38 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t15 = t14 * t10;
-        let t16 = T::fused(-k(0.00016), t3, t6 * t15 * t7);
-        let t17 = T::fused(
-            k(1e-5),
-            t6 * T::fused(-k(0.2), t4, t5),
-            t15 * T::fused(t13, t11 * t8, t16),
+        let t16 = t15 * t7;
+        let t17 = t8 * t8;
+        let t18 = k(6.4e-9) * t5;
+        let t19 = t13 * t18;
+        let t20 = T::fused(t19, k(1563.5) - t17, T::fused(-k(2e-6), t5 * t4, t16 * t14));
+        let t21 = T::fused(
+            t8,
+            T::fused(t16, t19, t14),
+            k(1e-5) * (t11 * T::fused(k(0.4), t4, t13)),
         );
-        let t18 = t15 * t15;
-        let t19 = T::fused(
-            -t11,
-            t16,
-            t13
-                * T::fused(
-                    -k(1.00064e-5),
-                    T::fused(k(0.4000639590661976), t4, t5),
-                    t18 * t8,
-                ),
-        );
-        let t20 = k(3.2e-9) * t12;
-        let t21 = t15 * t11;
-        let t22 = t21 * t20;
-        let t23 = k(1.0) / T::fused(-k(3.2e-9), t18, k(6.0032e-6));
-        let t24 = t23 * t22;
-        let t25 = T::fused(t12, t17, t24 * t19)
-            / T::fused(t22, t24, -T::fused(t20, t12 * (k(1875.0) + t18), k(2e-6)));
+        let t22 = t16 * t9;
+        let t23 = t10 * t22;
+        let t24 = k(1.0) / T::fused(t8, t9, k(6e-6));
+        let t25 = t24 * t23;
         let t26 = T::fused(
-            k(0.00016),
-            t12 * T::fused(k(4e-5), (k(1563.5) - t18) * (outer_ring_wy * t6), t15),
-            k(3.2e-9) * (t21 * T::fused(-t13, t13, t6 * t6)),
+            t23,
+            t25,
+            -T::fused(k(3.2e-9), (k(1876.0) - t17) * (t10 * t10), k(2e-6)),
+        );
+        let t27 = T::fused(-t10, t20, t25 * t21) / t26;
+        let t28 = T::fused(
+            t10,
+            T::fused(t16, t12, t18 * (outer_ring_wy * (k(1562.5) + t17))),
+            t22 * (t5 * t5),
         );
         *out = [
-            t25,
-            T::fused(-t24, t25, t23 * t19),
-            T::fused(k(99968.01023672425), t26, t3 * t25),
+            -t27,
+            T::fused(-t24, t21, t25 * t27),
+            T::fused(-t3, t27, k(99968.01023672425) * t28),
         ];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 181 operations (66 ±, 113 ×, 2 ÷).
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 179 operations (65 ±, 112 ×, 2 ÷).
     fn corrected_accelerations(
         &self,
         _t: T,
@@ -3035,11 +3035,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
         );
         let t4 = t3 * t2;
         let t5 = outer_ring_wy * t4;
-        let t6 = inner_ring_wx - rotor_wx;
-        let t7 = outer_ring_wz - inner_ring_wz;
-        let t8 = k(6.4e-9) * t6;
-        let t9 = T::fused(k(3.2e-9), t5, t8);
-        let t10 = T::fused(
+        let t6 = outer_ring_wz - inner_ring_wz;
+        let t7 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -3048,11 +3045,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t11 = k(2.0) * t10;
-        let t12 = T::fused(-t10, t11, k(1.0));
-        let t13 = T::fused(-t1, t2, k(1.0));
-        let t14 = outer_ring_wy * t13;
-        let t15 = T::fused(
+        let t8 = k(2.0) * t7;
+        let t9 = T::fused(-t7, t8, k(1.0));
+        let t10 = k(3.2e-9) * t9;
+        let t11 = T::fused(-t1, t2, k(1.0));
+        let t12 = outer_ring_wy * t11;
+        let t13 = T::fused(-t12, outer_ring_wy * t10, k(0.00016));
+        let t14 = inner_ring_wx - rotor_wx;
+        let t15 = T::fused(-t4, t13, k(6.4e-9) * (t12 * (t14 * t9)));
+        let t16 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -3061,85 +3062,80 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t16 = t15 * t11;
-        let t17 = T::fused(-k(0.00016), t4, t7 * t16 * t8);
-        let t18 = T::fused(
-            k(1e-5),
-            t7 * T::fused(-k(0.2), t5, t6),
-            t16 * T::fused(t14, t12 * t9, t17),
+        let t17 = t16 * t8;
+        let t18 = t9 * t9;
+        let t19 = k(6.4e-9) * t6;
+        let t20 = t14 * t19;
+        let t21 = T::fused(t20, k(1563.5) - t18, T::fused(-k(2e-6), t6 * t5, t17 * t15));
+        let t22 = T::fused(
+            t9,
+            T::fused(t17, t20, t15),
+            k(1e-5) * (t12 * T::fused(k(0.4), t5, t14)),
         );
-        let t19 = t16 * t16;
-        let t20 = T::fused(
-            -t12,
-            t17,
-            t14
-                * T::fused(
-                    -k(1.00064e-5),
-                    T::fused(k(0.4000639590661976), t5, t6),
-                    t19 * t9,
-                ),
+        let t23 = t17 * t10;
+        let t24 = t11 * t23;
+        let t25 = k(1.0) / T::fused(t9, t10, k(6e-6));
+        let t26 = t25 * t24;
+        let t27 = T::fused(
+            t24,
+            t26,
+            -T::fused(k(3.2e-9), (k(1876.0) - t18) * (t11 * t11), k(2e-6)),
         );
-        let t21 = k(3.2e-9) * t13;
-        let t22 = t16 * t12;
-        let t23 = t22 * t21;
-        let t24 = k(1.0) / T::fused(-k(3.2e-9), t19, k(6.0032e-6));
-        let t25 = t24 * t23;
-        let t26 = T::fused(t13, t18, t25 * t20)
-            / T::fused(t23, t25, -T::fused(t21, t13 * (k(1875.0) + t19), k(2e-6)));
-        let t27 = outer_ring_wx * outer_ring_wy;
-        let t28 = t4 * t26;
-        let t29 = T::fused(inner_ring_wy, t7, T::fused(t0, t13, t28));
-        let t30 = T::fused(inner_ring_wx, t7, -T::fused(-t13, t26, t0 * t4));
-        let t31 = t27 - T::fused(-t24, t20, t25 * t26);
-        let t32 = T::fused(rotor_wy, t6, T::fused(t16, t30, t12 * t31));
-        let t33 = k(0.0002) * rotor_wx;
-        let t34 = T::fused(-k(0.0002), t32, rotor_wy * t33);
-        let t35 = rotor_e0 * rotor_e0;
-        let t36 = k(0.0002) * rotor_wz;
-        let t37 = T::fused(rotor_wx, t33, rotor_wz * t36);
-        let t38 = rotor_e0 * rotor_e3;
-        let t39 = rotor_e1 * rotor_e2;
-        let t40 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t35)),
-            t34,
-            k(2.0) * (t39 - t38) * t37,
+        let t28 = T::fused(-t11, t21, t26 * t22) / t27;
+        let t29 = outer_ring_wx * outer_ring_wy;
+        let t30 = t4 * t28;
+        let t31 = T::fused(inner_ring_wy, t6, -T::fused(-t0, t11, t30));
+        let t32 = T::fused(inner_ring_wx, t6, -T::fused(t11, t28, t0 * t4));
+        let t33 = t29 + T::fused(-t25, t22, t26 * t28);
+        let t34 = T::fused(rotor_wy, t14, T::fused(t17, t32, t9 * t33));
+        let t35 = k(0.0002) * rotor_wx;
+        let t36 = T::fused(-k(0.0002), t34, rotor_wy * t35);
+        let t37 = rotor_e0 * rotor_e0;
+        let t38 = k(0.0002) * rotor_wz;
+        let t39 = T::fused(rotor_wx, t35, rotor_wz * t38);
+        let t40 = rotor_e0 * rotor_e3;
+        let t41 = rotor_e1 * rotor_e2;
+        let t42 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t37)),
+            t36,
+            k(2.0) * (t41 - t40) * t39,
         );
-        let t41 = T::fused(
-            k(0.00016),
-            t13 * T::fused(k(4e-5), (k(1563.5) - t19) * (outer_ring_wy * t7), t16),
-            k(3.2e-9) * (t22 * T::fused(-t14, t14, t7 * t7)),
+        let t43 = T::fused(
+            t11,
+            T::fused(t17, t13, t19 * (outer_ring_wy * (k(1562.5) + t18))),
+            t23 * (t6 * t6),
         );
-        let t42 = T::fused(k(99968.01023672425), t41, t28) - t29;
-        let t43 = T::fused(k(0.0002), t42, rotor_wy * t36);
-        let t44 = rotor_e0 * rotor_e2;
-        let t45 = rotor_e1 * rotor_e3;
-        let t46 = T::fused(
-            k(2.0) * (t39 + t38),
-            t34,
-            k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t35)) * t37,
+        let t44 = T::fused(-k(99968.01023672425), t43, t30) + t31;
+        let t45 = T::fused(-k(0.0002), t44, rotor_wy * t38);
+        let t46 = rotor_e0 * rotor_e2;
+        let t47 = rotor_e1 * rotor_e3;
+        let t48 = T::fused(
+            k(2.0) * (t41 + t40),
+            t36,
+            k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t37)) * t39,
         );
-        let t47 = rotor_e0 * rotor_e1;
-        let t48 = rotor_e2 * rotor_e3;
-        let t49 = T::fused(-(k(2.0) * (t45 - t44)), t34, k(2.0) * (t48 + t47) * t37);
+        let t49 = rotor_e0 * rotor_e1;
+        let t50 = rotor_e2 * rotor_e3;
+        let t51 = T::fused(-(k(2.0) * (t47 - t46)), t36, k(2.0) * (t50 + t49) * t39);
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t0,
-            t26,
-            t27,
+            -t28,
+            t29,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t29,
-            t30,
-            t31,
-            T::fused(-(k(2.0) * (t45 + t44)), t43, t40),
-            -T::fused(k(2.0) * (t48 - t47), t43, t46),
-            T::fused(k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t35)), t43, t49),
-            t42,
-            -T::fused(rotor_wz, t6, T::fused(-t12, t30, t16 * t31)),
+            -t31,
             t32,
+            t33,
+            T::fused(-(k(2.0) * (t47 + t46)), t45, t42),
+            -T::fused(k(2.0) * (t50 - t49), t45, t48),
+            T::fused(k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t37)), t45, t51),
+            -t44,
+            -T::fused(rotor_wz, t14, T::fused(-t9, t32, t17 * t33)),
+            t34,
         ];
     }
     /// Writes λ: 134 operations (54 ±, 80 ×, 0 ÷).
@@ -3300,7 +3296,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
             -t23,
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 246 operations (90 ±, 154 ×, 2 ÷).
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 244 operations (89 ±, 153 ×, 2 ÷).
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -3346,11 +3342,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
         );
         let t4 = t3 * t2;
         let t5 = outer_ring_wy * t4;
-        let t6 = inner_ring_wx - rotor_wx;
-        let t7 = outer_ring_wz - inner_ring_wz;
-        let t8 = k(6.4e-9) * t6;
-        let t9 = T::fused(k(3.2e-9), t5, t8);
-        let t10 = T::fused(
+        let t6 = outer_ring_wz - inner_ring_wz;
+        let t7 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -3359,11 +3352,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t11 = k(2.0) * t10;
-        let t12 = T::fused(-t10, t11, k(1.0));
-        let t13 = T::fused(-t1, t2, k(1.0));
-        let t14 = outer_ring_wy * t13;
-        let t15 = T::fused(
+        let t8 = k(2.0) * t7;
+        let t9 = T::fused(-t7, t8, k(1.0));
+        let t10 = k(3.2e-9) * t9;
+        let t11 = T::fused(-t1, t2, k(1.0));
+        let t12 = outer_ring_wy * t11;
+        let t13 = T::fused(-t12, outer_ring_wy * t10, k(0.00016));
+        let t14 = inner_ring_wx - rotor_wx;
+        let t15 = T::fused(-t4, t13, k(6.4e-9) * (t12 * (t14 * t9)));
+        let t16 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -3372,142 +3369,137 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t16 = t15 * t11;
-        let t17 = T::fused(-k(0.00016), t4, t7 * t16 * t8);
-        let t18 = T::fused(
-            k(1e-5),
-            t7 * T::fused(-k(0.2), t5, t6),
-            t16 * T::fused(t14, t12 * t9, t17),
+        let t17 = t16 * t8;
+        let t18 = t9 * t9;
+        let t19 = k(6.4e-9) * t6;
+        let t20 = t14 * t19;
+        let t21 = T::fused(t20, k(1563.5) - t18, T::fused(-k(2e-6), t6 * t5, t17 * t15));
+        let t22 = T::fused(
+            t9,
+            T::fused(t17, t20, t15),
+            k(1e-5) * (t12 * T::fused(k(0.4), t5, t14)),
         );
-        let t19 = t16 * t16;
-        let t20 = T::fused(
-            -t12,
-            t17,
-            t14
-                * T::fused(
-                    -k(1.00064e-5),
-                    T::fused(k(0.4000639590661976), t5, t6),
-                    t19 * t9,
-                ),
+        let t23 = t17 * t10;
+        let t24 = t11 * t23;
+        let t25 = k(1.0) / T::fused(t9, t10, k(6e-6));
+        let t26 = t25 * t24;
+        let t27 = T::fused(
+            t24,
+            t26,
+            -T::fused(k(3.2e-9), (k(1876.0) - t18) * (t11 * t11), k(2e-6)),
         );
-        let t21 = k(3.2e-9) * t13;
-        let t22 = t16 * t12;
-        let t23 = t22 * t21;
-        let t24 = k(1.0) / T::fused(-k(3.2e-9), t19, k(6.0032e-6));
-        let t25 = t24 * t23;
-        let t26 = T::fused(t13, t18, t25 * t20)
-            / T::fused(t23, t25, -T::fused(t21, t13 * (k(1875.0) + t19), k(2e-6)));
-        let t27 = outer_ring_wx * outer_ring_wy;
-        let t28 = t4 * t26;
-        let t29 = T::fused(inner_ring_wy, t7, T::fused(t0, t13, t28));
-        let t30 = T::fused(inner_ring_wx, t7, -T::fused(-t13, t26, t0 * t4));
-        let t31 = t27 - T::fused(-t24, t20, t25 * t26);
-        let t32 = T::fused(rotor_wy, t6, T::fused(t16, t30, t12 * t31));
-        let t33 = k(0.0002) * rotor_wx;
-        let t34 = T::fused(-k(0.0002), t32, rotor_wy * t33);
-        let t35 = rotor_e0 * rotor_e0;
-        let t36 = k(0.5) - T::fused(rotor_e1, rotor_e1, t35);
-        let t37 = k(0.0002) * rotor_wz;
-        let t38 = T::fused(rotor_wx, t33, rotor_wz * t37);
-        let t39 = rotor_e0 * rotor_e3;
-        let t40 = rotor_e1 * rotor_e2;
-        let t41 = T::fused(
-            k(0.00016),
-            t13 * T::fused(k(4e-5), (k(1563.5) - t19) * (outer_ring_wy * t7), t16),
-            k(3.2e-9) * (t22 * T::fused(-t14, t14, t7 * t7)),
+        let t28 = T::fused(-t11, t21, t26 * t22) / t27;
+        let t29 = outer_ring_wx * outer_ring_wy;
+        let t30 = t4 * t28;
+        let t31 = T::fused(inner_ring_wy, t6, -T::fused(-t0, t11, t30));
+        let t32 = T::fused(inner_ring_wx, t6, -T::fused(t11, t28, t0 * t4));
+        let t33 = t29 + T::fused(-t25, t22, t26 * t28);
+        let t34 = T::fused(rotor_wy, t14, T::fused(t17, t32, t9 * t33));
+        let t35 = k(0.0002) * rotor_wx;
+        let t36 = T::fused(-k(0.0002), t34, rotor_wy * t35);
+        let t37 = rotor_e0 * rotor_e0;
+        let t38 = k(0.5) - T::fused(rotor_e1, rotor_e1, t37);
+        let t39 = k(0.0002) * rotor_wz;
+        let t40 = T::fused(rotor_wx, t35, rotor_wz * t39);
+        let t41 = rotor_e0 * rotor_e3;
+        let t42 = rotor_e1 * rotor_e2;
+        let t43 = T::fused(
+            t11,
+            T::fused(t17, t13, t19 * (outer_ring_wy * (k(1562.5) + t18))),
+            t23 * (t6 * t6),
         );
-        let t42 = T::fused(k(99968.01023672425), t41, t28) - t29;
-        let t43 = T::fused(k(0.0002), t42, rotor_wy * t37);
-        let t44 = rotor_e0 * rotor_e2;
-        let t45 = rotor_e1 * rotor_e3;
-        let t46 = t45 + t44;
-        let t47 = T::fused(
-            k(2.0) * t46,
-            t43,
-            -T::fused(k(2.0) * t36, t34, k(2.0) * (t40 - t39) * t38),
-        );
-        let t48 = t40 + t39;
+        let t44 = T::fused(-k(99968.01023672425), t43, t30) + t31;
+        let t45 = T::fused(-k(0.0002), t44, rotor_wy * t39);
+        let t46 = rotor_e0 * rotor_e2;
+        let t47 = rotor_e1 * rotor_e3;
+        let t48 = t47 + t46;
         let t49 = T::fused(
             k(2.0) * t48,
-            t34,
-            k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t35)) * t38,
+            t45,
+            -T::fused(k(2.0) * t38, t36, k(2.0) * (t42 - t41) * t40),
         );
-        let t50 = rotor_e0 * rotor_e1;
-        let t51 = rotor_e2 * rotor_e3;
-        let t52 = t51 - t50;
-        let t53 = T::fused(k(2.0) * t52, t43, t49);
-        let t54 = t45 - t44;
-        let t55 = k(0.5) - T::fused(rotor_e3, rotor_e3, t35);
-        let t56 = T::fused(
-            k(2.0) * t55,
-            t43,
-            T::fused(-(k(2.0) * t54), t34, k(2.0) * (t51 + t50) * t38),
+        let t50 = t42 + t41;
+        let t51 = T::fused(
+            k(2.0) * t50,
+            t36,
+            k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t37)) * t40,
         );
-        let t57 = T::fused(rotor_wz, t6, T::fused(-t12, t30, t16 * t31));
-        let t58 = k(0.08) * t47;
-        let t59 = T::fused(-k(0.08), t53, k(0.8));
-        let t60 = k(0.1) + t59;
-        let t61 = k(0.08) * t56;
-        let t62 = T::fused(
-            k(0.0004) * t54,
-            t61,
-            T::fused(k(0.0004) * t48, t59, k(0.0004) * t36 * t58),
+        let t52 = rotor_e0 * rotor_e1;
+        let t53 = rotor_e2 * rotor_e3;
+        let t54 = t53 - t52;
+        let t55 = T::fused(k(2.0) * t54, t45, t51);
+        let t56 = t47 - t46;
+        let t57 = k(0.5) - T::fused(rotor_e3, rotor_e3, t37);
+        let t58 = T::fused(
+            k(2.0) * t57,
+            t45,
+            T::fused(-(k(2.0) * t56), t36, k(2.0) * (t53 + t52) * t40),
         );
-        let t63 = T::fused(-k(5e-6), T::fused(rotor_wx, rotor_wy, -t32), t62);
-        let t64 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t57);
-        let t65 = T::fused(-t12, t63, t16 * t64);
-        let t66 = T::fused(-k(1e-6), T::fused(inner_ring_wx, inner_ring_wy, t31), t65);
-        let t67 = k(2.0) * outer_ring_e2;
-        let t68 = outer_ring_e0 * t67;
-        let t69 = T::fused(t16, t63, t12 * t64);
-        let t70 = T::fused(k(2e-6), t30, t69);
-        let t71 = T::fused(
-            k(0.0004) * t55,
-            t61,
-            T::fused(-(k(0.0004) * t52), t59, k(0.0004) * t46 * t58),
+        let t59 = T::fused(rotor_wz, t14, T::fused(-t9, t32, t17 * t33));
+        let t60 = k(0.08) * t49;
+        let t61 = T::fused(-k(0.08), t55, k(0.8));
+        let t62 = k(0.1) + t61;
+        let t63 = k(0.08) * t58;
+        let t64 = T::fused(
+            k(0.0004) * t56,
+            t63,
+            T::fused(k(0.0004) * t50, t61, k(0.0004) * t38 * t60),
         );
-        let t72 = T::fused(
+        let t65 = T::fused(-k(5e-6), T::fused(rotor_wx, rotor_wy, -t34), t64);
+        let t66 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t59);
+        let t67 = T::fused(-t9, t65, t17 * t66);
+        let t68 = T::fused(-k(1e-6), T::fused(inner_ring_wx, inner_ring_wy, t33), t67);
+        let t69 = k(2.0) * outer_ring_e2;
+        let t70 = outer_ring_e0 * t69;
+        let t71 = T::fused(t17, t65, t9 * t66);
+        let t72 = T::fused(k(2e-6), t32, t71);
+        let t73 = T::fused(
+            k(0.0004) * t57,
+            t63,
+            T::fused(-(k(0.0004) * t54), t61, k(0.0004) * t48 * t60),
+        );
+        let t74 = T::fused(
             -k(1e-6),
-            T::fused(inner_ring_wy, inner_ring_wz, t29),
-            T::fused(k(1e-5), t42, t71),
+            T::fused(inner_ring_wy, inner_ring_wz, t31),
+            T::fused(-k(1e-5), t44, t73),
         );
-        let t73 = T::fused(t4, t70, t13 * t72);
-        let t74 = T::fused(-k(2e-6), t0, t73);
-        let t75 = T::fused(-outer_ring_e2, t67, k(1.0));
+        let t75 = T::fused(t4, t72, t11 * t74);
+        let t76 = T::fused(-k(2e-6), t0, t75);
+        let t77 = T::fused(-outer_ring_e2, t69, k(1.0));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t0,
-            t26,
-            t27,
+            -t28,
+            t29,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t29,
-            t30,
-            t31,
-            -t47,
-            -t53,
-            t56,
-            t42,
-            -t57,
+            -t31,
             t32,
+            t33,
+            -t49,
+            -t55,
             t58,
-            -(k(0.1) + t60),
-            -t61,
-            T::fused(-t75, t74, t68 * t66),
-            -T::fused(t75, t66, t68 * t74),
-            t58,
-            -t60,
-            -t61,
-            T::fused(-t13, t70, t4 * t72),
-            t73,
-            t58,
+            -t44,
             -t59,
+            t34,
+            t60,
+            -(k(0.1) + t62),
+            -t63,
+            T::fused(-t77, t76, t70 * t68),
+            -T::fused(t77, t68, t70 * t76),
+            t60,
+            -t62,
+            -t63,
+            T::fused(-t11, t72, t4 * t74),
+            t75,
+            t60,
             -t61,
-            t65,
-            t69,
+            -t63,
+            t67,
+            t71,
         ];
     }
 }

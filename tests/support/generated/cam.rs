@@ -8,22 +8,28 @@
 //! * unknowns of eq. (17): 24
 //! * non-zeros: Φ_q 38 of 196, (Φ_r, Φ_π') 18 of 144
 //! * left out: coordinates of `frame` (fixed: folded into constants)
+//! * left out: joint coordinates (for trees without couplers and drivers)
+//! * left out: charts (for trees of revolute, spherical and fixed joints: the run time pivots)
+//! * left out: parameters (all numbers are folded)
+//! * accelerations: by rotations of the bodies, 168 operations, not relative Euler parameters 168
 //!
-//! | function | computes | + − | × | ÷ | total | zeros |
-//! |---|---|---|---|---|---|---|
-//! | phi | Φ | 20 | 30 | 0 | 50 | 0 of 14 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 0 | 8 | 0 | 8 | 0 of 38 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 14 | 24 | 0 | 38 | 0 of 18 |
-//! | nu | ν | 3 | 7 | 0 | 10 | 10 of 12 |
-//! | gamma | γ | 37 | 69 | 0 | 106 | 4 of 12 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 25 | 43 | 0 | 68 | 0 of 12 |
-//! | applied_force | (f, n' − w̃'J'w') | 0 | 0 | 0 | 0 | 10 of 12 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 51 | 115 | 2 | 168 | 4 of 14 |
-//! | multipliers | λ, the accelerations being known | 24 | 78 | 2 | 104 | 0 of 12 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 20 | 41 | 0 | 61 | 0 of 15 |
-//! | energy | T and V | 12 | 23 | 0 | 35 | 0 of 2 |
-//! | read_joints | joint coordinates and rates | 0 | 0 | 0 | 0 | 0 of 4 |
-//! | outputs | outputs, the accelerations being known | 4 | 9 | 0 | 13 | 1 of 4 |
+//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
+//!
+//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
+//! |---|---|---|---|---|---|---|---|---|
+//! | phi | Φ | 20 | 30 | 0 | 50 | 0 of 14 | 50 | 50 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 0 | 8 | 0 | 8 | 0 of 38 | 32 | 8 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 14 | 24 | 0 | 38 | 0 of 18 | 54 | 38 |
+//! | nu | ν | 3 | 7 | 0 | 10 | 10 of 12 | 12 | 10 |
+//! | gamma | γ | 37 | 69 | 0 | 106 | 4 of 12 | 161 | 106 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 25 | 43 | 0 | 68 | 0 of 12 | 86 | 68 |
+//! | applied_force | (f, n' − w̃'J'w') | 0 | 0 | 0 | 0 | 10 of 12 | 0 | 0 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 51 | 115 | 2 | 168 | 4 of 14 | 968 | 168 |
+//! | multipliers | λ, the accelerations being known | 24 | 78 | 2 | 104 | 0 of 12 | 610 | 104 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 20 | 41 | 0 | 61 | 0 of 15 | 63 | 61 |
+//! | energy | T and V | 12 | 23 | 0 | 35 | 0 of 2 | 35 | 35 |
+//! | read_joints | joint coordinates and rates | 0 | 0 | 0 | 0 | 0 of 4 | 0 | 0 |
+//! | outputs | outputs, the accelerations being known | 4 | 9 | 0 | 13 | 1 of 4 | 15 | 13 |
 //!
 //! # Proof
 //!

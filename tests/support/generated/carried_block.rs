@@ -8,30 +8,38 @@
 //! * unknowns of eq. (17): 20
 //! * non-zeros: Φ_q 61 of 140, (Φ_r, Φ_π') 42 of 96
 //! * left out: coordinates of `ground` (fixed: folded into constants)
+//! * left out: charts (for trees of revolute, spherical and fixed joints: the run time pivots)
+//! * left out: parameters (all numbers are folded)
+//! * accelerations: by rotations of the bodies, 1779 operations, not relative Euler parameters 1784
+//! * joint_accelerations: by normal form, 217 operations, not recursion 1232
+//! * joint_accelerations_at: by normal form, 634 operations, not recursion 1649, recursion on the bodies' spins 1679
+//! * corrected_accelerations: by normal form in the bodies' frames, 914 operations, not recursion in the bodies' frames 1861, recursion in the global frame 1967, normal form in the global frame 1017, recursion on the bodies' spins in the bodies' frames 1754, recursion on the bodies' spins in the global frame 1892, elimination in maximal coordinates 1779
 //!
-//! | function | computes | + − | × | ÷ | total | zeros |
-//! |---|---|---|---|---|---|---|
-//! | phi | Φ | 104 | 120 | 0 | 224 | 0 of 10 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 348 | 405 | 0 | 753 | 0 of 61 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 165 | 216 | 0 | 381 | 0 of 42 |
-//! | nu | ν | 0 | 0 | 0 | 0 | 8 of 8 |
-//! | gamma | γ | 282 | 381 | 0 | 663 | 0 of 8 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 171 | 222 | 0 | 393 | 0 of 8 |
-//! | applied_force | (f, n' − w̃'J'w') | 247 | 313 | 0 | 560 | 0 of 12 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 796 | 977 | 6 | 1779 | 0 of 12 |
-//! | multipliers | λ, the accelerations being known | 399 | 506 | 2 | 907 | 0 of 8 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 123 | 176 | 0 | 299 | 0 of 16 |
-//! | energy | T and V | 124 | 168 | 0 | 292 | 0 of 2 |
-//! | read_joints | joint coordinates and rates | 175 | 216 | 0 | 391 | 0 of 10 |
-//! | outputs | outputs, the accelerations being known | 475 | 597 | 2 | 1074 | 0 of 12 |
-//! | joint_accelerations | u̇ in joint coordinates | 95 | 119 | 3 | 217 | 0 of 4 |
-//! | joint_derivative | ẋ but for u̇ | 187 | 217 | 0 | 404 | 0 of 5 |
-//! | to_maximal | (q, v) of a joint state | 112 | 137 | 0 | 249 | 0 of 27 |
-//! | to_joints | (x, u) of a maximal state | 181 | 224 | 0 | 405 | 0 of 8 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 273 | 358 | 3 | 634 | 0 of 4 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 397 | 514 | 3 | 914 | 0 of 12 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 392 | 490 | 0 | 882 | 0 of 8 |
-//! | corrected_solution | both | 610 | 765 | 3 | 1378 | 0 of 20 |
+//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
+//!
+//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
+//! |---|---|---|---|---|---|---|---|---|
+//! | phi | Φ | 104 | 120 | 0 | 224 | 0 of 10 | 879 | 224 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 348 | 405 | 0 | 753 | 0 of 61 | 3978 | 753 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 165 | 216 | 0 | 381 | 0 of 42 | 3551 | 381 |
+//! | nu | ν | 0 | 0 | 0 | 0 | 8 of 8 | 0 | 0 |
+//! | gamma | γ | 282 | 381 | 0 | 663 | 0 of 8 | 8294 | 663 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 171 | 222 | 0 | 393 | 0 of 8 | 3211 | 393 |
+//! | applied_force | (f, n' − w̃'J'w') | 247 | 313 | 0 | 560 | 0 of 12 | 19989 | 560 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 796 | 977 | 6 | 1779 | 0 of 12 | 1.2e10 | 1782 |
+//! | multipliers | λ, the accelerations being known | 399 | 506 | 2 | 907 | 0 of 8 | 211178 | 907 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 123 | 176 | 0 | 299 | 0 of 16 | 1134 | 299 |
+//! | energy | T and V | 124 | 168 | 0 | 292 | 0 of 2 | 3071 | 292 |
+//! | read_joints | joint coordinates and rates | 175 | 216 | 0 | 391 | 0 of 10 | 2367 | 391 |
+//! | outputs | outputs, the accelerations being known | 475 | 597 | 2 | 1074 | 0 of 12 | 5.3e6 | 1074 |
+//! | joint_accelerations | u̇ in joint coordinates | 95 | 119 | 3 | 217 | 0 of 4 | 8880 | 218 |
+//! | joint_derivative | ẋ but for u̇ | 187 | 217 | 0 | 404 | 0 of 5 | 14485 | 404 |
+//! | to_maximal | (q, v) of a joint state | 112 | 137 | 0 | 249 | 0 of 27 | 3365 | 249 |
+//! | to_joints | (x, u) of a maximal state | 181 | 224 | 0 | 405 | 0 of 8 | 3395 | 405 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 273 | 358 | 3 | 634 | 0 of 4 | 370413 | 635 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 397 | 514 | 3 | 914 | 0 of 12 | 1.2e7 | 915 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 392 | 490 | 0 | 882 | 0 of 8 | 518437 | 882 |
+//! | corrected_solution | both | 610 | 765 | 3 | 1378 | 0 of 20 | 1.0e9 | 1379 |
 //!
 //! # Proof
 //!
@@ -5585,100 +5593,100 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
         let u1 = x[5];
         let u2 = x[6];
         let u3 = x[7];
-        let t0 = x3.sin();
-        let t1 = x3.cos();
+        let t0 = x3.cos();
+        let t1 = x3.sin();
         let t2 = T::fused(
-            k(1.0503018108651911),
-            T::fused(-k(11.494252873563218), x1, t1),
-            -T::fused(-k(4.225352112676056), x2 - k(1.7985714285714285), t0),
+            k(0.9521072796934866),
+            T::fused(k(12.072434607645874), x1, t1),
+            -T::fused(k(4.022988505747127), x2 - k(1.7985714285714285), t0),
         );
         let t3 = x0.cos();
         let t4 = T::fused(
-            k(26.591760299625467),
+            k(5.202735710796287),
             x2,
             T::fused(
-                k(37.453183520599254),
+                k(7.327796775769419),
                 x1,
-                -T::fused(k(5.111111111111111), t1 - k(1.868343917928676), t0),
+                -T::fused(k(0.1956521739130435), t1 - k(9.549313358302122), t0),
             ),
         );
         let t5 = x0.sin();
-        let t6 = T::fused(-k(0.012444444444444444), t0, k(0.027555555555555555) * t1);
-        let t7 = T::fused(k(0.027555555555555555), t0, k(0.012444444444444444) * t1);
+        let t6 = T::fused(-k(0.027555555555555555), t0, k(0.012444444444444444) * t1);
+        let t7 = T::fused(k(0.012444444444444444), t0, k(0.027555555555555555) * t1);
         let t8 = T::fused(
             x2,
             t6,
             T::fused(
-                k(0.002191111111111111),
+                k(0.010245185185185185),
                 t1,
-                -T::fused(k(0.010245185185185185), t0, x1 * t7),
+                T::fused(-k(0.002191111111111111), t0, x1 * t7),
             ),
         );
-        let t9 = k(4.230994152046784)
-            - T::fused(
-                k(1.7309941520467835),
+        let t9 = k(2.4442567567567566)
+            + T::fused(
+                k(0.5777027027027027),
                 t1,
-                T::fused(
-                    k(1.7543859649122806),
+                -T::fused(
+                    k(1.0135135135135136),
                     x2,
-                    -T::fused(k(17.54385964912281), x1, t0),
+                    T::fused(-k(10.135135135135135), x1, t0),
                 ),
             );
-        let t10 = k(0.01146962962962963)
-            - T::fused(-k(0.06755555555555555), x1, k(0.03155555555555556) * x2);
-        let t11 = k(0.03106238683127572)
+        let t10 = k(0.03106238683127572)
             - T::fused(-k(0.11693827160493828), x1, k(0.0004938271604938272) * x2);
+        let t11 = k(0.01146962962962963)
+            - T::fused(-k(0.06755555555555555), x1, k(0.03155555555555556) * x2);
         let t12 = T::fused(
             t1,
             t10,
             t0
                 * T::fused(
-                    -k(0.005428148148148148),
-                    T::fused(k(2.7249211547792336), t1, t0),
+                    k(0.005428148148148148),
+                    T::fused(-k(2.7249211547792336), t1, t0),
                     t11,
                 ),
         );
-        let t13 = k(0.002714074074074074) + t12;
+        let t13 = k(0.002714074074074074) - t12;
         let t14 = T::fused(-k(0.11851851851851852), x1, k(0.0066172839506172835));
         let t15 = T::fused(
             k(0.2518518518518518),
             x2,
             T::fused(
-                -k(0.03155555555555556),
+                k(0.0004938271604938272),
                 t0,
-                T::fused(k(0.0004938271604938272), t1, t14),
+                T::fused(-k(0.03155555555555556), t1, t14),
             ),
         );
         let t16 = T::fused(
-            -(u3 * u3),
+            u3 * u3,
             t8,
-            u0 * T::fused(k(0.06755555555555555), u1 * t9, T::fused(u3, t13, u2 * t15)),
+            u0 * T::fused(k(0.11693827160493828), u1 * t9, T::fused(-u3, t13, u2 * t15)),
         );
         let t17 = k(2.0) * u0;
         let t18 = T::fused(
-            k(0.3313333333333333),
-            t1 * T::fused(-k(0.1790744466800805), t3 + k(4.966292134831461), t5),
+            k(0.348),
+            t1 * T::fused(k(0.8714346530438485), t3 + k(0.5937957987298486), t5),
             T::fused(k(0.02), u3, k(0.6) * x3),
         );
         let t19 = T::fused(
-            -t17,
-            T::fused(k(0.25), u0 * t13, T::fused(u2, t7, u1 * t6)),
+            t17,
+            T::fused(k(0.25), u0 * t13, T::fused(-u2, t7, u1 * t6)),
             T::fused(
-                k(0.348),
-                t0 * T::fused(k(0.8714346530438485), t3, t5 + k(0.5174542358450405)),
+                -k(0.3313333333333333),
+                t0 * T::fused(k(0.1790744466800805), t3, -(t5 - k(0.8893360160965795))),
                 t18,
             ),
         );
         let t20 = T::fused(
-            -x1,
+            x1,
             t6,
             T::fused(
                 -x2,
                 t7,
                 T::fused(
-                    -k(0.010245185185185185),
+                    -k(0.002191111111111111),
                     t1,
-                    T::fused(-k(0.002191111111111111), t0, k(0.014687407407407408)),
+                    T::fused(-k(0.010245185185185185), t0, k(0.014687407407407408)),
                 ),
             ),
         );
@@ -5686,11 +5694,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
         let t22 = T::fused(
             t21,
             t19,
-            -T::fused(
-                -k(0.3313333333333333),
-                t3 * t2,
-                T::fused(-k(0.059333333333333335), t5 * t4, t16),
-            ),
+            -T::fused(k(0.348), t3 * t2, T::fused(-k(0.3032592592592593), t5 * t4, t16)),
         );
         let t23 = u3 * T::fused(k(2.25), u3, t17);
         let t24 = k(0.5333333333333333) * u0;
@@ -5708,11 +5712,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             ),
         );
         let t26 = k(68.08553560621344) * t6;
-        let t27 = T::fused(t26, t19, T::fused(t23, t7, t25));
+        let t27 = T::fused(t26, t19, -T::fused(t23, t7, t25));
         let t28 = T::fused(
             t26,
             t20,
-            T::fused(k(0.26666666666666666), x1, k(0.06822222222222223)) - t6,
+            -(T::fused(k(0.26666666666666666), x1, k(0.06822222222222223)) + t6),
         );
         let t29 = k(1.0) / T::fused(-t26, k(2.25) * t6, k(0.6));
         let t30 = t29 * t28;
@@ -5730,9 +5734,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             ),
         );
         let t32 = T::fused(
-            t23,
+            -t23,
             t6,
-            T::fused(-t24, T::fused(k(0.06333333333333334), u0 * t9, u2), t31),
+            T::fused(-t24, T::fused(k(0.10962962962962963), u0 * t9, u2), t31),
         );
         let t33 = k(68.08553560621344) * t7;
         let t34 = k(2.25) * t7;
@@ -5754,13 +5758,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             k(0.5925925925925926),
             x1 * (x1 + k(0.48233333333333334)),
             T::fused(
-                -t1,
-                T::fused(-k(0.002714074074074074), t0, t11),
-                k(0.3136290534979424),
+                t1,
+                T::fused(k(0.002714074074074074), t0, t11),
+                k(0.3062334156378601),
             ),
         );
         let t42 = T::fused(
-            t0,
+            -t0,
             T::fused(-k(0.007395637860082305), t0, t10),
             T::fused(x2, T::fused(k(0.1259259259259259), x2, t14), t41),
         );
@@ -5773,7 +5777,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             t45,
             T::fused(t33, t44, -T::fused(-k(30.26023804720597), t19, t21 * t43)),
         );
-        *out = [-t43, t44, -t45, -t46];
+        *out = [-t43, t44, t45, -t46];
     }
     /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 404 operations (187 ±, 217 ×, 0 ÷) and 4 functions.
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
@@ -6580,33 +6584,33 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             T::fused(k(0.6666666666666666), t40, k(0.3333333333333333) * t41),
         );
         let t43 = k(2.0) * t42;
-        let t44 = T::fused(
-            arm_e3,
-            block_e3,
-            T::fused(arm_e2, block_e2, T::fused(arm_e1, block_e1, arm_e0 * block_e0)),
-        );
-        let t45 = t44 * t43;
-        let t46 = T::fused(
+        let t44 = T::fused(-t42, t43, k(1.0));
+        let t45 = T::fused(
             -k(1.3333333333333333),
             t2,
             T::fused(-k(1.3333333333333333), t7, k(0.6666666666666666) * t5),
         );
-        let t47 = T::fused(
+        let t46 = T::fused(
             k(1.3333333333333333),
             t20,
             T::fused(-k(1.3333333333333333), t22, k(0.6666666666666666) * t21),
         );
-        let t48 = T::fused(
+        let t47 = T::fused(
             k(1.3333333333333333),
             t30,
             T::fused(k(1.3333333333333333), t32, k(0.6666666666666666) * t31),
         );
-        let t49 = T::fused(t48, t37, -T::fused(-t46, t17, t47 * t29));
-        let t50 = T::fused(-t42, t43, k(1.0));
+        let t48 = T::fused(t47, t37, -T::fused(-t45, t17, t46 * t29));
+        let t49 = T::fused(
+            arm_e3,
+            block_e3,
+            T::fused(arm_e2, block_e2, T::fused(arm_e1, block_e1, arm_e0 * block_e0)),
+        );
+        let t50 = t49 * t43;
         let t51 = T::fused(
-            k(1.0503018108651911),
-            T::fused(-k(11.494252873563218), t49, t50),
-            T::fused(-k(4.225352112676056), t38 + k(1.7985714285714285), t45),
+            k(0.9521072796934866),
+            T::fused(-k(12.072434607645874), t48, t50),
+            T::fused(-k(4.022988505747127), t38 + k(1.7985714285714285), t44),
         );
         let t52 = T::fused(
             k(0.6666666666666666),
@@ -6616,12 +6620,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
         let t53 = k(2.0) * t52;
         let t54 = T::fused(-t52, t53, k(1.0));
         let t55 = T::fused(
-            k(26.591760299625467),
+            k(5.202735710796287),
             t38,
             -T::fused(
-                k(37.453183520599254),
-                t49,
-                T::fused(-k(5.111111111111111), t50 - k(1.868343917928676), t45),
+                k(7.327796775769419),
+                t48,
+                -T::fused(-k(0.1956521739130435), t50 + k(9.549313358302122), t44),
             ),
         );
         let t56 = arm_e0 * t53;
@@ -6637,25 +6641,25 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                     k(0.3333333333333333) * block_wx,
                 ),
             );
-        let t59 = T::fused(k(0.012444444444444444), t45, k(0.027555555555555555) * t50);
-        let t60 = T::fused(-k(0.027555555555555555), t45, k(0.012444444444444444) * t50);
+        let t59 = T::fused(k(0.027555555555555555), t44, k(0.012444444444444444) * t50);
+        let t60 = T::fused(-k(0.012444444444444444), t44, k(0.027555555555555555) * t50);
         let t61 = T::fused(
             -t38,
             t59,
             T::fused(
-                k(0.002191111111111111),
+                k(0.010245185185185185),
                 t50,
-                -T::fused(-k(0.010245185185185185), t45, t49 * t60),
+                T::fused(k(0.002191111111111111), t44, t48 * t60),
             ),
         );
-        let t62 = k(4.230994152046784)
+        let t62 = k(2.4442567567567566)
             - T::fused(
-                k(1.7309941520467835),
+                k(0.5777027027027027),
                 t50,
                 -T::fused(
-                    k(1.7543859649122806),
+                    k(1.0135135135135136),
                     t38,
-                    -T::fused(-k(17.54385964912281), t49, t45),
+                    -T::fused(-k(10.135135135135135), t48, t44),
                 ),
             );
         let t63 = k(2.0) * t34;
@@ -6676,7 +6680,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             - (block_sz
                 + T::fused(k(0.1), T::fused(-t63, block_wy, t64 * block_wx), t66));
         let t74 = T::fused(
-            -t48,
+            -t47,
             t73,
             t37
                 * T::fused(
@@ -6703,7 +6707,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             - (block_sy
                 - T::fused(k(0.1), T::fused(t75, block_wy, t76 * block_wx), t78));
         let t86 = T::fused(
-            -t47,
+            -t46,
             t85,
             t29
                 * T::fused(
@@ -6730,7 +6734,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             - (block_sx
                 - T::fused(-k(0.1), T::fused(t87, block_wy, t88 * block_wx), t90));
         let t98 = T::fused(
-            t46,
+            t45,
             t97,
             t17
                 * T::fused(
@@ -6740,29 +6744,29 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 ),
         );
         let t99 = t98 + t86 - t74;
-        let t100 = k(0.01146962962962963)
-            + T::fused(k(0.03155555555555556), t38, k(0.06755555555555555) * t49);
-        let t101 = k(0.03106238683127572)
-            + T::fused(k(0.0004938271604938272), t38, k(0.11693827160493828) * t49);
+        let t100 = k(0.03106238683127572)
+            + T::fused(k(0.0004938271604938272), t38, k(0.11693827160493828) * t48);
+        let t101 = k(0.01146962962962963)
+            + T::fused(k(0.03155555555555556), t38, k(0.06755555555555555) * t48);
         let t102 = T::fused(
             -t50,
             t100,
-            t45
+            t44
                 * T::fused(
                     k(0.005428148148148148),
-                    T::fused(-k(2.7249211547792336), t50, t45),
+                    T::fused(k(2.7249211547792336), t50, t44),
                     t101,
                 ),
         );
         let t103 = k(0.002714074074074074) - t102;
-        let t104 = T::fused(-k(0.11851851851851852), t49, k(0.0066172839506172835));
+        let t104 = T::fused(-k(0.11851851851851852), t48, k(0.0066172839506172835));
         let t105 = T::fused(
             k(0.2518518518518518),
             t38,
             -T::fused(
-                k(0.03155555555555556),
-                t45,
-                T::fused(k(0.0004938271604938272), t50, t104),
+                k(0.0004938271604938272),
+                t44,
+                T::fused(k(0.03155555555555556), t50, t104),
             ),
         );
         let t106 = T::fused(
@@ -6798,9 +6802,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             t58 * t58,
             t110
                 * T::fused(
-                    k(0.06755555555555555),
+                    k(0.11693827160493828),
                     t99 * t62,
-                    T::fused(t58, t103, t109 * t105),
+                    T::fused(-t58, t103, t109 * t105),
                 ),
         );
         let t112 = k(2.0) * t110;
@@ -6849,29 +6853,34 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
         let t123 = T::fused(-t122, t119, t120 * t121)
             .atan2(T::fused(t120, t119, t122 * t121));
         let t124 = T::fused(
-            -k(0.3313333333333333),
-            t50 * T::fused(-k(0.1790744466800805), t54 + k(4.966292134831461), t56),
+            k(0.348),
+            t50 * T::fused(k(0.8714346530438485), t54 + k(0.5937957987298486), t56),
             T::fused(-k(0.6), turn0 + t123, k(0.02) * t58),
         );
         let t125 = T::fused(
-            T::fused(k(0.25), t110 * t103, -T::fused(-t109, t60, t99 * t59)),
+            -T::fused(k(0.25), t110 * t103, T::fused(t109, t60, t99 * t59)),
             t112,
             T::fused(
-                k(0.348),
-                t45 * T::fused(k(0.8714346530438485), t54, t56 + k(0.5174542358450405)),
+                k(0.3313333333333333),
+                t44
+                    * T::fused(
+                        k(0.1790744466800805),
+                        t54,
+                        -(t56 - k(0.8893360160965795)),
+                    ),
                 t124,
             ),
         );
         let t126 = T::fused(
-            -t49,
+            -t48,
             t59,
             T::fused(
-                t38,
+                -t38,
                 t60,
                 T::fused(
-                    -k(0.010245185185185185),
+                    k(0.002191111111111111),
                     t50,
-                    T::fused(k(0.002191111111111111), t45, k(0.014687407407407408)),
+                    T::fused(-k(0.010245185185185185), t44, k(0.014687407407407408)),
                 ),
             ),
         );
@@ -6880,9 +6889,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             t127,
             t125,
             -T::fused(
-                k(0.3313333333333333),
+                k(0.348),
                 t54 * t51,
-                T::fused(-k(0.059333333333333335), t56 * t55, t111),
+                T::fused(-k(0.3032592592592593), t56 * t55, t111),
             ),
         );
         let t129 = t58 * T::fused(-k(2.25), t58, t112);
@@ -6901,11 +6910,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             ),
         );
         let t132 = k(68.08553560621344) * t59;
-        let t133 = T::fused(t132, t125, -T::fused(-t60, t129, t131));
+        let t133 = T::fused(t132, t125, -T::fused(t60, t129, t131));
         let t134 = T::fused(
             t132,
             t126,
-            -(t59 - T::fused(k(0.26666666666666666), t49, k(0.06822222222222223))),
+            -(t59 - T::fused(k(0.26666666666666666), t48, k(0.06822222222222223))),
         );
         let t135 = k(1.0) / T::fused(-t132, k(2.25) * t59, k(0.6));
         let t136 = t135 * t134;
@@ -6914,7 +6923,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             t99,
             -T::fused(
                 k(25.0),
-                t49,
+                t48,
                 T::fused(
                     k(2.2222222222222223),
                     t54,
@@ -6925,36 +6934,36 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
         let t138 = T::fused(
             t59,
             t129,
-            T::fused(t130, T::fused(k(0.06333333333333334), t110 * t62, t109), t137),
+            T::fused(t130, T::fused(k(0.10962962962962963), t110 * t62, t109), t137),
         );
         let t139 = k(68.08553560621344) * t60;
         let t140 = k(2.25) * t60;
         let t141 = t132 * t140;
         let t142 = t135 * t141;
-        let t143 = T::fused(t142, t133, T::fused(t139, t125, -t138));
+        let t143 = T::fused(t142, t133, T::fused(t139, t125, t138));
         let t144 = T::fused(
             t142,
             t134,
             T::fused(
                 t139,
                 t126,
-                -(t60 - T::fused(-k(0.26666666666666666), t38, k(0.03911111111111111))),
+                -(t60 + T::fused(-k(0.26666666666666666), t38, k(0.03911111111111111))),
             ),
         );
         let t145 = k(1.0) / T::fused(t141, t142, -T::fused(-t140, t139, k(0.6)));
         let t146 = t145 * t144;
         let t147 = T::fused(
             k(0.5925925925925926),
-            t49 * (t49 + k(0.48233333333333334)),
+            t48 * (t48 + k(0.48233333333333334)),
             T::fused(
                 -t50,
-                T::fused(k(0.002714074074074074), t45, t101),
-                k(0.3136290534979424),
+                T::fused(k(0.002714074074074074), t44, t101),
+                k(0.3062334156378601),
             ),
         );
         let t148 = T::fused(
-            -t45,
-            T::fused(k(0.007395637860082305), t45, t100),
+            -t44,
+            T::fused(-k(0.007395637860082305), t44, t100),
             T::fused(t38, T::fused(k(0.1259259259259259), t38, -t104), t147),
         );
         let t149 = T::fused(t146, t143, -T::fused(t136, t133, t128))
@@ -6966,7 +6975,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             t151,
             T::fused(t139, t150, -T::fused(-k(30.26023804720597), t125, t127 * t149)),
         );
-        *out = [t149, -t150, t151, t152];
+        *out = [t149, t150, t151, t152];
     }
     /// Writes (s̈, ẇ') at a state that satisfies the constraints: 914 operations (397 ±, 514 ×, 3 ÷) and 3 functions.
     fn corrected_accelerations(
@@ -7148,33 +7157,33 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 T::fused(k(0.6666666666666666), t40, k(0.3333333333333333) * t41),
             );
             let t43 = k(2.0) * t42;
-            let t44 = T::fused(
-                arm_e3,
-                block_e3,
-                T::fused(arm_e2, block_e2, T::fused(arm_e1, block_e1, arm_e0 * block_e0)),
-            );
-            let t45 = t44 * t43;
-            let t46 = T::fused(
+            let t44 = T::fused(-t42, t43, k(1.0));
+            let t45 = T::fused(
                 -k(1.3333333333333333),
                 t2,
                 T::fused(-k(1.3333333333333333), t7, k(0.6666666666666666) * t5),
             );
-            let t47 = T::fused(
+            let t46 = T::fused(
                 k(1.3333333333333333),
                 t20,
                 T::fused(-k(1.3333333333333333), t22, k(0.6666666666666666) * t21),
             );
-            let t48 = T::fused(
+            let t47 = T::fused(
                 k(1.3333333333333333),
                 t30,
                 T::fused(k(1.3333333333333333), t32, k(0.6666666666666666) * t31),
             );
-            let t49 = T::fused(t48, t37, -T::fused(-t46, t17, t47 * t29));
-            let t50 = T::fused(-t42, t43, k(1.0));
+            let t48 = T::fused(t47, t37, -T::fused(-t45, t17, t46 * t29));
+            let t49 = T::fused(
+                arm_e3,
+                block_e3,
+                T::fused(arm_e2, block_e2, T::fused(arm_e1, block_e1, arm_e0 * block_e0)),
+            );
+            let t50 = t49 * t43;
             let t51 = T::fused(
-                k(1.0503018108651911),
-                T::fused(-k(11.494252873563218), t49, t50),
-                T::fused(-k(4.225352112676056), t38 + k(1.7985714285714285), t45),
+                k(0.9521072796934866),
+                T::fused(-k(12.072434607645874), t48, t50),
+                T::fused(-k(4.022988505747127), t38 + k(1.7985714285714285), t44),
             );
             let t52 = T::fused(
                 k(0.6666666666666666),
@@ -7184,12 +7193,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             let t53 = k(2.0) * t52;
             let t54 = T::fused(-t52, t53, k(1.0));
             let t55 = T::fused(
-                k(26.591760299625467),
+                k(5.202735710796287),
                 t38,
                 -T::fused(
-                    k(37.453183520599254),
-                    t49,
-                    T::fused(-k(5.111111111111111), t50 - k(1.868343917928676), t45),
+                    k(7.327796775769419),
+                    t48,
+                    -T::fused(-k(0.1956521739130435), t50 + k(9.549313358302122), t44),
                 ),
             );
             let t56 = arm_e0 * t53;
@@ -7209,32 +7218,32 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                     ),
                 );
             let t59 = T::fused(
-                k(0.012444444444444444),
-                t45,
-                k(0.027555555555555555) * t50,
+                k(0.027555555555555555),
+                t44,
+                k(0.012444444444444444) * t50,
             );
             let t60 = T::fused(
-                -k(0.027555555555555555),
-                t45,
-                k(0.012444444444444444) * t50,
+                -k(0.012444444444444444),
+                t44,
+                k(0.027555555555555555) * t50,
             );
             let t61 = T::fused(
                 -t38,
                 t59,
                 T::fused(
-                    k(0.002191111111111111),
+                    k(0.010245185185185185),
                     t50,
-                    -T::fused(-k(0.010245185185185185), t45, t49 * t60),
+                    T::fused(k(0.002191111111111111), t44, t48 * t60),
                 ),
             );
-            let t62 = k(4.230994152046784)
+            let t62 = k(2.4442567567567566)
                 - T::fused(
-                    k(1.7309941520467835),
+                    k(0.5777027027027027),
                     t50,
                     -T::fused(
-                        k(1.7543859649122806),
+                        k(1.0135135135135136),
                         t38,
-                        -T::fused(-k(17.54385964912281), t49, t45),
+                        -T::fused(-k(10.135135135135135), t48, t44),
                     ),
                 );
             let t63 = k(2.0) * t34;
@@ -7256,7 +7265,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 - (block_sz
                     + T::fused(k(0.1), T::fused(-t63, block_wy, t64 * block_wx), t66));
             let t74 = T::fused(
-                -t48,
+                -t47,
                 t73,
                 t37
                     * T::fused(
@@ -7288,7 +7297,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 - (block_sy
                     - T::fused(k(0.1), T::fused(t75, block_wy, t76 * block_wx), t78));
             let t86 = T::fused(
-                -t47,
+                -t46,
                 t85,
                 t29
                     * T::fused(
@@ -7320,7 +7329,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 - (block_sx
                     - T::fused(-k(0.1), T::fused(t87, block_wy, t88 * block_wx), t90));
             let t98 = T::fused(
-                t46,
+                t45,
                 t97,
                 t17
                     * T::fused(
@@ -7334,29 +7343,29 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                     ),
             );
             let t99 = t98 + t86 - t74;
-            let t100 = k(0.01146962962962963)
-                + T::fused(k(0.03155555555555556), t38, k(0.06755555555555555) * t49);
-            let t101 = k(0.03106238683127572)
-                + T::fused(k(0.0004938271604938272), t38, k(0.11693827160493828) * t49);
+            let t100 = k(0.03106238683127572)
+                + T::fused(k(0.0004938271604938272), t38, k(0.11693827160493828) * t48);
+            let t101 = k(0.01146962962962963)
+                + T::fused(k(0.03155555555555556), t38, k(0.06755555555555555) * t48);
             let t102 = T::fused(
                 -t50,
                 t100,
-                t45
+                t44
                     * T::fused(
                         k(0.005428148148148148),
-                        T::fused(-k(2.7249211547792336), t50, t45),
+                        T::fused(k(2.7249211547792336), t50, t44),
                         t101,
                     ),
             );
             let t103 = k(0.002714074074074074) - t102;
-            let t104 = T::fused(-k(0.11851851851851852), t49, k(0.0066172839506172835));
+            let t104 = T::fused(-k(0.11851851851851852), t48, k(0.0066172839506172835));
             let t105 = T::fused(
                 k(0.2518518518518518),
                 t38,
                 -T::fused(
-                    k(0.03155555555555556),
-                    t45,
-                    T::fused(k(0.0004938271604938272), t50, t104),
+                    k(0.0004938271604938272),
+                    t44,
+                    T::fused(k(0.03155555555555556), t50, t104),
                 ),
             );
             let t106 = T::fused(
@@ -7401,9 +7410,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 t58 * t58,
                 t110
                     * T::fused(
-                        k(0.06755555555555555),
+                        k(0.11693827160493828),
                         t99 * t62,
-                        T::fused(t58, t103, t109 * t105),
+                        T::fused(-t58, t103, t109 * t105),
                     ),
             );
             let t112 = k(2.0) * t110;
@@ -7454,34 +7463,34 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             let t123 = T::fused(-t122, t119, t120 * t121)
                 .atan2(T::fused(t120, t119, t122 * t121));
             let t124 = T::fused(
-                -k(0.3313333333333333),
-                t50 * T::fused(-k(0.1790744466800805), t54 + k(4.966292134831461), t56),
+                k(0.348),
+                t50 * T::fused(k(0.8714346530438485), t54 + k(0.5937957987298486), t56),
                 T::fused(-k(0.6), turn0 + t123, k(0.02) * t58),
             );
             let t125 = T::fused(
-                T::fused(k(0.25), t110 * t103, -T::fused(-t109, t60, t99 * t59)),
+                -T::fused(k(0.25), t110 * t103, T::fused(t109, t60, t99 * t59)),
                 t112,
                 T::fused(
-                    k(0.348),
-                    t45
+                    k(0.3313333333333333),
+                    t44
                         * T::fused(
-                            k(0.8714346530438485),
+                            k(0.1790744466800805),
                             t54,
-                            t56 + k(0.5174542358450405),
+                            -(t56 - k(0.8893360160965795)),
                         ),
                     t124,
                 ),
             );
             let t126 = T::fused(
-                -t49,
+                -t48,
                 t59,
                 T::fused(
-                    t38,
+                    -t38,
                     t60,
                     T::fused(
-                        -k(0.010245185185185185),
+                        k(0.002191111111111111),
                         t50,
-                        T::fused(k(0.002191111111111111), t45, k(0.014687407407407408)),
+                        T::fused(-k(0.010245185185185185), t44, k(0.014687407407407408)),
                     ),
                 ),
             );
@@ -7490,9 +7499,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 t127,
                 t125,
                 -T::fused(
-                    k(0.3313333333333333),
+                    k(0.348),
                     t54 * t51,
-                    T::fused(-k(0.059333333333333335), t56 * t55, t111),
+                    T::fused(-k(0.3032592592592593), t56 * t55, t111),
                 ),
             );
             let t129 = t58 * T::fused(-k(2.25), t58, t112);
@@ -7511,11 +7520,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 ),
             );
             let t132 = k(68.08553560621344) * t59;
-            let t133 = T::fused(t132, t125, -T::fused(-t60, t129, t131));
+            let t133 = T::fused(t132, t125, -T::fused(t60, t129, t131));
             let t134 = T::fused(
                 t132,
                 t126,
-                -(t59 - T::fused(k(0.26666666666666666), t49, k(0.06822222222222223))),
+                -(t59 - T::fused(k(0.26666666666666666), t48, k(0.06822222222222223))),
             );
             let t135 = k(1.0) / T::fused(-t132, k(2.25) * t59, k(0.6));
             let t136 = t135 * t134;
@@ -7524,7 +7533,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 t99,
                 -T::fused(
                     k(25.0),
-                    t49,
+                    t48,
                     T::fused(
                         k(2.2222222222222223),
                         t54,
@@ -7535,13 +7544,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             let t138 = T::fused(
                 t59,
                 t129,
-                T::fused(t130, T::fused(k(0.06333333333333334), t110 * t62, t109), t137),
+                T::fused(t130, T::fused(k(0.10962962962962963), t110 * t62, t109), t137),
             );
             let t139 = k(68.08553560621344) * t60;
             let t140 = k(2.25) * t60;
             let t141 = t132 * t140;
             let t142 = t135 * t141;
-            let t143 = T::fused(t142, t133, T::fused(t139, t125, -t138));
+            let t143 = T::fused(t142, t133, T::fused(t139, t125, t138));
             let t144 = T::fused(
                 t142,
                 t134,
@@ -7549,23 +7558,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                     t139,
                     t126,
                     -(t60
-                        - T::fused(-k(0.26666666666666666), t38, k(0.03911111111111111))),
+                        + T::fused(-k(0.26666666666666666), t38, k(0.03911111111111111))),
                 ),
             );
             let t145 = k(1.0) / T::fused(t141, t142, -T::fused(-t140, t139, k(0.6)));
             let t146 = t145 * t144;
             let t147 = T::fused(
                 k(0.5925925925925926),
-                t49 * (t49 + k(0.48233333333333334)),
+                t48 * (t48 + k(0.48233333333333334)),
                 T::fused(
                     -t50,
-                    T::fused(k(0.002714074074074074), t45, t101),
-                    k(0.3136290534979424),
+                    T::fused(k(0.002714074074074074), t44, t101),
+                    k(0.3062334156378601),
                 ),
             );
             let t148 = T::fused(
-                -t45,
-                T::fused(k(0.007395637860082305), t45, t100),
+                -t44,
+                T::fused(-k(0.007395637860082305), t44, t100),
                 T::fused(t38, T::fused(k(0.1259259259259259), t38, -t104), t147),
             );
             let t149 = T::fused(t146, t143, -T::fused(t136, t133, t128))
@@ -7592,16 +7601,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             );
             let t162 = T::fused(-arm_wy, t158, arm_wx * t155)
                 + T::fused(-k(0.1), t160, k(0.2) * t161);
-            let t163 = k(0.6666666666666666) * t49;
+            let t163 = k(0.6666666666666666) * t48;
             let t164 = T::fused(k(0.3333333333333333), t38, k(0.1) - t163);
             let t165 = k(0.6666666666666666) * t38;
-            let t166 = t165 - T::fused(k(0.3333333333333333), t49, k(0.1));
+            let t166 = t165 - T::fused(k(0.3333333333333333), t48, k(0.1));
             let t167 = t157 + T::fused(t164, t161, t166 * t154);
-            let t168 = T::fused(k(0.8888888888888888), t50, k(0.1111111111111111));
+            let t168 = T::fused(k(0.8888888888888888), t44, k(0.1111111111111111));
             let t169 = t165 + (k(0.2) + t163);
             let t170 = t159 - T::fused(t164, t160, t169 * t154);
-            let t171 = k(0.6666666666666666) * t45;
-            let t172 = T::fused(-k(0.2222222222222222), t50, k(0.2222222222222222));
+            let t171 = k(0.6666666666666666) * t50;
+            let t172 = T::fused(-k(0.2222222222222222), t44, k(0.2222222222222222));
             let t173 = t172 - t171;
             let t174 = t162 + T::fused(-t166, t160, t169 * t161);
             let t175 = t172 + t171;
@@ -7650,9 +7659,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 -(t187 + T::fused(t175, t174, T::fused(-t168, t167, t173 * t170))),
             );
             let t191 = k(0.6666666666666666) * t175;
-            let t192 = T::fused(k(0.5555555555555556), t50, k(0.4444444444444444));
-            let t193 = k(0.3333333333333333) * t45;
-            let t194 = T::fused(-k(0.4444444444444444), t50, k(0.4444444444444444));
+            let t192 = T::fused(k(0.5555555555555556), t44, k(0.4444444444444444));
+            let t193 = k(0.3333333333333333) * t50;
+            let t194 = T::fused(-k(0.4444444444444444), t44, k(0.4444444444444444));
             let t195 = t194 - t193;
             let t196 = k(0.3333333333333333) * t58;
             let t197 = k(0.6666666666666666) * t58;
@@ -7727,7 +7736,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 - T::fused(t192, t154, T::fused(-t173, t160, t203 * t161));
             let t205 = t201 + t204;
             let t206 = T::fused(k(0.1), t202, k(0.05) * t205)
-                + T::fused(
+                - T::fused(
                     t191
                         - T::fused(
                             k(0.6666666666666666),
@@ -7735,7 +7744,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                             k(0.3333333333333333) * t173,
                         ),
                     t188,
-                    -t190,
+                    t190,
                 );
             let t207 = T::fused(k(0.05), block_wz, k(0.1) * block_wy);
             let t208 = T::fused(-block_wx, t186, block_wz * t207)
@@ -7754,10 +7763,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 - T::fused(t175, t154, T::fused(-t168, t160, t173 * t161));
             let t212 = T::fused(k(0.3333333333333333), t200, t211);
             let t213 = T::fused(k(0.1), t212, k(0.03) * t205)
-                - T::fused(
+                + T::fused(
                     T::fused(k(0.6666666666666666), t195, -(t210 + t191)),
                     t188,
-                    -t209,
+                    t209,
                 );
             let t214 = T::fused(block_wy, t207, block_wx * t185)
                 + T::fused(t192, t184, -T::fused(t173, t180, t203 * t183));
@@ -7773,9 +7782,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                     -T::fused(k(0.6666666666666666), t173, k(0.3333333333333333) * t203),
                 ),
                 t188,
-                -t215,
+                t215,
             );
-            let t217 = T::fused(-k(0.05), t212, k(0.03) * t202) + t216;
+            let t217 = T::fused(-k(0.05), t212, k(0.03) * t202) - t216;
             (t202, t205, t206, t212, t213, t217)
         };
         *out = [
@@ -8555,13 +8564,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             t41,
             t42,
             t44,
+            t50,
             t51,
             t52,
             t53,
             t54,
             t55,
             t56,
-            t57,
             t59,
             t63,
             t65,
@@ -8712,27 +8721,27 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 T::fused(k(0.6666666666666666), t46, k(0.3333333333333333) * t47),
             );
             let t49 = k(2.0) * t48;
-            let t50 = T::fused(
+            let t50 = T::fused(-t48, t49, k(1.0));
+            let t51 = k(1.3333333333333333) * t2;
+            let t52 = T::fused(-k(1.3333333333333333), t7, k(0.6666666666666666) * t5)
+                - t51;
+            let t53 = k(1.3333333333333333) * t22;
+            let t54 = T::fused(-k(1.3333333333333333), t24, k(0.6666666666666666) * t23)
+                + t53;
+            let t55 = k(1.3333333333333333) * t34;
+            let t56 = T::fused(k(1.3333333333333333), t36, k(0.6666666666666666) * t35)
+                + t55;
+            let t57 = T::fused(t56, t43, -T::fused(-t52, t19, t54 * t33));
+            let t58 = T::fused(
                 arm_e3,
                 block_e3,
                 T::fused(arm_e2, block_e2, T::fused(arm_e1, block_e1, arm_e0 * block_e0)),
             );
-            let t51 = t50 * t49;
-            let t52 = k(1.3333333333333333) * t2;
-            let t53 = T::fused(-k(1.3333333333333333), t7, k(0.6666666666666666) * t5)
-                - t52;
-            let t54 = k(1.3333333333333333) * t22;
-            let t55 = T::fused(-k(1.3333333333333333), t24, k(0.6666666666666666) * t23)
-                + t54;
-            let t56 = k(1.3333333333333333) * t34;
-            let t57 = T::fused(k(1.3333333333333333), t36, k(0.6666666666666666) * t35)
-                + t56;
-            let t58 = T::fused(t57, t43, -T::fused(-t53, t19, t55 * t33));
-            let t59 = T::fused(-t48, t49, k(1.0));
+            let t59 = t58 * t49;
             let t60 = T::fused(
-                k(1.0503018108651911),
-                T::fused(-k(11.494252873563218), t58, t59),
-                T::fused(-k(4.225352112676056), t44 + k(1.7985714285714285), t51),
+                k(0.9521072796934866),
+                T::fused(-k(12.072434607645874), t57, t59),
+                T::fused(-k(4.022988505747127), t44 + k(1.7985714285714285), t50),
             );
             let t61 = T::fused(
                 k(0.6666666666666666),
@@ -8742,12 +8751,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             let t62 = k(2.0) * t61;
             let t63 = T::fused(-t61, t62, k(1.0));
             let t64 = T::fused(
-                k(26.591760299625467),
+                k(5.202735710796287),
                 t44,
                 -T::fused(
-                    k(37.453183520599254),
-                    t58,
-                    T::fused(-k(5.111111111111111), t59 - k(1.868343917928676), t51),
+                    k(7.327796775769419),
+                    t57,
+                    -T::fused(-k(0.1956521739130435), t59 + k(9.549313358302122), t50),
                 ),
             );
             let t65 = arm_e0 * t62;
@@ -8767,32 +8776,32 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                     ),
                 );
             let t68 = T::fused(
-                k(0.012444444444444444),
-                t51,
-                k(0.027555555555555555) * t59,
+                k(0.027555555555555555),
+                t50,
+                k(0.012444444444444444) * t59,
             );
             let t69 = T::fused(
-                -k(0.027555555555555555),
-                t51,
-                k(0.012444444444444444) * t59,
+                -k(0.012444444444444444),
+                t50,
+                k(0.027555555555555555) * t59,
             );
             let t70 = T::fused(
                 -t44,
                 t68,
                 T::fused(
-                    k(0.002191111111111111),
+                    k(0.010245185185185185),
                     t59,
-                    -T::fused(-k(0.010245185185185185), t51, t58 * t69),
+                    T::fused(k(0.002191111111111111), t50, t57 * t69),
                 ),
             );
-            let t71 = k(4.230994152046784)
+            let t71 = k(2.4442567567567566)
                 - T::fused(
-                    k(1.7309941520467835),
+                    k(0.5777027027027027),
                     t59,
                     -T::fused(
-                        k(1.7543859649122806),
+                        k(1.0135135135135136),
                         t44,
-                        -T::fused(-k(17.54385964912281), t58, t51),
+                        -T::fused(-k(10.135135135135135), t57, t50),
                     ),
                 );
             let t72 = k(2.0) * t39;
@@ -8814,7 +8823,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 - (block_sz
                     + T::fused(k(0.1), T::fused(-t72, block_wy, t73 * block_wx), t75));
             let t83 = T::fused(
-                -t57,
+                -t56,
                 t82,
                 t43
                     * T::fused(
@@ -8846,7 +8855,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 - (block_sy
                     - T::fused(k(0.1), T::fused(t84, block_wy, t85 * block_wx), t87));
             let t95 = T::fused(
-                -t55,
+                -t54,
                 t94,
                 t33
                     * T::fused(
@@ -8878,7 +8887,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 - (block_sx
                     - T::fused(-k(0.1), T::fused(t96, block_wy, t97 * block_wx), t99));
             let t107 = T::fused(
-                t53,
+                t52,
                 t106,
                 t19
                     * T::fused(
@@ -8892,29 +8901,29 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                     ),
             );
             let t108 = t107 + t95 - t83;
-            let t109 = k(0.01146962962962963)
-                + T::fused(k(0.03155555555555556), t44, k(0.06755555555555555) * t58);
-            let t110 = k(0.03106238683127572)
-                + T::fused(k(0.0004938271604938272), t44, k(0.11693827160493828) * t58);
+            let t109 = k(0.03106238683127572)
+                + T::fused(k(0.0004938271604938272), t44, k(0.11693827160493828) * t57);
+            let t110 = k(0.01146962962962963)
+                + T::fused(k(0.03155555555555556), t44, k(0.06755555555555555) * t57);
             let t111 = T::fused(
                 -t59,
                 t109,
-                t51
+                t50
                     * T::fused(
                         k(0.005428148148148148),
-                        T::fused(-k(2.7249211547792336), t59, t51),
+                        T::fused(k(2.7249211547792336), t59, t50),
                         t110,
                     ),
             );
             let t112 = k(0.002714074074074074) - t111;
-            let t113 = T::fused(-k(0.11851851851851852), t58, k(0.0066172839506172835));
+            let t113 = T::fused(-k(0.11851851851851852), t57, k(0.0066172839506172835));
             let t114 = T::fused(
                 k(0.2518518518518518),
                 t44,
                 -T::fused(
-                    k(0.03155555555555556),
-                    t51,
-                    T::fused(k(0.0004938271604938272), t59, t113),
+                    k(0.0004938271604938272),
+                    t50,
+                    T::fused(k(0.03155555555555556), t59, t113),
                 ),
             );
             let t115 = T::fused(
@@ -8959,9 +8968,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 t67 * t67,
                 t119
                     * T::fused(
-                        k(0.06755555555555555),
+                        k(0.11693827160493828),
                         t108 * t71,
-                        T::fused(t67, t112, t118 * t114),
+                        T::fused(-t67, t112, t118 * t114),
                     ),
             );
             let t121 = k(2.0) * t119;
@@ -9014,34 +9023,34 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 .atan2(T::fused(t129, t128, t131 * t130));
             let t133 = turn0 + t132;
             let t134 = T::fused(
-                -k(0.3313333333333333),
-                t59 * T::fused(-k(0.1790744466800805), t63 + k(4.966292134831461), t65),
+                k(0.348),
+                t59 * T::fused(k(0.8714346530438485), t63 + k(0.5937957987298486), t65),
                 T::fused(-k(0.6), t133, k(0.02) * t67),
             );
             let t135 = T::fused(
-                T::fused(k(0.25), t119 * t112, -T::fused(-t118, t69, t108 * t68)),
+                -T::fused(k(0.25), t119 * t112, T::fused(t118, t69, t108 * t68)),
                 t121,
                 T::fused(
-                    k(0.348),
-                    t51
+                    k(0.3313333333333333),
+                    t50
                         * T::fused(
-                            k(0.8714346530438485),
+                            k(0.1790744466800805),
                             t63,
-                            t65 + k(0.5174542358450405),
+                            -(t65 - k(0.8893360160965795)),
                         ),
                     t134,
                 ),
             );
             let t136 = T::fused(
-                -t58,
+                -t57,
                 t68,
                 T::fused(
-                    t44,
+                    -t44,
                     t69,
                     T::fused(
-                        -k(0.010245185185185185),
+                        k(0.002191111111111111),
                         t59,
-                        T::fused(k(0.002191111111111111), t51, k(0.014687407407407408)),
+                        T::fused(-k(0.010245185185185185), t50, k(0.014687407407407408)),
                     ),
                 ),
             );
@@ -9050,9 +9059,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 t137,
                 t135,
                 -T::fused(
-                    k(0.3313333333333333),
+                    k(0.348),
                     t63 * t60,
-                    T::fused(-k(0.059333333333333335), t65 * t64, t120),
+                    T::fused(-k(0.3032592592592593), t65 * t64, t120),
                 ),
             );
             let t139 = t67 * T::fused(-k(2.25), t67, t121);
@@ -9071,19 +9080,19 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 ),
             );
             let t142 = k(68.08553560621344) * t68;
-            let t143 = T::fused(t142, t135, -T::fused(-t69, t139, t141));
+            let t143 = T::fused(t142, t135, -T::fused(t69, t139, t141));
             let t144 = T::fused(
                 t142,
                 t136,
-                -(t68 - T::fused(k(0.26666666666666666), t58, k(0.06822222222222223))),
+                -(t68 - T::fused(k(0.26666666666666666), t57, k(0.06822222222222223))),
             );
             let t145 = k(1.0) / T::fused(-t142, k(2.25) * t68, k(0.6));
             let t146 = t145 * t144;
-            let t147 = k(25.0) * t58;
+            let t147 = k(25.0) * t57;
             let t148 = k(0.8) * t108;
             let t149 = T::fused(
                 t140,
-                T::fused(k(0.06333333333333334), t119 * t71, t118),
+                T::fused(k(0.10962962962962963), t119 * t71, t118),
                 t148
                     - (t147
                         + T::fused(
@@ -9099,7 +9108,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             let t154 = T::fused(
                 t153,
                 t143,
-                T::fused(t150, t135, -T::fused(t68, t139, t149)),
+                T::fused(t150, t135, T::fused(t68, t139, t149)),
             );
             let t155 = T::fused(
                 t153,
@@ -9108,23 +9117,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                     t150,
                     t136,
                     -(t69
-                        - T::fused(-k(0.26666666666666666), t44, k(0.03911111111111111))),
+                        + T::fused(-k(0.26666666666666666), t44, k(0.03911111111111111))),
                 ),
             );
             let t156 = k(1.0) / T::fused(t152, t153, -T::fused(-t151, t150, k(0.6)));
             let t157 = t156 * t155;
             let t158 = T::fused(
                 k(0.5925925925925926),
-                t58 * (t58 + k(0.48233333333333334)),
+                t57 * (t57 + k(0.48233333333333334)),
                 T::fused(
                     -t59,
-                    T::fused(k(0.002714074074074074), t51, t110),
-                    k(0.3136290534979424),
+                    T::fused(k(0.002714074074074074), t50, t110),
+                    k(0.3062334156378601),
                 ),
             );
             let t159 = T::fused(
-                -t51,
-                T::fused(k(0.007395637860082305), t51, t109),
+                -t50,
+                T::fused(-k(0.007395637860082305), t50, t109),
                 T::fused(t44, T::fused(k(0.1259259259259259), t44, -t113), t158),
             );
             let t160 = T::fused(t157, t154, -T::fused(t146, t143, t138))
@@ -9155,16 +9164,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             let t175 = T::fused(t103, t174, T::fused(t100, t168, t101 * t171));
             let t176 = T::fused(t91, t174, -T::fused(t88, t168, t89 * t171));
             let t177 = T::fused(t79, t174, -T::fused(-t76, t168, t77 * t171));
-            let t178 = k(0.6666666666666666) * t58;
+            let t178 = k(0.6666666666666666) * t57;
             let t179 = T::fused(k(0.3333333333333333), t44, k(0.1) - t178);
             let t180 = k(0.6666666666666666) * t44;
-            let t181 = t180 - T::fused(k(0.3333333333333333), t58, k(0.1));
+            let t181 = t180 - T::fused(k(0.3333333333333333), t57, k(0.1));
             let t182 = t168 + T::fused(t179, t173, t181 * t165);
-            let t183 = T::fused(k(0.8888888888888888), t59, k(0.1111111111111111));
+            let t183 = T::fused(k(0.8888888888888888), t50, k(0.1111111111111111));
             let t184 = t180 + (k(0.2) + t178);
             let t185 = t171 - T::fused(t179, t172, t184 * t165);
-            let t186 = k(0.6666666666666666) * t51;
-            let t187 = T::fused(-k(0.2222222222222222), t59, k(0.2222222222222222));
+            let t186 = k(0.6666666666666666) * t59;
+            let t187 = T::fused(-k(0.2222222222222222), t50, k(0.2222222222222222));
             let t188 = t187 - t186;
             let t189 = t174 + T::fused(-t181, t172, t184 * t173);
             let t190 = t187 + t186;
@@ -9226,13 +9235,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 t41,
                 t42,
                 t44,
+                t50,
                 t51,
                 t52,
                 t53,
                 t54,
                 t55,
                 t56,
-                t57,
                 t59,
                 t63,
                 t65,
@@ -9326,9 +9335,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 -(t202 + T::fused(t190, t189, T::fused(-t183, t182, t188 * t185))),
             );
             let t206 = k(0.6666666666666666) * t190;
-            let t207 = T::fused(k(0.5555555555555556), t59, k(0.4444444444444444));
-            let t208 = k(0.3333333333333333) * t51;
-            let t209 = T::fused(-k(0.4444444444444444), t59, k(0.4444444444444444));
+            let t207 = T::fused(k(0.5555555555555556), t50, k(0.4444444444444444));
+            let t208 = k(0.3333333333333333) * t59;
+            let t209 = T::fused(-k(0.4444444444444444), t50, k(0.4444444444444444));
             let t210 = t209 - t208;
             let t211 = k(0.3333333333333333) * t67;
             let t212 = k(0.6666666666666666) * t67;
@@ -9347,7 +9356,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 - T::fused(t207, t165, T::fused(-t188, t172, t218 * t173));
             let t220 = t216 + t219;
             let t221 = T::fused(k(0.1), t217, k(0.05) * t220)
-                + T::fused(
+                - T::fused(
                     t206
                         - T::fused(
                             k(0.6666666666666666),
@@ -9355,7 +9364,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                             k(0.3333333333333333) * t188,
                         ),
                     t203,
-                    -t205,
+                    t205,
                 );
             let t222 = T::fused(k(0.05), block_wz, k(0.1) * block_wy);
             let t223 = T::fused(-block_wx, t201, block_wz * t222)
@@ -9374,10 +9383,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 - T::fused(t190, t165, T::fused(-t183, t172, t188 * t173));
             let t227 = T::fused(k(0.3333333333333333), t215, t226);
             let t228 = T::fused(k(0.1), t227, k(0.03) * t220)
-                - T::fused(
+                + T::fused(
                     T::fused(k(0.6666666666666666), t210, -(t225 + t206)),
                     t203,
-                    -t224,
+                    t224,
                 );
             let t229 = T::fused(block_wy, t222, block_wx * t200)
                 + T::fused(t207, t199, -T::fused(t188, t195, t218 * t198));
@@ -9393,21 +9402,21 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                     -T::fused(k(0.6666666666666666), t188, k(0.3333333333333333) * t218),
                 ),
                 t203,
-                -t230,
+                t230,
             );
             let t232 = k(0.03) * t217;
-            let t233 = T::fused(-k(0.05), t227, t232) + t231;
+            let t233 = T::fused(-k(0.05), t227, t232) - t231;
             let t234 = T::fused(t98, t233, -T::fused(t96, t221, t97 * t228));
             let t235 = T::fused(t86, t233, T::fused(t84, t221, t85 * t228));
             let t236 = T::fused(t74, t233, T::fused(-t72, t221, t73 * t228));
             let t237 = k(40.0) * (k(0.05) + t44);
-            let t238 = T::fused(t53, t147, -T::fused(t53, t148, t8 * t237));
+            let t238 = T::fused(t52, t147, -T::fused(t52, t148, t8 * t237));
             let t239 = T::fused(-k(0.6), t234, k(0.6) - t238);
             let t240 = T::fused(-k(1.5), t175, k(1.5) + t238) + t239;
-            let t241 = T::fused(t55, t147, -T::fused(t55, t148, t25 * t237));
+            let t241 = T::fused(t54, t147, -T::fused(t54, t148, t25 * t237));
             let t242 = T::fused(k(0.6), t235, k(5.4) - t241);
             let t243 = T::fused(k(1.5), t176, k(13.5) + t241) + t242;
-            let t244 = T::fused(t57, t147, T::fused(-t57, t148, t37 * t237));
+            let t244 = T::fused(t56, t147, T::fused(-t56, t148, t37 * t237));
             let t245 = T::fused(k(0.6), t236, k(1.8) - t244);
             let t246 = T::fused(k(1.5), t177, k(4.5) + t244) + t245;
             let t247 = T::fused(
@@ -9420,8 +9429,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 t242,
                 T::fused(k(0.1), t11, k(0.06) * t14) * t239,
             );
-            let t249 = T::fused(t73, t57, T::fused(t97, t53, t85 * t55));
-            let t250 = T::fused(t72, t57, -T::fused(t96, t53, t84 * t55));
+            let t249 = T::fused(t73, t56, T::fused(t97, t52, t85 * t54));
+            let t250 = T::fused(t72, t56, -T::fused(t96, t52, t84 * t54));
             let t251 = T::fused(-k(0.03), t249, k(0.05) * t250);
             let t252 = T::fused(t73, t37, -T::fused(t97, t8, t85 * t25));
             let t253 = T::fused(t72, t37, T::fused(t96, t8, t84 * t25));
@@ -9450,7 +9459,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 t242,
                 T::fused(-k(0.2), t11, k(0.06) * t17) * t239,
             );
-            let t265 = T::fused(t74, t57, T::fused(-t98, t53, t86 * t55));
+            let t265 = T::fused(t74, t56, T::fused(-t98, t52, t86 * t54));
             let t266 = T::fused(-k(0.1), t250, k(0.03) * t265);
             let t267 = T::fused(t74, t37, -T::fused(-t98, t8, t86 * t25));
             let t268 = T::fused(
@@ -9605,14 +9614,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 T::fused(k(0.29814239699997197), t329, k(0.5962847939999439) * t330),
             );
             let t332 = T::fused(
-                -(t54
+                -(t53
                     - T::fused(
                         -k(0.6666666666666666),
                         t24,
                         k(1.3333333333333333) * t23,
                     )),
                 t242,
-                (t52 + T::fused(-k(0.6666666666666666), t7, k(1.3333333333333333) * t5))
+                (t51 + T::fused(-k(0.6666666666666666), t7, k(1.3333333333333333) * t5))
                     * t239,
             );
             (
@@ -9654,7 +9663,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             t331,
             T::fused(-k(0.8944271909999159), t329, k(0.4472135954999579) * t330),
             T::fused(
-                -(t56
+                -(t55
                     - T::fused(k(0.6666666666666666), t36, k(1.3333333333333333) * t35)),
                 t245,
                 t332,

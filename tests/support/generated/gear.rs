@@ -8,22 +8,29 @@
 //! * unknowns of eq. (17): 23
 //! * non-zeros: Φ_q 38 of 182, (Φ_r, Φ_π') 18 of 132
 //! * left out: coordinates of `frame` (fixed: folded into constants)
+//! * left out: joint coordinates (for trees without couplers and drivers)
+//! * left out: charts (for trees of revolute, spherical and fixed joints: the run time pivots)
 //! * left out: gravity
+//! * left out: parameters (all numbers are folded)
+//! * left out: outputs (the page asks for none)
+//! * accelerations: by rotations of the bodies, 211 operations, not relative Euler parameters 211
 //!
-//! | function | computes | + − | × | ÷ | total | zeros |
-//! |---|---|---|---|---|---|---|
-//! | phi | Φ | 26 | 37 | 0 | 63 | 0 of 13 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 12 | 52 | 2 | 66 | 0 of 38 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 22 | 48 | 2 | 72 | 0 of 18 |
-//! | nu | ν | 0 | 0 | 0 | 0 | 11 of 11 |
-//! | gamma | γ | 55 | 103 | 2 | 160 | 6 of 11 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 29 | 55 | 2 | 86 | 0 of 11 |
-//! | applied_force | (f, n' − w̃'J'w') | 7 | 19 | 0 | 26 | 6 of 12 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 74 | 132 | 5 | 211 | 6 of 13 |
-//! | multipliers | λ, the accelerations being known | 32 | 75 | 4 | 111 | 0 of 11 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 16 | 33 | 0 | 49 | 0 of 17 |
-//! | energy | T and V | 18 | 34 | 0 | 52 | 0 of 2 |
-//! | read_joints | joint coordinates and rates | 15 | 16 | 0 | 31 | 0 of 6 |
+//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
+//!
+//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
+//! |---|---|---|---|---|---|---|---|---|
+//! | phi | Φ | 26 | 37 | 0 | 63 | 0 of 13 | 86 | 63 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 12 | 52 | 2 | 66 | 0 of 38 | 296 | 66 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 22 | 48 | 2 | 72 | 0 of 18 | 212 | 72 |
+//! | nu | ν | 0 | 0 | 0 | 0 | 11 of 11 | 0 | 0 |
+//! | gamma | γ | 55 | 103 | 2 | 160 | 6 of 11 | 594 | 160 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 29 | 55 | 2 | 86 | 0 of 11 | 166 | 88 |
+//! | applied_force | (f, n' − w̃'J'w') | 7 | 19 | 0 | 26 | 6 of 12 | 35 | 26 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 74 | 132 | 5 | 211 | 6 of 13 | 2979 | 214 |
+//! | multipliers | λ, the accelerations being known | 32 | 75 | 4 | 111 | 0 of 11 | 444 | 113 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 16 | 33 | 0 | 49 | 0 of 17 | 49 | 49 |
+//! | energy | T and V | 18 | 34 | 0 | 52 | 0 of 2 | 87 | 52 |
+//! | read_joints | joint coordinates and rates | 15 | 16 | 0 | 31 | 0 of 6 | 36 | 31 |
 //!
 //! # Proof
 //!

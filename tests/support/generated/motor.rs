@@ -8,33 +8,42 @@
 //! * unknowns of eq. (17): 11
 //! * non-zeros: Φ_q 15 of 42, (Φ_r, Φ_π') 7 of 30
 //! * left out: coordinates of `frame` (fixed: folded into constants)
+//! * left out: the turning of `disc` from u̇ (it looks the same all around its axis)
 //! * left out: gravity
+//! * left out: parameters (all numbers are folded)
+//! * left out: outputs (the page asks for none)
+//! * accelerations: by rotations of the bodies, 26 operations, not relative Euler parameters 26
+//! * joint_accelerations: by recursion, 3 operations, not normal form 3
+//! * joint_accelerations_at: by recursion, 3 operations, not normal form 3, recursion on the bodies' spins 3
+//! * corrected_accelerations: by recursion in the bodies' frames, 5 operations, not recursion in the global frame 5, normal form in the bodies' frames 5, normal form in the global frame 5, recursion on the bodies' spins in the bodies' frames 5, recursion on the bodies' spins in the global frame 5, elimination in maximal coordinates 26
 //!
-//! | function | computes | + − | × | ÷ | total | zeros |
-//! |---|---|---|---|---|---|---|
-//! | phi | Φ | 6 | 10 | 0 | 16 | 0 of 6 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 0 | 4 | 0 | 4 | 0 of 15 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 6 | 9 | 0 | 15 | 0 of 7 |
-//! | nu | ν | 0 | 0 | 0 | 0 | 5 of 5 |
-//! | gamma | γ | 13 | 25 | 0 | 38 | 3 of 5 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 8 | 13 | 0 | 21 | 0 of 5 |
-//! | applied_force | (f, n' − w̃'J'w') | 1 | 5 | 0 | 6 | 3 of 6 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 8 | 17 | 1 | 26 | 3 of 6 |
-//! | multipliers | λ, the accelerations being known | 11 | 26 | 1 | 38 | 0 of 5 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 9 | 19 | 0 | 28 | 0 of 8 |
-//! | energy | T and V | 5 | 11 | 0 | 16 | 1 of 2 |
-//! | read_joints | joint coordinates and rates | 7 | 8 | 0 | 15 | 0 of 3 |
-//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 4 |
-//! | newton_step | dependent positions, one Newton step | 47 | 80 | 1 | 128 | 3 of 7 |
-//! | solve_velocities | dependent velocities, eq. (19) | 13 | 23 | 1 | 37 | 3 of 6 |
-//! | joint_accelerations | u̇ in joint coordinates | 1 | 2 | 0 | 3 | 0 of 1 |
-//! | joint_derivative | ẋ but for u̇ | 1 | 3 | 0 | 4 | 0 of 2 |
-//! | to_maximal | (q, v) of a joint state | 0 | 1 | 0 | 1 | 10 of 13 |
-//! | to_joints | (x, u) of a maximal state | 10 | 12 | 0 | 22 | 0 of 2 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 1 | 2 | 0 | 3 | 0 of 1 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 1 | 4 | 0 | 5 | 3 of 6 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 5 | 14 | 0 | 19 | 0 of 5 |
-//! | corrected_solution | both | 4 | 13 | 0 | 17 | 6 of 11 |
+//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
+//!
+//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
+//! |---|---|---|---|---|---|---|---|---|
+//! | phi | Φ | 6 | 10 | 0 | 16 | 0 of 6 | 16 | 16 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 0 | 4 | 0 | 4 | 0 of 15 | 12 | 4 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 6 | 9 | 0 | 15 | 0 of 7 | 18 | 15 |
+//! | nu | ν | 0 | 0 | 0 | 0 | 5 of 5 | 0 | 0 |
+//! | gamma | γ | 13 | 25 | 0 | 38 | 3 of 5 | 46 | 38 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 8 | 13 | 0 | 21 | 0 of 5 | 24 | 21 |
+//! | applied_force | (f, n' − w̃'J'w') | 1 | 5 | 0 | 6 | 3 of 6 | 6 | 6 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 8 | 17 | 1 | 26 | 3 of 6 | 37 | 27 |
+//! | multipliers | λ, the accelerations being known | 11 | 26 | 1 | 38 | 0 of 5 | 131 | 38 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 9 | 19 | 0 | 28 | 0 of 8 | 28 | 28 |
+//! | energy | T and V | 5 | 11 | 0 | 16 | 1 of 2 | 16 | 16 |
+//! | read_joints | joint coordinates and rates | 7 | 8 | 0 | 15 | 0 of 3 | 18 | 15 |
+//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 4 | 0 | 0 |
+//! | newton_step | dependent positions, one Newton step | 47 | 80 | 1 | 128 | 3 of 7 | 8000 | 128 |
+//! | solve_velocities | dependent velocities, eq. (19) | 13 | 23 | 1 | 37 | 3 of 6 | 166 | 37 |
+//! | joint_accelerations | u̇ in joint coordinates | 1 | 2 | 0 | 3 | 0 of 1 | 3 | 3 |
+//! | joint_derivative | ẋ but for u̇ | 1 | 3 | 0 | 4 | 0 of 2 | 4 | 4 |
+//! | to_maximal | (q, v) of a joint state | 0 | 1 | 0 | 1 | 10 of 13 | 2 | 1 |
+//! | to_joints | (x, u) of a maximal state | 10 | 12 | 0 | 22 | 0 of 2 | 43 | 22 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 1 | 2 | 0 | 3 | 0 of 1 | 3 | 3 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 1 | 4 | 0 | 5 | 3 of 6 | 5 | 5 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 5 | 14 | 0 | 19 | 0 of 5 | 31 | 19 |
+//! | corrected_solution | both | 4 | 13 | 0 | 17 | 6 of 11 | 29 | 17 |
 //!
 //! # Proof
 //!

@@ -9,33 +9,40 @@
 //! * non-zeros: Φ_q 19 of 28, (Φ_r, Φ_π') 12 of 18
 //! * left out: coordinates of `ground` (fixed: folded into constants)
 //! * left out: the work of non-conservative forces (there are none)
+//! * left out: parameters (all numbers are folded)
+//! * accelerations: by rotations of the bodies, 209 operations, not relative Euler parameters 209
+//! * joint_accelerations: by normal form, 61 operations, not recursion 95
+//! * joint_accelerations_at: by normal form, 61 operations, not recursion 95, recursion on the bodies' spins 95
+//! * corrected_accelerations: by normal form in the bodies' frames, 129 operations, not recursion in the bodies' frames 143, recursion in the global frame 170, normal form in the global frame 156, recursion on the bodies' spins in the bodies' frames 143, recursion on the bodies' spins in the global frame 170, elimination in maximal coordinates 209
 //!
-//! | function | computes | + − | × | ÷ | total | zeros |
-//! |---|---|---|---|---|---|---|
-//! | phi | Φ | 24 | 16 | 0 | 40 | 0 of 4 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 18 | 16 | 0 | 34 | 0 of 19 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 21 | 22 | 0 | 43 | 0 of 12 |
-//! | nu | ν | 0 | 0 | 0 | 0 | 3 of 3 |
-//! | gamma | γ | 39 | 61 | 0 | 100 | 0 of 3 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 30 | 46 | 0 | 76 | 0 of 3 |
-//! | applied_force | (f, n' − w̃'J'w') | 12 | 18 | 0 | 30 | 2 of 6 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 89 | 120 | 0 | 209 | 0 of 6 |
-//! | multipliers | λ, the accelerations being known | 1 | 3 | 0 | 4 | 0 of 3 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 |
-//! | energy | T and V | 11 | 18 | 0 | 29 | 0 of 2 |
-//! | read_joints | joint coordinates and rates | 0 | 0 | 0 | 0 | 0 of 7 |
-//! | outputs | outputs, the accelerations being known | 52 | 64 | 0 | 116 | 0 of 6 |
-//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 4 |
-//! | newton_step | dependent positions, one Newton step | 29 | 29 | 1 | 59 | 0 of 7 |
-//! | solve_velocities | dependent velocities, eq. (19) | 27 | 46 | 0 | 73 | 0 of 6 |
-//! | joint_accelerations | u̇ in joint coordinates | 25 | 36 | 0 | 61 | 0 of 3 |
-//! | joint_derivative | ẋ but for u̇ | 8 | 16 | 0 | 24 | 0 of 4 |
-//! | to_maximal | (q, v) of a joint state | 27 | 40 | 0 | 67 | 0 of 13 |
-//! | to_joints | (x, u) of a maximal state | 0 | 0 | 0 | 0 | 0 of 7 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 25 | 36 | 0 | 61 | 0 of 3 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 53 | 76 | 0 | 129 | 0 of 6 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 1 | 3 | 0 | 4 | 0 of 3 |
-//! | corrected_solution | both | 54 | 79 | 0 | 133 | 0 of 9 |
+//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
+//!
+//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
+//! |---|---|---|---|---|---|---|---|---|
+//! | phi | Φ | 24 | 16 | 0 | 40 | 0 of 4 | 53 | 40 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 18 | 16 | 0 | 34 | 0 of 19 | 44 | 34 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 21 | 22 | 0 | 43 | 0 of 12 | 81 | 43 |
+//! | nu | ν | 0 | 0 | 0 | 0 | 3 of 3 | 0 | 0 |
+//! | gamma | γ | 39 | 61 | 0 | 100 | 0 of 3 | 222 | 100 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 30 | 46 | 0 | 76 | 0 of 3 | 123 | 76 |
+//! | applied_force | (f, n' − w̃'J'w') | 12 | 18 | 0 | 30 | 2 of 6 | 36 | 30 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 89 | 120 | 0 | 209 | 0 of 6 | 39738 | 209 |
+//! | multipliers | λ, the accelerations being known | 1 | 3 | 0 | 4 | 0 of 3 | 4 | 4 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 | 24 | 24 |
+//! | energy | T and V | 11 | 18 | 0 | 29 | 0 of 2 | 29 | 29 |
+//! | read_joints | joint coordinates and rates | 0 | 0 | 0 | 0 | 0 of 7 | 0 | 0 |
+//! | outputs | outputs, the accelerations being known | 52 | 64 | 0 | 116 | 0 of 6 | 498 | 116 |
+//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 4 | 0 | 0 |
+//! | newton_step | dependent positions, one Newton step | 29 | 29 | 1 | 59 | 0 of 7 | 842 | 60 |
+//! | solve_velocities | dependent velocities, eq. (19) | 27 | 46 | 0 | 73 | 0 of 6 | 120 | 73 |
+//! | joint_accelerations | u̇ in joint coordinates | 25 | 36 | 0 | 61 | 0 of 3 | 491 | 61 |
+//! | joint_derivative | ẋ but for u̇ | 8 | 16 | 0 | 24 | 0 of 4 | 24 | 24 |
+//! | to_maximal | (q, v) of a joint state | 27 | 40 | 0 | 67 | 0 of 13 | 123 | 67 |
+//! | to_joints | (x, u) of a maximal state | 0 | 0 | 0 | 0 | 0 of 7 | 0 | 0 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 25 | 36 | 0 | 61 | 0 of 3 | 491 | 61 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 53 | 76 | 0 | 129 | 0 of 6 | 3602 | 129 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 1 | 3 | 0 | 4 | 0 of 3 | 4 | 4 |
+//! | corrected_solution | both | 54 | 79 | 0 | 133 | 0 of 9 | 6717 | 133 |
 //!
 //! # Proof
 //!

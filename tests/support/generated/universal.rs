@@ -8,30 +8,38 @@
 //! * unknowns of eq. (17): 10
 //! * non-zeros: Φ_q 23 of 35, (Φ_r, Φ_π') 14 of 24
 //! * left out: coordinates of `ground` (fixed: folded into constants)
+//! * left out: charts (for trees of revolute, spherical and fixed joints: the run time pivots)
+//! * left out: parameters (all numbers are folded)
+//! * accelerations: by rotations of the bodies, 287 operations, not relative Euler parameters 287
+//! * joint_accelerations: by normal form, 48 operations, not recursion 136
+//! * joint_accelerations_at: by normal form, 81 operations, not recursion 169, recursion on the bodies' spins 179
+//! * corrected_accelerations: by normal form in the bodies' frames, 163 operations, not recursion in the bodies' frames 237, recursion in the global frame 268, normal form in the global frame 196, recursion on the bodies' spins in the bodies' frames 221, recursion on the bodies' spins in the global frame 252, elimination in maximal coordinates 287
 //!
-//! | function | computes | + − | × | ÷ | total | zeros |
-//! |---|---|---|---|---|---|---|
-//! | phi | Φ | 24 | 20 | 0 | 44 | 0 of 5 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 18 | 22 | 0 | 40 | 0 of 23 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 21 | 30 | 0 | 51 | 0 of 14 |
-//! | nu | ν | 0 | 0 | 0 | 0 | 4 of 4 |
-//! | gamma | γ | 39 | 61 | 0 | 100 | 0 of 4 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 30 | 46 | 0 | 76 | 0 of 4 |
-//! | applied_force | (f, n' − w̃'J'w') | 27 | 41 | 0 | 68 | 2 of 6 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 117 | 167 | 3 | 287 | 0 of 6 |
-//! | multipliers | λ, the accelerations being known | 47 | 68 | 1 | 116 | 0 of 4 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 14 | 30 | 0 | 44 | 0 of 9 |
-//! | energy | T and V | 19 | 31 | 0 | 50 | 0 of 2 |
-//! | read_joints | joint coordinates and rates | 14 | 18 | 0 | 32 | 0 of 6 |
-//! | outputs | outputs, the accelerations being known | 78 | 108 | 1 | 187 | 0 of 6 |
-//! | joint_accelerations | u̇ in joint coordinates | 18 | 29 | 1 | 48 | 0 of 2 |
-//! | joint_derivative | ẋ but for u̇ | 0 | 2 | 0 | 2 | 0 of 3 |
-//! | to_maximal | (q, v) of a joint state | 28 | 54 | 0 | 82 | 0 of 14 |
-//! | to_joints | (x, u) of a maximal state | 20 | 26 | 0 | 46 | 0 of 4 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 30 | 50 | 1 | 81 | 0 of 2 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 63 | 99 | 1 | 163 | 0 of 6 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 46 | 64 | 0 | 110 | 0 of 4 |
-//! | corrected_solution | both | 94 | 142 | 1 | 237 | 0 of 10 |
+//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
+//!
+//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
+//! |---|---|---|---|---|---|---|---|---|
+//! | phi | Φ | 24 | 20 | 0 | 44 | 0 of 5 | 60 | 44 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 18 | 22 | 0 | 40 | 0 of 23 | 56 | 40 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 21 | 30 | 0 | 51 | 0 of 14 | 96 | 51 |
+//! | nu | ν | 0 | 0 | 0 | 0 | 4 of 4 | 0 | 0 |
+//! | gamma | γ | 39 | 61 | 0 | 100 | 0 of 4 | 245 | 100 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 30 | 46 | 0 | 76 | 0 of 4 | 135 | 76 |
+//! | applied_force | (f, n' − w̃'J'w') | 27 | 41 | 0 | 68 | 2 of 6 | 138 | 68 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 117 | 167 | 3 | 287 | 0 of 6 | 75890 | 288 |
+//! | multipliers | λ, the accelerations being known | 47 | 68 | 1 | 116 | 0 of 4 | 243 | 116 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 14 | 30 | 0 | 44 | 0 of 9 | 44 | 44 |
+//! | energy | T and V | 19 | 31 | 0 | 50 | 0 of 2 | 85 | 50 |
+//! | read_joints | joint coordinates and rates | 14 | 18 | 0 | 32 | 0 of 6 | 54 | 32 |
+//! | outputs | outputs, the accelerations being known | 78 | 108 | 1 | 187 | 0 of 6 | 1995 | 187 |
+//! | joint_accelerations | u̇ in joint coordinates | 18 | 29 | 1 | 48 | 0 of 2 | 137 | 49 |
+//! | joint_derivative | ẋ but for u̇ | 0 | 2 | 0 | 2 | 0 of 3 | 2 | 2 |
+//! | to_maximal | (q, v) of a joint state | 28 | 54 | 0 | 82 | 0 of 14 | 431 | 82 |
+//! | to_joints | (x, u) of a maximal state | 20 | 26 | 0 | 46 | 0 of 4 | 104 | 46 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 30 | 50 | 1 | 81 | 0 of 2 | 558 | 82 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 63 | 99 | 1 | 163 | 0 of 6 | 7444 | 164 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 46 | 64 | 0 | 110 | 0 of 4 | 197 | 110 |
+//! | corrected_solution | both | 94 | 142 | 1 | 237 | 0 of 10 | 28934 | 238 |
 //!
 //! # Proof
 //!
@@ -1000,34 +1008,43 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Universal<T> {
         let x1 = x[1];
         let u0 = x[2];
         let u1 = x[3];
-        let t0 = x1.cos();
-        let t1 = x1.sin();
-        let t2 = u0 * T::fused(-t1, T::fused(k(8.455), t0, t1), k(0.5));
+        let t0 = x1.sin();
+        let t1 = x1.cos();
+        let t2 = u0 * T::fused(-t1, T::fused(-k(8.455), t0, t1), k(0.5));
         let t3 = x0.cos();
         let t4 = T::fused(
-            k(0.5886),
-            x0.sin() * T::fused(k(13.333333333333334), t0, t1),
+            k(7.848),
+            x0.sin() * T::fused(k(0.075), t0, t1),
             T::fused(k(1.5), x0, -T::fused(k(0.3924), t3, k(0.3))),
         );
         let t5 = T::fused(
-            k(0.0032),
-            u1 * T::fused(-u1, T::fused(k(4.0625), t0, t1), k(25.0) * t2),
+            -k(0.013),
+            u1
+                * T::fused(
+                    u1,
+                    T::fused(k(0.24615384615384617), t0, t1),
+                    k(6.153846153846154) * t2,
+                ),
             t4,
         );
         let t6 = T::fused(
-            -k(0.04),
+            k(0.04),
             u0 * t2,
-            T::fused(k(7.848), t3 * T::fused(-k(0.075), t0, t1), k(0.05) * u1),
+            T::fused(
+                -k(0.5886),
+                t3 * T::fused(-k(13.333333333333334), t0, t1),
+                k(0.05) * u1,
+            ),
         );
-        let t7 = T::fused(-k(0.0032), t0, k(0.013) * t1);
+        let t7 = T::fused(-k(0.0032), t1, k(0.013) * t0);
         let t8 = k(2.6191723415400734) * t7;
         let t9 = T::fused(
             t7,
             t8,
             -T::fused(
-                -k(0.3382),
-                t1 * T::fused(-k(0.11827321111768184), t0, t1),
-                k(0.3708),
+                k(0.3382),
+                t1 * T::fused(k(0.11827321111768184), t0, t1),
+                k(0.0326),
             ),
         );
         let t10 = T::fused(t8, t6, t5) / t9;
@@ -1163,47 +1180,56 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Universal<T> {
         let bob_wy = y[11];
         let bob_wz = y[12];
         let turn0 = y[14];
-        let t0 = bob_e0 * bob_e0;
-        let t1 = k(0.5) - T::fused(bob_e1, bob_e1, t0);
-        let t2 = T::fused(bob_e0, bob_e2, bob_e1 * bob_e3);
+        let t0 = T::fused(bob_e0, bob_e2, bob_e1 * bob_e3);
+        let t1 = bob_e0 * bob_e0;
+        let t2 = k(0.5) - T::fused(bob_e1, bob_e1, t1);
         let t3 = k(2.0) * t2;
         let t4 = T::fused(
-            -(k(2.0) * t1),
+            -t3,
             bob_wx,
             k(2.0) * T::fused(-bob_e0, bob_e3, bob_e1 * bob_e2) * bob_wy,
         );
-        let t5 = T::fused(t3, bob_wz, t4);
-        let t6 = t5 * T::fused(-t3, T::fused(-k(16.91), t1, t3), k(0.5));
+        let t5 = T::fused(k(2.0) * t0, bob_wz, t4);
+        let t6 = t5 * T::fused(-t3, T::fused(k(16.91), t0, t3), k(0.5));
         let t7 = k(2.0) * T::fused(bob_e0, bob_e1, bob_e2 * bob_e3);
         let t8 = turn0.cos();
-        let t9 = k(0.5) - T::fused(bob_e2, bob_e2, t0);
+        let t9 = k(0.5) - T::fused(bob_e2, bob_e2, t1);
         let t10 = k(2.0) * t9;
         let t11 = turn0.sin();
         let t12 = T::fused(t10, t11, t7 * t8).atan2(T::fused(-t10, t8, t7 * t11));
         let t13 = T::fused(
-            -k(0.5886),
-            t7 * T::fused(-k(26.666666666666668), t1, t3),
+            k(7.848),
+            t7 * T::fused(-k(0.15), t0, t3),
             T::fused(-k(1.5), turn0 + t12, T::fused(-k(0.7848), t9, k(0.3))),
         );
         let t14 = T::fused(
-            -k(0.0032),
-            bob_wy * T::fused(-bob_wy, T::fused(-k(8.125), t1, t3), k(25.0) * t6),
+            k(0.013),
+            bob_wy
+                * T::fused(
+                    -bob_wy,
+                    T::fused(-k(0.49230769230769234), t0, t3),
+                    k(6.153846153846154) * t6,
+                ),
             t13,
         );
         let t15 = T::fused(
-            -k(0.04),
+            k(0.04),
             t5 * t6,
-            T::fused(-k(7.848), t10 * T::fused(k(0.15), t1, t3), k(0.05) * bob_wy),
+            T::fused(
+                -k(0.5886),
+                t10 * T::fused(k(26.666666666666668), t0, t3),
+                k(0.05) * bob_wy,
+            ),
         );
-        let t16 = T::fused(k(0.0064), t1, k(0.026) * t2);
+        let t16 = T::fused(k(0.0064), t2, k(0.026) * t0);
         let t17 = k(2.6191723415400734) * t16;
         let t18 = T::fused(
             t16,
             t17,
             -T::fused(
-                -k(0.3382),
-                t3 * T::fused(k(0.23654642223536368), t1, t3),
-                k(0.3708),
+                k(0.3382),
+                t3 * T::fused(-k(0.23654642223536368), t0, t3),
+                k(0.0326),
             ),
         );
         let t19 = T::fused(t17, t15, -t14) / t18;
@@ -1243,13 +1269,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Universal<T> {
             T::fused(-t9, t11, t2 * t12),
             -T::fused(bob_wz, t11, bob_wx * t12),
         );
-        let t14 = t10 * T::fused(-t9, T::fused(-k(16.91), t1, t9), k(0.5));
+        let t14 = t10 * T::fused(-t2, T::fused(k(16.91), t8, t2), k(0.5));
         let t15 = k(0.5) - T::fused(bob_e2, bob_e2, t0);
         let t16 = k(2.0) * t15;
         let t17 = T::fused(
-            -k(0.04),
+            k(0.04),
             t10 * t14,
-            T::fused(-k(7.848), t16 * T::fused(k(0.15), t1, t9), k(0.05) * bob_wy),
+            T::fused(
+                -k(0.5886),
+                t16 * T::fused(k(26.666666666666668), t8, t2),
+                k(0.05) * bob_wy,
+            ),
         );
         let t18 = bob_e0 * bob_e1;
         let t19 = bob_e2 * bob_e3;
@@ -1258,13 +1288,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Universal<T> {
         let t22 = turn0.sin();
         let t23 = T::fused(t16, t22, t20 * t21).atan2(T::fused(-t16, t21, t20 * t22));
         let t24 = T::fused(
-            -k(0.5886),
-            t20 * T::fused(-k(26.666666666666668), t1, t9),
+            k(7.848),
+            t20 * T::fused(-k(0.15), t8, t2),
             T::fused(-k(1.5), turn0 + t23, T::fused(-k(0.7848), t15, k(0.3))),
         );
         let t25 = T::fused(
-            -k(0.0032),
-            bob_wy * T::fused(-bob_wy, T::fused(-k(8.125), t1, t9), k(25.0) * t14),
+            k(0.013),
+            bob_wy
+                * T::fused(
+                    -bob_wy,
+                    T::fused(-k(0.49230769230769234), t8, t2),
+                    k(6.153846153846154) * t14,
+                ),
             t24,
         );
         let t26 = T::fused(k(0.0064), t1, k(0.026) * t8);
@@ -1273,9 +1308,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Universal<T> {
             t26,
             t27,
             -T::fused(
-                -k(0.3382),
-                t9 * T::fused(k(0.23654642223536368), t1, t9),
-                k(0.3708),
+                k(0.3382),
+                t2 * T::fused(-k(0.23654642223536368), t8, t2),
+                k(0.0326),
             ),
         );
         let t29 = T::fused(t27, t17, -t25) / t28;
@@ -1442,13 +1477,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Universal<T> {
             T::fused(-t10, t12, t2 * t13),
             -T::fused(bob_wz, t12, bob_wx * t13),
         );
-        let t15 = t11 * T::fused(-t10, T::fused(-k(16.91), t1, t10), k(0.5));
+        let t15 = t11 * T::fused(-t2, T::fused(k(16.91), t9, t2), k(0.5));
         let t16 = k(0.5) - T::fused(bob_e2, bob_e2, t0);
         let t17 = k(2.0) * t16;
         let t18 = T::fused(
-            -k(0.04),
+            k(0.04),
             t11 * t15,
-            T::fused(-k(7.848), t17 * T::fused(k(0.15), t1, t10), k(0.05) * bob_wy),
+            T::fused(
+                -k(0.5886),
+                t17 * T::fused(k(26.666666666666668), t9, t2),
+                k(0.05) * bob_wy,
+            ),
         );
         let t19 = bob_e0 * bob_e1;
         let t20 = bob_e2 * bob_e3;
@@ -1459,13 +1498,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Universal<T> {
         let t25 = T::fused(t17, t24, t22 * t23).atan2(T::fused(-t17, t23, t22 * t24));
         let t26 = turn0 + t25;
         let t27 = T::fused(
-            -k(0.5886),
-            t22 * T::fused(-k(26.666666666666668), t1, t10),
+            k(7.848),
+            t22 * T::fused(-k(0.15), t9, t2),
             T::fused(-k(1.5), t26, T::fused(-k(0.7848), t16, k(0.3))),
         );
         let t28 = T::fused(
-            -k(0.0032),
-            bob_wy * T::fused(-bob_wy, T::fused(-k(8.125), t1, t10), k(25.0) * t15),
+            k(0.013),
+            bob_wy
+                * T::fused(
+                    -bob_wy,
+                    T::fused(-k(0.49230769230769234), t9, t2),
+                    k(6.153846153846154) * t15,
+                ),
             t27,
         );
         let t29 = T::fused(k(0.0064), t1, k(0.026) * t9);
@@ -1474,9 +1518,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Universal<T> {
             t29,
             t30,
             -T::fused(
-                -k(0.3382),
-                t10 * T::fused(k(0.23654642223536368), t1, t10),
-                k(0.3708),
+                k(0.3382),
+                t2 * T::fused(-k(0.23654642223536368), t9, t2),
+                k(0.0326),
             ),
         );
         let t32 = T::fused(t30, t18, -t28) / t31;
