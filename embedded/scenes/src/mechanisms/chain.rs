@@ -9,31 +9,40 @@
 //! * non-zeros: Φ_q 255 of 1512, (Φ_r, Φ_π') 143 of 1080
 //! * left out: coordinates of `ground` (fixed: folded into constants)
 //! * left out: the work of non-conservative forces (there are none)
+//! * left out: parameters (all numbers are folded)
+//! * left out: outputs (the page asks for none)
+//! * accelerations: by rotations of the bodies, 2651 operations, not relative Euler parameters 2726
+//! * joint_accelerations: by recursion, 1108 operations, alone
+//! * joint_accelerations_at: by recursion, 1207 operations, not recursion on the bodies' spins 1244
+//! * corrected_accelerations: by recursion on the bodies' spins in the bodies' frames, 1625 operations, not recursion in the bodies' frames 1699, recursion in the global frame 1731, recursion on the bodies' spins in the global frame 1708, elimination in maximal coordinates 2651
 //!
-//! | function | computes | + − | × | ÷ | total | zeros |
-//! |---|---|---|---|---|---|---|
-//! | phi | Φ | 137 | 141 | 0 | 278 | 0 of 36 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 164 | 341 | 0 | 505 | 0 of 255 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 142 | 255 | 0 | 397 | 0 of 143 |
-//! | nu | ν | 0 | 0 | 0 | 0 | 30 of 30 |
-//! | gamma | γ | 314 | 483 | 0 | 797 | 0 of 30 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 240 | 317 | 0 | 557 | 0 of 30 |
-//! | applied_force | (f, n' − w̃'J'w') | 0 | 36 | 0 | 36 | 12 of 36 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 1359 | 1653 | 11 | 3023 | 0 of 36 |
-//! | multipliers | λ, the accelerations being known | 318 | 510 | 6 | 834 | 0 of 30 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 48 | 96 | 0 | 144 | 0 of 42 |
-//! | energy | T and V | 40 | 62 | 0 | 102 | 0 of 2 |
-//! | read_joints | joint coordinates and rates | 102 | 121 | 0 | 223 | 0 of 18 |
-//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 24 |
-//! | newton_step | dependent positions, one Newton step | 433 | 692 | 6 | 1131 | 0 of 42 |
-//! | solve_velocities | dependent velocities, eq. (19) | 249 | 380 | 6 | 635 | 0 of 36 |
-//! | joint_accelerations | u̇ in joint coordinates | 547 | 641 | 5 | 1193 | 0 of 6 |
-//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 6 |
-//! | to_maximal | (q, v) of a joint state | 159 | 225 | 0 | 384 | 6 of 78 |
-//! | to_joints | (x, u) of a maximal state | 120 | 145 | 0 | 265 | 0 of 12 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 588 | 699 | 5 | 1292 | 0 of 6 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 769 | 911 | 5 | 1685 | 0 of 36 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 204 | 295 | 0 | 499 | 0 of 30 |
+//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
+//!
+//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
+//! |---|---|---|---|---|---|---|---|---|
+//! | phi | Φ | 137 | 141 | 0 | 278 | 0 of 36 | 557 | 278 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 164 | 341 | 0 | 505 | 0 of 255 | 1542 | 505 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 142 | 255 | 0 | 397 | 0 of 143 | 1544 | 397 |
+//! | nu | ν | 0 | 0 | 0 | 0 | 30 of 30 | 0 | 0 |
+//! | gamma | γ | 314 | 483 | 0 | 797 | 0 of 30 | 4258 | 797 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 240 | 317 | 0 | 557 | 0 of 30 | 1800 | 557 |
+//! | applied_force | (f, n' − w̃'J'w') | 0 | 36 | 0 | 36 | 12 of 36 | 36 | 36 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 1172 | 1468 | 11 | 2651 | 0 of 36 | 2.2e17 | 2658 |
+//! | multipliers | λ, the accelerations being known | 318 | 510 | 6 | 834 | 0 of 30 | 131621 | 834 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 48 | 96 | 0 | 144 | 0 of 42 | 144 | 144 |
+//! | energy | T and V | 40 | 62 | 0 | 102 | 0 of 2 | 102 | 102 |
+//! | read_joints | joint coordinates and rates | 102 | 121 | 0 | 223 | 0 of 18 | 513 | 223 |
+//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 24 | 0 | 0 |
+//! | newton_step | dependent positions, one Newton step | 433 | 692 | 6 | 1131 | 0 of 42 | 2.0e17 | 1131 |
+//! | solve_velocities | dependent velocities, eq. (19) | 249 | 380 | 6 | 635 | 0 of 36 | 1.1e6 | 635 |
+//! | joint_accelerations | u̇ in joint coordinates | 498 | 605 | 5 | 1108 | 0 of 6 | 2.6e10 | 1109 |
+//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 6 | 0 | 0 |
+//! | to_maximal | (q, v) of a joint state | 159 | 225 | 0 | 384 | 6 of 78 | 25243 | 384 |
+//! | to_joints | (x, u) of a maximal state | 120 | 145 | 0 | 265 | 0 of 12 | 1063 | 265 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 539 | 663 | 5 | 1207 | 0 of 6 | 2.4e11 | 1208 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 731 | 889 | 5 | 1625 | 0 of 36 | 4.9e12 | 1626 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 204 | 295 | 0 | 499 | 0 of 30 | 10703 | 499 |
+//! | corrected_solution | both | 853 | 1041 | 5 | 1899 | 0 of 66 | 8.5e14 | 1900 |
 //!
 //! # Proof
 //!
@@ -50,7 +59,7 @@
 //! * joint_derivative: eqs. (14) and (16) on the constraints
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
-//! * corrected_multipliers: eq. (17) on the constraints
+//! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //!
 //! All of it holds but with a probability below 1e-133.
 //! Not proved: the size of rounding errors.
@@ -233,92 +242,164 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Chain<T> {
             link_1_sy,
             link_1_sz,
             -(k(0.5)
-                * (link_1_e1 * link_1_wx + link_1_e2 * link_1_wy
-                    + link_1_e3 * link_1_wz)),
+                * T::fused(
+                    link_1_e3,
+                    link_1_wz,
+                    T::fused(link_1_e2, link_1_wy, link_1_e1 * link_1_wx),
+                )),
             k(0.5)
-                * (link_1_e0 * link_1_wx - link_1_e3 * link_1_wy
-                    + link_1_e2 * link_1_wz),
+                * T::fused(
+                    link_1_e2,
+                    link_1_wz,
+                    T::fused(-link_1_e3, link_1_wy, link_1_e0 * link_1_wx),
+                ),
             k(0.5)
-                * (link_1_e3 * link_1_wx + link_1_e0 * link_1_wy
-                    - link_1_e1 * link_1_wz),
+                * T::fused(
+                    -link_1_e1,
+                    link_1_wz,
+                    T::fused(link_1_e0, link_1_wy, link_1_e3 * link_1_wx),
+                ),
             -(k(0.5)
-                * (link_1_e2 * link_1_wx - link_1_e1 * link_1_wy
-                    - link_1_e0 * link_1_wz)),
+                * T::fused(
+                    -link_1_e0,
+                    link_1_wz,
+                    T::fused(-link_1_e1, link_1_wy, link_1_e2 * link_1_wx),
+                )),
             link_2_sx,
             link_2_sy,
             link_2_sz,
             -(k(0.5)
-                * (link_2_e1 * link_2_wx + link_2_e2 * link_2_wy
-                    + link_2_e3 * link_2_wz)),
+                * T::fused(
+                    link_2_e3,
+                    link_2_wz,
+                    T::fused(link_2_e2, link_2_wy, link_2_e1 * link_2_wx),
+                )),
             k(0.5)
-                * (link_2_e0 * link_2_wx - link_2_e3 * link_2_wy
-                    + link_2_e2 * link_2_wz),
+                * T::fused(
+                    link_2_e2,
+                    link_2_wz,
+                    T::fused(-link_2_e3, link_2_wy, link_2_e0 * link_2_wx),
+                ),
             k(0.5)
-                * (link_2_e3 * link_2_wx + link_2_e0 * link_2_wy
-                    - link_2_e1 * link_2_wz),
+                * T::fused(
+                    -link_2_e1,
+                    link_2_wz,
+                    T::fused(link_2_e0, link_2_wy, link_2_e3 * link_2_wx),
+                ),
             -(k(0.5)
-                * (link_2_e2 * link_2_wx - link_2_e1 * link_2_wy
-                    - link_2_e0 * link_2_wz)),
+                * T::fused(
+                    -link_2_e0,
+                    link_2_wz,
+                    T::fused(-link_2_e1, link_2_wy, link_2_e2 * link_2_wx),
+                )),
             link_3_sx,
             link_3_sy,
             link_3_sz,
             -(k(0.5)
-                * (link_3_e1 * link_3_wx + link_3_e2 * link_3_wy
-                    + link_3_e3 * link_3_wz)),
+                * T::fused(
+                    link_3_e3,
+                    link_3_wz,
+                    T::fused(link_3_e2, link_3_wy, link_3_e1 * link_3_wx),
+                )),
             k(0.5)
-                * (link_3_e0 * link_3_wx - link_3_e3 * link_3_wy
-                    + link_3_e2 * link_3_wz),
+                * T::fused(
+                    link_3_e2,
+                    link_3_wz,
+                    T::fused(-link_3_e3, link_3_wy, link_3_e0 * link_3_wx),
+                ),
             k(0.5)
-                * (link_3_e3 * link_3_wx + link_3_e0 * link_3_wy
-                    - link_3_e1 * link_3_wz),
+                * T::fused(
+                    -link_3_e1,
+                    link_3_wz,
+                    T::fused(link_3_e0, link_3_wy, link_3_e3 * link_3_wx),
+                ),
             -(k(0.5)
-                * (link_3_e2 * link_3_wx - link_3_e1 * link_3_wy
-                    - link_3_e0 * link_3_wz)),
+                * T::fused(
+                    -link_3_e0,
+                    link_3_wz,
+                    T::fused(-link_3_e1, link_3_wy, link_3_e2 * link_3_wx),
+                )),
             link_4_sx,
             link_4_sy,
             link_4_sz,
             -(k(0.5)
-                * (link_4_e1 * link_4_wx + link_4_e2 * link_4_wy
-                    + link_4_e3 * link_4_wz)),
+                * T::fused(
+                    link_4_e3,
+                    link_4_wz,
+                    T::fused(link_4_e2, link_4_wy, link_4_e1 * link_4_wx),
+                )),
             k(0.5)
-                * (link_4_e0 * link_4_wx - link_4_e3 * link_4_wy
-                    + link_4_e2 * link_4_wz),
+                * T::fused(
+                    link_4_e2,
+                    link_4_wz,
+                    T::fused(-link_4_e3, link_4_wy, link_4_e0 * link_4_wx),
+                ),
             k(0.5)
-                * (link_4_e3 * link_4_wx + link_4_e0 * link_4_wy
-                    - link_4_e1 * link_4_wz),
+                * T::fused(
+                    -link_4_e1,
+                    link_4_wz,
+                    T::fused(link_4_e0, link_4_wy, link_4_e3 * link_4_wx),
+                ),
             -(k(0.5)
-                * (link_4_e2 * link_4_wx - link_4_e1 * link_4_wy
-                    - link_4_e0 * link_4_wz)),
+                * T::fused(
+                    -link_4_e0,
+                    link_4_wz,
+                    T::fused(-link_4_e1, link_4_wy, link_4_e2 * link_4_wx),
+                )),
             link_5_sx,
             link_5_sy,
             link_5_sz,
             -(k(0.5)
-                * (link_5_e1 * link_5_wx + link_5_e2 * link_5_wy
-                    + link_5_e3 * link_5_wz)),
+                * T::fused(
+                    link_5_e3,
+                    link_5_wz,
+                    T::fused(link_5_e2, link_5_wy, link_5_e1 * link_5_wx),
+                )),
             k(0.5)
-                * (link_5_e0 * link_5_wx - link_5_e3 * link_5_wy
-                    + link_5_e2 * link_5_wz),
+                * T::fused(
+                    link_5_e2,
+                    link_5_wz,
+                    T::fused(-link_5_e3, link_5_wy, link_5_e0 * link_5_wx),
+                ),
             k(0.5)
-                * (link_5_e3 * link_5_wx + link_5_e0 * link_5_wy
-                    - link_5_e1 * link_5_wz),
+                * T::fused(
+                    -link_5_e1,
+                    link_5_wz,
+                    T::fused(link_5_e0, link_5_wy, link_5_e3 * link_5_wx),
+                ),
             -(k(0.5)
-                * (link_5_e2 * link_5_wx - link_5_e1 * link_5_wy
-                    - link_5_e0 * link_5_wz)),
+                * T::fused(
+                    -link_5_e0,
+                    link_5_wz,
+                    T::fused(-link_5_e1, link_5_wy, link_5_e2 * link_5_wx),
+                )),
             link_6_sx,
             link_6_sy,
             link_6_sz,
             -(k(0.5)
-                * (link_6_e1 * link_6_wx + link_6_e2 * link_6_wy
-                    + link_6_e3 * link_6_wz)),
+                * T::fused(
+                    link_6_e3,
+                    link_6_wz,
+                    T::fused(link_6_e2, link_6_wy, link_6_e1 * link_6_wx),
+                )),
             k(0.5)
-                * (link_6_e0 * link_6_wx - link_6_e3 * link_6_wy
-                    + link_6_e2 * link_6_wz),
+                * T::fused(
+                    link_6_e2,
+                    link_6_wz,
+                    T::fused(-link_6_e3, link_6_wy, link_6_e0 * link_6_wx),
+                ),
             k(0.5)
-                * (link_6_e3 * link_6_wx + link_6_e0 * link_6_wy
-                    - link_6_e1 * link_6_wz),
+                * T::fused(
+                    -link_6_e1,
+                    link_6_wz,
+                    T::fused(link_6_e0, link_6_wy, link_6_e3 * link_6_wx),
+                ),
             -(k(0.5)
-                * (link_6_e2 * link_6_wx - link_6_e1 * link_6_wy
-                    - link_6_e0 * link_6_wz)),
+                * T::fused(
+                    -link_6_e0,
+                    link_6_wz,
+                    T::fused(-link_6_e1, link_6_wy, link_6_e2 * link_6_wx),
+                )),
             accelerations[0],
             accelerations[1],
             accelerations[2],
@@ -371,6 +452,272 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Chain<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 18]
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 144 operations (48 ±, 96 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let link_1_e0 = y[3];
+        let link_1_e1 = y[4];
+        let link_1_e2 = y[5];
+        let link_1_e3 = y[6];
+        let link_2_e0 = y[10];
+        let link_2_e1 = y[11];
+        let link_2_e2 = y[12];
+        let link_2_e3 = y[13];
+        let link_3_e0 = y[17];
+        let link_3_e1 = y[18];
+        let link_3_e2 = y[19];
+        let link_3_e3 = y[20];
+        let link_4_e0 = y[24];
+        let link_4_e1 = y[25];
+        let link_4_e2 = y[26];
+        let link_4_e3 = y[27];
+        let link_5_e0 = y[31];
+        let link_5_e1 = y[32];
+        let link_5_e2 = y[33];
+        let link_5_e3 = y[34];
+        let link_6_e0 = y[38];
+        let link_6_e1 = y[39];
+        let link_6_e2 = y[40];
+        let link_6_e3 = y[41];
+        let link_1_sx = y[42];
+        let link_1_sy = y[43];
+        let link_1_sz = y[44];
+        let link_2_sx = y[48];
+        let link_2_sy = y[49];
+        let link_2_sz = y[50];
+        let link_3_sx = y[54];
+        let link_3_sy = y[55];
+        let link_3_sz = y[56];
+        let link_4_sx = y[60];
+        let link_4_sy = y[61];
+        let link_4_sz = y[62];
+        let link_5_sx = y[66];
+        let link_5_sy = y[67];
+        let link_5_sz = y[68];
+        let link_6_sx = y[72];
+        let link_6_sy = y[73];
+        let link_6_sz = y[74];
+        let link_1_wx = y[45];
+        let link_1_wy = y[46];
+        let link_1_wz = y[47];
+        let link_2_wx = y[51];
+        let link_2_wy = y[52];
+        let link_2_wz = y[53];
+        let link_3_wx = y[57];
+        let link_3_wy = y[58];
+        let link_3_wz = y[59];
+        let link_4_wx = y[63];
+        let link_4_wy = y[64];
+        let link_4_wz = y[65];
+        let link_5_wx = y[69];
+        let link_5_wy = y[70];
+        let link_5_wz = y[71];
+        let link_6_wx = y[75];
+        let link_6_wy = y[76];
+        let link_6_wz = y[77];
+        *dy = [
+            link_1_sx,
+            link_1_sy,
+            link_1_sz,
+            -(k(0.5)
+                * T::fused(
+                    link_1_e3,
+                    link_1_wz,
+                    T::fused(link_1_e2, link_1_wy, link_1_e1 * link_1_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    link_1_e2,
+                    link_1_wz,
+                    T::fused(-link_1_e3, link_1_wy, link_1_e0 * link_1_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -link_1_e1,
+                    link_1_wz,
+                    T::fused(link_1_e0, link_1_wy, link_1_e3 * link_1_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -link_1_e0,
+                    link_1_wz,
+                    T::fused(-link_1_e1, link_1_wy, link_1_e2 * link_1_wx),
+                )),
+            link_2_sx,
+            link_2_sy,
+            link_2_sz,
+            -(k(0.5)
+                * T::fused(
+                    link_2_e3,
+                    link_2_wz,
+                    T::fused(link_2_e2, link_2_wy, link_2_e1 * link_2_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    link_2_e2,
+                    link_2_wz,
+                    T::fused(-link_2_e3, link_2_wy, link_2_e0 * link_2_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -link_2_e1,
+                    link_2_wz,
+                    T::fused(link_2_e0, link_2_wy, link_2_e3 * link_2_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -link_2_e0,
+                    link_2_wz,
+                    T::fused(-link_2_e1, link_2_wy, link_2_e2 * link_2_wx),
+                )),
+            link_3_sx,
+            link_3_sy,
+            link_3_sz,
+            -(k(0.5)
+                * T::fused(
+                    link_3_e3,
+                    link_3_wz,
+                    T::fused(link_3_e2, link_3_wy, link_3_e1 * link_3_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    link_3_e2,
+                    link_3_wz,
+                    T::fused(-link_3_e3, link_3_wy, link_3_e0 * link_3_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -link_3_e1,
+                    link_3_wz,
+                    T::fused(link_3_e0, link_3_wy, link_3_e3 * link_3_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -link_3_e0,
+                    link_3_wz,
+                    T::fused(-link_3_e1, link_3_wy, link_3_e2 * link_3_wx),
+                )),
+            link_4_sx,
+            link_4_sy,
+            link_4_sz,
+            -(k(0.5)
+                * T::fused(
+                    link_4_e3,
+                    link_4_wz,
+                    T::fused(link_4_e2, link_4_wy, link_4_e1 * link_4_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    link_4_e2,
+                    link_4_wz,
+                    T::fused(-link_4_e3, link_4_wy, link_4_e0 * link_4_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -link_4_e1,
+                    link_4_wz,
+                    T::fused(link_4_e0, link_4_wy, link_4_e3 * link_4_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -link_4_e0,
+                    link_4_wz,
+                    T::fused(-link_4_e1, link_4_wy, link_4_e2 * link_4_wx),
+                )),
+            link_5_sx,
+            link_5_sy,
+            link_5_sz,
+            -(k(0.5)
+                * T::fused(
+                    link_5_e3,
+                    link_5_wz,
+                    T::fused(link_5_e2, link_5_wy, link_5_e1 * link_5_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    link_5_e2,
+                    link_5_wz,
+                    T::fused(-link_5_e3, link_5_wy, link_5_e0 * link_5_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -link_5_e1,
+                    link_5_wz,
+                    T::fused(link_5_e0, link_5_wy, link_5_e3 * link_5_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -link_5_e0,
+                    link_5_wz,
+                    T::fused(-link_5_e1, link_5_wy, link_5_e2 * link_5_wx),
+                )),
+            link_6_sx,
+            link_6_sy,
+            link_6_sz,
+            -(k(0.5)
+                * T::fused(
+                    link_6_e3,
+                    link_6_wz,
+                    T::fused(link_6_e2, link_6_wy, link_6_e1 * link_6_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    link_6_e2,
+                    link_6_wz,
+                    T::fused(-link_6_e3, link_6_wy, link_6_e0 * link_6_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -link_6_e1,
+                    link_6_wz,
+                    T::fused(link_6_e0, link_6_wy, link_6_e3 * link_6_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -link_6_e0,
+                    link_6_wz,
+                    T::fused(-link_6_e1, link_6_wy, link_6_e2 * link_6_wx),
+                )),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            accelerations[6],
+            accelerations[7],
+            accelerations[8],
+            accelerations[9],
+            accelerations[10],
+            accelerations[11],
+            accelerations[12],
+            accelerations[13],
+            accelerations[14],
+            accelerations[15],
+            accelerations[16],
+            accelerations[17],
+            accelerations[18],
+            accelerations[19],
+            accelerations[20],
+            accelerations[21],
+            accelerations[22],
+            accelerations[23],
+            accelerations[24],
+            accelerations[25],
+            accelerations[26],
+            accelerations[27],
+            accelerations[28],
+            accelerations[29],
+            accelerations[30],
+            accelerations[31],
+            accelerations[32],
+            accelerations[33],
+            accelerations[34],
+            accelerations[35],
+        ];
+    }
     /// Writes Φ: 278 operations (137 ±, 141 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
@@ -416,7 +763,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Chain<T> {
         let link_6_e1 = y[39];
         let link_6_e2 = y[40];
         let link_6_e3 = y[41];
-        let t0 = link_1_e1 * link_1_e3 + link_1_e0 * link_1_e2;
+        let t0 = T::fused(link_1_e0, link_1_e2, link_1_e1 * link_1_e3);
         let t1 = k(0.2) * t0;
         let t2 = link_1_e0 * link_1_e1;
         let t3 = link_1_e2 * link_1_e3;
@@ -427,25 +774,33 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Chain<T> {
         let t8 = k(0.5) - (t7 + t6);
         let t9 = k(0.2) * t8;
         let t10 = k(2.0) * (t3 + t2);
-        let t11 = k(2.0) * (link_1_e1 * link_1_e2 - link_1_e0 * link_1_e3);
+        let t11 = k(2.0) * T::fused(-link_1_e0, link_1_e3, link_1_e1 * link_1_e2);
         let t12 = link_2_e0 * link_2_e2;
         let t13 = link_2_e1 * link_2_e3;
         let t14 = t13 + t12;
         let t15 = k(0.2) * t14;
-        let t16 = link_2_e2 * link_2_e3 - link_2_e0 * link_2_e1;
+        let t16 = T::fused(-link_2_e0, link_2_e1, link_2_e2 * link_2_e3);
         let t17 = k(0.2) * t16;
         let t18 = link_2_e3 * link_2_e3;
         let t19 = link_2_e0 * link_2_e0;
         let t20 = k(0.5) - (t19 + t18);
         let t21 = k(0.2) * t20;
-        let t22 = t19 + link_2_e1 * link_2_e1;
+        let t22 = T::fused(link_2_e1, link_2_e1, t19);
         let t23 = k(2.0) * (k(0.5) - t22);
-        let t24 = k(2.0) * (link_2_e1 * link_2_e2 + link_2_e0 * link_2_e3);
+        let t24 = k(2.0) * T::fused(link_2_e0, link_2_e3, link_2_e1 * link_2_e2);
         let t25 = k(2.0) * (t13 - t12);
-        let t26 = k(2.0) * t8 * t25 - (k(2.0) * t4 * t24 - k(2.0) * t0 * t23);
+        let t26 = T::fused(
+            k(2.0) * t8,
+            t25,
+            -T::fused(-(k(2.0) * t0), t23, k(2.0) * t4 * t24),
+        );
         let t27 = link_1_e2 * link_1_e2;
-        let t28 = t10 * t25 - (k(2.0) * (k(0.5) - (t7 + t27)) * t24 + t11 * t23);
-        let t29 = link_3_e1 * link_3_e3 + link_3_e0 * link_3_e2;
+        let t28 = T::fused(
+            t10,
+            t25,
+            -T::fused(t11, t23, k(2.0) * (k(0.5) - (t7 + t27)) * t24),
+        );
+        let t29 = T::fused(link_3_e0, link_3_e2, link_3_e1 * link_3_e3);
         let t30 = k(0.2) * t29;
         let t31 = link_3_e0 * link_3_e1;
         let t32 = link_3_e2 * link_3_e3;
@@ -457,25 +812,33 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Chain<T> {
         let t38 = k(0.2) * t37;
         let t39 = link_3_e2 * link_3_e2;
         let t40 = k(2.0) * (k(0.5) - (t36 + t39));
-        let t41 = k(2.0) * (link_3_e1 * link_3_e2 - link_3_e0 * link_3_e3);
+        let t41 = k(2.0) * T::fused(-link_3_e0, link_3_e3, link_3_e1 * link_3_e2);
         let t42 = k(2.0) * (t32 + t31);
-        let t43 = k(2.0) * t20 * t42 - (k(2.0) * t14 * t41 - k(2.0) * t16 * t40);
+        let t43 = T::fused(
+            k(2.0) * t20,
+            t42,
+            -T::fused(-(k(2.0) * t16), t40, k(2.0) * t14 * t41),
+        );
         let t44 = link_4_e0 * link_4_e2;
         let t45 = link_4_e1 * link_4_e3;
         let t46 = t45 + t44;
         let t47 = k(0.2) * t46;
-        let t48 = link_4_e2 * link_4_e3 - link_4_e0 * link_4_e1;
+        let t48 = T::fused(-link_4_e0, link_4_e1, link_4_e2 * link_4_e3);
         let t49 = k(0.2) * t48;
         let t50 = link_4_e3 * link_4_e3;
         let t51 = link_4_e0 * link_4_e0;
         let t52 = k(0.5) - (t51 + t50);
         let t53 = k(0.2) * t52;
-        let t54 = t51 + link_4_e1 * link_4_e1;
+        let t54 = T::fused(link_4_e1, link_4_e1, t51);
         let t55 = k(2.0) * (k(0.5) - t54);
-        let t56 = k(2.0) * (link_4_e1 * link_4_e2 + link_4_e0 * link_4_e3);
+        let t56 = k(2.0) * T::fused(link_4_e0, link_4_e3, link_4_e1 * link_4_e2);
         let t57 = k(2.0) * (t45 - t44);
-        let t58 = k(2.0) * t37 * t57 - (k(2.0) * t33 * t56 - k(2.0) * t29 * t55);
-        let t59 = link_5_e1 * link_5_e3 + link_5_e0 * link_5_e2;
+        let t58 = T::fused(
+            k(2.0) * t37,
+            t57,
+            -T::fused(-(k(2.0) * t29), t55, k(2.0) * t33 * t56),
+        );
+        let t59 = T::fused(link_5_e0, link_5_e2, link_5_e1 * link_5_e3);
         let t60 = k(0.2) * t59;
         let t61 = link_5_e0 * link_5_e1;
         let t62 = link_5_e2 * link_5_e3;
@@ -487,20 +850,31 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Chain<T> {
         let t68 = k(0.2) * t67;
         let t69 = link_5_e2 * link_5_e2;
         let t70 = k(2.0) * (k(0.5) - (t66 + t69));
-        let t71 = k(2.0) * (link_5_e1 * link_5_e2 - link_5_e0 * link_5_e3);
+        let t71 = k(2.0) * T::fused(-link_5_e0, link_5_e3, link_5_e1 * link_5_e2);
         let t72 = k(2.0) * (t62 + t61);
-        let t73 = k(2.0) * t52 * t72 - (k(2.0) * t46 * t71 - k(2.0) * t48 * t70);
+        let t73 = T::fused(
+            k(2.0) * t52,
+            t72,
+            -T::fused(-(k(2.0) * t48), t70, k(2.0) * t46 * t71),
+        );
         let t74 = link_6_e0 * link_6_e2;
         let t75 = link_6_e1 * link_6_e3;
-        let t76 = link_6_ry + k(0.2) * (link_6_e2 * link_6_e3 - link_6_e0 * link_6_e1)
-            - (link_5_ry - t64);
+        let t76 = T::fused(
+            k(0.2),
+            T::fused(-link_6_e0, link_6_e1, link_6_e2 * link_6_e3),
+            link_6_ry,
+        ) - (link_5_ry - t64);
         let t77 = link_6_e3 * link_6_e3;
         let t78 = link_6_e0 * link_6_e0;
-        let t79 = t78 + link_6_e1 * link_6_e1;
+        let t79 = T::fused(link_6_e1, link_6_e1, t78);
         let t80 = k(2.0) * (k(0.5) - t79);
-        let t81 = k(2.0) * (link_6_e1 * link_6_e2 + link_6_e0 * link_6_e3);
+        let t81 = k(2.0) * T::fused(link_6_e0, link_6_e3, link_6_e1 * link_6_e2);
         let t82 = k(2.0) * (t75 - t74);
-        let t83 = k(2.0) * t67 * t82 - (k(2.0) * t63 * t81 - k(2.0) * t59 * t80);
+        let t83 = T::fused(
+            k(2.0) * t67,
+            t82,
+            -T::fused(-(k(2.0) * t59), t80, k(2.0) * t63 * t81),
+        );
         *out = [
             link_1_rx + t1,
             link_1_ry + t5,
@@ -516,28 +890,28 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Chain<T> {
             link_3_ry + t34 - (link_2_ry - t17),
             link_3_rz - t38 - (link_2_rz + t21),
             -t43,
-            t25 * t42 - (t24 * t40 + t23 * t41),
+            T::fused(t25, t42, -T::fused(t23, t41, t24 * t40)),
             link_4_rx + t47 - (link_3_rx - t30),
             link_4_ry + t49 - (link_3_ry - t34),
             link_4_rz - t53 - (link_3_rz + t38),
             -t58,
-            t40 * t56 + t41 * t55 - t42 * t57,
+            T::fused(-t42, t57, T::fused(t41, t55, t40 * t56)),
             link_5_rx + t60 - (link_4_rx - t47),
             link_5_ry + t64 - (link_4_ry - t49),
             link_5_rz - t68 - (link_4_rz + t53),
             -t73,
-            t57 * t72 - (t56 * t70 + t55 * t71),
-            link_6_rx + k(0.2) * (t75 + t74) - (link_5_rx - t60),
+            T::fused(t57, t72, -T::fused(t55, t71, t56 * t70)),
+            T::fused(k(0.2), t75 + t74, link_6_rx) - (link_5_rx - t60),
             t76,
-            link_6_rz - k(0.2) * (k(0.5) - (t78 + t77)) - (link_5_rz + t68),
+            T::fused(-k(0.2), k(0.5) - (t78 + t77), link_6_rz) - (link_5_rz + t68),
             -t83,
-            t70 * t81 + t71 * t80 - t72 * t82,
-            t6 + (t7 + link_1_e1 * link_1_e1 + t27) - k(1.0),
-            t18 + (t22 + link_2_e2 * link_2_e2) - k(1.0),
-            t35 + (t36 + link_3_e1 * link_3_e1 + t39) - k(1.0),
-            t50 + (t54 + link_4_e2 * link_4_e2) - k(1.0),
-            t65 + (t66 + link_5_e1 * link_5_e1 + t69) - k(1.0),
-            t77 + (t79 + link_6_e2 * link_6_e2) - k(1.0),
+            T::fused(-t72, t82, T::fused(t71, t80, t70 * t81)),
+            t6 + (T::fused(link_1_e1, link_1_e1, t7) + t27) - k(1.0),
+            t18 + T::fused(link_2_e2, link_2_e2, t22) - k(1.0),
+            t35 + (T::fused(link_3_e1, link_3_e1, t36) + t39) - k(1.0),
+            t50 + T::fused(link_4_e2, link_4_e2, t54) - k(1.0),
+            t65 + (T::fused(link_5_e1, link_5_e1, t66) + t69) - k(1.0),
+            t77 + T::fused(link_6_e2, link_6_e2, t79) - k(1.0),
         ];
     }
     /// Writes Φ_r s + Φ_π' w' − ν: 557 operations (240 ±, 317 ×, 0 ÷).
@@ -607,136 +981,192 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Chain<T> {
         let t1 = link_1_e1 * link_1_e2;
         let t2 = k(2.0) * (t1 - t0);
         let t3 = link_1_e0 * link_1_e0;
-        let t4 = k(2.0) * (k(0.5) - (t3 + link_1_e1 * link_1_e1));
-        let t5 = k(0.1) * (t4 * link_1_wy + t2 * link_1_wx);
-        let t6 = k(2.0) * (k(0.5) - (t3 + link_1_e2 * link_1_e2));
+        let t4 = k(2.0) * (k(0.5) - T::fused(link_1_e1, link_1_e1, t3));
+        let t5 = k(0.1) * T::fused(t2, link_1_wx, t4 * link_1_wy);
+        let t6 = k(2.0) * (k(0.5) - T::fused(link_1_e2, link_1_e2, t3));
         let t7 = k(2.0) * (t1 + t0);
-        let t8 = k(0.1) * (t7 * link_1_wy + t6 * link_1_wx);
+        let t8 = k(0.1) * T::fused(t6, link_1_wx, t7 * link_1_wy);
         let t9 = link_1_e0 * link_1_e1;
         let t10 = link_1_e2 * link_1_e3;
         let t11 = k(2.0) * (t10 + t9);
         let t12 = link_1_e0 * link_1_e2;
         let t13 = link_1_e1 * link_1_e3;
         let t14 = k(2.0) * (t13 - t12);
-        let t15 = k(0.1) * (t14 * link_1_wy - t11 * link_1_wx);
-        let t16 = k(2.0) * (k(0.5) - (t3 + link_1_e3 * link_1_e3));
+        let t15 = k(0.1) * T::fused(-t11, link_1_wx, t14 * link_1_wy);
+        let t16 = k(2.0) * (k(0.5) - T::fused(link_1_e3, link_1_e3, t3));
         let t17 = k(2.0) * (t13 + t12);
         let t18 = link_2_e0 * link_2_e0;
-        let t19 = k(2.0) * (k(0.5) - (t18 + link_2_e1 * link_2_e1));
+        let t19 = k(2.0) * (k(0.5) - T::fused(link_2_e1, link_2_e1, t18));
         let t20 = link_2_e0 * link_2_e3;
         let t21 = link_2_e1 * link_2_e2;
         let t22 = k(2.0) * (t21 - t20);
-        let t23 = k(0.1) * (t22 * link_2_wx + t19 * link_2_wy);
+        let t23 = k(0.1) * T::fused(t19, link_2_wy, t22 * link_2_wx);
         let t24 = k(2.0) * (t21 + t20);
-        let t25 = k(2.0) * (k(0.5) - (t18 + link_2_e2 * link_2_e2));
-        let t26 = k(0.1) * (t25 * link_2_wx + t24 * link_2_wy);
+        let t25 = k(2.0) * (k(0.5) - T::fused(link_2_e2, link_2_e2, t18));
+        let t26 = k(0.1) * T::fused(t24, link_2_wy, t25 * link_2_wx);
         let t27 = link_2_e0 * link_2_e2;
         let t28 = link_2_e1 * link_2_e3;
         let t29 = k(2.0) * (t28 - t27);
         let t30 = link_2_e0 * link_2_e1;
         let t31 = link_2_e2 * link_2_e3;
         let t32 = k(2.0) * (t31 + t30);
-        let t33 = k(0.1) * (t32 * link_2_wx - t29 * link_2_wy);
-        let t34 = t14 * t29 + (t7 * t24 + t4 * t19);
-        let t35 = link_1_wy * t34 - link_1_wx * (t11 * t29 - (t6 * t24 + t2 * t19));
+        let t33 = k(0.1) * T::fused(-t29, link_2_wy, t32 * link_2_wx);
+        let t34 = T::fused(t14, t29, T::fused(t4, t19, t7 * t24));
+        let t35 = T::fused(
+            -link_1_wx,
+            T::fused(t11, t29, -T::fused(t2, t19, t6 * t24)),
+            link_1_wy * t34,
+        );
         let t36 = k(2.0) * (t10 - t9);
-        let t37 = k(2.0) * (k(0.5) - (t18 + link_2_e3 * link_2_e3));
+        let t37 = k(2.0) * (k(0.5) - T::fused(link_2_e3, link_2_e3, t18));
         let t38 = k(2.0) * (t31 - t30);
         let t39 = k(2.0) * (t28 + t27);
-        let t40 = link_2_wy * (t17 * t39 + t36 * t38 + t16 * t37)
-            + link_2_wz * (t16 * t32 - (t17 * t22 - t36 * t25));
-        let t41 = link_1_wx * (t16 * t29 - (t36 * t24 - t17 * t19)) + link_1_wz * t34;
-        let t42 = link_2_wy * (t11 * t37 - (t2 * t39 - t6 * t38))
-            + link_2_wz * (t11 * t32 + (t2 * t22 + t6 * t25));
+        let t40 = T::fused(
+            link_2_wz,
+            T::fused(t16, t32, -T::fused(-t36, t25, t17 * t22)),
+            link_2_wy * T::fused(t16, t37, T::fused(t36, t38, t17 * t39)),
+        );
+        let t41 = T::fused(
+            link_1_wz,
+            t34,
+            link_1_wx * T::fused(t16, t29, -T::fused(-t17, t19, t36 * t24)),
+        );
+        let t42 = T::fused(
+            link_2_wz,
+            T::fused(t11, t32, T::fused(t6, t25, t2 * t22)),
+            link_2_wy * T::fused(t11, t37, -T::fused(-t6, t38, t2 * t39)),
+        );
         let t43 = link_3_e0 * link_3_e3;
         let t44 = link_3_e1 * link_3_e2;
         let t45 = k(2.0) * (t44 - t43);
         let t46 = link_3_e0 * link_3_e0;
-        let t47 = k(2.0) * (k(0.5) - (t46 + link_3_e1 * link_3_e1));
-        let t48 = k(0.1) * (t47 * link_3_wy + t45 * link_3_wx);
-        let t49 = k(2.0) * (k(0.5) - (t46 + link_3_e2 * link_3_e2));
+        let t47 = k(2.0) * (k(0.5) - T::fused(link_3_e1, link_3_e1, t46));
+        let t48 = k(0.1) * T::fused(t45, link_3_wx, t47 * link_3_wy);
+        let t49 = k(2.0) * (k(0.5) - T::fused(link_3_e2, link_3_e2, t46));
         let t50 = k(2.0) * (t44 + t43);
-        let t51 = k(0.1) * (t50 * link_3_wy + t49 * link_3_wx);
+        let t51 = k(0.1) * T::fused(t49, link_3_wx, t50 * link_3_wy);
         let t52 = link_3_e0 * link_3_e1;
         let t53 = link_3_e2 * link_3_e3;
         let t54 = k(2.0) * (t53 + t52);
         let t55 = link_3_e0 * link_3_e2;
         let t56 = link_3_e1 * link_3_e3;
         let t57 = k(2.0) * (t56 - t55);
-        let t58 = k(0.1) * (t57 * link_3_wy - t54 * link_3_wx);
-        let t59 = t32 * t54 + (t22 * t45 + t25 * t49);
-        let t60 = link_2_wx * t59 - link_2_wy * (t29 * t54 - (t24 * t49 + t19 * t45));
-        let t61 = k(2.0) * (k(0.5) - (t46 + link_3_e3 * link_3_e3));
+        let t58 = k(0.1) * T::fused(-t54, link_3_wx, t57 * link_3_wy);
+        let t59 = T::fused(t32, t54, T::fused(t25, t49, t22 * t45));
+        let t60 = T::fused(
+            -link_2_wy,
+            T::fused(t29, t54, -T::fused(t19, t45, t24 * t49)),
+            link_2_wx * t59,
+        );
+        let t61 = k(2.0) * (k(0.5) - T::fused(link_3_e3, link_3_e3, t46));
         let t62 = k(2.0) * (t53 - t52);
         let t63 = k(2.0) * (t56 + t55);
-        let t64 = link_3_wx * (t39 * t63 + t38 * t62 + t37 * t61)
-            + link_3_wz * (t37 * t57 - (t38 * t50 - t39 * t47));
-        let t65 = link_2_wy * (t37 * t54 - (t39 * t45 - t38 * t49)) + link_2_wz * t59;
-        let t66 = link_3_wx * (t29 * t61 - (t24 * t62 - t19 * t63))
-            + link_3_wz * (t29 * t57 + (t24 * t50 + t19 * t47));
+        let t64 = T::fused(
+            link_3_wz,
+            T::fused(t37, t57, -T::fused(-t39, t47, t38 * t50)),
+            link_3_wx * T::fused(t37, t61, T::fused(t38, t62, t39 * t63)),
+        );
+        let t65 = T::fused(
+            link_2_wz,
+            t59,
+            link_2_wy * T::fused(t37, t54, -T::fused(-t38, t49, t39 * t45)),
+        );
+        let t66 = T::fused(
+            link_3_wz,
+            T::fused(t29, t57, T::fused(t19, t47, t24 * t50)),
+            link_3_wx * T::fused(t29, t61, -T::fused(-t19, t63, t24 * t62)),
+        );
         let t67 = link_4_e0 * link_4_e0;
-        let t68 = k(2.0) * (k(0.5) - (t67 + link_4_e1 * link_4_e1));
+        let t68 = k(2.0) * (k(0.5) - T::fused(link_4_e1, link_4_e1, t67));
         let t69 = link_4_e0 * link_4_e3;
         let t70 = link_4_e1 * link_4_e2;
         let t71 = k(2.0) * (t70 - t69);
-        let t72 = k(0.1) * (t71 * link_4_wx + t68 * link_4_wy);
+        let t72 = k(0.1) * T::fused(t68, link_4_wy, t71 * link_4_wx);
         let t73 = k(2.0) * (t70 + t69);
-        let t74 = k(2.0) * (k(0.5) - (t67 + link_4_e2 * link_4_e2));
-        let t75 = k(0.1) * (t74 * link_4_wx + t73 * link_4_wy);
+        let t74 = k(2.0) * (k(0.5) - T::fused(link_4_e2, link_4_e2, t67));
+        let t75 = k(0.1) * T::fused(t73, link_4_wy, t74 * link_4_wx);
         let t76 = link_4_e0 * link_4_e2;
         let t77 = link_4_e1 * link_4_e3;
         let t78 = k(2.0) * (t77 - t76);
         let t79 = link_4_e0 * link_4_e1;
         let t80 = link_4_e2 * link_4_e3;
         let t81 = k(2.0) * (t80 + t79);
-        let t82 = k(0.1) * (t81 * link_4_wx - t78 * link_4_wy);
-        let t83 = t57 * t78 + (t50 * t73 + t47 * t68);
-        let t84 = link_3_wy * t83 - link_3_wx * (t54 * t78 - (t49 * t73 + t45 * t68));
-        let t85 = k(2.0) * (k(0.5) - (t67 + link_4_e3 * link_4_e3));
+        let t82 = k(0.1) * T::fused(-t78, link_4_wy, t81 * link_4_wx);
+        let t83 = T::fused(t57, t78, T::fused(t47, t68, t50 * t73));
+        let t84 = T::fused(
+            -link_3_wx,
+            T::fused(t54, t78, -T::fused(t45, t68, t49 * t73)),
+            link_3_wy * t83,
+        );
+        let t85 = k(2.0) * (k(0.5) - T::fused(link_4_e3, link_4_e3, t67));
         let t86 = k(2.0) * (t80 - t79);
         let t87 = k(2.0) * (t77 + t76);
-        let t88 = link_4_wy * (t63 * t87 + t62 * t86 + t61 * t85)
-            + link_4_wz * (t61 * t81 - (t63 * t71 - t62 * t74));
-        let t89 = link_3_wx * (t61 * t78 - (t62 * t73 - t63 * t68)) + link_3_wz * t83;
-        let t90 = link_4_wy * (t54 * t85 - (t45 * t87 - t49 * t86))
-            + link_4_wz * (t54 * t81 + (t45 * t71 + t49 * t74));
+        let t88 = T::fused(
+            link_4_wz,
+            T::fused(t61, t81, -T::fused(-t62, t74, t63 * t71)),
+            link_4_wy * T::fused(t61, t85, T::fused(t62, t86, t63 * t87)),
+        );
+        let t89 = T::fused(
+            link_3_wz,
+            t83,
+            link_3_wx * T::fused(t61, t78, -T::fused(-t63, t68, t62 * t73)),
+        );
+        let t90 = T::fused(
+            link_4_wz,
+            T::fused(t54, t81, T::fused(t49, t74, t45 * t71)),
+            link_4_wy * T::fused(t54, t85, -T::fused(-t49, t86, t45 * t87)),
+        );
         let t91 = link_5_e0 * link_5_e3;
         let t92 = link_5_e1 * link_5_e2;
         let t93 = k(2.0) * (t92 - t91);
         let t94 = link_5_e0 * link_5_e0;
-        let t95 = k(2.0) * (k(0.5) - (t94 + link_5_e1 * link_5_e1));
-        let t96 = k(0.1) * (t95 * link_5_wy + t93 * link_5_wx);
-        let t97 = k(2.0) * (k(0.5) - (t94 + link_5_e2 * link_5_e2));
+        let t95 = k(2.0) * (k(0.5) - T::fused(link_5_e1, link_5_e1, t94));
+        let t96 = k(0.1) * T::fused(t93, link_5_wx, t95 * link_5_wy);
+        let t97 = k(2.0) * (k(0.5) - T::fused(link_5_e2, link_5_e2, t94));
         let t98 = k(2.0) * (t92 + t91);
-        let t99 = k(0.1) * (t98 * link_5_wy + t97 * link_5_wx);
+        let t99 = k(0.1) * T::fused(t97, link_5_wx, t98 * link_5_wy);
         let t100 = link_5_e0 * link_5_e1;
         let t101 = link_5_e2 * link_5_e3;
         let t102 = k(2.0) * (t101 + t100);
         let t103 = link_5_e0 * link_5_e2;
         let t104 = link_5_e1 * link_5_e3;
         let t105 = k(2.0) * (t104 - t103);
-        let t106 = k(0.1) * (t105 * link_5_wy - t102 * link_5_wx);
-        let t107 = t81 * t102 + (t71 * t93 + t74 * t97);
-        let t108 = link_4_wx * t107 - link_4_wy * (t78 * t102 - (t73 * t97 + t68 * t93));
-        let t109 = k(2.0) * (k(0.5) - (t94 + link_5_e3 * link_5_e3));
+        let t106 = k(0.1) * T::fused(-t102, link_5_wx, t105 * link_5_wy);
+        let t107 = T::fused(t81, t102, T::fused(t74, t97, t71 * t93));
+        let t108 = T::fused(
+            -link_4_wy,
+            T::fused(t78, t102, -T::fused(t68, t93, t73 * t97)),
+            link_4_wx * t107,
+        );
+        let t109 = k(2.0) * (k(0.5) - T::fused(link_5_e3, link_5_e3, t94));
         let t110 = k(2.0) * (t101 - t100);
         let t111 = k(2.0) * (t104 + t103);
-        let t112 = link_5_wx * (t87 * t111 + t86 * t110 + t85 * t109)
-            + link_5_wz * (t85 * t105 - (t86 * t98 - t87 * t95));
-        let t113 = link_4_wy * (t85 * t102 - (t87 * t93 - t86 * t97)) + link_4_wz * t107;
-        let t114 = link_5_wx * (t78 * t109 - (t73 * t110 - t68 * t111))
-            + link_5_wz * (t78 * t105 + (t73 * t98 + t68 * t95));
+        let t112 = T::fused(
+            link_5_wz,
+            T::fused(t85, t105, -T::fused(-t87, t95, t86 * t98)),
+            link_5_wx * T::fused(t85, t109, T::fused(t86, t110, t87 * t111)),
+        );
+        let t113 = T::fused(
+            link_4_wz,
+            t107,
+            link_4_wy * T::fused(t85, t102, -T::fused(-t86, t97, t87 * t93)),
+        );
+        let t114 = T::fused(
+            link_5_wz,
+            T::fused(t78, t105, T::fused(t68, t95, t73 * t98)),
+            link_5_wx * T::fused(t78, t109, -T::fused(-t68, t111, t73 * t110)),
+        );
         let t115 = link_6_e0 * link_6_e0;
-        let t116 = k(2.0) * (k(0.5) - (t115 + link_6_e1 * link_6_e1));
+        let t116 = k(2.0) * (k(0.5) - T::fused(link_6_e1, link_6_e1, t115));
         let t117 = link_6_e0 * link_6_e3;
         let t118 = link_6_e1 * link_6_e2;
         let t119 = k(2.0) * (t118 - t117);
         let t120 = link_5_sx + t96
-            - (link_6_sx - k(0.1) * (t119 * link_6_wx + t116 * link_6_wy));
+            - T::fused(-k(0.1), T::fused(t116, link_6_wy, t119 * link_6_wx), link_6_sx);
         let t121 = k(2.0) * (t118 + t117);
-        let t122 = k(2.0) * (k(0.5) - (t115 + link_6_e2 * link_6_e2));
+        let t122 = k(2.0) * (k(0.5) - T::fused(link_6_e2, link_6_e2, t115));
         let t123 = link_5_sy - t99
-            - (link_6_sy + k(0.1) * (t122 * link_6_wx + t121 * link_6_wy));
+            - T::fused(k(0.1), T::fused(t121, link_6_wy, t122 * link_6_wx), link_6_sy);
         let t124 = link_6_e0 * link_6_e2;
         let t125 = link_6_e1 * link_6_e3;
         let t126 = k(2.0) * (t125 - t124);
@@ -744,25 +1174,37 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Chain<T> {
         let t128 = link_6_e2 * link_6_e3;
         let t129 = k(2.0) * (t128 + t127);
         let t130 = link_5_sz - t106
-            - (link_6_sz - k(0.1) * (t129 * link_6_wx - t126 * link_6_wy));
-        let t131 = t105 * t126 + (t98 * t121 + t95 * t116);
-        let t132 = link_5_wy * t131
-            - link_5_wx * (t102 * t126 - (t97 * t121 + t93 * t116));
-        let t133 = k(2.0) * (k(0.5) - (t115 + link_6_e3 * link_6_e3));
+            - T::fused(-k(0.1), T::fused(-t126, link_6_wy, t129 * link_6_wx), link_6_sz);
+        let t131 = T::fused(t105, t126, T::fused(t95, t116, t98 * t121));
+        let t132 = T::fused(
+            -link_5_wx,
+            T::fused(t102, t126, -T::fused(t93, t116, t97 * t121)),
+            link_5_wy * t131,
+        );
+        let t133 = k(2.0) * (k(0.5) - T::fused(link_6_e3, link_6_e3, t115));
         let t134 = k(2.0) * (t128 - t127);
         let t135 = k(2.0) * (t125 + t124);
-        let t136 = link_6_wy * (t111 * t135 + t110 * t134 + t109 * t133)
-            + link_6_wz * (t109 * t129 - (t111 * t119 - t110 * t122));
-        let t137 = link_5_wx * (t109 * t126 - (t110 * t121 - t111 * t116))
-            + link_5_wz * t131;
-        let t138 = link_6_wy * (t102 * t133 - (t93 * t135 - t97 * t134))
-            + link_6_wz * (t102 * t129 + (t93 * t119 + t97 * t122));
+        let t136 = T::fused(
+            link_6_wz,
+            T::fused(t109, t129, -T::fused(-t110, t122, t111 * t119)),
+            link_6_wy * T::fused(t109, t133, T::fused(t110, t134, t111 * t135)),
+        );
+        let t137 = T::fused(
+            link_5_wz,
+            t131,
+            link_5_wx * T::fused(t109, t126, -T::fused(-t111, t116, t110 * t121)),
+        );
+        let t138 = T::fused(
+            link_6_wz,
+            T::fused(t102, t129, T::fused(t97, t122, t93 * t119)),
+            link_6_wy * T::fused(t102, t133, -T::fused(-t97, t134, t93 * t135)),
+        );
         *out = [
             link_1_sx - t5,
             link_1_sy + t8,
             link_1_sz + t15,
-            -(t16 * link_1_wx + t14 * link_1_wz),
-            t17 * link_1_wx + t4 * link_1_wz,
+            -T::fused(t14, link_1_wz, t16 * link_1_wx),
+            T::fused(t4, link_1_wz, t17 * link_1_wx),
             link_2_sx - t23 - (link_1_sx + t5),
             link_2_sy + t26 - (link_1_sy - t8),
             link_2_sz - t33 - (link_1_sz - t15),
@@ -835,42 +1277,114 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Chain<T> {
         let link_6_wx = y[75];
         let link_6_wy = y[76];
         let link_6_wz = y[77];
-        let t0 = link_6_wx * (k(0.0017) * link_6_wx)
-            + link_6_wy * (k(0.0016) * link_6_wy) + link_6_wz * (k(0.0002) * link_6_wz);
-        let t1 = t0
-            + k(0.5)
-                * (link_6_sx * link_6_sx + link_6_sy * link_6_sy
-                    + link_6_sz * link_6_sz);
-        let t2 = link_5_wx * (k(0.0017) * link_5_wx)
-            + link_5_wy * (k(0.0016) * link_5_wy) + link_5_wz * (k(0.0002) * link_5_wz);
-        let t3 = t2
-            + k(0.5)
-                * (link_5_sx * link_5_sx + link_5_sy * link_5_sy
-                    + link_5_sz * link_5_sz);
-        let t4 = link_4_wx * (k(0.0017) * link_4_wx)
-            + link_4_wy * (k(0.0016) * link_4_wy) + link_4_wz * (k(0.0002) * link_4_wz);
-        let t5 = t4
-            + k(0.5)
-                * (link_4_sx * link_4_sx + link_4_sy * link_4_sy
-                    + link_4_sz * link_4_sz);
-        let t6 = link_3_wx * (k(0.0017) * link_3_wx)
-            + link_3_wy * (k(0.0016) * link_3_wy) + link_3_wz * (k(0.0002) * link_3_wz);
-        let t7 = t6
-            + k(0.5)
-                * (link_3_sx * link_3_sx + link_3_sy * link_3_sy
-                    + link_3_sz * link_3_sz);
-        let t8 = link_2_wx * (k(0.0017) * link_2_wx)
-            + link_2_wy * (k(0.0016) * link_2_wy) + link_2_wz * (k(0.0002) * link_2_wz);
-        let t9 = t8
-            + k(0.5)
-                * (link_2_sx * link_2_sx + link_2_sy * link_2_sy
-                    + link_2_sz * link_2_sz);
-        let t10 = link_1_wx * (k(0.0017) * link_1_wx)
-            + link_1_wy * (k(0.0016) * link_1_wy) + link_1_wz * (k(0.0002) * link_1_wz);
-        let t11 = t10
-            + k(0.5)
-                * (link_1_sx * link_1_sx + link_1_sy * link_1_sy
-                    + link_1_sz * link_1_sz);
+        let t0 = T::fused(
+            link_6_wz,
+            k(0.0002) * link_6_wz,
+            T::fused(
+                link_6_wy,
+                k(0.0016) * link_6_wy,
+                link_6_wx * (k(0.0017) * link_6_wx),
+            ),
+        );
+        let t1 = T::fused(
+            k(0.5),
+            T::fused(
+                link_6_sz,
+                link_6_sz,
+                T::fused(link_6_sy, link_6_sy, link_6_sx * link_6_sx),
+            ),
+            t0,
+        );
+        let t2 = T::fused(
+            link_5_wz,
+            k(0.0002) * link_5_wz,
+            T::fused(
+                link_5_wy,
+                k(0.0016) * link_5_wy,
+                link_5_wx * (k(0.0017) * link_5_wx),
+            ),
+        );
+        let t3 = T::fused(
+            k(0.5),
+            T::fused(
+                link_5_sz,
+                link_5_sz,
+                T::fused(link_5_sy, link_5_sy, link_5_sx * link_5_sx),
+            ),
+            t2,
+        );
+        let t4 = T::fused(
+            link_4_wz,
+            k(0.0002) * link_4_wz,
+            T::fused(
+                link_4_wy,
+                k(0.0016) * link_4_wy,
+                link_4_wx * (k(0.0017) * link_4_wx),
+            ),
+        );
+        let t5 = T::fused(
+            k(0.5),
+            T::fused(
+                link_4_sz,
+                link_4_sz,
+                T::fused(link_4_sy, link_4_sy, link_4_sx * link_4_sx),
+            ),
+            t4,
+        );
+        let t6 = T::fused(
+            link_3_wz,
+            k(0.0002) * link_3_wz,
+            T::fused(
+                link_3_wy,
+                k(0.0016) * link_3_wy,
+                link_3_wx * (k(0.0017) * link_3_wx),
+            ),
+        );
+        let t7 = T::fused(
+            k(0.5),
+            T::fused(
+                link_3_sz,
+                link_3_sz,
+                T::fused(link_3_sy, link_3_sy, link_3_sx * link_3_sx),
+            ),
+            t6,
+        );
+        let t8 = T::fused(
+            link_2_wz,
+            k(0.0002) * link_2_wz,
+            T::fused(
+                link_2_wy,
+                k(0.0016) * link_2_wy,
+                link_2_wx * (k(0.0017) * link_2_wx),
+            ),
+        );
+        let t9 = T::fused(
+            k(0.5),
+            T::fused(
+                link_2_sz,
+                link_2_sz,
+                T::fused(link_2_sy, link_2_sy, link_2_sx * link_2_sx),
+            ),
+            t8,
+        );
+        let t10 = T::fused(
+            link_1_wz,
+            k(0.0002) * link_1_wz,
+            T::fused(
+                link_1_wy,
+                k(0.0016) * link_1_wy,
+                link_1_wx * (k(0.0017) * link_1_wx),
+            ),
+        );
+        let t11 = T::fused(
+            k(0.5),
+            T::fused(
+                link_1_sz,
+                link_1_sz,
+                T::fused(link_1_sy, link_1_sy, link_1_sx * link_1_sx),
+            ),
+            t10,
+        );
         gyro_sim::Energy {
             kinetic: k(0.5) * (t11 + t9 + t7 + t5 + t3 + t1),
             potential: k(4.905)
@@ -916,85 +1430,109 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Chain<T> {
         let link_5_wx = y[69];
         let link_5_wy = y[70];
         let link_6_wx = y[75];
-        let t0 = k(2.0) * (link_1_e1 * link_1_e3 + link_1_e0 * link_1_e2);
+        let t0 = k(2.0) * T::fused(link_1_e0, link_1_e2, link_1_e1 * link_1_e3);
         let t1 = link_1_e2 * link_1_e2;
         let t2 = link_1_e0 * link_1_e0;
         let t3 = link_1_e3 * link_1_e3;
-        let t4 = k(1.0) - (t3 + (t2 + link_1_e1 * link_1_e1 + t1));
-        let t5 = k(2.0) * (k(0.5) - (t2 + t3)) - t4;
+        let t4 = k(1.0) - (t3 + (T::fused(link_1_e1, link_1_e1, t2) + t1));
+        let t5 = T::fused(k(2.0), k(0.5) - (t2 + t3), -t4);
         let t6 = link_2_e0 * link_2_e0;
-        let t7 = t6 + link_2_e1 * link_2_e1;
+        let t7 = T::fused(link_2_e1, link_2_e1, t6);
         let t8 = link_2_e3 * link_2_e3;
-        let t9 = k(1.0) - (t8 + (t7 + link_2_e2 * link_2_e2));
-        let t10 = k(2.0) * (k(0.5) - (t6 + t8)) - t9;
+        let t9 = k(1.0) - (t8 + T::fused(link_2_e2, link_2_e2, t7));
+        let t10 = T::fused(k(2.0), k(0.5) - (t6 + t8), -t9);
         let t11 = link_1_e0 * link_1_e1;
         let t12 = link_1_e2 * link_1_e3;
-        let t13 = k(2.0) * (link_2_e2 * link_2_e3 - link_2_e0 * link_2_e1);
+        let t13 = k(2.0) * T::fused(-link_2_e0, link_2_e1, link_2_e2 * link_2_e3);
         let t14 = link_2_e0 * link_2_e2;
         let t15 = link_2_e1 * link_2_e3;
         let t16 = k(2.0) * (t15 + t14);
-        let t17 = k(2.0) * (link_1_e1 * link_1_e2 - link_1_e0 * link_1_e3) * t16
-            - t13 * (k(2.0) * (k(0.5) - (t2 + t1)) - t4);
-        let t18 = t0 * t16 + k(2.0) * (t12 - t11) * t13 + t5 * t10;
+        let t17 = T::fused(
+            -t13,
+            T::fused(k(2.0), k(0.5) - (t2 + t1), -t4),
+            k(2.0) * T::fused(-link_1_e0, link_1_e3, link_1_e1 * link_1_e2) * t16,
+        );
+        let t18 = T::fused(t5, t10, T::fused(k(2.0) * (t12 - t11), t13, t0 * t16));
         let t19 = link_3_e2 * link_3_e2;
         let t20 = link_3_e0 * link_3_e0;
         let t21 = link_3_e3 * link_3_e3;
-        let t22 = k(1.0) - (t21 + (t20 + link_3_e1 * link_3_e1 + t19));
-        let t23 = k(2.0) * (k(0.5) - (t20 + t21)) - t22;
+        let t22 = k(1.0) - (t21 + (T::fused(link_3_e1, link_3_e1, t20) + t19));
+        let t23 = T::fused(k(2.0), k(0.5) - (t20 + t21), -t22);
         let t24 = link_3_e0 * link_3_e1;
         let t25 = link_3_e2 * link_3_e3;
         let t26 = k(2.0) * (t25 - t24);
-        let t27 = k(2.0) * (link_3_e1 * link_3_e3 + link_3_e0 * link_3_e2);
-        let t28 = t27 * (k(2.0) * (k(0.5) - t7) - t9)
-            - k(2.0) * (link_2_e1 * link_2_e2 + link_2_e0 * link_2_e3) * t26;
+        let t27 = k(2.0) * T::fused(link_3_e0, link_3_e2, link_3_e1 * link_3_e3);
+        let t28 = T::fused(
+            -(k(2.0) * T::fused(link_2_e0, link_2_e3, link_2_e1 * link_2_e2)),
+            t26,
+            t27 * T::fused(k(2.0), k(0.5) - t7, -t9),
+        );
         let t29 = link_4_e0 * link_4_e0;
-        let t30 = t29 + link_4_e1 * link_4_e1;
+        let t30 = T::fused(link_4_e1, link_4_e1, t29);
         let t31 = link_4_e3 * link_4_e3;
-        let t32 = k(1.0) - (t31 + (t30 + link_4_e2 * link_4_e2));
-        let t33 = k(2.0) * (k(0.5) - (t29 + t31)) - t32;
-        let t34 = k(2.0) * (link_4_e2 * link_4_e3 - link_4_e0 * link_4_e1);
+        let t32 = k(1.0) - (t31 + T::fused(link_4_e2, link_4_e2, t30));
+        let t33 = T::fused(k(2.0), k(0.5) - (t29 + t31), -t32);
+        let t34 = k(2.0) * T::fused(-link_4_e0, link_4_e1, link_4_e2 * link_4_e3);
         let t35 = link_4_e0 * link_4_e2;
         let t36 = link_4_e1 * link_4_e3;
         let t37 = k(2.0) * (t36 + t35);
-        let t38 = k(2.0) * (link_3_e1 * link_3_e2 - link_3_e0 * link_3_e3) * t37
-            - t34 * (k(2.0) * (k(0.5) - (t20 + t19)) - t22);
+        let t38 = T::fused(
+            -t34,
+            T::fused(k(2.0), k(0.5) - (t20 + t19), -t22),
+            k(2.0) * T::fused(-link_3_e0, link_3_e3, link_3_e1 * link_3_e2) * t37,
+        );
         let t39 = link_5_e2 * link_5_e2;
         let t40 = link_5_e0 * link_5_e0;
         let t41 = link_5_e3 * link_5_e3;
-        let t42 = k(1.0) - (t41 + (t40 + link_5_e1 * link_5_e1 + t39));
-        let t43 = k(2.0) * (k(0.5) - (t40 + t41)) - t42;
+        let t42 = k(1.0) - (t41 + (T::fused(link_5_e1, link_5_e1, t40) + t39));
+        let t43 = T::fused(k(2.0), k(0.5) - (t40 + t41), -t42);
         let t44 = link_5_e0 * link_5_e1;
         let t45 = link_5_e2 * link_5_e3;
         let t46 = k(2.0) * (t45 - t44);
-        let t47 = k(2.0) * (link_5_e1 * link_5_e3 + link_5_e0 * link_5_e2);
-        let t48 = t47 * (k(2.0) * (k(0.5) - t30) - t32)
-            - k(2.0) * (link_4_e1 * link_4_e2 + link_4_e0 * link_4_e3) * t46;
+        let t47 = k(2.0) * T::fused(link_5_e0, link_5_e2, link_5_e1 * link_5_e3);
+        let t48 = T::fused(
+            -(k(2.0) * T::fused(link_4_e0, link_4_e3, link_4_e1 * link_4_e2)),
+            t46,
+            t47 * T::fused(k(2.0), k(0.5) - t30, -t32),
+        );
         let t49 = link_6_e0 * link_6_e0;
         let t50 = link_6_e3 * link_6_e3;
-        let t51 = k(2.0) * (k(0.5) - (t49 + t50))
-            - (k(1.0) - (t50 + (t49 + link_6_e1 * link_6_e1 + link_6_e2 * link_6_e2)));
-        let t52 = k(2.0) * (link_6_e2 * link_6_e3 - link_6_e0 * link_6_e1);
-        let t53 = k(2.0) * (link_6_e1 * link_6_e3 + link_6_e0 * link_6_e2);
-        let t54 = k(2.0) * (link_5_e1 * link_5_e2 - link_5_e0 * link_5_e3) * t53
-            - t52 * (k(2.0) * (k(0.5) - (t40 + t39)) - t42);
+        let t51 = T::fused(
+            k(2.0),
+            k(0.5) - (t49 + t50),
+            -(k(1.0)
+                - (t50
+                    + T::fused(
+                        link_6_e2,
+                        link_6_e2,
+                        T::fused(link_6_e1, link_6_e1, t49),
+                    ))),
+        );
+        let t52 = k(2.0) * T::fused(-link_6_e0, link_6_e1, link_6_e2 * link_6_e3);
+        let t53 = k(2.0) * T::fused(link_6_e0, link_6_e2, link_6_e1 * link_6_e3);
+        let t54 = T::fused(
+            -t52,
+            T::fused(k(2.0), k(0.5) - (t40 + t39), -t42),
+            k(2.0) * T::fused(-link_5_e0, link_5_e3, link_5_e1 * link_5_e2) * t53,
+        );
         *out = [
             t0,
             -t5,
             link_1_wy,
-            k(2.0) * (t12 + t11) * t10 - t17,
+            T::fused(k(2.0) * (t12 + t11), t10, -t17),
             t18,
             link_2_wx - link_1_wx,
-            -(t28 + k(2.0) * (t15 - t14) * t23),
-            t16 * t27 + t13 * t26 + t10 * t23,
+            -T::fused(k(2.0) * (t15 - t14), t23, t28),
+            T::fused(t10, t23, T::fused(t13, t26, t16 * t27)),
             link_3_wy - link_2_wy,
-            k(2.0) * (t25 + t24) * t33 - t38,
-            t27 * t37 + t26 * t34 + t23 * t33,
+            T::fused(k(2.0) * (t25 + t24), t33, -t38),
+            T::fused(t23, t33, T::fused(t26, t34, t27 * t37)),
             link_4_wx - link_3_wx,
-            -(t48 + k(2.0) * (t36 - t35) * t43),
-            t37 * t47 + t34 * t46 + t33 * t43,
+            -T::fused(k(2.0) * (t36 - t35), t43, t48),
+            T::fused(t33, t43, T::fused(t34, t46, t37 * t47)),
             link_5_wy - link_4_wy,
-            k(2.0) * (t45 + t44) * t51 - t54,
-            t47 * t53 + t46 * t52 + t43 * t51,
+            T::fused(k(2.0) * (t45 + t44), t51, -t54),
+            T::fused(t43, t51, T::fused(t46, t52, t47 * t53)),
             link_6_wx - link_5_wx,
         ];
     }
@@ -1195,9 +1733,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Chain<T> {
         T::constant(0.0)
     }
 }
-impl<T: gyro_sim::Scalar> Chain<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Charted for Chain<T> {
+    type Vectors = [[T; 4]; 6];
     /// The four-vectors whose largest components are the special Euler parameters: 0 operations (0 ±, 0 ×, 0 ÷).
-    fn chart_vectors(&self, y: &[T; 78]) -> [[T; 4]; 6] {
+    fn chart_vectors(&self, y: &Self::State) -> Self::Vectors {
         let link_1_e0 = y[3];
         let link_1_e1 = y[4];
         let link_1_e2 = y[5];
@@ -1231,23 +1770,8 @@ impl<T: gyro_sim::Scalar> Chain<T> {
             [-link_6_e1, link_6_e0, link_6_e3, -link_6_e2],
         ]
     }
-}
-impl<T: gyro_sim::Real> gyro_sim::Partition for Chain<T> {
-    type Independent = gyro_sim::charts::Charts<6>;
-    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
-        gyro_sim::charts::best(&self.chart_vectors(y))
-    }
-    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
-        gyro_sim::charts::follow(&self.chart_vectors(y), choice)
-    }
     /// One Newton step of the dependent positions: 1131 operations (433 ±, 692 ×, 6 ÷).
-    fn newton_step(
-        &self,
-        _t: T,
-        choice: &Self::Independent,
-        y: &mut Self::State,
-    ) -> ::core::result::Result<(), gyro_sim::Error> {
-        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
+    fn newton_step_on(&self, _t: T, charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let link_1_e0 = y[3];
         let link_1_e1 = y[4];
@@ -1334,56 +1858,107 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Chain<T> {
             t198,
             t199,
         ) = {
-            let t0 = link_1_e3 * link_1_e3
-                + (link_1_e0 * link_1_e0 + link_1_e1 * link_1_e1
-                    + link_1_e2 * link_1_e2);
+            let t0 = T::fused(
+                link_1_e3,
+                link_1_e3,
+                T::fused(
+                    link_1_e2,
+                    link_1_e2,
+                    T::fused(link_1_e1, link_1_e1, link_1_e0 * link_1_e0),
+                ),
+            );
             let t1 = k(0.5) * (t0 - k(3.0));
             let t2 = link_1_e1 * t1;
             let t3 = link_1_e0 * t1;
             let t4 = link_1_e3 * t1;
             let t5 = link_1_e2 * t1;
-            let t6 = chart0_0 * t5 + chart0_1 * t4 - chart0_2 * t3 - chart0_3 * t2;
+            let t6 = T::fused(
+                -chart0_3,
+                t2,
+                T::fused(-chart0_2, t3, T::fused(chart0_1, t4, chart0_0 * t5)),
+            );
             let t7 = k(0.5) * t6;
             let t8 = t3 * t3;
-            let t9 = k(2.0) * (k(0.5) - (t4 * t4 + t8));
-            let t10 = k(2.0) * (t3 * t4 - t2 * t5);
+            let t9 = k(2.0) * (k(0.5) - T::fused(t4, t4, t8));
+            let t10 = k(2.0) * T::fused(-t2, t5, t3 * t4);
             let t11 = t2 * t4;
             let t12 = t3 * t5;
             let t13 = k(2.0) * (t12 + t11);
-            let t14 = k(2.0) * (t3 * t2 + t5 * t4);
-            let t15 = k(2.0) * (k(0.5) - (t8 + t2 * t2));
+            let t14 = k(2.0) * T::fused(t5, t4, t3 * t2);
+            let t15 = k(2.0) * (k(0.5) - T::fused(t2, t2, t8));
             let t16 = k(2.0) * (t12 - t11);
-            let t17 = t16 * t13 + t9 * t15;
+            let t17 = T::fused(t9, t15, t16 * t13);
             let t18 = k(1.0) / (t7 * t17);
-            let t19 = t18 * (t14 * (t13 * t7) - t10 * (t9 * t7));
-            let t20 = chart0_0 * (link_1_e0 + t3) + chart0_1 * (link_1_e1 + t2)
-                + chart0_2 * (link_1_e2 + t5);
-            let t21 = chart0_0 * t2 - chart0_1 * t3 - chart0_2 * t4 + chart0_3 * t5;
+            let t19 = t18 * T::fused(-t10, t9 * t7, t14 * (t13 * t7));
+            let t20 = T::fused(
+                chart0_2,
+                link_1_e2 + t5,
+                T::fused(chart0_1, link_1_e1 + t2, chart0_0 * (link_1_e0 + t3)),
+            );
+            let t21 = T::fused(
+                chart0_3,
+                t5,
+                T::fused(-chart0_2, t4, T::fused(-chart0_1, t3, chart0_0 * t2)),
+            );
             let t22 = k(0.5) * t21;
-            let t23 = chart0_0 * t4 - chart0_1 * t5 + chart0_2 * t2 - chart0_3 * t3;
+            let t23 = T::fused(
+                -chart0_3,
+                t3,
+                T::fused(chart0_2, t2, T::fused(-chart0_1, t5, chart0_0 * t4)),
+            );
             let t24 = k(0.5) * t23;
-            let t25 = t14 * (t15 * t22 - t13 * t24) + t10 * (t9 * t24 + t16 * t22);
-            let t26 = t18 * (t25 - (t20 + chart0_3 * (link_1_e3 + t4)) * t17);
-            let t27 = t18 * (t14 * (t15 * t7) + t10 * (t16 * t7));
-            let t28 = t4 - k(0.5) * (t5 * t27 + t2 * t26 + t3 * t19);
-            let t29 = t2 + k(0.5) * (t3 * t27 + t4 * t26 - t5 * t19);
-            let t30 = t5 + k(0.5) * (t4 * t27 - t3 * t26 + t2 * t19);
-            let t31 = t3 - k(0.5) * (t2 * t27 - t5 * t26 - t4 * t19);
-            let t32 = t31 * t30 + t29 * t28;
+            let t25 = T::fused(
+                t10,
+                T::fused(t16, t22, t9 * t24),
+                t14 * T::fused(-t13, t24, t15 * t22),
+            );
+            let t26 = t18 * T::fused(-T::fused(chart0_3, link_1_e3 + t4, t20), t17, t25);
+            let t27 = t18 * T::fused(t10, t16 * t7, t14 * (t15 * t7));
+            let t28 = T::fused(
+                -k(0.5),
+                T::fused(t3, t19, T::fused(t2, t26, t5 * t27)),
+                t4,
+            );
+            let t29 = T::fused(
+                k(0.5),
+                T::fused(-t5, t19, T::fused(t4, t26, t3 * t27)),
+                t2,
+            );
+            let t30 = T::fused(
+                k(0.5),
+                T::fused(t2, t19, T::fused(-t3, t26, t4 * t27)),
+                t5,
+            );
+            let t31 = T::fused(
+                -k(0.5),
+                T::fused(-t4, t19, T::fused(-t5, t26, t2 * t27)),
+                t3,
+            );
+            let t32 = T::fused(t29, t28, t31 * t30);
             let t33 = t30 * t28;
             let t34 = t31 * t29;
             let t35 = t34 - t33;
             let t36 = t31 * t31;
-            let t37 = k(0.5) - (t28 * t28 + t36);
-            let t38 = link_2_e3 * link_2_e3
-                + (link_2_e0 * link_2_e0 + link_2_e1 * link_2_e1
-                    + link_2_e2 * link_2_e2);
+            let t37 = k(0.5) - T::fused(t28, t28, t36);
+            let t38 = T::fused(
+                link_2_e3,
+                link_2_e3,
+                T::fused(
+                    link_2_e2,
+                    link_2_e2,
+                    T::fused(link_2_e1, link_2_e1, link_2_e0 * link_2_e0),
+                ),
+            );
             let t39 = k(0.5) * (t38 - k(3.0));
             let t40 = link_2_e2 * t39;
             let t41 = link_2_e3 * t39;
             let t42 = link_2_e0 * t39;
             let t43 = link_2_e1 * t39;
-            let t44 = chart1_0 * t43 - chart1_1 * t42 - chart1_2 * t41 + chart1_3 * t40;
+            let t44 = T::fused(
+                chart1_3,
+                t40,
+                T::fused(-chart1_2, t41, T::fused(-chart1_1, t42, chart1_0 * t43)),
+            );
             let t45 = k(0.5) * t44;
             let t46 = t43 * t41;
             let t47 = t42 * t40;
@@ -1394,63 +1969,103 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Chain<T> {
             let t52 = k(2.0) * (t51 - t50);
             let t53 = k(2.0) * t35;
             let t54 = t42 * t42;
-            let t55 = k(2.0) * (k(0.5) - (t41 * t41 + t54));
+            let t55 = k(2.0) * (k(0.5) - T::fused(t41, t41, t54));
             let t56 = k(2.0) * t37;
-            let t57 = t56 * t55 + (t53 * t52 + t49 * t48);
-            let t58 = k(2.0) * (t31 * t28 - t29 * t30);
-            let t59 = k(2.0) * (k(0.5) - (t54 + t43 * t43));
-            let t60 = k(2.0) * (k(0.5) - (t36 + t30 * t30));
+            let t57 = T::fused(t56, t55, T::fused(t49, t48, t53 * t52));
+            let t58 = k(2.0) * T::fused(-t29, t30, t31 * t28);
+            let t59 = k(2.0) * (k(0.5) - T::fused(t43, t43, t54));
+            let t60 = k(2.0) * (k(0.5) - T::fused(t30, t30, t36));
             let t61 = t43 * t40;
             let t62 = t42 * t41;
             let t63 = k(2.0) * (t62 + t61);
             let t64 = k(2.0) * (t34 + t33);
             let t65 = k(2.0) * (t47 - t46);
-            let t66 = t65 * t64 + (t63 * t60 - t59 * t58);
-            let t67 = t55 * t64 - (t52 * t60 - t48 * t58);
-            let t68 = t56 * t65 - (t53 * t63 + t49 * t59);
+            let t66 = T::fused(t65, t64, T::fused(-t59, t58, t63 * t60));
+            let t67 = T::fused(t55, t64, -T::fused(-t48, t58, t52 * t60));
+            let t68 = T::fused(t56, t65, -T::fused(t49, t59, t53 * t63));
             let t69 = k(2.0) * (t62 - t61);
-            let t70 = k(2.0) * (k(0.5) - (t54 + t40 * t40));
+            let t70 = k(2.0) * (k(0.5) - T::fused(t40, t40, t54));
             let t71 = k(2.0) * (t51 + t50);
-            let t72 = t56 * t71 - (t53 * t70 - t49 * t69);
-            let t73 = t71 * t64 + (t70 * t60 + t69 * t58);
-            let t74 = t57 * t73 - t72 * t67;
+            let t72 = T::fused(t56, t71, -T::fused(-t49, t69, t53 * t70));
+            let t73 = T::fused(t71, t64, T::fused(t69, t58, t70 * t60));
+            let t74 = T::fused(-t72, t67, t57 * t73);
             let t75 = k(1.0) / (t45 * t74);
-            let t76 = t75 * (t68 * (t67 * t45) - t66 * (t57 * t45));
-            let t77 = t75 * (t68 * (t73 * t45) - t66 * (t72 * t45));
-            let t78 = chart1_0 * (link_2_e0 + t42) + chart1_1 * (link_2_e1 + t43)
-                + chart1_2 * (link_2_e2 + t40);
-            let t79 = chart1_0 * t41 - chart1_1 * t40 + chart1_2 * t43 - chart1_3 * t42;
+            let t76 = t75 * T::fused(-t66, t57 * t45, t68 * (t67 * t45));
+            let t77 = t75 * T::fused(-t66, t72 * t45, t68 * (t73 * t45));
+            let t78 = T::fused(
+                chart1_2,
+                link_2_e2 + t40,
+                T::fused(chart1_1, link_2_e1 + t43, chart1_0 * (link_2_e0 + t42)),
+            );
+            let t79 = T::fused(
+                -chart1_3,
+                t42,
+                T::fused(chart1_2, t43, T::fused(-chart1_1, t40, chart1_0 * t41)),
+            );
             let t80 = k(0.5) * t79;
-            let t81 = chart1_0 * t40 + chart1_1 * t41 - chart1_2 * t42 - chart1_3 * t43;
+            let t81 = T::fused(
+                -chart1_3,
+                t43,
+                T::fused(-chart1_2, t42, T::fused(chart1_1, t41, chart1_0 * t40)),
+            );
             let t82 = k(0.5) * t81;
-            let t83 = t68 * (t67 * t80 - t73 * t82) + t66 * (t72 * t82 - t57 * t80);
-            let t84 = t75 * (t83 + (t78 + chart1_3 * (link_2_e3 + t41)) * t74);
-            let t85 = t41 - k(0.5) * (t40 * t84 - t43 * t77 + t42 * t76);
-            let t86 = t43 + k(0.5) * (t42 * t84 - t41 * t77 - t40 * t76);
+            let t83 = T::fused(
+                t66,
+                T::fused(-t57, t80, t72 * t82),
+                t68 * T::fused(-t73, t82, t67 * t80),
+            );
+            let t84 = t75 * T::fused(T::fused(chart1_3, link_2_e3 + t41, t78), t74, t83);
+            let t85 = T::fused(
+                -k(0.5),
+                T::fused(t42, t76, T::fused(-t43, t77, t40 * t84)),
+                t41,
+            );
+            let t86 = T::fused(
+                k(0.5),
+                T::fused(-t40, t76, T::fused(-t41, t77, t42 * t84)),
+                t43,
+            );
             let t87 = t86 * t85;
-            let t88 = t40 + k(0.5) * (t41 * t84 + t42 * t77 + t43 * t76);
-            let t89 = t42 - k(0.5) * (t43 * t84 + t40 * t77 - t41 * t76);
+            let t88 = T::fused(
+                k(0.5),
+                T::fused(t43, t76, T::fused(t42, t77, t41 * t84)),
+                t40,
+            );
+            let t89 = T::fused(
+                -k(0.5),
+                T::fused(-t41, t76, T::fused(t40, t77, t43 * t84)),
+                t42,
+            );
             let t90 = t89 * t88;
             let t91 = t90 + t87;
             let t92 = k(0.2) * t91;
-            let t93 = t92 + k(0.4) * t32;
-            let t94 = t89 * t86 - t88 * t85;
+            let t93 = T::fused(k(0.4), t32, t92);
+            let t94 = T::fused(-t88, t85, t89 * t86);
             let t95 = k(0.2) * t94;
-            let t96 = t95 + k(0.4) * t35;
+            let t96 = T::fused(k(0.4), t35, t95);
             let t97 = t89 * t89;
-            let t98 = k(0.5) - (t85 * t85 + t97);
+            let t98 = k(0.5) - T::fused(t85, t85, t97);
             let t99 = k(0.2) * t98;
-            let t100 = t99 + k(0.4) * t37;
-            let t101 = link_3_e3 * link_3_e3
-                + (link_3_e0 * link_3_e0 + link_3_e1 * link_3_e1
-                    + link_3_e2 * link_3_e2);
+            let t100 = T::fused(k(0.4), t37, t99);
+            let t101 = T::fused(
+                link_3_e3,
+                link_3_e3,
+                T::fused(
+                    link_3_e2,
+                    link_3_e2,
+                    T::fused(link_3_e1, link_3_e1, link_3_e0 * link_3_e0),
+                ),
+            );
             let t102 = k(0.5) * (t101 - k(3.0));
             let t103 = link_3_e1 * t102;
             let t104 = link_3_e0 * t102;
             let t105 = link_3_e3 * t102;
             let t106 = link_3_e2 * t102;
-            let t107 = chart2_0 * t106 + chart2_1 * t105 - chart2_2 * t104
-                - chart2_3 * t103;
+            let t107 = T::fused(
+                -chart2_3,
+                t103,
+                T::fused(-chart2_2, t104, T::fused(chart2_1, t105, chart2_0 * t106)),
+            );
             let t108 = k(0.5) * t107;
             let t109 = t103 * t105;
             let t110 = t104 * t106;
@@ -1461,45 +2076,74 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Chain<T> {
             let t115 = k(2.0) * (t114 - t113);
             let t116 = k(2.0) * t94;
             let t117 = t104 * t104;
-            let t118 = k(2.0) * (k(0.5) - (t105 * t105 + t117));
+            let t118 = k(2.0) * (k(0.5) - T::fused(t105, t105, t117));
             let t119 = k(2.0) * t98;
-            let t120 = t119 * t118 + (t116 * t115 + t112 * t111);
-            let t121 = k(2.0) * (k(0.5) - (t97 + t86 * t86));
+            let t120 = T::fused(t119, t118, T::fused(t112, t111, t116 * t115));
+            let t121 = k(2.0) * (k(0.5) - T::fused(t86, t86, t97));
             let t122 = t103 * t106;
             let t123 = t104 * t105;
             let t124 = k(2.0) * (t123 - t122);
-            let t125 = k(2.0) * (t89 * t85 + t86 * t88);
-            let t126 = k(2.0) * (k(0.5) - (t117 + t106 * t106));
+            let t125 = k(2.0) * T::fused(t86, t88, t89 * t85);
+            let t126 = k(2.0) * (k(0.5) - T::fused(t106, t106, t117));
             let t127 = k(2.0) * (t90 - t87);
             let t128 = k(2.0) * (t114 + t113);
-            let t129 = t128 * t127 + (t126 * t125 - t124 * t121);
-            let t130 = t118 * t127 - (t115 * t125 + t111 * t121);
-            let t131 = t119 * t128 - (t116 * t126 - t112 * t124);
-            let t132 = k(2.0) * (k(0.5) - (t117 + t103 * t103));
+            let t129 = T::fused(t128, t127, T::fused(-t124, t121, t126 * t125));
+            let t130 = T::fused(t118, t127, -T::fused(t111, t121, t115 * t125));
+            let t131 = T::fused(t119, t128, -T::fused(-t112, t124, t116 * t126));
+            let t132 = k(2.0) * (k(0.5) - T::fused(t103, t103, t117));
             let t133 = k(2.0) * (t123 + t122);
             let t134 = k(2.0) * (t110 - t109);
-            let t135 = t134 * t127 + (t133 * t125 + t132 * t121);
-            let t136 = t119 * t134 - (t116 * t133 + t112 * t132);
-            let t137 = t136 * t130 - t120 * t135;
+            let t135 = T::fused(t134, t127, T::fused(t132, t121, t133 * t125));
+            let t136 = T::fused(t119, t134, -T::fused(t112, t132, t116 * t133));
+            let t137 = T::fused(-t120, t135, t136 * t130);
             let t138 = k(1.0) / (t108 * t137);
-            let t139 = t138 * (t131 * (t130 * t108) - t129 * (t120 * t108));
-            let t140 = chart2_0 * (link_3_e0 + t104) + chart2_1 * (link_3_e1 + t103)
-                + chart2_2 * (link_3_e2 + t106);
-            let t141 = chart2_0 * t103 - chart2_1 * t104 - chart2_2 * t105
-                + chart2_3 * t106;
+            let t139 = t138 * T::fused(-t129, t120 * t108, t131 * (t130 * t108));
+            let t140 = T::fused(
+                chart2_2,
+                link_3_e2 + t106,
+                T::fused(chart2_1, link_3_e1 + t103, chart2_0 * (link_3_e0 + t104)),
+            );
+            let t141 = T::fused(
+                chart2_3,
+                t106,
+                T::fused(-chart2_2, t105, T::fused(-chart2_1, t104, chart2_0 * t103)),
+            );
             let t142 = k(0.5) * t141;
-            let t143 = chart2_0 * t105 - chart2_1 * t106 + chart2_2 * t103
-                - chart2_3 * t104;
+            let t143 = T::fused(
+                -chart2_3,
+                t104,
+                T::fused(chart2_2, t103, T::fused(-chart2_1, t106, chart2_0 * t105)),
+            );
             let t144 = k(0.5) * t143;
-            let t145 = t131 * (t135 * t142 + t130 * t144)
-                - t129 * (t120 * t144 + t136 * t142);
-            let t146 = t138 * (t145 + (t140 + chart2_3 * (link_3_e3 + t105)) * t137);
-            let t147 = t138 * (t131 * (t135 * t108) - t129 * (t136 * t108));
-            let t148 = t105 + k(0.5) * (t106 * t147 + t103 * t146 - t104 * t139);
-            let t149 = t103 - k(0.5) * (t104 * t147 + t105 * t146 + t106 * t139);
-            let t150 = t106 - k(0.5) * (t105 * t147 - t104 * t146 - t103 * t139);
-            let t151 = t104 + k(0.5) * (t103 * t147 - t106 * t146 + t105 * t139);
-            let t152 = t151 * t150 + t149 * t148;
+            let t145 = T::fused(
+                -t129,
+                T::fused(t136, t142, t120 * t144),
+                t131 * T::fused(t130, t144, t135 * t142),
+            );
+            let t146 = t138
+                * T::fused(T::fused(chart2_3, link_3_e3 + t105, t140), t137, t145);
+            let t147 = t138 * T::fused(-t129, t136 * t108, t131 * (t135 * t108));
+            let t148 = T::fused(
+                k(0.5),
+                T::fused(-t104, t139, T::fused(t103, t146, t106 * t147)),
+                t105,
+            );
+            let t149 = T::fused(
+                -k(0.5),
+                T::fused(t106, t139, T::fused(t105, t146, t104 * t147)),
+                t103,
+            );
+            let t150 = T::fused(
+                -k(0.5),
+                T::fused(-t103, t139, T::fused(-t104, t146, t105 * t147)),
+                t106,
+            );
+            let t151 = T::fused(
+                k(0.5),
+                T::fused(t105, t139, T::fused(-t106, t146, t103 * t147)),
+                t104,
+            );
+            let t152 = T::fused(t149, t148, t151 * t150);
             let t153 = k(0.2) * t152;
             let t154 = t153 + (t92 + t93);
             let t155 = t150 * t148;
@@ -1508,19 +2152,28 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Chain<T> {
             let t158 = k(0.2) * t157;
             let t159 = t158 + (t95 + t96);
             let t160 = t151 * t151;
-            let t161 = k(0.5) - (t148 * t148 + t160);
+            let t161 = k(0.5) - T::fused(t148, t148, t160);
             let t162 = k(0.2) * t161;
             let t163 = t162 + (t99 + t100);
-            let t164 = link_4_e3 * link_4_e3
-                + (link_4_e0 * link_4_e0 + link_4_e1 * link_4_e1
-                    + link_4_e2 * link_4_e2);
+            let t164 = T::fused(
+                link_4_e3,
+                link_4_e3,
+                T::fused(
+                    link_4_e2,
+                    link_4_e2,
+                    T::fused(link_4_e1, link_4_e1, link_4_e0 * link_4_e0),
+                ),
+            );
             let t165 = k(0.5) * (t164 - k(3.0));
             let t166 = link_4_e2 * t165;
             let t167 = link_4_e3 * t165;
             let t168 = link_4_e0 * t165;
             let t169 = link_4_e1 * t165;
-            let t170 = chart3_0 * t169 - chart3_1 * t168 - chart3_2 * t167
-                + chart3_3 * t166;
+            let t170 = T::fused(
+                chart3_3,
+                t166,
+                T::fused(-chart3_2, t167, T::fused(-chart3_1, t168, chart3_0 * t169)),
+            );
             let t171 = k(0.5) * t170;
             let t172 = t169 * t167;
             let t173 = t168 * t166;
@@ -1531,25 +2184,25 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Chain<T> {
             let t178 = k(2.0) * (t177 - t176);
             let t179 = k(2.0) * t157;
             let t180 = t168 * t168;
-            let t181 = k(2.0) * (k(0.5) - (t167 * t167 + t180));
+            let t181 = k(2.0) * (k(0.5) - T::fused(t167, t167, t180));
             let t182 = k(2.0) * t161;
-            let t183 = t182 * t181 + (t179 * t178 + t175 * t174);
-            let t184 = k(2.0) * (t151 * t148 - t149 * t150);
-            let t185 = k(2.0) * (k(0.5) - (t180 + t169 * t169));
-            let t186 = k(2.0) * (k(0.5) - (t160 + t150 * t150));
+            let t183 = T::fused(t182, t181, T::fused(t175, t174, t179 * t178));
+            let t184 = k(2.0) * T::fused(-t149, t150, t151 * t148);
+            let t185 = k(2.0) * (k(0.5) - T::fused(t169, t169, t180));
+            let t186 = k(2.0) * (k(0.5) - T::fused(t150, t150, t160));
             let t187 = t169 * t166;
             let t188 = t168 * t167;
             let t189 = k(2.0) * (t188 + t187);
             let t190 = k(2.0) * (t156 + t155);
             let t191 = k(2.0) * (t173 - t172);
-            let t192 = t191 * t190 + (t189 * t186 - t185 * t184);
-            let t193 = t181 * t190 - (t178 * t186 - t174 * t184);
-            let t194 = t182 * t191 - (t179 * t189 + t175 * t185);
+            let t192 = T::fused(t191, t190, T::fused(-t185, t184, t189 * t186));
+            let t193 = T::fused(t181, t190, -T::fused(-t174, t184, t178 * t186));
+            let t194 = T::fused(t182, t191, -T::fused(t175, t185, t179 * t189));
             let t195 = k(2.0) * (t188 - t187);
-            let t196 = k(2.0) * (k(0.5) - (t180 + t166 * t166));
+            let t196 = k(2.0) * (k(0.5) - T::fused(t166, t166, t180));
             let t197 = k(2.0) * (t177 + t176);
-            let t198 = t182 * t197 - (t179 * t196 - t175 * t195);
-            let t199 = t197 * t190 + (t196 * t186 + t195 * t184);
+            let t198 = T::fused(t182, t197, -T::fused(-t175, t195, t179 * t196));
+            let t199 = T::fused(t197, t190, T::fused(t195, t184, t196 * t186));
             (
                 t28,
                 t29,
@@ -1611,47 +2264,85 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Chain<T> {
             t340,
             t341,
         ) = {
-            let t200 = t183 * t199 - t198 * t193;
+            let t200 = T::fused(-t198, t193, t183 * t199);
             let t201 = k(1.0) / (t171 * t200);
-            let t202 = t201 * (t194 * (t193 * t171) - t192 * (t183 * t171));
-            let t203 = t201 * (t194 * (t199 * t171) - t192 * (t198 * t171));
-            let t204 = chart3_0 * (link_4_e0 + t168) + chart3_1 * (link_4_e1 + t169)
-                + chart3_2 * (link_4_e2 + t166);
-            let t205 = chart3_0 * t167 - chart3_1 * t166 + chart3_2 * t169
-                - chart3_3 * t168;
+            let t202 = t201 * T::fused(-t192, t183 * t171, t194 * (t193 * t171));
+            let t203 = t201 * T::fused(-t192, t198 * t171, t194 * (t199 * t171));
+            let t204 = T::fused(
+                chart3_2,
+                link_4_e2 + t166,
+                T::fused(chart3_1, link_4_e1 + t169, chart3_0 * (link_4_e0 + t168)),
+            );
+            let t205 = T::fused(
+                -chart3_3,
+                t168,
+                T::fused(chart3_2, t169, T::fused(-chart3_1, t166, chart3_0 * t167)),
+            );
             let t206 = k(0.5) * t205;
-            let t207 = chart3_0 * t166 + chart3_1 * t167 - chart3_2 * t168
-                - chart3_3 * t169;
+            let t207 = T::fused(
+                -chart3_3,
+                t169,
+                T::fused(-chart3_2, t168, T::fused(chart3_1, t167, chart3_0 * t166)),
+            );
             let t208 = k(0.5) * t207;
-            let t209 = t194 * (t193 * t206 - t199 * t208)
-                + t192 * (t198 * t208 - t183 * t206);
-            let t210 = t201 * (t209 + (t204 + chart3_3 * (link_4_e3 + t167)) * t200);
-            let t211 = t167 - k(0.5) * (t166 * t210 - t169 * t203 + t168 * t202);
-            let t212 = t169 + k(0.5) * (t168 * t210 - t167 * t203 - t166 * t202);
+            let t209 = T::fused(
+                t192,
+                T::fused(-t183, t206, t198 * t208),
+                t194 * T::fused(-t199, t208, t193 * t206),
+            );
+            let t210 = t201
+                * T::fused(T::fused(chart3_3, link_4_e3 + t167, t204), t200, t209);
+            let t211 = T::fused(
+                -k(0.5),
+                T::fused(t168, t202, T::fused(-t169, t203, t166 * t210)),
+                t167,
+            );
+            let t212 = T::fused(
+                k(0.5),
+                T::fused(-t166, t202, T::fused(-t167, t203, t168 * t210)),
+                t169,
+            );
             let t213 = t212 * t211;
-            let t214 = t166 + k(0.5) * (t167 * t210 + t168 * t203 + t169 * t202);
-            let t215 = t168 - k(0.5) * (t169 * t210 + t166 * t203 - t167 * t202);
+            let t214 = T::fused(
+                k(0.5),
+                T::fused(t169, t202, T::fused(t168, t203, t167 * t210)),
+                t166,
+            );
+            let t215 = T::fused(
+                -k(0.5),
+                T::fused(-t167, t202, T::fused(t166, t203, t169 * t210)),
+                t168,
+            );
             let t216 = t215 * t214;
             let t217 = t216 + t213;
             let t218 = k(0.2) * t217;
             let t219 = t218 + (t153 + t154);
-            let t220 = t215 * t212 - t214 * t211;
+            let t220 = T::fused(-t214, t211, t215 * t212);
             let t221 = k(0.2) * t220;
             let t222 = t221 + (t158 + t159);
             let t223 = t215 * t215;
-            let t224 = k(0.5) - (t211 * t211 + t223);
+            let t224 = k(0.5) - T::fused(t211, t211, t223);
             let t225 = k(0.2) * t224;
             let t226 = t225 + (t162 + t163);
-            let t227 = link_5_e3 * link_5_e3
-                + (link_5_e0 * link_5_e0 + link_5_e1 * link_5_e1
-                    + link_5_e2 * link_5_e2);
+            let t227 = T::fused(
+                link_5_e3,
+                link_5_e3,
+                T::fused(
+                    link_5_e2,
+                    link_5_e2,
+                    T::fused(link_5_e1, link_5_e1, link_5_e0 * link_5_e0),
+                ),
+            );
             let t228 = k(0.5) * (t227 - k(3.0));
             let t229 = link_5_e1 * t228;
             let t230 = link_5_e0 * t228;
             let t231 = link_5_e3 * t228;
             let t232 = link_5_e2 * t228;
-            let t233 = chart4_0 * t232 + chart4_1 * t231 - chart4_2 * t230
-                - chart4_3 * t229;
+            let t233 = T::fused(
+                -chart4_3,
+                t229,
+                T::fused(-chart4_2, t230, T::fused(chart4_1, t231, chart4_0 * t232)),
+            );
             let t234 = k(0.5) * t233;
             let t235 = t229 * t231;
             let t236 = t230 * t232;
@@ -1662,45 +2353,74 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Chain<T> {
             let t241 = k(2.0) * (t240 - t239);
             let t242 = k(2.0) * t220;
             let t243 = t230 * t230;
-            let t244 = k(2.0) * (k(0.5) - (t231 * t231 + t243));
+            let t244 = k(2.0) * (k(0.5) - T::fused(t231, t231, t243));
             let t245 = k(2.0) * t224;
-            let t246 = t245 * t244 + (t242 * t241 + t238 * t237);
-            let t247 = k(2.0) * (k(0.5) - (t223 + t212 * t212));
+            let t246 = T::fused(t245, t244, T::fused(t238, t237, t242 * t241));
+            let t247 = k(2.0) * (k(0.5) - T::fused(t212, t212, t223));
             let t248 = t229 * t232;
             let t249 = t230 * t231;
             let t250 = k(2.0) * (t249 - t248);
-            let t251 = k(2.0) * (t215 * t211 + t212 * t214);
-            let t252 = k(2.0) * (k(0.5) - (t243 + t232 * t232));
+            let t251 = k(2.0) * T::fused(t212, t214, t215 * t211);
+            let t252 = k(2.0) * (k(0.5) - T::fused(t232, t232, t243));
             let t253 = k(2.0) * (t216 - t213);
             let t254 = k(2.0) * (t240 + t239);
-            let t255 = t254 * t253 + (t252 * t251 - t250 * t247);
-            let t256 = t244 * t253 - (t241 * t251 + t237 * t247);
-            let t257 = t245 * t254 - (t242 * t252 - t238 * t250);
-            let t258 = k(2.0) * (k(0.5) - (t243 + t229 * t229));
+            let t255 = T::fused(t254, t253, T::fused(-t250, t247, t252 * t251));
+            let t256 = T::fused(t244, t253, -T::fused(t237, t247, t241 * t251));
+            let t257 = T::fused(t245, t254, -T::fused(-t238, t250, t242 * t252));
+            let t258 = k(2.0) * (k(0.5) - T::fused(t229, t229, t243));
             let t259 = k(2.0) * (t249 + t248);
             let t260 = k(2.0) * (t236 - t235);
-            let t261 = t260 * t253 + (t259 * t251 + t258 * t247);
-            let t262 = t245 * t260 - (t242 * t259 + t238 * t258);
-            let t263 = t262 * t256 - t246 * t261;
+            let t261 = T::fused(t260, t253, T::fused(t258, t247, t259 * t251));
+            let t262 = T::fused(t245, t260, -T::fused(t238, t258, t242 * t259));
+            let t263 = T::fused(-t246, t261, t262 * t256);
             let t264 = k(1.0) / (t234 * t263);
-            let t265 = t264 * (t257 * (t256 * t234) - t255 * (t246 * t234));
-            let t266 = chart4_0 * (link_5_e0 + t230) + chart4_1 * (link_5_e1 + t229)
-                + chart4_2 * (link_5_e2 + t232);
-            let t267 = chart4_0 * t229 - chart4_1 * t230 - chart4_2 * t231
-                + chart4_3 * t232;
+            let t265 = t264 * T::fused(-t255, t246 * t234, t257 * (t256 * t234));
+            let t266 = T::fused(
+                chart4_2,
+                link_5_e2 + t232,
+                T::fused(chart4_1, link_5_e1 + t229, chart4_0 * (link_5_e0 + t230)),
+            );
+            let t267 = T::fused(
+                chart4_3,
+                t232,
+                T::fused(-chart4_2, t231, T::fused(-chart4_1, t230, chart4_0 * t229)),
+            );
             let t268 = k(0.5) * t267;
-            let t269 = chart4_0 * t231 - chart4_1 * t232 + chart4_2 * t229
-                - chart4_3 * t230;
+            let t269 = T::fused(
+                -chart4_3,
+                t230,
+                T::fused(chart4_2, t229, T::fused(-chart4_1, t232, chart4_0 * t231)),
+            );
             let t270 = k(0.5) * t269;
-            let t271 = t257 * (t261 * t268 + t256 * t270)
-                - t255 * (t246 * t270 + t262 * t268);
-            let t272 = t264 * (t271 + (t266 + chart4_3 * (link_5_e3 + t231)) * t263);
-            let t273 = t264 * (t257 * (t261 * t234) - t255 * (t262 * t234));
-            let t274 = t231 + k(0.5) * (t232 * t273 + t229 * t272 - t230 * t265);
-            let t275 = t229 - k(0.5) * (t230 * t273 + t231 * t272 + t232 * t265);
-            let t276 = t232 - k(0.5) * (t231 * t273 - t230 * t272 - t229 * t265);
-            let t277 = t230 + k(0.5) * (t229 * t273 - t232 * t272 + t231 * t265);
-            let t278 = t277 * t276 + t275 * t274;
+            let t271 = T::fused(
+                -t255,
+                T::fused(t262, t268, t246 * t270),
+                t257 * T::fused(t256, t270, t261 * t268),
+            );
+            let t272 = t264
+                * T::fused(T::fused(chart4_3, link_5_e3 + t231, t266), t263, t271);
+            let t273 = t264 * T::fused(-t255, t262 * t234, t257 * (t261 * t234));
+            let t274 = T::fused(
+                k(0.5),
+                T::fused(-t230, t265, T::fused(t229, t272, t232 * t273)),
+                t231,
+            );
+            let t275 = T::fused(
+                -k(0.5),
+                T::fused(t232, t265, T::fused(t231, t272, t230 * t273)),
+                t229,
+            );
+            let t276 = T::fused(
+                -k(0.5),
+                T::fused(-t229, t265, T::fused(-t230, t272, t231 * t273)),
+                t232,
+            );
+            let t277 = T::fused(
+                k(0.5),
+                T::fused(t231, t265, T::fused(-t232, t272, t229 * t273)),
+                t230,
+            );
+            let t278 = T::fused(t275, t274, t277 * t276);
             let t279 = k(0.2) * t278;
             let t280 = t279 + (t218 + t219);
             let t281 = t276 * t274;
@@ -1709,19 +2429,28 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Chain<T> {
             let t284 = k(0.2) * t283;
             let t285 = t284 + (t221 + t222);
             let t286 = t277 * t277;
-            let t287 = k(0.5) - (t274 * t274 + t286);
+            let t287 = k(0.5) - T::fused(t274, t274, t286);
             let t288 = k(0.2) * t287;
             let t289 = t288 + (t225 + t226);
-            let t290 = link_6_e3 * link_6_e3
-                + (link_6_e0 * link_6_e0 + link_6_e1 * link_6_e1
-                    + link_6_e2 * link_6_e2);
+            let t290 = T::fused(
+                link_6_e3,
+                link_6_e3,
+                T::fused(
+                    link_6_e2,
+                    link_6_e2,
+                    T::fused(link_6_e1, link_6_e1, link_6_e0 * link_6_e0),
+                ),
+            );
             let t291 = k(0.5) * (t290 - k(3.0));
             let t292 = link_6_e2 * t291;
             let t293 = link_6_e3 * t291;
             let t294 = link_6_e0 * t291;
             let t295 = link_6_e1 * t291;
-            let t296 = chart5_0 * t295 - chart5_1 * t294 - chart5_2 * t293
-                + chart5_3 * t292;
+            let t296 = T::fused(
+                chart5_3,
+                t292,
+                T::fused(-chart5_2, t293, T::fused(-chart5_1, t294, chart5_0 * t295)),
+            );
             let t297 = k(0.5) * t296;
             let t298 = t295 * t293;
             let t299 = t294 * t292;
@@ -1732,45 +2461,78 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Chain<T> {
             let t304 = k(2.0) * (t303 - t302);
             let t305 = k(2.0) * t283;
             let t306 = t294 * t294;
-            let t307 = k(2.0) * (k(0.5) - (t293 * t293 + t306));
+            let t307 = k(2.0) * (k(0.5) - T::fused(t293, t293, t306));
             let t308 = k(2.0) * t287;
-            let t309 = t308 * t307 + (t305 * t304 + t301 * t300);
-            let t310 = k(2.0) * (t277 * t274 - t275 * t276);
-            let t311 = k(2.0) * (k(0.5) - (t306 + t295 * t295));
-            let t312 = k(2.0) * (k(0.5) - (t286 + t276 * t276));
+            let t309 = T::fused(t308, t307, T::fused(t301, t300, t305 * t304));
+            let t310 = k(2.0) * T::fused(-t275, t276, t277 * t274);
+            let t311 = k(2.0) * (k(0.5) - T::fused(t295, t295, t306));
+            let t312 = k(2.0) * (k(0.5) - T::fused(t276, t276, t286));
             let t313 = t295 * t292;
             let t314 = t294 * t293;
             let t315 = k(2.0) * (t314 + t313);
             let t316 = k(2.0) * (t282 + t281);
             let t317 = k(2.0) * (t299 - t298);
-            let t318 = t317 * t316 + (t315 * t312 - t311 * t310);
-            let t319 = t307 * t316 - (t304 * t312 - t300 * t310);
-            let t320 = t308 * t317 - (t305 * t315 + t301 * t311);
+            let t318 = T::fused(t317, t316, T::fused(-t311, t310, t315 * t312));
+            let t319 = T::fused(t307, t316, -T::fused(-t300, t310, t304 * t312));
+            let t320 = T::fused(t308, t317, -T::fused(t301, t311, t305 * t315));
             let t321 = k(2.0) * (t314 - t313);
-            let t322 = k(2.0) * (k(0.5) - (t306 + t292 * t292));
+            let t322 = k(2.0) * (k(0.5) - T::fused(t292, t292, t306));
             let t323 = k(2.0) * (t303 + t302);
-            let t324 = t308 * t323 - (t305 * t322 - t301 * t321);
-            let t325 = t323 * t316 + (t322 * t312 + t321 * t310);
-            let t326 = t309 * t325 - t324 * t319;
+            let t324 = T::fused(t308, t323, -T::fused(-t301, t321, t305 * t322));
+            let t325 = T::fused(t323, t316, T::fused(t321, t310, t322 * t312));
+            let t326 = T::fused(-t324, t319, t309 * t325);
             let t327 = k(1.0) / (t297 * t326);
-            let t328 = t327 * (t320 * (t319 * t297) - t318 * (t309 * t297));
-            let t329 = t327 * (t320 * (t325 * t297) - t318 * (t324 * t297));
-            let t330 = chart5_0 * (link_6_e0 + t294) + chart5_1 * (link_6_e1 + t295)
-                + chart5_2 * (link_6_e2 + t292);
-            let t331 = chart5_0 * t293 - chart5_1 * t292 + chart5_2 * t295
-                - chart5_3 * t294;
+            let t328 = t327 * T::fused(-t318, t309 * t297, t320 * (t319 * t297));
+            let t329 = t327 * T::fused(-t318, t324 * t297, t320 * (t325 * t297));
+            let t330 = T::fused(
+                chart5_2,
+                link_6_e2 + t292,
+                T::fused(chart5_1, link_6_e1 + t295, chart5_0 * (link_6_e0 + t294)),
+            );
+            let t331 = T::fused(
+                -chart5_3,
+                t294,
+                T::fused(chart5_2, t295, T::fused(-chart5_1, t292, chart5_0 * t293)),
+            );
             let t332 = k(0.5) * t331;
-            let t333 = chart5_0 * t292 + chart5_1 * t293 - chart5_2 * t294
-                - chart5_3 * t295;
+            let t333 = T::fused(
+                -chart5_3,
+                t295,
+                T::fused(-chart5_2, t294, T::fused(chart5_1, t293, chart5_0 * t292)),
+            );
             let t334 = k(0.5) * t333;
-            let t335 = t320 * (t319 * t332 - t325 * t334)
-                + t318 * (t324 * t334 - t309 * t332);
-            let t336 = t327 * (t335 + (t330 + chart5_3 * (link_6_e3 + t293)) * t326);
-            let t337 = t293 - k(0.5) * (t292 * t336 - t295 * t329 + t294 * t328);
-            let t338 = t295 + k(0.5) * (t294 * t336 - t293 * t329 - t292 * t328);
-            let t339 = t292 + k(0.5) * (t293 * t336 + t294 * t329 + t295 * t328);
-            let t340 = t294 - k(0.5) * (t295 * t336 + t292 * t329 - t293 * t328);
-            let t341 = k(0.2) * (k(0.5) - (t337 * t337 + t340 * t340)) + (t288 + t289);
+            let t335 = T::fused(
+                t318,
+                T::fused(-t309, t332, t324 * t334),
+                t320 * T::fused(-t325, t334, t319 * t332),
+            );
+            let t336 = t327
+                * T::fused(T::fused(chart5_3, link_6_e3 + t293, t330), t326, t335);
+            let t337 = T::fused(
+                -k(0.5),
+                T::fused(t294, t328, T::fused(-t295, t329, t292 * t336)),
+                t293,
+            );
+            let t338 = T::fused(
+                k(0.5),
+                T::fused(-t292, t328, T::fused(-t293, t329, t294 * t336)),
+                t295,
+            );
+            let t339 = T::fused(
+                k(0.5),
+                T::fused(t295, t328, T::fused(t294, t329, t293 * t336)),
+                t292,
+            );
+            let t340 = T::fused(
+                -k(0.5),
+                T::fused(-t293, t328, T::fused(t292, t329, t295 * t336)),
+                t294,
+            );
+            let t341 = T::fused(
+                k(0.2),
+                k(0.5) - T::fused(t340, t340, t337 * t337),
+                t288 + t289,
+            );
             (
                 t211,
                 t212,
@@ -1830,22 +2592,16 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Chain<T> {
         y[32] = -t275;
         y[33] = -t276;
         y[34] = -t274;
-        y[35] = -(k(0.2) * (t340 * t339 + t338 * t337) + (t279 + t280));
-        y[36] = k(0.2) * (t340 * t338 - t339 * t337) + (t284 + t285);
+        y[35] = -T::fused(k(0.2), T::fused(t338, t337, t340 * t339), t279 + t280);
+        y[36] = T::fused(k(0.2), T::fused(-t339, t337, t340 * t338), t284 + t285);
         y[37] = t341;
         y[38] = -t340;
         y[39] = -t338;
         y[40] = -t339;
         y[41] = -t337;
-        Ok(())
     }
     /// Solves eq. (19) for the dependent velocities: 635 operations (249 ±, 380 ×, 6 ÷).
-    fn solve_velocities(
-        &self,
-        _t: T,
-        _choice: &Self::Independent,
-        y: &mut Self::State,
-    ) -> ::core::result::Result<(), gyro_sim::Error> {
+    fn solve_velocities_on(&self, _t: T, _charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let link_1_e0 = y[3];
         let link_1_e1 = y[4];
@@ -1890,192 +2646,232 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Chain<T> {
         let link_6_wy = y[76];
         let link_6_wz = y[77];
         let t0 = link_1_e0 * link_1_e0;
-        let t1 = k(2.0) * (k(0.5) - (t0 + link_1_e1 * link_1_e1));
-        let t2 = k(2.0) * (k(0.5) - (t0 + link_1_e3 * link_1_e3));
+        let t1 = k(2.0) * (k(0.5) - T::fused(link_1_e1, link_1_e1, t0));
+        let t2 = k(2.0) * (k(0.5) - T::fused(link_1_e3, link_1_e3, t0));
         let t3 = link_1_e0 * link_1_e2;
         let t4 = link_1_e1 * link_1_e3;
         let t5 = k(2.0) * (t4 - t3);
         let t6 = k(2.0) * (t4 + t3);
-        let t7 = k(1.0) / (t6 * t5 - t1 * t2);
-        let t8 = t6 * link_1_wx + t1 * link_1_wz;
-        let t9 = t2 * link_1_wx + t5 * link_1_wz;
-        let t10 = link_1_wx + t9 * (t1 * t7) - t8 * (t5 * t7);
+        let t7 = k(1.0) / T::fused(-t1, t2, t6 * t5);
+        let t8 = T::fused(t1, link_1_wz, t6 * link_1_wx);
+        let t9 = T::fused(t5, link_1_wz, t2 * link_1_wx);
+        let t10 = T::fused(-t8, t5 * t7, T::fused(t9, t1 * t7, link_1_wx));
         let t11 = link_1_e0 * link_1_e3;
         let t12 = link_1_e1 * link_1_e2;
         let t13 = k(2.0) * (t12 - t11);
-        let t14 = t13 * t10 + t1 * link_1_wy;
+        let t14 = T::fused(t1, link_1_wy, t13 * t10);
         let t15 = k(2.0) * (t12 + t11);
-        let t16 = k(2.0) * (k(0.5) - (t0 + link_1_e2 * link_1_e2));
-        let t17 = t16 * t10 + t15 * link_1_wy;
+        let t16 = k(2.0) * (k(0.5) - T::fused(link_1_e2, link_1_e2, t0));
+        let t17 = T::fused(t15, link_1_wy, t16 * t10);
         let t18 = link_1_e0 * link_1_e1;
         let t19 = link_1_e2 * link_1_e3;
         let t20 = k(2.0) * (t19 + t18);
-        let t21 = t20 * t10 - t5 * link_1_wy;
-        let t22 = link_1_wz - t9 * (t6 * t7) + t8 * (t2 * t7);
+        let t21 = T::fused(-t5, link_1_wy, t20 * t10);
+        let t22 = T::fused(t8, t2 * t7, T::fused(-t9, t6 * t7, link_1_wz));
         let t23 = link_2_e0 * link_2_e0;
-        let t24 = k(2.0) * (k(0.5) - (t23 + link_2_e2 * link_2_e2));
+        let t24 = k(2.0) * (k(0.5) - T::fused(link_2_e2, link_2_e2, t23));
         let t25 = link_2_e0 * link_2_e3;
         let t26 = link_2_e1 * link_2_e2;
         let t27 = k(2.0) * (t26 - t25);
         let t28 = link_2_e0 * link_2_e1;
         let t29 = link_2_e2 * link_2_e3;
         let t30 = k(2.0) * (t29 + t28);
-        let t31 = t20 * t30 + (t13 * t27 + t16 * t24);
-        let t32 = k(2.0) * (k(0.5) - (t23 + link_2_e3 * link_2_e3));
+        let t31 = T::fused(t20, t30, T::fused(t16, t24, t13 * t27));
+        let t32 = k(2.0) * (k(0.5) - T::fused(link_2_e3, link_2_e3, t23));
         let t33 = k(2.0) * (t29 - t28);
         let t34 = k(2.0) * (t19 - t18);
         let t35 = link_2_e0 * link_2_e2;
         let t36 = link_2_e1 * link_2_e3;
         let t37 = k(2.0) * (t36 + t35);
-        let t38 = t6 * t37 + t34 * t33 + t2 * t32;
-        let t39 = t20 * t32 - (t13 * t37 - t16 * t33);
-        let t40 = t2 * t30 - (t6 * t27 - t34 * t24);
-        let t41 = k(1.0) / (t40 * t39 - t38 * t31);
-        let t42 = k(2.0) * (k(0.5) - (t23 + link_2_e1 * link_2_e1));
+        let t38 = T::fused(t2, t32, T::fused(t34, t33, t6 * t37));
+        let t39 = T::fused(t20, t32, -T::fused(-t16, t33, t13 * t37));
+        let t40 = T::fused(t2, t30, -T::fused(-t34, t24, t6 * t27));
+        let t41 = k(1.0) / T::fused(-t38, t31, t40 * t39);
+        let t42 = k(2.0) * (k(0.5) - T::fused(link_2_e1, link_2_e1, t23));
         let t43 = k(2.0) * (t26 + t25);
         let t44 = k(2.0) * (t36 - t35);
-        let t45 = t5 * t44 + (t15 * t43 + t1 * t42);
-        let t46 = t10 * (t2 * t44 - (t34 * t43 - t6 * t42)) + t22 * t45;
-        let t47 = t46 - (link_2_wy * t39 + link_2_wz * t31);
-        let t48 = t10 * (t20 * t44 - (t16 * t43 + t13 * t42)) - link_1_wy * t45;
-        let t49 = t48 + (link_2_wy * t38 + link_2_wz * t40);
-        let t50 = link_2_wy + t49 * (t31 * t41) + t47 * (t40 * t41);
-        let t51 = k(0.1) * (t27 * link_2_wx + t42 * t50);
-        let t52 = k(0.2) * t14 + t51;
-        let t53 = k(0.1) * (t24 * link_2_wx + t43 * t50);
-        let t54 = k(0.2) * t17 + t53;
-        let t55 = k(0.1) * (t30 * link_2_wx - t44 * t50);
-        let t56 = k(0.2) * t21 + t55;
-        let t57 = link_2_wz - t49 * (t39 * t41) - t47 * (t38 * t41);
+        let t45 = T::fused(t5, t44, T::fused(t1, t42, t15 * t43));
+        let t46 = T::fused(
+            t22,
+            t45,
+            t10 * T::fused(t2, t44, -T::fused(-t6, t42, t34 * t43)),
+        );
+        let t47 = t46 - T::fused(link_2_wz, t31, link_2_wy * t39);
+        let t48 = T::fused(
+            -link_1_wy,
+            t45,
+            t10 * T::fused(t20, t44, -T::fused(t13, t42, t16 * t43)),
+        );
+        let t49 = t48 + T::fused(link_2_wz, t40, link_2_wy * t38);
+        let t50 = T::fused(t47, t40 * t41, T::fused(t49, t31 * t41, link_2_wy));
+        let t51 = k(0.1) * T::fused(t42, t50, t27 * link_2_wx);
+        let t52 = T::fused(k(0.2), t14, t51);
+        let t53 = k(0.1) * T::fused(t43, t50, t24 * link_2_wx);
+        let t54 = T::fused(k(0.2), t17, t53);
+        let t55 = k(0.1) * T::fused(-t44, t50, t30 * link_2_wx);
+        let t56 = T::fused(k(0.2), t21, t55);
+        let t57 = T::fused(-t47, t38 * t41, T::fused(-t49, t39 * t41, link_2_wz));
         let t58 = link_3_e0 * link_3_e0;
-        let t59 = k(2.0) * (k(0.5) - (t58 + link_3_e1 * link_3_e1));
+        let t59 = k(2.0) * (k(0.5) - T::fused(link_3_e1, link_3_e1, t58));
         let t60 = link_3_e0 * link_3_e3;
         let t61 = link_3_e1 * link_3_e2;
         let t62 = k(2.0) * (t61 + t60);
         let t63 = link_3_e0 * link_3_e2;
         let t64 = link_3_e1 * link_3_e3;
         let t65 = k(2.0) * (t64 - t63);
-        let t66 = t44 * t65 + (t43 * t62 + t42 * t59);
-        let t67 = k(2.0) * (k(0.5) - (t58 + link_3_e3 * link_3_e3));
+        let t66 = T::fused(t44, t65, T::fused(t42, t59, t43 * t62));
+        let t67 = k(2.0) * (k(0.5) - T::fused(link_3_e3, link_3_e3, t58));
         let t68 = link_3_e0 * link_3_e1;
         let t69 = link_3_e2 * link_3_e3;
         let t70 = k(2.0) * (t69 - t68);
         let t71 = k(2.0) * (t64 + t63);
-        let t72 = t37 * t71 + t33 * t70 + t32 * t67;
-        let t73 = t44 * t67 - (t43 * t70 - t42 * t71);
-        let t74 = t32 * t65 - (t33 * t62 - t37 * t59);
-        let t75 = k(1.0) / (t74 * t73 - t72 * t66);
-        let t76 = k(2.0) * (k(0.5) - (t58 + link_3_e2 * link_3_e2));
+        let t72 = T::fused(t32, t67, T::fused(t33, t70, t37 * t71));
+        let t73 = T::fused(t44, t67, -T::fused(-t42, t71, t43 * t70));
+        let t74 = T::fused(t32, t65, -T::fused(-t37, t59, t33 * t62));
+        let t75 = k(1.0) / T::fused(-t72, t66, t74 * t73);
+        let t76 = k(2.0) * (k(0.5) - T::fused(link_3_e2, link_3_e2, t58));
         let t77 = k(2.0) * (t61 - t60);
         let t78 = k(2.0) * (t69 + t68);
-        let t79 = t30 * t78 + (t27 * t77 + t24 * t76);
-        let t80 = t50 * (t32 * t78 - (t37 * t77 - t33 * t76)) + t57 * t79;
-        let t81 = t80 - (link_3_wx * t73 + link_3_wz * t66);
-        let t82 = link_2_wx * t79 - t50 * (t44 * t78 - (t43 * t76 + t42 * t77));
-        let t83 = t82 - (link_3_wx * t72 + link_3_wz * t74);
-        let t84 = link_3_wx - t83 * (t66 * t75) + t81 * (t74 * t75);
-        let t85 = k(0.1) * (t77 * t84 + t59 * link_3_wy);
+        let t79 = T::fused(t30, t78, T::fused(t24, t76, t27 * t77));
+        let t80 = T::fused(
+            t57,
+            t79,
+            t50 * T::fused(t32, t78, -T::fused(-t33, t76, t37 * t77)),
+        );
+        let t81 = t80 - T::fused(link_3_wz, t66, link_3_wx * t73);
+        let t82 = T::fused(
+            -t50,
+            T::fused(t44, t78, -T::fused(t42, t77, t43 * t76)),
+            link_2_wx * t79,
+        );
+        let t83 = t82 - T::fused(link_3_wz, t74, link_3_wx * t72);
+        let t84 = T::fused(t81, t74 * t75, T::fused(-t83, t66 * t75, link_3_wx));
+        let t85 = k(0.1) * T::fused(t59, link_3_wy, t77 * t84);
         let t86 = t51 + t52 + t85;
-        let t87 = k(0.1) * (t76 * t84 + t62 * link_3_wy);
+        let t87 = k(0.1) * T::fused(t62, link_3_wy, t76 * t84);
         let t88 = t53 + t54 + t87;
-        let t89 = k(0.1) * (t78 * t84 - t65 * link_3_wy);
+        let t89 = k(0.1) * T::fused(-t65, link_3_wy, t78 * t84);
         let t90 = t55 + t56 + t89;
-        let t91 = link_3_wz + t83 * (t73 * t75) - t81 * (t72 * t75);
+        let t91 = T::fused(-t81, t72 * t75, T::fused(t83, t73 * t75, link_3_wz));
         let t92 = link_4_e0 * link_4_e0;
-        let t93 = k(2.0) * (k(0.5) - (t92 + link_4_e2 * link_4_e2));
+        let t93 = k(2.0) * (k(0.5) - T::fused(link_4_e2, link_4_e2, t92));
         let t94 = link_4_e0 * link_4_e3;
         let t95 = link_4_e1 * link_4_e2;
         let t96 = k(2.0) * (t95 - t94);
         let t97 = link_4_e0 * link_4_e1;
         let t98 = link_4_e2 * link_4_e3;
         let t99 = k(2.0) * (t98 + t97);
-        let t100 = t78 * t99 + (t77 * t96 + t76 * t93);
-        let t101 = k(2.0) * (k(0.5) - (t92 + link_4_e3 * link_4_e3));
+        let t100 = T::fused(t78, t99, T::fused(t76, t93, t77 * t96));
+        let t101 = k(2.0) * (k(0.5) - T::fused(link_4_e3, link_4_e3, t92));
         let t102 = k(2.0) * (t98 - t97);
         let t103 = link_4_e0 * link_4_e2;
         let t104 = link_4_e1 * link_4_e3;
         let t105 = k(2.0) * (t104 + t103);
-        let t106 = t71 * t105 + t70 * t102 + t67 * t101;
-        let t107 = t78 * t101 - (t77 * t105 - t76 * t102);
-        let t108 = t67 * t99 - (t71 * t96 - t70 * t93);
-        let t109 = k(1.0) / (t108 * t107 - t106 * t100);
-        let t110 = k(2.0) * (k(0.5) - (t92 + link_4_e1 * link_4_e1));
+        let t106 = T::fused(t67, t101, T::fused(t70, t102, t71 * t105));
+        let t107 = T::fused(t78, t101, -T::fused(-t76, t102, t77 * t105));
+        let t108 = T::fused(t67, t99, -T::fused(-t70, t93, t71 * t96));
+        let t109 = k(1.0) / T::fused(-t106, t100, t108 * t107);
+        let t110 = k(2.0) * (k(0.5) - T::fused(link_4_e1, link_4_e1, t92));
         let t111 = k(2.0) * (t95 + t94);
         let t112 = k(2.0) * (t104 - t103);
-        let t113 = t65 * t112 + (t62 * t111 + t59 * t110);
-        let t114 = t84 * (t67 * t112 - (t70 * t111 - t71 * t110)) + t91 * t113;
-        let t115 = t114 - (link_4_wy * t107 + link_4_wz * t100);
-        let t116 = t84 * (t78 * t112 - (t76 * t111 + t77 * t110)) - link_3_wy * t113;
-        let t117 = t116 + (link_4_wy * t106 + link_4_wz * t108);
-        let t118 = link_4_wy + t117 * (t100 * t109) + t115 * (t108 * t109);
-        let t119 = k(0.1) * (t96 * link_4_wx + t110 * t118);
+        let t113 = T::fused(t65, t112, T::fused(t59, t110, t62 * t111));
+        let t114 = T::fused(
+            t91,
+            t113,
+            t84 * T::fused(t67, t112, -T::fused(-t71, t110, t70 * t111)),
+        );
+        let t115 = t114 - T::fused(link_4_wz, t100, link_4_wy * t107);
+        let t116 = T::fused(
+            -link_3_wy,
+            t113,
+            t84 * T::fused(t78, t112, -T::fused(t77, t110, t76 * t111)),
+        );
+        let t117 = t116 + T::fused(link_4_wz, t108, link_4_wy * t106);
+        let t118 = T::fused(t115, t108 * t109, T::fused(t117, t100 * t109, link_4_wy));
+        let t119 = k(0.1) * T::fused(t110, t118, t96 * link_4_wx);
         let t120 = t85 + t86 + t119;
-        let t121 = k(0.1) * (t93 * link_4_wx + t111 * t118);
+        let t121 = k(0.1) * T::fused(t111, t118, t93 * link_4_wx);
         let t122 = t87 + t88 + t121;
-        let t123 = k(0.1) * (t99 * link_4_wx - t112 * t118);
+        let t123 = k(0.1) * T::fused(-t112, t118, t99 * link_4_wx);
         let t124 = t89 + t90 + t123;
-        let t125 = link_4_wz - t117 * (t107 * t109) - t115 * (t106 * t109);
+        let t125 = T::fused(-t115, t106 * t109, T::fused(-t117, t107 * t109, link_4_wz));
         let t126 = link_5_e0 * link_5_e0;
-        let t127 = k(2.0) * (k(0.5) - (t126 + link_5_e1 * link_5_e1));
+        let t127 = k(2.0) * (k(0.5) - T::fused(link_5_e1, link_5_e1, t126));
         let t128 = link_5_e0 * link_5_e3;
         let t129 = link_5_e1 * link_5_e2;
         let t130 = k(2.0) * (t129 + t128);
         let t131 = link_5_e0 * link_5_e2;
         let t132 = link_5_e1 * link_5_e3;
         let t133 = k(2.0) * (t132 - t131);
-        let t134 = t112 * t133 + (t111 * t130 + t110 * t127);
-        let t135 = k(2.0) * (k(0.5) - (t126 + link_5_e3 * link_5_e3));
+        let t134 = T::fused(t112, t133, T::fused(t110, t127, t111 * t130));
+        let t135 = k(2.0) * (k(0.5) - T::fused(link_5_e3, link_5_e3, t126));
         let t136 = link_5_e0 * link_5_e1;
         let t137 = link_5_e2 * link_5_e3;
         let t138 = k(2.0) * (t137 - t136);
         let t139 = k(2.0) * (t132 + t131);
-        let t140 = t105 * t139 + t102 * t138 + t101 * t135;
-        let t141 = t112 * t135 - (t111 * t138 - t110 * t139);
-        let t142 = t101 * t133 - (t102 * t130 - t105 * t127);
-        let t143 = k(1.0) / (t142 * t141 - t140 * t134);
-        let t144 = k(2.0) * (k(0.5) - (t126 + link_5_e2 * link_5_e2));
+        let t140 = T::fused(t101, t135, T::fused(t102, t138, t105 * t139));
+        let t141 = T::fused(t112, t135, -T::fused(-t110, t139, t111 * t138));
+        let t142 = T::fused(t101, t133, -T::fused(-t105, t127, t102 * t130));
+        let t143 = k(1.0) / T::fused(-t140, t134, t142 * t141);
+        let t144 = k(2.0) * (k(0.5) - T::fused(link_5_e2, link_5_e2, t126));
         let t145 = k(2.0) * (t129 - t128);
         let t146 = k(2.0) * (t137 + t136);
-        let t147 = t99 * t146 + (t96 * t145 + t93 * t144);
-        let t148 = t118 * (t101 * t146 - (t105 * t145 - t102 * t144)) + t125 * t147;
-        let t149 = t148 - (link_5_wx * t141 + link_5_wz * t134);
-        let t150 = link_4_wx * t147 - t118 * (t112 * t146 - (t111 * t144 + t110 * t145));
-        let t151 = t150 - (link_5_wx * t140 + link_5_wz * t142);
-        let t152 = link_5_wx - t151 * (t134 * t143) + t149 * (t142 * t143);
-        let t153 = k(0.1) * (t145 * t152 + t127 * link_5_wy);
+        let t147 = T::fused(t99, t146, T::fused(t93, t144, t96 * t145));
+        let t148 = T::fused(
+            t125,
+            t147,
+            t118 * T::fused(t101, t146, -T::fused(-t102, t144, t105 * t145)),
+        );
+        let t149 = t148 - T::fused(link_5_wz, t134, link_5_wx * t141);
+        let t150 = T::fused(
+            -t118,
+            T::fused(t112, t146, -T::fused(t110, t145, t111 * t144)),
+            link_4_wx * t147,
+        );
+        let t151 = t150 - T::fused(link_5_wz, t142, link_5_wx * t140);
+        let t152 = T::fused(t149, t142 * t143, T::fused(-t151, t134 * t143, link_5_wx));
+        let t153 = k(0.1) * T::fused(t127, link_5_wy, t145 * t152);
         let t154 = t119 + t120 + t153;
-        let t155 = k(0.1) * (t144 * t152 + t130 * link_5_wy);
+        let t155 = k(0.1) * T::fused(t130, link_5_wy, t144 * t152);
         let t156 = t121 + t122 + t155;
-        let t157 = k(0.1) * (t146 * t152 - t133 * link_5_wy);
+        let t157 = k(0.1) * T::fused(-t133, link_5_wy, t146 * t152);
         let t158 = t123 + t124 + t157;
-        let t159 = link_5_wz + t151 * (t141 * t143) - t149 * (t140 * t143);
+        let t159 = T::fused(-t149, t140 * t143, T::fused(t151, t141 * t143, link_5_wz));
         let t160 = link_6_e0 * link_6_e0;
-        let t161 = k(2.0) * (k(0.5) - (t160 + link_6_e2 * link_6_e2));
+        let t161 = k(2.0) * (k(0.5) - T::fused(link_6_e2, link_6_e2, t160));
         let t162 = link_6_e0 * link_6_e3;
         let t163 = link_6_e1 * link_6_e2;
         let t164 = k(2.0) * (t163 - t162);
         let t165 = link_6_e0 * link_6_e1;
         let t166 = link_6_e2 * link_6_e3;
         let t167 = k(2.0) * (t166 + t165);
-        let t168 = t146 * t167 + (t145 * t164 + t144 * t161);
-        let t169 = k(2.0) * (k(0.5) - (t160 + link_6_e3 * link_6_e3));
+        let t168 = T::fused(t146, t167, T::fused(t144, t161, t145 * t164));
+        let t169 = k(2.0) * (k(0.5) - T::fused(link_6_e3, link_6_e3, t160));
         let t170 = k(2.0) * (t166 - t165);
         let t171 = link_6_e0 * link_6_e2;
         let t172 = link_6_e1 * link_6_e3;
         let t173 = k(2.0) * (t172 + t171);
-        let t174 = t139 * t173 + t138 * t170 + t135 * t169;
-        let t175 = t146 * t169 - (t145 * t173 - t144 * t170);
-        let t176 = t135 * t167 - (t139 * t164 - t138 * t161);
-        let t177 = k(1.0) / (t176 * t175 - t174 * t168);
-        let t178 = k(2.0) * (k(0.5) - (t160 + link_6_e1 * link_6_e1));
+        let t174 = T::fused(t135, t169, T::fused(t138, t170, t139 * t173));
+        let t175 = T::fused(t146, t169, -T::fused(-t144, t170, t145 * t173));
+        let t176 = T::fused(t135, t167, -T::fused(-t138, t161, t139 * t164));
+        let t177 = k(1.0) / T::fused(-t174, t168, t176 * t175);
+        let t178 = k(2.0) * (k(0.5) - T::fused(link_6_e1, link_6_e1, t160));
         let t179 = k(2.0) * (t163 + t162);
         let t180 = k(2.0) * (t172 - t171);
-        let t181 = t133 * t180 + (t130 * t179 + t127 * t178);
-        let t182 = t152 * (t135 * t180 - (t138 * t179 - t139 * t178)) + t159 * t181;
-        let t183 = t182 - (link_6_wy * t175 + link_6_wz * t168);
-        let t184 = t152 * (t146 * t180 - (t144 * t179 + t145 * t178)) - link_5_wy * t181;
-        let t185 = t184 + (link_6_wy * t174 + link_6_wz * t176);
-        let t186 = link_6_wy + t185 * (t168 * t177) + t183 * (t176 * t177);
+        let t181 = T::fused(t133, t180, T::fused(t127, t178, t130 * t179));
+        let t182 = T::fused(
+            t159,
+            t181,
+            t152 * T::fused(t135, t180, -T::fused(-t139, t178, t138 * t179)),
+        );
+        let t183 = t182 - T::fused(link_6_wz, t168, link_6_wy * t175);
+        let t184 = T::fused(
+            -link_5_wy,
+            t181,
+            t152 * T::fused(t146, t180, -T::fused(t145, t178, t144 * t179)),
+        );
+        let t185 = t184 + T::fused(link_6_wz, t176, link_6_wy * t174);
+        let t186 = T::fused(t183, t176 * t177, T::fused(t185, t168 * t177, link_6_wy));
         y[42] = k(0.1) * t14;
         y[43] = -(k(0.1) * t17);
         y[44] = k(0.1) * t21;
@@ -2101,206 +2897,48 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Chain<T> {
         y[68] = t158;
         y[69] = t152;
         y[71] = t159;
-        y[72] = t153 + t154 + k(0.1) * (t164 * link_6_wx + t178 * t186);
-        y[73] = -(t155 + t156 + k(0.1) * (t161 * link_6_wx + t179 * t186));
-        y[74] = t157 + t158 + k(0.1) * (t167 * link_6_wx - t180 * t186);
+        y[72] = T::fused(k(0.1), T::fused(t178, t186, t164 * link_6_wx), t153 + t154);
+        y[73] = -T::fused(k(0.1), T::fused(t179, t186, t161 * link_6_wx), t155 + t156);
+        y[74] = T::fused(k(0.1), T::fused(-t180, t186, t167 * link_6_wx), t157 + t158);
         y[76] = t186;
-        y[77] = link_6_wz - t185 * (t175 * t177) - t183 * (t174 * t177);
+        y[77] = T::fused(-t183, t174 * t177, T::fused(-t185, t175 * t177, link_6_wz));
+    }
+}
+impl<T: gyro_sim::Real> gyro_sim::Partition for Chain<T> {
+    type Independent = gyro_sim::charts::Charts<6>;
+    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
+        gyro_sim::charts::best(&gyro_sim::Charted::chart_vectors(self, y))
+    }
+    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
+        gyro_sim::charts::follow(&gyro_sim::Charted::chart_vectors(self, y), choice)
+    }
+    fn newton_step(
+        &self,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::newton_step_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
         Ok(())
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 144 operations (48 ±, 96 ×, 0 ÷).
-    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = gyro_sim::Equations::velocities(self);
-        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
-        let k = T::constant;
-        let link_1_e0 = y[3];
-        let link_1_e1 = y[4];
-        let link_1_e2 = y[5];
-        let link_1_e3 = y[6];
-        let link_2_e0 = y[10];
-        let link_2_e1 = y[11];
-        let link_2_e2 = y[12];
-        let link_2_e3 = y[13];
-        let link_3_e0 = y[17];
-        let link_3_e1 = y[18];
-        let link_3_e2 = y[19];
-        let link_3_e3 = y[20];
-        let link_4_e0 = y[24];
-        let link_4_e1 = y[25];
-        let link_4_e2 = y[26];
-        let link_4_e3 = y[27];
-        let link_5_e0 = y[31];
-        let link_5_e1 = y[32];
-        let link_5_e2 = y[33];
-        let link_5_e3 = y[34];
-        let link_6_e0 = y[38];
-        let link_6_e1 = y[39];
-        let link_6_e2 = y[40];
-        let link_6_e3 = y[41];
-        let link_1_sx = y[42];
-        let link_1_sy = y[43];
-        let link_1_sz = y[44];
-        let link_2_sx = y[48];
-        let link_2_sy = y[49];
-        let link_2_sz = y[50];
-        let link_3_sx = y[54];
-        let link_3_sy = y[55];
-        let link_3_sz = y[56];
-        let link_4_sx = y[60];
-        let link_4_sy = y[61];
-        let link_4_sz = y[62];
-        let link_5_sx = y[66];
-        let link_5_sy = y[67];
-        let link_5_sz = y[68];
-        let link_6_sx = y[72];
-        let link_6_sy = y[73];
-        let link_6_sz = y[74];
-        let link_1_wx = y[45];
-        let link_1_wy = y[46];
-        let link_1_wz = y[47];
-        let link_2_wx = y[51];
-        let link_2_wy = y[52];
-        let link_2_wz = y[53];
-        let link_3_wx = y[57];
-        let link_3_wy = y[58];
-        let link_3_wz = y[59];
-        let link_4_wx = y[63];
-        let link_4_wy = y[64];
-        let link_4_wz = y[65];
-        let link_5_wx = y[69];
-        let link_5_wy = y[70];
-        let link_5_wz = y[71];
-        let link_6_wx = y[75];
-        let link_6_wy = y[76];
-        let link_6_wz = y[77];
-        *dy = [
-            link_1_sx,
-            link_1_sy,
-            link_1_sz,
-            -(k(0.5)
-                * (link_1_e1 * link_1_wx + link_1_e2 * link_1_wy
-                    + link_1_e3 * link_1_wz)),
-            k(0.5)
-                * (link_1_e0 * link_1_wx - link_1_e3 * link_1_wy
-                    + link_1_e2 * link_1_wz),
-            k(0.5)
-                * (link_1_e3 * link_1_wx + link_1_e0 * link_1_wy
-                    - link_1_e1 * link_1_wz),
-            -(k(0.5)
-                * (link_1_e2 * link_1_wx - link_1_e1 * link_1_wy
-                    - link_1_e0 * link_1_wz)),
-            link_2_sx,
-            link_2_sy,
-            link_2_sz,
-            -(k(0.5)
-                * (link_2_e1 * link_2_wx + link_2_e2 * link_2_wy
-                    + link_2_e3 * link_2_wz)),
-            k(0.5)
-                * (link_2_e0 * link_2_wx - link_2_e3 * link_2_wy
-                    + link_2_e2 * link_2_wz),
-            k(0.5)
-                * (link_2_e3 * link_2_wx + link_2_e0 * link_2_wy
-                    - link_2_e1 * link_2_wz),
-            -(k(0.5)
-                * (link_2_e2 * link_2_wx - link_2_e1 * link_2_wy
-                    - link_2_e0 * link_2_wz)),
-            link_3_sx,
-            link_3_sy,
-            link_3_sz,
-            -(k(0.5)
-                * (link_3_e1 * link_3_wx + link_3_e2 * link_3_wy
-                    + link_3_e3 * link_3_wz)),
-            k(0.5)
-                * (link_3_e0 * link_3_wx - link_3_e3 * link_3_wy
-                    + link_3_e2 * link_3_wz),
-            k(0.5)
-                * (link_3_e3 * link_3_wx + link_3_e0 * link_3_wy
-                    - link_3_e1 * link_3_wz),
-            -(k(0.5)
-                * (link_3_e2 * link_3_wx - link_3_e1 * link_3_wy
-                    - link_3_e0 * link_3_wz)),
-            link_4_sx,
-            link_4_sy,
-            link_4_sz,
-            -(k(0.5)
-                * (link_4_e1 * link_4_wx + link_4_e2 * link_4_wy
-                    + link_4_e3 * link_4_wz)),
-            k(0.5)
-                * (link_4_e0 * link_4_wx - link_4_e3 * link_4_wy
-                    + link_4_e2 * link_4_wz),
-            k(0.5)
-                * (link_4_e3 * link_4_wx + link_4_e0 * link_4_wy
-                    - link_4_e1 * link_4_wz),
-            -(k(0.5)
-                * (link_4_e2 * link_4_wx - link_4_e1 * link_4_wy
-                    - link_4_e0 * link_4_wz)),
-            link_5_sx,
-            link_5_sy,
-            link_5_sz,
-            -(k(0.5)
-                * (link_5_e1 * link_5_wx + link_5_e2 * link_5_wy
-                    + link_5_e3 * link_5_wz)),
-            k(0.5)
-                * (link_5_e0 * link_5_wx - link_5_e3 * link_5_wy
-                    + link_5_e2 * link_5_wz),
-            k(0.5)
-                * (link_5_e3 * link_5_wx + link_5_e0 * link_5_wy
-                    - link_5_e1 * link_5_wz),
-            -(k(0.5)
-                * (link_5_e2 * link_5_wx - link_5_e1 * link_5_wy
-                    - link_5_e0 * link_5_wz)),
-            link_6_sx,
-            link_6_sy,
-            link_6_sz,
-            -(k(0.5)
-                * (link_6_e1 * link_6_wx + link_6_e2 * link_6_wy
-                    + link_6_e3 * link_6_wz)),
-            k(0.5)
-                * (link_6_e0 * link_6_wx - link_6_e3 * link_6_wy
-                    + link_6_e2 * link_6_wz),
-            k(0.5)
-                * (link_6_e3 * link_6_wx + link_6_e0 * link_6_wy
-                    - link_6_e1 * link_6_wz),
-            -(k(0.5)
-                * (link_6_e2 * link_6_wx - link_6_e1 * link_6_wy
-                    - link_6_e0 * link_6_wz)),
-            accelerations[0],
-            accelerations[1],
-            accelerations[2],
-            accelerations[3],
-            accelerations[4],
-            accelerations[5],
-            accelerations[6],
-            accelerations[7],
-            accelerations[8],
-            accelerations[9],
-            accelerations[10],
-            accelerations[11],
-            accelerations[12],
-            accelerations[13],
-            accelerations[14],
-            accelerations[15],
-            accelerations[16],
-            accelerations[17],
-            accelerations[18],
-            accelerations[19],
-            accelerations[20],
-            accelerations[21],
-            accelerations[22],
-            accelerations[23],
-            accelerations[24],
-            accelerations[25],
-            accelerations[26],
-            accelerations[27],
-            accelerations[28],
-            accelerations[29],
-            accelerations[30],
-            accelerations[31],
-            accelerations[32],
-            accelerations[33],
-            accelerations[34],
-            accelerations[35],
-        ];
+    fn solve_velocities(
+        &self,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::solve_velocities_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
+        Ok(())
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
@@ -2774,28 +3412,28 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
         let t17 = link_2_e0 * link_2_e2;
         let t18 = link_2_e1 * link_2_e3;
         let t19 = k(2.0) * (t18 - t17);
-        let t20 = k(2.0) * (link_2_e1 * link_2_e2 + link_2_e0 * link_2_e3);
+        let t20 = k(2.0) * T::fused(link_2_e0, link_2_e3, link_2_e1 * link_2_e2);
         let t21 = link_2_e0 * link_2_e0;
-        let t22 = k(2.0) * (k(0.5) - (t21 + link_2_e1 * link_2_e1));
+        let t22 = k(2.0) * (k(0.5) - T::fused(link_2_e1, link_2_e1, t21));
         let t23 = t22 * t9;
         let t24 = t22 * t8;
         let t25 = t22 * t7;
         let t26 = t22 * t6;
         let t27 = k(2.0) * link_2_e2;
         let t28 = link_1_e0 * link_1_e0;
-        let t29 = k(2.0) * (k(0.5) - (t28 + link_1_e3 * link_1_e3));
+        let t29 = k(2.0) * (k(0.5) - T::fused(link_1_e3, link_1_e3, t28));
         let t30 = k(2.0) * link_2_e3;
         let t31 = link_1_e0 * link_1_e1;
         let t32 = link_1_e2 * link_1_e3;
         let t33 = k(2.0) * (t32 - t31);
         let t34 = k(4.0) * link_2_e0;
-        let t35 = k(2.0) * (link_1_e1 * link_1_e3 + link_1_e0 * link_1_e2);
+        let t35 = k(2.0) * T::fused(link_1_e0, link_1_e2, link_1_e1 * link_1_e3);
         let t36 = k(4.0) * link_2_e1;
         let t37 = k(2.0) * link_2_e0;
         let t38 = k(2.0) * link_2_e1;
         let t39 = k(2.0) * (t32 + t31);
-        let t40 = k(2.0) * (k(0.5) - (t28 + link_1_e2 * link_1_e2));
-        let t41 = k(2.0) * (link_1_e1 * link_1_e2 - link_1_e0 * link_1_e3);
+        let t40 = k(2.0) * (k(0.5) - T::fused(link_1_e2, link_1_e2, t28));
+        let t41 = k(2.0) * T::fused(-link_1_e0, link_1_e3, link_1_e1 * link_1_e2);
         let t42 = k(0.2) * link_3_e2;
         let t43 = k(0.2) * link_3_e3;
         let t44 = k(0.2) * link_3_e0;
@@ -2806,16 +3444,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
         let t49 = link_3_e2 * link_3_e3;
         let t50 = k(2.0) * (t49 + t48);
         let t51 = link_3_e0 * link_3_e0;
-        let t52 = k(2.0) * (k(0.5) - (t51 + link_3_e2 * link_3_e2));
+        let t52 = k(2.0) * (k(0.5) - T::fused(link_3_e2, link_3_e2, t51));
         let t53 = t52 * t38;
-        let t54 = k(2.0) * (link_3_e1 * link_3_e2 - link_3_e0 * link_3_e3);
+        let t54 = k(2.0) * T::fused(-link_3_e0, link_3_e3, link_3_e1 * link_3_e2);
         let t55 = t52 * t37;
         let t56 = t52 * t30;
         let t57 = t52 * t27;
         let t58 = k(2.0) * link_3_e1;
-        let t59 = k(2.0) * (k(0.5) - (t21 + link_2_e3 * link_2_e3));
+        let t59 = k(2.0) * (k(0.5) - T::fused(link_2_e3, link_2_e3, t21));
         let t60 = k(4.0) * link_3_e0;
-        let t61 = k(2.0) * (link_2_e2 * link_2_e3 - link_2_e0 * link_2_e1);
+        let t61 = k(2.0) * T::fused(-link_2_e0, link_2_e1, link_2_e2 * link_2_e3);
         let t62 = k(2.0) * link_3_e3;
         let t63 = k(2.0) * (t18 + t17);
         let t64 = k(2.0) * link_3_e0;
@@ -2830,19 +3468,19 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
         let t73 = link_4_e0 * link_4_e2;
         let t74 = link_4_e1 * link_4_e3;
         let t75 = k(2.0) * (t74 - t73);
-        let t76 = k(2.0) * (link_4_e1 * link_4_e2 + link_4_e0 * link_4_e3);
+        let t76 = k(2.0) * T::fused(link_4_e0, link_4_e3, link_4_e1 * link_4_e2);
         let t77 = link_4_e0 * link_4_e0;
-        let t78 = k(2.0) * (k(0.5) - (t77 + link_4_e1 * link_4_e1));
+        let t78 = k(2.0) * (k(0.5) - T::fused(link_4_e1, link_4_e1, t77));
         let t79 = t78 * t65;
         let t80 = t78 * t62;
         let t81 = t78 * t64;
         let t82 = t78 * t58;
         let t83 = k(2.0) * link_4_e2;
-        let t84 = k(2.0) * (k(0.5) - (t51 + link_3_e3 * link_3_e3));
+        let t84 = k(2.0) * (k(0.5) - T::fused(link_3_e3, link_3_e3, t51));
         let t85 = k(2.0) * link_4_e3;
         let t86 = k(2.0) * (t49 - t48);
         let t87 = k(4.0) * link_4_e0;
-        let t88 = k(2.0) * (link_3_e1 * link_3_e3 + link_3_e0 * link_3_e2);
+        let t88 = k(2.0) * T::fused(link_3_e0, link_3_e2, link_3_e1 * link_3_e3);
         let t89 = k(4.0) * link_4_e1;
         let t90 = k(2.0) * link_4_e0;
         let t91 = k(2.0) * link_4_e1;
@@ -2856,16 +3494,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
         let t99 = link_5_e2 * link_5_e3;
         let t100 = k(2.0) * (t99 + t98);
         let t101 = link_5_e0 * link_5_e0;
-        let t102 = k(2.0) * (k(0.5) - (t101 + link_5_e2 * link_5_e2));
+        let t102 = k(2.0) * (k(0.5) - T::fused(link_5_e2, link_5_e2, t101));
         let t103 = t102 * t91;
-        let t104 = k(2.0) * (link_5_e1 * link_5_e2 - link_5_e0 * link_5_e3);
+        let t104 = k(2.0) * T::fused(-link_5_e0, link_5_e3, link_5_e1 * link_5_e2);
         let t105 = t102 * t90;
         let t106 = t102 * t85;
         let t107 = t102 * t83;
         let t108 = k(2.0) * link_5_e1;
-        let t109 = k(2.0) * (k(0.5) - (t77 + link_4_e3 * link_4_e3));
+        let t109 = k(2.0) * (k(0.5) - T::fused(link_4_e3, link_4_e3, t77));
         let t110 = k(4.0) * link_5_e0;
-        let t111 = k(2.0) * (link_4_e2 * link_4_e3 - link_4_e0 * link_4_e1);
+        let t111 = k(2.0) * T::fused(-link_4_e0, link_4_e1, link_4_e2 * link_4_e3);
         let t112 = k(2.0) * link_5_e3;
         let t113 = k(2.0) * (t74 + t73);
         let t114 = k(2.0) * link_5_e0;
@@ -2875,19 +3513,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
         let t118 = k(0.2) * link_6_e3;
         let t119 = k(0.2) * link_6_e0;
         let t120 = k(0.2) * link_6_e1;
-        let t121 = k(2.0) * (link_6_e1 * link_6_e3 - link_6_e0 * link_6_e2);
-        let t122 = k(2.0) * (link_6_e1 * link_6_e2 + link_6_e0 * link_6_e3);
-        let t123 = k(2.0) * (k(0.5) - (link_6_e0 * link_6_e0 + link_6_e1 * link_6_e1));
+        let t121 = k(2.0) * T::fused(-link_6_e0, link_6_e2, link_6_e1 * link_6_e3);
+        let t122 = k(2.0) * T::fused(link_6_e0, link_6_e3, link_6_e1 * link_6_e2);
+        let t123 = k(2.0)
+            * (k(0.5) - T::fused(link_6_e1, link_6_e1, link_6_e0 * link_6_e0));
         let t124 = t123 * t115;
         let t125 = t123 * t112;
         let t126 = t123 * t114;
         let t127 = t123 * t108;
         let t128 = k(2.0) * link_6_e2;
-        let t129 = k(2.0) * (k(0.5) - (t101 + link_5_e3 * link_5_e3));
+        let t129 = k(2.0) * (k(0.5) - T::fused(link_5_e3, link_5_e3, t101));
         let t130 = k(2.0) * link_6_e3;
         let t131 = k(2.0) * (t99 - t98);
         let t132 = k(4.0) * link_6_e0;
-        let t133 = k(2.0) * (link_5_e1 * link_5_e3 + link_5_e0 * link_5_e2);
+        let t133 = k(2.0) * T::fused(link_5_e0, link_5_e2, link_5_e1 * link_5_e3);
         let t134 = k(4.0) * link_6_e1;
         let t135 = k(2.0) * link_6_e0;
         let t136 = k(2.0) * link_6_e1;
@@ -2939,22 +3578,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             k(1.0),
             t14,
             t15,
-            t19 * t16 - (t23 + t20 * t6),
-            -(t20 * t7 + t24),
-            t20 * t8 - t25,
-            t20 * t9 - t26 + t19 * (k(4.0) * link_1_e3),
-            t35 * t34 + t33 * t30 + t29 * t27,
-            t35 * t36 + t33 * t27 - t29 * t30,
-            t33 * t38 + t29 * t37,
-            t33 * t37 - t29 * t38,
-            -(t24 + t20 * t16 + t19 * t6),
-            t23 - t19 * t7,
-            t26 - t20 * (k(4.0) * link_1_e2) - t19 * t8,
-            -(t25 + t19 * t9),
-            t39 * t27 - (t41 * t34 - t40 * t30),
-            -(t41 * t36 - t40 * t27 + t39 * t30),
-            t40 * t38 + t39 * t37,
-            t40 * t37 - t39 * t38,
+            T::fused(t19, t16, -T::fused(t20, t6, t23)),
+            -T::fused(t20, t7, t24),
+            T::fused(t20, t8, -t25),
+            T::fused(t19, k(4.0) * link_1_e3, T::fused(t20, t9, -t26)),
+            T::fused(t29, t27, T::fused(t33, t30, t35 * t34)),
+            T::fused(-t29, t30, T::fused(t33, t27, t35 * t36)),
+            T::fused(t29, t37, t33 * t38),
+            T::fused(-t29, t38, t33 * t37),
+            -T::fused(t19, t6, T::fused(t20, t16, t24)),
+            T::fused(-t19, t7, t23),
+            T::fused(-t19, t8, T::fused(-t20, k(4.0) * link_1_e2, t26)),
+            -T::fused(t19, t9, t25),
+            T::fused(t39, t27, -T::fused(-t40, t30, t41 * t34)),
+            -T::fused(t39, t30, T::fused(-t40, t27, t41 * t36)),
+            T::fused(t39, t37, t40 * t38),
+            T::fused(-t39, t38, t40 * t37),
             k(-1.0),
             t10,
             t11,
@@ -2981,22 +3620,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             k(1.0),
             t46,
             t47,
-            t54 * t27 + t53 + t50 * t34,
-            t54 * t30 + t55,
-            t54 * t37 - t56,
-            t54 * t38 - t57 + t50 * (k(4.0) * link_2_e3),
-            -(t63 * t62 - t61 * t60 + t59 * t58),
-            t63 * t65 - t59 * t64,
-            t63 * t58 + t61 * t66 - t59 * t62,
-            -(t63 * t64 + t59 * t65),
-            -(t56 - t54 * t34 + t50 * t27),
-            t50 * t30 - (t57 - t54 * t36),
-            -(t53 + t50 * t37),
-            t50 * t38 - t55,
-            t22 * t62 + t20 * t60 + t19 * t58,
-            t19 * t64 - t22 * t65,
-            t19 * t62 - (t22 * t58 - t20 * t66),
-            t22 * t64 + t19 * t65,
+            T::fused(t50, t34, T::fused(t54, t27, t53)),
+            T::fused(t54, t30, t55),
+            T::fused(t54, t37, -t56),
+            T::fused(t50, k(4.0) * link_2_e3, T::fused(t54, t38, -t57)),
+            -T::fused(t59, t58, T::fused(-t61, t60, t63 * t62)),
+            T::fused(-t59, t64, t63 * t65),
+            T::fused(-t59, t62, T::fused(t61, t66, t63 * t58)),
+            -T::fused(t59, t65, t63 * t64),
+            -T::fused(t50, t27, T::fused(-t54, t34, t56)),
+            T::fused(t50, t30, -T::fused(-t54, t36, t57)),
+            -T::fused(t50, t37, t53),
+            T::fused(t50, t38, -t55),
+            T::fused(t19, t58, T::fused(t20, t60, t22 * t62)),
+            T::fused(-t22, t65, t19 * t64),
+            T::fused(t19, t62, -T::fused(-t20, t66, t22 * t58)),
+            T::fused(t19, t65, t22 * t64),
             k(-1.0),
             t42,
             t43,
@@ -3023,22 +3662,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             k(1.0),
             t71,
             t72,
-            t75 * t60 - (t79 + t76 * t58),
-            -(t76 * t64 + t80),
-            t76 * t62 - t81,
-            t76 * t65 - t82 + t75 * (k(4.0) * link_3_e3),
-            t88 * t87 + t86 * t85 + t84 * t83,
-            t88 * t89 + t86 * t83 - t84 * t85,
-            t86 * t91 + t84 * t90,
-            t86 * t90 - t84 * t91,
-            -(t80 + t76 * t60 + t75 * t58),
-            t79 - t75 * t64,
-            t82 - t76 * t66 - t75 * t62,
-            -(t81 + t75 * t65),
-            t50 * t83 - (t54 * t87 - t52 * t85),
-            -(t54 * t89 - t52 * t83 + t50 * t85),
-            t52 * t91 + t50 * t90,
-            t52 * t90 - t50 * t91,
+            T::fused(t75, t60, -T::fused(t76, t58, t79)),
+            -T::fused(t76, t64, t80),
+            T::fused(t76, t62, -t81),
+            T::fused(t75, k(4.0) * link_3_e3, T::fused(t76, t65, -t82)),
+            T::fused(t84, t83, T::fused(t86, t85, t88 * t87)),
+            T::fused(-t84, t85, T::fused(t86, t83, t88 * t89)),
+            T::fused(t84, t90, t86 * t91),
+            T::fused(-t84, t91, t86 * t90),
+            -T::fused(t75, t58, T::fused(t76, t60, t80)),
+            T::fused(-t75, t64, t79),
+            T::fused(-t75, t62, T::fused(-t76, t66, t82)),
+            -T::fused(t75, t65, t81),
+            T::fused(t50, t83, -T::fused(-t52, t85, t54 * t87)),
+            -T::fused(t50, t85, T::fused(-t52, t83, t54 * t89)),
+            T::fused(t50, t90, t52 * t91),
+            T::fused(-t50, t91, t52 * t90),
             k(-1.0),
             t67,
             t68,
@@ -3065,22 +3704,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             k(1.0),
             t96,
             t97,
-            t104 * t83 + t103 + t100 * t87,
-            t104 * t85 + t105,
-            t104 * t90 - t106,
-            t104 * t91 - t107 + t100 * (k(4.0) * link_4_e3),
-            -(t113 * t112 - t111 * t110 + t109 * t108),
-            t113 * t115 - t109 * t114,
-            t113 * t108 + t111 * t116 - t109 * t112,
-            -(t113 * t114 + t109 * t115),
-            -(t106 - t104 * t87 + t100 * t83),
-            t100 * t85 - (t107 - t104 * t89),
-            -(t103 + t100 * t90),
-            t100 * t91 - t105,
-            t78 * t112 + t76 * t110 + t75 * t108,
-            t75 * t114 - t78 * t115,
-            t75 * t112 - (t78 * t108 - t76 * t116),
-            t78 * t114 + t75 * t115,
+            T::fused(t100, t87, T::fused(t104, t83, t103)),
+            T::fused(t104, t85, t105),
+            T::fused(t104, t90, -t106),
+            T::fused(t100, k(4.0) * link_4_e3, T::fused(t104, t91, -t107)),
+            -T::fused(t109, t108, T::fused(-t111, t110, t113 * t112)),
+            T::fused(-t109, t114, t113 * t115),
+            T::fused(-t109, t112, T::fused(t111, t116, t113 * t108)),
+            -T::fused(t109, t115, t113 * t114),
+            -T::fused(t100, t83, T::fused(-t104, t87, t106)),
+            T::fused(t100, t85, -T::fused(-t104, t89, t107)),
+            -T::fused(t100, t90, t103),
+            T::fused(t100, t91, -t105),
+            T::fused(t75, t108, T::fused(t76, t110, t78 * t112)),
+            T::fused(-t78, t115, t75 * t114),
+            T::fused(t75, t112, -T::fused(-t76, t116, t78 * t108)),
+            T::fused(t75, t115, t78 * t114),
             k(-1.0),
             t92,
             t93,
@@ -3107,22 +3746,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             k(1.0),
             k(0.4) * link_6_e0,
             k(0.4) * link_6_e3,
-            t121 * t110 - (t124 + t122 * t108),
-            -(t122 * t114 + t125),
-            t122 * t112 - t126,
-            t122 * t115 - t127 + t121 * (k(4.0) * link_5_e3),
-            t133 * t132 + t131 * t130 + t129 * t128,
-            t133 * t134 + t131 * t128 - t129 * t130,
-            t131 * t136 + t129 * t135,
-            t131 * t135 - t129 * t136,
-            -(t125 + t122 * t110 + t121 * t108),
-            t124 - t121 * t114,
-            t127 - t122 * t116 - t121 * t112,
-            -(t126 + t121 * t115),
-            t100 * t128 - (t104 * t132 - t102 * t130),
-            -(t104 * t134 - t102 * t128 + t100 * t130),
-            t102 * t136 + t100 * t135,
-            t102 * t135 - t100 * t136,
+            T::fused(t121, t110, -T::fused(t122, t108, t124)),
+            -T::fused(t122, t114, t125),
+            T::fused(t122, t112, -t126),
+            T::fused(t121, k(4.0) * link_5_e3, T::fused(t122, t115, -t127)),
+            T::fused(t129, t128, T::fused(t131, t130, t133 * t132)),
+            T::fused(-t129, t130, T::fused(t131, t128, t133 * t134)),
+            T::fused(t129, t135, t131 * t136),
+            T::fused(-t129, t136, t131 * t135),
+            -T::fused(t121, t108, T::fused(t122, t110, t125)),
+            T::fused(-t121, t114, t124),
+            T::fused(-t121, t112, T::fused(-t122, t116, t127)),
+            -T::fused(t121, t115, t126),
+            T::fused(t100, t128, -T::fused(-t102, t130, t104 * t132)),
+            -T::fused(t100, t130, T::fused(-t102, t128, t104 * t134)),
+            T::fused(t100, t135, t102 * t136),
+            T::fused(-t100, t136, t102 * t135),
             t7,
             t6,
             t9,
@@ -3181,9 +3820,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
         let t2 = t1 - t0;
         let t3 = k(0.2) * t2;
         let t4 = link_1_e0 * link_1_e0;
-        let t5 = k(0.5) - (t4 + link_1_e1 * link_1_e1);
+        let t5 = k(0.5) - T::fused(link_1_e1, link_1_e1, t4);
         let t6 = k(0.2) * t5;
-        let t7 = k(0.5) - (t4 + link_1_e2 * link_1_e2);
+        let t7 = k(0.5) - T::fused(link_1_e2, link_1_e2, t4);
         let t8 = k(0.2) * t7;
         let t9 = t1 + t0;
         let t10 = k(0.2) * t9;
@@ -3195,7 +3834,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
         let t16 = link_1_e1 * link_1_e3;
         let t17 = t16 - t15;
         let t18 = k(0.2) * t17;
-        let t19 = k(2.0) * (k(0.5) - (t4 + link_1_e3 * link_1_e3));
+        let t19 = k(2.0) * (k(0.5) - T::fused(link_1_e3, link_1_e3, t4));
         let t20 = k(2.0) * t17;
         let t21 = k(2.0) * (t16 + t15);
         let t22 = k(2.0) * t5;
@@ -3204,9 +3843,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
         let t25 = t24 - t23;
         let t26 = k(0.2) * t25;
         let t27 = link_2_e0 * link_2_e0;
-        let t28 = k(0.5) - (t27 + link_2_e1 * link_2_e1);
+        let t28 = k(0.5) - T::fused(link_2_e1, link_2_e1, t27);
         let t29 = k(0.2) * t28;
-        let t30 = k(0.5) - (t27 + link_2_e2 * link_2_e2);
+        let t30 = k(0.5) - T::fused(link_2_e2, link_2_e2, t27);
         let t31 = k(0.2) * t30;
         let t32 = t24 + t23;
         let t33 = k(0.2) * t32;
@@ -3224,8 +3863,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
         let t45 = k(2.0) * t7;
         let t46 = k(2.0) * t40;
         let t47 = k(2.0) * t13;
-        let t48 = t20 * t46 + (k(2.0) * t9 * t44 + t22 * t42);
-        let t49 = k(2.0) * (k(0.5) - (t27 + link_2_e3 * link_2_e3));
+        let t48 = T::fused(t20, t46, T::fused(t22, t42, k(2.0) * t9 * t44));
+        let t49 = k(2.0) * (k(0.5) - T::fused(link_2_e3, link_2_e3, t27));
         let t50 = k(2.0) * (t35 - t34);
         let t51 = k(2.0) * (t12 - t11);
         let t52 = k(2.0) * (t39 + t38);
@@ -3237,9 +3876,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
         let t58 = t57 - t56;
         let t59 = k(0.2) * t58;
         let t60 = link_3_e0 * link_3_e0;
-        let t61 = k(0.5) - (t60 + link_3_e1 * link_3_e1);
+        let t61 = k(0.5) - T::fused(link_3_e1, link_3_e1, t60);
         let t62 = k(0.2) * t61;
-        let t63 = k(0.5) - (t60 + link_3_e2 * link_3_e2);
+        let t63 = k(0.5) - T::fused(link_3_e2, link_3_e2, t60);
         let t64 = k(0.2) * t63;
         let t65 = t57 + t56;
         let t66 = k(0.2) * t65;
@@ -3254,8 +3893,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
         let t75 = k(2.0) * t63;
         let t76 = k(2.0) * t58;
         let t77 = k(2.0) * t69;
-        let t78 = t55 * t77 + (t54 * t76 + t53 * t75);
-        let t79 = k(2.0) * (k(0.5) - (t60 + link_3_e3 * link_3_e3));
+        let t78 = T::fused(t55, t77, T::fused(t53, t75, t54 * t76));
+        let t79 = k(2.0) * (k(0.5) - T::fused(link_3_e3, link_3_e3, t60));
         let t80 = k(2.0) * (t68 - t67);
         let t81 = k(2.0) * (t72 + t71);
         let t82 = k(2.0) * t61;
@@ -3266,9 +3905,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
         let t87 = t86 - t85;
         let t88 = k(0.2) * t87;
         let t89 = link_4_e0 * link_4_e0;
-        let t90 = k(0.5) - (t89 + link_4_e1 * link_4_e1);
+        let t90 = k(0.5) - T::fused(link_4_e1, link_4_e1, t89);
         let t91 = k(0.2) * t90;
-        let t92 = k(0.5) - (t89 + link_4_e2 * link_4_e2);
+        let t92 = k(0.5) - T::fused(link_4_e2, link_4_e2, t89);
         let t93 = k(0.2) * t92;
         let t94 = t86 + t85;
         let t95 = k(0.2) * t94;
@@ -3283,8 +3922,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
         let t104 = k(2.0) * t90;
         let t105 = k(2.0) * t94;
         let t106 = k(2.0) * t102;
-        let t107 = t84 * t106 + (t83 * t105 + t82 * t104);
-        let t108 = k(2.0) * (k(0.5) - (t89 + link_4_e3 * link_4_e3));
+        let t107 = T::fused(t84, t106, T::fused(t82, t104, t83 * t105));
+        let t108 = k(2.0) * (k(0.5) - T::fused(link_4_e3, link_4_e3, t89));
         let t109 = k(2.0) * (t97 - t96);
         let t110 = k(2.0) * (t101 + t100);
         let t111 = k(2.0) * t92;
@@ -3295,9 +3934,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
         let t116 = t115 - t114;
         let t117 = k(0.2) * t116;
         let t118 = link_5_e0 * link_5_e0;
-        let t119 = k(0.5) - (t118 + link_5_e1 * link_5_e1);
+        let t119 = k(0.5) - T::fused(link_5_e1, link_5_e1, t118);
         let t120 = k(0.2) * t119;
-        let t121 = k(0.5) - (t118 + link_5_e2 * link_5_e2);
+        let t121 = k(0.5) - T::fused(link_5_e2, link_5_e2, t118);
         let t122 = k(0.2) * t121;
         let t123 = t115 + t114;
         let t124 = k(0.2) * t123;
@@ -3312,8 +3951,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
         let t133 = k(2.0) * t121;
         let t134 = k(2.0) * t116;
         let t135 = k(2.0) * t127;
-        let t136 = t113 * t135 + (t112 * t134 + t111 * t133);
-        let t137 = k(2.0) * (k(0.5) - (t118 + link_5_e3 * link_5_e3));
+        let t136 = T::fused(t113, t135, T::fused(t111, t133, t112 * t134));
+        let t137 = k(2.0) * (k(0.5) - T::fused(link_5_e3, link_5_e3, t118));
         let t138 = k(2.0) * (t126 - t125);
         let t139 = k(2.0) * (t130 + t129);
         let t140 = k(2.0) * t119;
@@ -3323,8 +3962,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
         let t144 = link_6_e1 * link_6_e2;
         let t145 = t144 - t143;
         let t146 = link_6_e0 * link_6_e0;
-        let t147 = k(0.5) - (t146 + link_6_e1 * link_6_e1);
-        let t148 = k(0.5) - (t146 + link_6_e2 * link_6_e2);
+        let t147 = k(0.5) - T::fused(link_6_e1, link_6_e1, t146);
+        let t148 = k(0.5) - T::fused(link_6_e2, link_6_e2, t146);
         let t149 = t144 + t143;
         let t150 = link_6_e0 * link_6_e1;
         let t151 = link_6_e2 * link_6_e3;
@@ -3335,8 +3974,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
         let t156 = k(2.0) * t147;
         let t157 = k(2.0) * t149;
         let t158 = k(2.0) * t155;
-        let t159 = t142 * t158 + (t141 * t157 + t140 * t156);
-        let t160 = k(2.0) * (k(0.5) - (t146 + link_6_e3 * link_6_e3));
+        let t159 = T::fused(t142, t158, T::fused(t140, t156, t141 * t157));
+        let t160 = k(2.0) * (k(0.5) - T::fused(link_6_e3, link_6_e3, t146));
         let t161 = k(2.0) * (t151 - t150);
         let t162 = k(2.0) * (t154 + t153);
         let t163 = k(2.0) * t148;
@@ -3374,14 +4013,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             k(1.0),
             -t37,
             t41,
-            t45 * t44 + t43 * t42 - t47 * t46,
+            T::fused(-t47, t46, T::fused(t43, t42, t45 * t44)),
             t48,
-            -(t21 * t52 + t51 * t50 + t19 * t49),
-            t21 * t54 - t51 * t53 - t19 * t55,
-            t19 * t46 - (t51 * t44 - t21 * t42),
+            -T::fused(t19, t49, T::fused(t51, t50, t21 * t52)),
+            T::fused(-t19, t55, T::fused(-t51, t53, t21 * t54)),
+            T::fused(t19, t46, -T::fused(-t21, t42, t51 * t44)),
             t48,
-            t43 * t52 - t45 * t50 - t47 * t49,
-            -(t47 * t55 + (t43 * t54 + t45 * t53)),
+            T::fused(-t47, t49, T::fused(-t45, t50, t43 * t52)),
+            -T::fused(t47, t55, T::fused(t45, t53, t43 * t54)),
             k(-1.0),
             -t26,
             -t29,
@@ -3401,13 +4040,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             -t70,
             t74,
             -t78,
-            t46 * t77 - (t44 * t75 + t42 * t76),
-            t52 * t81 + t50 * t80 + t49 * t79,
-            t49 * t84 - (t50 * t83 - t52 * t82),
-            t49 * t77 - (t52 * t76 - t50 * t75),
+            T::fused(t46, t77, -T::fused(t42, t76, t44 * t75)),
+            T::fused(t49, t79, T::fused(t50, t80, t52 * t81)),
+            T::fused(t49, t84, -T::fused(-t52, t82, t50 * t83)),
+            T::fused(t49, t77, -T::fused(-t50, t75, t52 * t76)),
             t78,
-            t44 * t80 - t42 * t81 - t46 * t79,
-            -(t46 * t84 + (t44 * t83 + t42 * t82)),
+            T::fused(-t46, t79, T::fused(-t42, t81, t44 * t80)),
+            -T::fused(t46, t84, T::fused(t42, t82, t44 * t83)),
             k(-1.0),
             -t59,
             -t62,
@@ -3426,14 +4065,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             k(1.0),
             -t99,
             t103,
-            t75 * t105 + t76 * t104 - t77 * t106,
+            T::fused(-t77, t106, T::fused(t76, t104, t75 * t105)),
             t107,
-            -(t81 * t110 + t80 * t109 + t79 * t108),
-            t81 * t112 - t80 * t111 - t79 * t113,
-            t79 * t106 - (t80 * t105 - t81 * t104),
+            -T::fused(t79, t108, T::fused(t80, t109, t81 * t110)),
+            T::fused(-t79, t113, T::fused(-t80, t111, t81 * t112)),
+            T::fused(t79, t106, -T::fused(-t81, t104, t80 * t105)),
             t107,
-            t76 * t110 - t75 * t109 - t77 * t108,
-            -(t77 * t113 + (t76 * t112 + t75 * t111)),
+            T::fused(-t77, t108, T::fused(-t75, t109, t76 * t110)),
+            -T::fused(t77, t113, T::fused(t75, t111, t76 * t112)),
             k(-1.0),
             -t88,
             -t91,
@@ -3453,13 +4092,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             -t128,
             t132,
             -t136,
-            t106 * t135 - (t105 * t133 + t104 * t134),
-            t110 * t139 + t109 * t138 + t108 * t137,
-            t108 * t142 - (t109 * t141 - t110 * t140),
-            t108 * t135 - (t110 * t134 - t109 * t133),
+            T::fused(t106, t135, -T::fused(t104, t134, t105 * t133)),
+            T::fused(t108, t137, T::fused(t109, t138, t110 * t139)),
+            T::fused(t108, t142, -T::fused(-t110, t140, t109 * t141)),
+            T::fused(t108, t135, -T::fused(-t109, t133, t110 * t134)),
             t136,
-            t105 * t138 - t104 * t139 - t106 * t137,
-            -(t106 * t142 + (t105 * t141 + t104 * t140)),
+            T::fused(-t106, t137, T::fused(-t104, t139, t105 * t138)),
+            -T::fused(t106, t142, T::fused(t104, t140, t105 * t141)),
             k(-1.0),
             -t117,
             -t120,
@@ -3478,14 +4117,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             k(1.0),
             -(k(0.2) * t152),
             k(0.2) * t155,
-            t133 * t157 + t134 * t156 - t135 * t158,
+            T::fused(-t135, t158, T::fused(t134, t156, t133 * t157)),
             t159,
-            -(t139 * t162 + t138 * t161 + t137 * t160),
-            t139 * t164 - t138 * t163 - t137 * t165,
-            t137 * t158 - (t138 * t157 - t139 * t156),
+            -T::fused(t137, t160, T::fused(t138, t161, t139 * t162)),
+            T::fused(-t137, t165, T::fused(-t138, t163, t139 * t164)),
+            T::fused(t137, t158, -T::fused(-t139, t156, t138 * t157)),
             t159,
-            t134 * t162 - t133 * t161 - t135 * t160,
-            -(t135 * t165 + (t134 * t164 + t133 * t163)),
+            T::fused(-t135, t160, T::fused(-t133, t161, t134 * t162)),
+            -T::fused(t135, t165, T::fused(t133, t163, t134 * t164)),
         ];
     }
     /// Writes ν: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -3569,396 +4208,340 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
         let link_6_wx = y[75];
         let link_6_wy = y[76];
         let link_6_wz = y[77];
-        let (
-            t2,
-            t3,
-            t6,
-            t11,
-            t12,
-            t18,
-            t19,
-            t20,
-            t21,
-            t22,
-            t23,
-            t24,
-            t37,
-            t43,
-            t47,
-            t59,
-            t61,
-            t74,
-            t80,
-            t84,
-            t96,
-            t98,
-            t111,
-            t117,
-            t121,
-            t133,
-            t135,
-            t136,
-            t139,
-            t142,
-            t144,
-            t147,
-            t148,
-            t150,
-            t153,
-            t154,
-            t156,
-            t157,
-            t158,
-            t167,
-            t168,
-            t170,
-            t172,
-            t173,
-            t179,
-            t180,
-            t184,
-            t185,
-            t187,
-            t190,
-            t191,
-            t193,
-            t194,
-            t195,
-            t196,
-            t197,
-            t198,
-            t199,
-        ) = {
-            let t0 = link_1_wx * link_1_wz;
-            let t1 = link_1_e0 * link_1_e0;
-            let t2 = k(2.0) * (k(0.5) - (t1 + link_1_e1 * link_1_e1));
-            let t3 = link_1_wy * link_1_wz;
-            let t4 = link_1_e0 * link_1_e3;
-            let t5 = link_1_e1 * link_1_e2;
-            let t6 = k(2.0) * (t5 - t4);
-            let t7 = link_1_wx * link_1_wx;
-            let t8 = link_1_wy * link_1_wy + t7;
-            let t9 = link_1_e0 * link_1_e2;
-            let t10 = link_1_e1 * link_1_e3;
-            let t11 = k(2.0) * (t10 + t9);
-            let t12 = t11 * t8 - (t6 * t3 - t2 * t0);
-            let t13 = k(2.0) * (t5 + t4);
-            let t14 = k(2.0) * (k(0.5) - (t1 + link_1_e2 * link_1_e2));
-            let t15 = link_1_e0 * link_1_e1;
-            let t16 = link_1_e2 * link_1_e3;
-            let t17 = k(2.0) * (t16 - t15);
-            let t18 = t17 * t8 + (t14 * t3 - t13 * t0);
-            let t19 = k(2.0) * (t10 - t9);
-            let t20 = k(2.0) * (t16 + t15);
-            let t21 = k(2.0) * (k(0.5) - (t1 + link_1_e3 * link_1_e3));
-            let t22 = t21 * t8 + (t20 * t3 + t19 * t0);
-            let t23 = link_1_wx * link_1_wy;
-            let t24 = link_1_wz * link_1_wz + t7;
-            let t25 = link_2_wx * link_2_wz;
-            let t26 = link_2_e0 * link_2_e0;
-            let t27 = k(2.0) * (k(0.5) - (t26 + link_2_e1 * link_2_e1));
-            let t28 = link_2_wy * link_2_wz;
-            let t29 = link_2_e0 * link_2_e3;
-            let t30 = link_2_e1 * link_2_e2;
-            let t31 = k(2.0) * (t30 - t29);
-            let t32 = link_2_wy * link_2_wy;
-            let t33 = t32 + link_2_wx * link_2_wx;
-            let t34 = link_2_e0 * link_2_e2;
-            let t35 = link_2_e1 * link_2_e3;
-            let t36 = k(2.0) * (t35 + t34);
-            let t37 = t36 * t33 - (t31 * t28 - t27 * t25);
-            let t38 = k(2.0) * (t30 + t29);
-            let t39 = k(2.0) * (k(0.5) - (t26 + link_2_e2 * link_2_e2));
-            let t40 = link_2_e0 * link_2_e1;
-            let t41 = link_2_e2 * link_2_e3;
-            let t42 = k(2.0) * (t41 - t40);
-            let t43 = t42 * t33 + (t39 * t28 - t38 * t25);
-            let t44 = k(2.0) * (t35 - t34);
-            let t45 = k(2.0) * (t41 + t40);
-            let t46 = k(2.0) * (k(0.5) - (t26 + link_2_e3 * link_2_e3));
-            let t47 = t46 * t33 + (t45 * t28 + t44 * t25);
-            let t48 = t19 * t44 + (t13 * t38 + t2 * t27);
-            let t49 = t20 * t44 - (t14 * t38 + t6 * t27);
-            let t50 = t21 * t44 - (t17 * t38 - t11 * t27);
-            let t51 = link_2_wy * (t19 * t46 - (t13 * t42 - t2 * t36))
-                + link_2_wz * (t19 * t45 - (t13 * t39 + t2 * t31));
-            let t52 = t20 * t45 + (t6 * t31 + t14 * t39);
-            let t53 = t20 * t46 - (t6 * t36 - t14 * t42);
-            let t54 = k(2.0)
-                * (link_1_wx * (link_2_wy * t53 + link_2_wz * t52) - link_1_wy * t51);
-            let t55 = link_2_wz * link_2_wz + t32;
-            let t56 = t21 * t45 - (t11 * t31 - t17 * t39);
-            let t57 = link_2_wx * link_2_wy;
-            let t58 = t11 * t36 + t17 * t42 + t21 * t46;
-            let t59 = t25 * t58 - (t57 * t56 - t55 * t50) - t54
-                + (t8 * t50 + (t3 * t49 + t0 * t48));
-            let t60 = k(2.0)
-                * (link_1_wx * (link_2_wy * t58 + link_2_wz * t56) + link_1_wz * t51);
-            let t61 = t25 * t53 - (t57 * t52 - t55 * t49) + t60
-                + (t3 * t50 + (t24 * t49 - t23 * t48));
-            let t62 = link_3_wx * link_3_wz;
-            let t63 = link_3_e0 * link_3_e0;
-            let t64 = k(2.0) * (k(0.5) - (t63 + link_3_e1 * link_3_e1));
-            let t65 = link_3_wy * link_3_wz;
-            let t66 = link_3_e0 * link_3_e3;
-            let t67 = link_3_e1 * link_3_e2;
-            let t68 = k(2.0) * (t67 - t66);
-            let t69 = link_3_wx * link_3_wx;
-            let t70 = link_3_wy * link_3_wy + t69;
-            let t71 = link_3_e0 * link_3_e2;
-            let t72 = link_3_e1 * link_3_e3;
-            let t73 = k(2.0) * (t72 + t71);
-            let t74 = t73 * t70 - (t68 * t65 - t64 * t62);
-            let t75 = k(2.0) * (t67 + t66);
-            let t76 = k(2.0) * (k(0.5) - (t63 + link_3_e2 * link_3_e2));
-            let t77 = link_3_e0 * link_3_e1;
-            let t78 = link_3_e2 * link_3_e3;
-            let t79 = k(2.0) * (t78 - t77);
-            let t80 = t79 * t70 + (t76 * t65 - t75 * t62);
-            let t81 = k(2.0) * (t72 - t71);
-            let t82 = k(2.0) * (t78 + t77);
-            let t83 = k(2.0) * (k(0.5) - (t63 + link_3_e3 * link_3_e3));
-            let t84 = t83 * t70 + (t82 * t65 + t81 * t62);
-            let t85 = t44 * t82 - (t38 * t76 + t27 * t68);
-            let t86 = t45 * t82 + (t31 * t68 + t39 * t76);
-            let t87 = t46 * t82 - (t36 * t68 - t42 * t76);
-            let t88 = t44 * t81 + (t38 * t75 + t27 * t64);
-            let t89 = t44 * t83 - (t38 * t79 - t27 * t73);
-            let t90 = link_3_wx * (t45 * t83 - (t31 * t73 - t39 * t79))
-                + link_3_wz * (t45 * t81 - (t39 * t75 + t31 * t64));
-            let t91 = k(2.0)
-                * (link_2_wx * t90 - link_2_wy * (link_3_wx * t89 + link_3_wz * t88));
-            let t92 = t46 * t81 - (t42 * t75 - t36 * t64);
-            let t93 = link_3_wx * link_3_wy;
-            let t94 = link_3_wz * link_3_wz + t69;
-            let t95 = t36 * t73 + t42 * t79 + t46 * t83;
-            let t96 = t65 * t95 + (t94 * t87 - t93 * t92) + t91
-                + (t33 * t87 + (t28 * t86 + t25 * t85));
-            let t97 = k(2.0)
-                * (link_2_wy * (link_3_wx * t95 + link_3_wz * t92) + link_2_wz * t90);
-            let t98 = t65 * t89 + (t94 * t85 - t93 * t88) + t97
-                + (t25 * t87 - (t57 * t86 - t55 * t85));
-            let t99 = link_4_wx * link_4_wz;
-            let t100 = link_4_e0 * link_4_e0;
-            let t101 = k(2.0) * (k(0.5) - (t100 + link_4_e1 * link_4_e1));
-            let t102 = link_4_wy * link_4_wz;
-            let t103 = link_4_e0 * link_4_e3;
-            let t104 = link_4_e1 * link_4_e2;
-            let t105 = k(2.0) * (t104 - t103);
-            let t106 = link_4_wy * link_4_wy;
-            let t107 = t106 + link_4_wx * link_4_wx;
-            let t108 = link_4_e0 * link_4_e2;
-            let t109 = link_4_e1 * link_4_e3;
-            let t110 = k(2.0) * (t109 + t108);
-            let t111 = t110 * t107 - (t105 * t102 - t101 * t99);
-            let t112 = k(2.0) * (t104 + t103);
-            let t113 = k(2.0) * (k(0.5) - (t100 + link_4_e2 * link_4_e2));
-            let t114 = link_4_e0 * link_4_e1;
-            let t115 = link_4_e2 * link_4_e3;
-            let t116 = k(2.0) * (t115 - t114);
-            let t117 = t116 * t107 + (t113 * t102 - t112 * t99);
-            let t118 = k(2.0) * (t109 - t108);
-            let t119 = k(2.0) * (t115 + t114);
-            let t120 = k(2.0) * (k(0.5) - (t100 + link_4_e3 * link_4_e3));
-            let t121 = t120 * t107 + (t119 * t102 + t118 * t99);
-            let t122 = t81 * t118 + (t75 * t112 + t64 * t101);
-            let t123 = t82 * t118 - (t76 * t112 + t68 * t101);
-            let t124 = t83 * t118 - (t79 * t112 - t73 * t101);
-            let t125 = link_4_wy * (t81 * t120 - (t75 * t116 - t64 * t110))
-                + link_4_wz * (t81 * t119 - (t75 * t113 + t64 * t105));
-            let t126 = t82 * t119 + (t68 * t105 + t76 * t113);
-            let t127 = t82 * t120 - (t68 * t110 - t76 * t116);
-            let t128 = k(2.0)
-                * (link_3_wx * (link_4_wy * t127 + link_4_wz * t126) - link_3_wy * t125);
-            let t129 = link_4_wz * link_4_wz + t106;
-            let t130 = t83 * t119 - (t73 * t105 - t79 * t113);
-            let t131 = link_4_wx * link_4_wy;
-            let t132 = t73 * t110 + t79 * t116 + t83 * t120;
-            let t133 = t99 * t132 - (t131 * t130 - t129 * t124) - t128
-                + (t70 * t124 + (t65 * t123 + t62 * t122));
-            let t134 = k(2.0)
-                * (link_3_wx * (link_4_wy * t132 + link_4_wz * t130) + link_3_wz * t125);
-            let t135 = t99 * t127 - (t131 * t126 - t129 * t123) + t134
-                + (t65 * t124 + (t94 * t123 - t93 * t122));
-            let t136 = link_5_wx * link_5_wz;
-            let t137 = link_5_e0 * link_5_e0;
-            let t138 = k(2.0) * (k(0.5) - (t137 + link_5_e1 * link_5_e1));
-            let t139 = link_5_wy * link_5_wz;
-            let t140 = link_5_e0 * link_5_e3;
-            let t141 = link_5_e1 * link_5_e2;
-            let t142 = k(2.0) * (t141 - t140);
-            let t143 = link_5_wx * link_5_wx;
-            let t144 = link_5_wy * link_5_wy + t143;
-            let t145 = link_5_e0 * link_5_e2;
-            let t146 = link_5_e1 * link_5_e3;
-            let t147 = k(2.0) * (t146 + t145);
-            let t148 = t147 * t144 - (t142 * t139 - t138 * t136);
-            let t149 = k(2.0) * (t141 + t140);
-            let t150 = k(2.0) * (k(0.5) - (t137 + link_5_e2 * link_5_e2));
-            let t151 = link_5_e0 * link_5_e1;
-            let t152 = link_5_e2 * link_5_e3;
-            let t153 = k(2.0) * (t152 - t151);
-            let t154 = t153 * t144 + (t150 * t139 - t149 * t136);
-            let t155 = k(2.0) * (t146 - t145);
-            let t156 = k(2.0) * (t152 + t151);
-            let t157 = k(2.0) * (k(0.5) - (t137 + link_5_e3 * link_5_e3));
-            let t158 = t157 * t144 + (t156 * t139 + t155 * t136);
-            let t159 = t118 * t156 - (t112 * t150 + t101 * t142);
-            let t160 = t119 * t156 + (t105 * t142 + t113 * t150);
-            let t161 = t120 * t156 - (t110 * t142 - t116 * t150);
-            let t162 = t118 * t155 + (t112 * t149 + t101 * t138);
-            let t163 = t118 * t157 - (t112 * t153 - t101 * t147);
-            let t164 = link_5_wx * (t119 * t157 - (t105 * t147 - t113 * t153))
-                + link_5_wz * (t119 * t155 - (t113 * t149 + t105 * t138));
-            let t165 = k(2.0)
-                * (link_4_wx * t164 - link_4_wy * (link_5_wx * t163 + link_5_wz * t162));
-            let t166 = t120 * t155 - (t116 * t149 - t110 * t138);
-            let t167 = link_5_wx * link_5_wy;
-            let t168 = link_5_wz * link_5_wz + t143;
-            let t169 = t110 * t147 + t116 * t153 + t120 * t157;
-            let t170 = t139 * t169 + (t168 * t161 - t167 * t166) + t165
-                + (t107 * t161 + (t102 * t160 + t99 * t159));
-            let t171 = k(2.0)
-                * (link_4_wy * (link_5_wx * t169 + link_5_wz * t166) + link_4_wz * t164);
-            let t172 = t139 * t163 + (t168 * t159 - t167 * t162) + t171
-                + (t99 * t161 - (t131 * t160 - t129 * t159));
-            let t173 = link_6_wx * link_6_wz;
-            let t174 = link_6_e0 * link_6_e0;
-            let t175 = k(2.0) * (k(0.5) - (t174 + link_6_e1 * link_6_e1));
-            let t176 = link_6_wy * link_6_wz;
-            let t177 = link_6_e0 * link_6_e3;
-            let t178 = link_6_e1 * link_6_e2;
-            let t179 = k(2.0) * (t178 - t177);
-            let t180 = link_6_wy * link_6_wy;
-            let t181 = t180 + link_6_wx * link_6_wx;
-            let t182 = link_6_e0 * link_6_e2;
-            let t183 = link_6_e1 * link_6_e3;
-            let t184 = k(2.0) * (t183 + t182);
-            let t185 = k(0.1) * (t148 + (t184 * t181 - (t179 * t176 - t175 * t173)));
-            let t186 = k(2.0) * (t178 + t177);
-            let t187 = k(2.0) * (k(0.5) - (t174 + link_6_e2 * link_6_e2));
-            let t188 = link_6_e0 * link_6_e1;
-            let t189 = link_6_e2 * link_6_e3;
-            let t190 = k(2.0) * (t189 - t188);
-            let t191 = k(0.1) * (t154 + (t190 * t181 + (t187 * t176 - t186 * t173)));
-            let t192 = k(2.0) * (t183 - t182);
-            let t193 = k(2.0) * (t189 + t188);
-            let t194 = k(2.0) * (k(0.5) - (t174 + link_6_e3 * link_6_e3));
-            let t195 = k(0.1) * (t158 + (t194 * t181 + (t193 * t176 + t192 * t173)));
-            let t196 = t155 * t192 + (t149 * t186 + t138 * t175);
-            let t197 = t156 * t192 - (t150 * t186 + t142 * t175);
-            let t198 = t157 * t192 - (t153 * t186 - t147 * t175);
-            let t199 = link_6_wy * (t155 * t194 - (t149 * t190 - t138 * t184))
-                + link_6_wz * (t155 * t193 - (t149 * t187 + t138 * t179));
-            (
-                t2,
-                t3,
-                t6,
-                t11,
-                t12,
-                t18,
-                t19,
-                t20,
-                t21,
-                t22,
-                t23,
-                t24,
-                t37,
-                t43,
-                t47,
-                t59,
-                t61,
-                t74,
-                t80,
-                t84,
-                t96,
-                t98,
-                t111,
-                t117,
+        let t0 = link_1_wx * link_1_wz;
+        let t1 = link_1_e0 * link_1_e0;
+        let t2 = k(2.0) * (k(0.5) - T::fused(link_1_e1, link_1_e1, t1));
+        let t3 = link_1_wy * link_1_wz;
+        let t4 = link_1_e0 * link_1_e3;
+        let t5 = link_1_e1 * link_1_e2;
+        let t6 = k(2.0) * (t5 - t4);
+        let t7 = link_1_wx * link_1_wx;
+        let t8 = T::fused(link_1_wy, link_1_wy, t7);
+        let t9 = link_1_e0 * link_1_e2;
+        let t10 = link_1_e1 * link_1_e3;
+        let t11 = k(2.0) * (t10 + t9);
+        let t12 = T::fused(t11, t8, -T::fused(-t2, t0, t6 * t3));
+        let t13 = k(2.0) * (t5 + t4);
+        let t14 = k(2.0) * (k(0.5) - T::fused(link_1_e2, link_1_e2, t1));
+        let t15 = link_1_e0 * link_1_e1;
+        let t16 = link_1_e2 * link_1_e3;
+        let t17 = k(2.0) * (t16 - t15);
+        let t18 = T::fused(t17, t8, T::fused(-t13, t0, t14 * t3));
+        let t19 = k(2.0) * (t10 - t9);
+        let t20 = k(2.0) * (t16 + t15);
+        let t21 = k(2.0) * (k(0.5) - T::fused(link_1_e3, link_1_e3, t1));
+        let t22 = T::fused(t21, t8, T::fused(t19, t0, t20 * t3));
+        let t23 = link_1_wx * link_1_wy;
+        let t24 = T::fused(link_1_wz, link_1_wz, t7);
+        let t25 = link_2_wx * link_2_wz;
+        let t26 = link_2_e0 * link_2_e0;
+        let t27 = k(2.0) * (k(0.5) - T::fused(link_2_e1, link_2_e1, t26));
+        let t28 = link_2_wy * link_2_wz;
+        let t29 = link_2_e0 * link_2_e3;
+        let t30 = link_2_e1 * link_2_e2;
+        let t31 = k(2.0) * (t30 - t29);
+        let t32 = link_2_wy * link_2_wy;
+        let t33 = T::fused(link_2_wx, link_2_wx, t32);
+        let t34 = link_2_e0 * link_2_e2;
+        let t35 = link_2_e1 * link_2_e3;
+        let t36 = k(2.0) * (t35 + t34);
+        let t37 = T::fused(t36, t33, -T::fused(-t27, t25, t31 * t28));
+        let t38 = k(2.0) * (t30 + t29);
+        let t39 = k(2.0) * (k(0.5) - T::fused(link_2_e2, link_2_e2, t26));
+        let t40 = link_2_e0 * link_2_e1;
+        let t41 = link_2_e2 * link_2_e3;
+        let t42 = k(2.0) * (t41 - t40);
+        let t43 = T::fused(t42, t33, T::fused(-t38, t25, t39 * t28));
+        let t44 = k(2.0) * (t35 - t34);
+        let t45 = k(2.0) * (t41 + t40);
+        let t46 = k(2.0) * (k(0.5) - T::fused(link_2_e3, link_2_e3, t26));
+        let t47 = T::fused(t46, t33, T::fused(t44, t25, t45 * t28));
+        let t48 = T::fused(t19, t44, T::fused(t2, t27, t13 * t38));
+        let t49 = T::fused(t20, t44, -T::fused(t6, t27, t14 * t38));
+        let t50 = T::fused(t21, t44, -T::fused(-t11, t27, t17 * t38));
+        let t51 = T::fused(
+            link_2_wz,
+            T::fused(t19, t45, -T::fused(t2, t31, t13 * t39)),
+            link_2_wy * T::fused(t19, t46, -T::fused(-t2, t36, t13 * t42)),
+        );
+        let t52 = T::fused(t20, t45, T::fused(t14, t39, t6 * t31));
+        let t53 = T::fused(t20, t46, -T::fused(-t14, t42, t6 * t36));
+        let t54 = T::fused(link_2_wz, link_2_wz, t32);
+        let t55 = T::fused(t21, t45, -T::fused(-t17, t39, t11 * t31));
+        let t56 = link_2_wx * link_2_wy;
+        let t57 = T::fused(t21, t46, T::fused(t17, t42, t11 * t36));
+        let t58 = T::fused(
+            -k(2.0),
+            T::fused(
+                -link_1_wy,
+                t51,
+                link_1_wx * T::fused(link_2_wz, t52, link_2_wy * t53),
+            ),
+            T::fused(t25, t57, -T::fused(-t54, t50, t56 * t55)),
+        );
+        let t59 = T::fused(
+            k(2.0),
+            T::fused(
+                link_1_wz,
+                t51,
+                link_1_wx * T::fused(link_2_wz, t55, link_2_wy * t57),
+            ),
+            T::fused(t25, t53, -T::fused(-t54, t49, t56 * t52)),
+        );
+        let t60 = link_3_wx * link_3_wz;
+        let t61 = link_3_e0 * link_3_e0;
+        let t62 = k(2.0) * (k(0.5) - T::fused(link_3_e1, link_3_e1, t61));
+        let t63 = link_3_wy * link_3_wz;
+        let t64 = link_3_e0 * link_3_e3;
+        let t65 = link_3_e1 * link_3_e2;
+        let t66 = k(2.0) * (t65 - t64);
+        let t67 = link_3_wx * link_3_wx;
+        let t68 = T::fused(link_3_wy, link_3_wy, t67);
+        let t69 = link_3_e0 * link_3_e2;
+        let t70 = link_3_e1 * link_3_e3;
+        let t71 = k(2.0) * (t70 + t69);
+        let t72 = T::fused(t71, t68, -T::fused(-t62, t60, t66 * t63));
+        let t73 = k(2.0) * (t65 + t64);
+        let t74 = k(2.0) * (k(0.5) - T::fused(link_3_e2, link_3_e2, t61));
+        let t75 = link_3_e0 * link_3_e1;
+        let t76 = link_3_e2 * link_3_e3;
+        let t77 = k(2.0) * (t76 - t75);
+        let t78 = T::fused(t77, t68, T::fused(-t73, t60, t74 * t63));
+        let t79 = k(2.0) * (t70 - t69);
+        let t80 = k(2.0) * (t76 + t75);
+        let t81 = k(2.0) * (k(0.5) - T::fused(link_3_e3, link_3_e3, t61));
+        let t82 = T::fused(t81, t68, T::fused(t79, t60, t80 * t63));
+        let t83 = T::fused(t44, t80, -T::fused(t27, t66, t38 * t74));
+        let t84 = T::fused(t45, t80, T::fused(t39, t74, t31 * t66));
+        let t85 = T::fused(t46, t80, -T::fused(-t42, t74, t36 * t66));
+        let t86 = T::fused(t44, t79, T::fused(t27, t62, t38 * t73));
+        let t87 = T::fused(t44, t81, -T::fused(-t27, t71, t38 * t77));
+        let t88 = T::fused(
+            link_3_wz,
+            T::fused(t45, t79, -T::fused(t31, t62, t39 * t73)),
+            link_3_wx * T::fused(t45, t81, -T::fused(-t39, t77, t31 * t71)),
+        );
+        let t89 = T::fused(t46, t79, -T::fused(-t36, t62, t42 * t73));
+        let t90 = link_3_wx * link_3_wy;
+        let t91 = T::fused(link_3_wz, link_3_wz, t67);
+        let t92 = T::fused(t46, t81, T::fused(t42, t77, t36 * t71));
+        let t93 = T::fused(
+            k(2.0),
+            T::fused(
+                -link_2_wy,
+                T::fused(link_3_wz, t86, link_3_wx * t87),
+                link_2_wx * t88,
+            ),
+            T::fused(t63, t92, T::fused(-t90, t89, t91 * t85)),
+        );
+        let t94 = T::fused(
+            k(2.0),
+            T::fused(
+                link_2_wz,
+                t88,
+                link_2_wy * T::fused(link_3_wz, t89, link_3_wx * t92),
+            ),
+            T::fused(t63, t87, T::fused(-t90, t86, t91 * t83)),
+        );
+        let t95 = link_4_wx * link_4_wz;
+        let t96 = link_4_e0 * link_4_e0;
+        let t97 = k(2.0) * (k(0.5) - T::fused(link_4_e1, link_4_e1, t96));
+        let t98 = link_4_wy * link_4_wz;
+        let t99 = link_4_e0 * link_4_e3;
+        let t100 = link_4_e1 * link_4_e2;
+        let t101 = k(2.0) * (t100 - t99);
+        let t102 = link_4_wy * link_4_wy;
+        let t103 = T::fused(link_4_wx, link_4_wx, t102);
+        let t104 = link_4_e0 * link_4_e2;
+        let t105 = link_4_e1 * link_4_e3;
+        let t106 = k(2.0) * (t105 + t104);
+        let t107 = T::fused(t106, t103, -T::fused(-t97, t95, t101 * t98));
+        let t108 = k(2.0) * (t100 + t99);
+        let t109 = k(2.0) * (k(0.5) - T::fused(link_4_e2, link_4_e2, t96));
+        let t110 = link_4_e0 * link_4_e1;
+        let t111 = link_4_e2 * link_4_e3;
+        let t112 = k(2.0) * (t111 - t110);
+        let t113 = T::fused(t112, t103, T::fused(-t108, t95, t109 * t98));
+        let t114 = k(2.0) * (t105 - t104);
+        let t115 = k(2.0) * (t111 + t110);
+        let t116 = k(2.0) * (k(0.5) - T::fused(link_4_e3, link_4_e3, t96));
+        let t117 = T::fused(t116, t103, T::fused(t114, t95, t115 * t98));
+        let t118 = T::fused(t79, t114, T::fused(t62, t97, t73 * t108));
+        let t119 = T::fused(t80, t114, -T::fused(t66, t97, t74 * t108));
+        let t120 = T::fused(t81, t114, -T::fused(-t71, t97, t77 * t108));
+        let t121 = T::fused(
+            link_4_wz,
+            T::fused(t79, t115, -T::fused(t62, t101, t73 * t109)),
+            link_4_wy * T::fused(t79, t116, -T::fused(-t62, t106, t73 * t112)),
+        );
+        let t122 = T::fused(t80, t115, T::fused(t74, t109, t66 * t101));
+        let t123 = T::fused(t80, t116, -T::fused(-t74, t112, t66 * t106));
+        let t124 = T::fused(link_4_wz, link_4_wz, t102);
+        let t125 = T::fused(t81, t115, -T::fused(-t77, t109, t71 * t101));
+        let t126 = link_4_wx * link_4_wy;
+        let t127 = T::fused(t81, t116, T::fused(t77, t112, t71 * t106));
+        let t128 = T::fused(
+            -k(2.0),
+            T::fused(
+                -link_3_wy,
                 t121,
-                t133,
-                t135,
-                t136,
-                t139,
-                t142,
-                t144,
-                t147,
-                t148,
-                t150,
-                t153,
-                t154,
-                t156,
-                t157,
+                link_3_wx * T::fused(link_4_wz, t122, link_4_wy * t123),
+            ),
+            T::fused(t95, t127, -T::fused(-t124, t120, t126 * t125)),
+        );
+        let t129 = T::fused(
+            k(2.0),
+            T::fused(
+                link_3_wz,
+                t121,
+                link_3_wx * T::fused(link_4_wz, t125, link_4_wy * t127),
+            ),
+            T::fused(t95, t123, -T::fused(-t124, t119, t126 * t122)),
+        );
+        let t130 = link_5_wx * link_5_wz;
+        let t131 = link_5_e0 * link_5_e0;
+        let t132 = k(2.0) * (k(0.5) - T::fused(link_5_e1, link_5_e1, t131));
+        let t133 = link_5_wy * link_5_wz;
+        let t134 = link_5_e0 * link_5_e3;
+        let t135 = link_5_e1 * link_5_e2;
+        let t136 = k(2.0) * (t135 - t134);
+        let t137 = link_5_wx * link_5_wx;
+        let t138 = T::fused(link_5_wy, link_5_wy, t137);
+        let t139 = link_5_e0 * link_5_e2;
+        let t140 = link_5_e1 * link_5_e3;
+        let t141 = k(2.0) * (t140 + t139);
+        let t142 = T::fused(t141, t138, -T::fused(-t132, t130, t136 * t133));
+        let t143 = k(2.0) * (t135 + t134);
+        let t144 = k(2.0) * (k(0.5) - T::fused(link_5_e2, link_5_e2, t131));
+        let t145 = link_5_e0 * link_5_e1;
+        let t146 = link_5_e2 * link_5_e3;
+        let t147 = k(2.0) * (t146 - t145);
+        let t148 = T::fused(t147, t138, T::fused(-t143, t130, t144 * t133));
+        let t149 = k(2.0) * (t140 - t139);
+        let t150 = k(2.0) * (t146 + t145);
+        let t151 = k(2.0) * (k(0.5) - T::fused(link_5_e3, link_5_e3, t131));
+        let t152 = T::fused(t151, t138, T::fused(t149, t130, t150 * t133));
+        let t153 = T::fused(t114, t150, -T::fused(t97, t136, t108 * t144));
+        let t154 = T::fused(t115, t150, T::fused(t109, t144, t101 * t136));
+        let t155 = T::fused(t116, t150, -T::fused(-t112, t144, t106 * t136));
+        let t156 = T::fused(t114, t149, T::fused(t97, t132, t108 * t143));
+        let t157 = T::fused(t114, t151, -T::fused(-t97, t141, t108 * t147));
+        let t158 = T::fused(
+            link_5_wz,
+            T::fused(t115, t149, -T::fused(t101, t132, t109 * t143)),
+            link_5_wx * T::fused(t115, t151, -T::fused(-t109, t147, t101 * t141)),
+        );
+        let t159 = T::fused(t116, t149, -T::fused(-t106, t132, t112 * t143));
+        let t160 = link_5_wx * link_5_wy;
+        let t161 = T::fused(link_5_wz, link_5_wz, t137);
+        let t162 = T::fused(t116, t151, T::fused(t112, t147, t106 * t141));
+        let t163 = T::fused(
+            k(2.0),
+            T::fused(
+                -link_4_wy,
+                T::fused(link_5_wz, t156, link_5_wx * t157),
+                link_4_wx * t158,
+            ),
+            T::fused(t133, t162, T::fused(-t160, t159, t161 * t155)),
+        );
+        let t164 = T::fused(
+            k(2.0),
+            T::fused(
+                link_4_wz,
                 t158,
-                t167,
-                t168,
-                t170,
-                t172,
-                t173,
-                t179,
-                t180,
-                t184,
-                t185,
-                t187,
-                t190,
+                link_4_wy * T::fused(link_5_wz, t159, link_5_wx * t162),
+            ),
+            T::fused(t133, t157, T::fused(-t160, t156, t161 * t153)),
+        );
+        let t165 = link_6_wx * link_6_wz;
+        let t166 = link_6_e0 * link_6_e0;
+        let t167 = k(2.0) * (k(0.5) - T::fused(link_6_e1, link_6_e1, t166));
+        let t168 = link_6_wy * link_6_wz;
+        let t169 = link_6_e0 * link_6_e3;
+        let t170 = link_6_e1 * link_6_e2;
+        let t171 = k(2.0) * (t170 - t169);
+        let t172 = link_6_wy * link_6_wy;
+        let t173 = T::fused(link_6_wx, link_6_wx, t172);
+        let t174 = link_6_e0 * link_6_e2;
+        let t175 = link_6_e1 * link_6_e3;
+        let t176 = k(2.0) * (t175 + t174);
+        let t177 = k(0.1)
+            * (t142 + T::fused(t176, t173, -T::fused(-t167, t165, t171 * t168)));
+        let t178 = k(2.0) * (t170 + t169);
+        let t179 = k(2.0) * (k(0.5) - T::fused(link_6_e2, link_6_e2, t166));
+        let t180 = link_6_e0 * link_6_e1;
+        let t181 = link_6_e2 * link_6_e3;
+        let t182 = k(2.0) * (t181 - t180);
+        let t183 = k(0.1)
+            * (t148 + T::fused(t182, t173, T::fused(-t178, t165, t179 * t168)));
+        let t184 = k(2.0) * (t175 - t174);
+        let t185 = k(2.0) * (t181 + t180);
+        let t186 = k(2.0) * (k(0.5) - T::fused(link_6_e3, link_6_e3, t166));
+        let t187 = k(0.1)
+            * (t152 + T::fused(t186, t173, T::fused(t184, t165, t185 * t168)));
+        let t188 = T::fused(t149, t184, T::fused(t132, t167, t143 * t178));
+        let t189 = T::fused(t150, t184, -T::fused(t136, t167, t144 * t178));
+        let t190 = T::fused(t151, t184, -T::fused(-t141, t167, t147 * t178));
+        let t191 = T::fused(
+            link_6_wz,
+            T::fused(t149, t185, -T::fused(t132, t171, t143 * t179)),
+            link_6_wy * T::fused(t149, t186, -T::fused(-t132, t176, t143 * t182)),
+        );
+        let t192 = T::fused(t150, t185, T::fused(t144, t179, t136 * t171));
+        let t193 = T::fused(t150, t186, -T::fused(-t144, t182, t136 * t176));
+        let t194 = T::fused(link_6_wz, link_6_wz, t172);
+        let t195 = T::fused(t151, t185, -T::fused(-t147, t179, t141 * t171));
+        let t196 = link_6_wx * link_6_wy;
+        let t197 = T::fused(t151, t186, T::fused(t147, t182, t141 * t176));
+        let t198 = T::fused(
+            -k(2.0),
+            T::fused(
+                -link_5_wy,
                 t191,
-                t193,
-                t194,
-                t195,
-                t196,
-                t197,
-                t198,
-                t199,
-            )
-        };
-        let (t207, t209) = {
-            let t200 = t156 * t193 + (t142 * t179 + t150 * t187);
-            let t201 = t156 * t194 - (t142 * t184 - t150 * t190);
-            let t202 = k(2.0)
-                * (link_5_wx * (link_6_wy * t201 + link_6_wz * t200) - link_5_wy * t199);
-            let t203 = link_6_wz * link_6_wz + t180;
-            let t204 = t157 * t193 - (t147 * t179 - t153 * t187);
-            let t205 = link_6_wx * link_6_wy;
-            let t206 = t147 * t184 + t153 * t190 + t157 * t194;
-            let t207 = t173 * t206 - (t205 * t204 - t203 * t198) - t202
-                + (t144 * t198 + (t139 * t197 + t136 * t196));
-            let t208 = k(2.0)
-                * (link_5_wx * (link_6_wy * t206 + link_6_wz * t204) + link_5_wz * t199);
-            let t209 = t173 * t201 - (t205 * t200 - t203 * t197) + t208
-                + (t139 * t198 + (t168 * t197 - t167 * t196));
-            (t207, t209)
-        };
+                link_5_wx * T::fused(link_6_wz, t192, link_6_wy * t193),
+            ),
+            T::fused(t165, t197, -T::fused(-t194, t190, t196 * t195)),
+        );
+        let t199 = T::fused(
+            k(2.0),
+            T::fused(
+                link_5_wz,
+                t191,
+                link_5_wx * T::fused(link_6_wz, t195, link_6_wy * t197),
+            ),
+            T::fused(t165, t193, -T::fused(-t194, t189, t196 * t192)),
+        );
         *out = [
             k(0.1) * t12,
             k(0.1) * t18,
             -(k(0.1) * t22),
-            t21 * t3 + (t20 * t24 - t19 * t23),
-            t6 * t24 + t2 * t23 - t11 * t3,
+            T::fused(t21, t3, T::fused(-t19, t23, t20 * t24)),
+            T::fused(-t11, t3, T::fused(t2, t23, t6 * t24)),
             k(0.1) * (t12 + t37),
             k(0.1) * (t18 + t43),
             -(k(0.1) * (t22 + t47)),
-            -t59,
-            -t61,
-            k(0.1) * (t37 + t74),
-            k(0.1) * (t43 + t80),
-            -(k(0.1) * (t47 + t84)),
-            -t96,
-            t98,
-            k(0.1) * (t74 + t111),
-            k(0.1) * (t80 + t117),
-            -(k(0.1) * (t84 + t121)),
-            -t133,
-            -t135,
-            k(0.1) * (t111 + t148),
-            k(0.1) * (t117 + t154),
-            -(k(0.1) * (t121 + t158)),
-            -t170,
-            t172,
-            t185,
-            t191,
-            -t195,
-            -t207,
-            -t209,
+            -(t58 + T::fused(t8, t50, T::fused(t0, t48, t3 * t49))),
+            -(t59 + T::fused(t3, t50, T::fused(-t23, t48, t24 * t49))),
+            k(0.1) * (t37 + t72),
+            k(0.1) * (t43 + t78),
+            -(k(0.1) * (t47 + t82)),
+            -(t93 + T::fused(t33, t85, T::fused(t25, t83, t28 * t84))),
+            t94 + T::fused(t25, t85, -T::fused(-t54, t83, t56 * t84)),
+            k(0.1) * (t72 + t107),
+            k(0.1) * (t78 + t113),
+            -(k(0.1) * (t82 + t117)),
+            -(t128 + T::fused(t68, t120, T::fused(t60, t118, t63 * t119))),
+            -(t129 + T::fused(t63, t120, T::fused(-t90, t118, t91 * t119))),
+            k(0.1) * (t107 + t142),
+            k(0.1) * (t113 + t148),
+            -(k(0.1) * (t117 + t152)),
+            -(t163 + T::fused(t103, t155, T::fused(t95, t153, t98 * t154))),
+            t164 + T::fused(t95, t155, -T::fused(-t124, t153, t126 * t154)),
+            t177,
+            t183,
+            -t187,
+            -(t198 + T::fused(t138, t190, T::fused(t130, t188, t133 * t189))),
+            -(t199 + T::fused(t133, t190, T::fused(-t160, t188, t161 * t189))),
         ];
     }
     /// Writes (f, n' − w̃'J'w'): 36 operations (0 ±, 36 ×, 0 ÷).
@@ -4021,7 +4604,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             k(0.0001) * (link_6_wx * link_6_wy),
         ];
     }
-    /// Solves eq. (17): 3023 operations (1359 ±, 1653 ×, 11 ÷).
+    /// Solves eq. (17): 2651 operations (1172 ±, 1468 ×, 11 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let link_1_e0 = y[3];
@@ -4067,73 +4650,66 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
         let link_6_wy = y[76];
         let link_6_wz = y[77];
         let (
-            t0,
-            t3,
+            t2,
             t4,
-            t5,
             t6,
-            t7,
-            t8,
             t9,
-            t10,
-            t11,
             t12,
             t13,
-            t14,
-            t15,
             t16,
             t17,
             t18,
-            t19,
-            t20,
-            t21,
             t22,
             t23,
             t24,
             t25,
+            t26,
             t28,
             t29,
+            t30,
+            t31,
             t32,
-            t34,
-            t35,
-            t39,
-            t42,
-            t43,
-            t47,
+            t33,
+            t36,
+            t37,
+            t38,
+            t41,
             t48,
-            t52,
-            t53,
-            t54,
-            t55,
-            t57,
-            t58,
-            t61,
-            t62,
-            t63,
-            t66,
-            t67,
-            t68,
-            t73,
+            t49,
+            t60,
+            t69,
+            t71,
             t74,
             t76,
-            t77,
-            t78,
             t79,
             t80,
+            t81,
+            t82,
             t83,
             t84,
+            t85,
             t86,
-            t95,
+            t87,
+            t92,
+            t93,
+            t94,
             t96,
-            t97,
             t98,
-            t99,
-            t103,
-            t104,
+            t100,
+            t101,
+            t102,
             t105,
-            t115,
-            t122,
+            t106,
+            t107,
+            t108,
+            t110,
+            t111,
+            t112,
+            t118,
+            t120,
+            t121,
             t123,
+            t124,
             t125,
             t128,
             t129,
@@ -4145,35 +4721,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             t135,
             t136,
             t137,
-            t138,
-            t139,
-            t140,
-            t141,
-            t142,
-            t143,
             t144,
-            t150,
-            t151,
+            t149,
             t152,
             t153,
-            t154,
             t155,
-            t156,
             t157,
+            t158,
             t159,
             t160,
-            t161,
-            t162,
             t163,
             t164,
             t165,
             t167,
             t168,
             t169,
-            t170,
-            t171,
             t172,
             t173,
+            t174,
             t175,
             t176,
             t177,
@@ -4184,13 +4749,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             t182,
             t183,
             t184,
-            t185,
             t186,
-            t187,
             t188,
             t189,
             t190,
             t191,
+            t193,
             t194,
             t195,
             t196,
@@ -4198,279 +4762,294 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             t198,
             t199,
         ) = {
-            let t0 = link_1_wx * link_1_wy;
-            let t1 = link_1_e0 * link_1_e2;
-            let t2 = link_1_e1 * link_1_e3;
-            let t3 = t2 - t1;
-            let t4 = k(2.0) * t3;
-            let t5 = link_1_wx * link_1_wx;
-            let t6 = link_1_wz * link_1_wz + t5;
-            let t7 = link_1_e0 * link_1_e1;
-            let t8 = link_1_e2 * link_1_e3;
-            let t9 = t8 + t7;
-            let t10 = k(2.0) * t9;
-            let t11 = link_1_wy * link_1_wz;
-            let t12 = link_1_e0 * link_1_e0;
-            let t13 = k(2.0) * (k(0.5) - (t12 + link_1_e3 * link_1_e3));
-            let t14 = t13 * t11 + (t10 * t6 - t4 * t0);
-            let t15 = k(0.5) - (t12 + link_1_e1 * link_1_e1);
-            let t16 = k(2.0) * t15;
-            let t17 = k(2.0) * (t2 + t1);
-            let t18 = k(1.0) / (t17 * t4 - t16 * t13);
-            let t19 = link_1_e0 * link_1_e3;
-            let t20 = link_1_e1 * link_1_e2;
-            let t21 = t20 - t19;
-            let t22 = k(2.0) * t21;
-            let t23 = t17 * t11 - (t22 * t6 + t16 * t0);
-            let t24 = t4 * t18 * t23 - t16 * t18 * t14;
-            let t25 = k(0.2) * t21;
-            let t26 = link_6_e0 * link_6_e3;
-            let t27 = link_6_e1 * link_6_e2;
-            let t28 = t27 - t26;
-            let t29 = k(2.0) * t28;
-            let t30 = link_5_e0 * link_5_e0;
-            let t31 = k(0.5) - (t30 + link_5_e1 * link_5_e1);
-            let t32 = k(2.0) * t31;
-            let t33 = link_6_e0 * link_6_e0;
-            let t34 = k(0.5) - (t33 + link_6_e2 * link_6_e2);
-            let t35 = k(2.0) * t34;
-            let t36 = link_5_e0 * link_5_e3;
-            let t37 = link_5_e1 * link_5_e2;
-            let t38 = t37 + t36;
-            let t39 = k(2.0) * t38;
-            let t40 = link_6_e0 * link_6_e1;
-            let t41 = link_6_e2 * link_6_e3;
-            let t42 = t41 + t40;
-            let t43 = k(2.0) * t42;
-            let t44 = link_5_e0 * link_5_e2;
-            let t45 = link_5_e1 * link_5_e3;
-            let t46 = t45 - t44;
-            let t47 = k(2.0) * t46;
-            let t48 = t47 * t43 - (t39 * t35 + t32 * t29);
-            let t49 = k(0.0066) * t48;
-            let t50 = link_6_e0 * link_6_e2;
-            let t51 = link_6_e1 * link_6_e3;
-            let t52 = k(2.0) * (t51 + t50);
-            let t53 = k(2.0) * (t41 - t40);
-            let t54 = k(2.0) * (k(0.5) - (t33 + link_6_e3 * link_6_e3));
-            let t55 = t47 * t54 - (t39 * t53 - t32 * t52);
-            let t56 = k(0.0002) * t55;
-            let t57 = k(0.5) - (t33 + link_6_e1 * link_6_e1);
-            let t58 = k(0.1) * t57;
-            let t59 = t48 * t58;
-            let t60 = t37 - t36;
-            let t61 = k(0.2) * t60;
-            let t62 = t27 + t26;
-            let t63 = k(0.1) * t62;
-            let t64 = t48 * t63;
-            let t65 = k(0.5) - (t30 + link_5_e2 * link_5_e2);
-            let t66 = k(0.2) * t65;
-            let t67 = t51 - t50;
-            let t68 = k(0.1) * t67;
-            let t69 = t48 * t68;
-            let t70 = link_5_e0 * link_5_e1;
-            let t71 = link_5_e2 * link_5_e3;
-            let t72 = t71 + t70;
-            let t73 = k(0.2) * t72;
-            let t74 = k(0.1) * t28;
-            let t75 = k(14.925373134328359) * t28;
-            let t76 = t75 * t74;
-            let t77 = k(0.1) * t34;
-            let t78 = t75 * t77;
-            let t79 = k(0.1) * t42;
-            let t80 = t79 * t75;
-            let t81 = t73 * t80 + (t66 * t78 + t61 * t76);
-            let t82 = k(14.925373134328359) * t34;
-            let t83 = t82 * t77;
-            let t84 = t79 * t82;
-            let t85 = t73 * t84 + (t66 * t83 + t61 * t78);
-            let t86 = k(14.925373134328359) * t42 * t79;
-            let t87 = t73 * t86 + (t66 * t84 + t61 * t80);
-            let t88 = t73 * t87 + (t66 * t85 + t61 * t81);
-            let t89 = t88 + k(2.0) * (t73 * t69 - (t66 * t64 + t61 * t59));
-            let t90 = k(0.01)
-                + (k(0.0017) - (t89 - (k(0.005) + (t55 * t56 + t48 * t49))));
-            let t91 = t81 - k(0.1) * t60 - t59;
-            let t92 = t85 - k(0.1) * t65 - t64;
-            let t93 = t87 - k(0.1) * t72 + t69;
-            let t94 = k(2.0) * (t73 * t93 + (t66 * t92 + t61 * t91)) + t88;
-            let t95 = k(2.0) * t65;
-            let t96 = k(2.0) * t60;
-            let t97 = k(2.0) * t72;
-            let t98 = t97 * t43 + (t96 * t29 + t95 * t35);
-            let t99 = t97 * t54 - (t96 * t52 - t95 * t53);
-            let t100 = t98 * t58;
-            let t101 = t98 * t63;
-            let t102 = t98 * t68;
-            let t103 = k(0.2) * t31;
-            let t104 = k(0.2) * t38;
-            let t105 = k(0.2) * t46;
-            let t106 = t105 * t69 + (t104 * t64 + t103 * t59)
-                - (t73 * t102 - (t66 * t101 + t61 * t100));
-            let t107 = t105 * t80 - (t104 * t78 + t103 * t76);
-            let t108 = t105 * t84 - (t104 * t83 + t103 * t78);
-            let t109 = t105 * t86 - (t104 * t84 + t103 * t80);
-            let t110 = t73 * t109 + (t66 * t108 + t61 * t107);
-            let t111 = t107 + k(0.1) * t31 + t100;
-            let t112 = t108 + k(0.1) * t38 + t101;
-            let t113 = t109 - k(0.1) * t46 - t102;
-            let t114 = t105 * t93 - (t104 * t92 + t103 * t91)
-                + (t73 * t113 + (t66 * t112 + t61 * t111));
-            let t115 = t114 + t110 + (t110 + t106 + (t99 * t56 + t98 * t49));
-            let t116 = k(0.0066) * t98;
-            let t117 = k(0.0002) * t99;
-            let t118 = t105 * t109 - (t104 * t108 + t103 * t107);
-            let t119 = t118 - k(2.0) * (t105 * t102 + (t104 * t101 + t103 * t100));
-            let t120 = k(0.01)
-                + (k(0.0016) - (t119 - (k(0.005) + (t99 * t117 + t98 * t116))));
-            let t121 = k(2.0) * (t105 * t113 - (t104 * t112 + t103 * t111)) + t118;
-            let t122 = t121 - t120;
-            let t123 = k(1.0) / t122;
-            let t124 = t123 * t115;
-            let t125 = t115 * t124 - (t94 - t90);
-            let t126 = link_4_e0 * link_4_e3;
-            let t127 = link_4_e1 * link_4_e2;
-            let t128 = t127 - t126;
-            let t129 = k(2.0) * t128;
-            let t130 = link_4_e0 * link_4_e0;
-            let t131 = k(0.5) - (t130 + link_4_e2 * link_4_e2);
-            let t132 = k(2.0) * t131;
-            let t133 = link_4_e0 * link_4_e1;
-            let t134 = link_4_e2 * link_4_e3;
-            let t135 = t134 + t133;
-            let t136 = k(2.0) * t135;
-            let t137 = t136 * t47 - (t132 * t39 + t129 * t32);
-            let t138 = t115 - t122 * t124;
-            let t139 = t136 * t97 + (t129 * t96 + t132 * t95);
-            let t140 = k(2.0) * (t71 - t70);
-            let t141 = k(2.0) * (t45 + t44);
-            let t142 = k(2.0) * (k(0.5) - (t30 + link_5_e3 * link_5_e3));
-            let t143 = t142 * t43 - (t141 * t29 - t140 * t35);
-            let t144 = t141 * t52 + t140 * t53 + t142 * t54;
-            let t145 = t143 * t58;
-            let t146 = t143 * t63;
-            let t147 = t143 * t68;
-            let t148 = t73 * t147 - (t66 * t146 + t61 * t145);
-            let t149 = t105 * t147 + (t104 * t146 + t103 * t145);
-            let t150 = t149 + (t149 + (t144 * t117 + t143 * t116));
-            let t151 = t150 * t124 - (t148 + (t148 - (t144 * t56 + t143 * t49)));
-            let t152 = t136 * t142 - (t129 * t141 - t132 * t140);
-            let t153 = t152 * t151 + (t139 * t138 + t137 * t125);
-            let t154 = t137 * t138;
-            let t155 = t150 * (t123 * t150)
-                + (k(0.0002) + (t144 * (k(0.0002) * t144) + t143 * (k(0.0066) * t143)));
-            let t156 = t152 * t155 + t137 * t151;
-            let t157 = t111 + (t103 + t107);
-            let t158 = t123 * t157;
-            let t159 = t158 * t115 - (t91 - (t61 - t81));
-            let t160 = t157 - t122 * t158;
-            let t161 = t145 + t158 * t150;
-            let t162 = t152 * t161 + (t139 * t160 + t137 * t159);
-            let t163 = k(0.5) - (t130 + link_4_e1 * link_4_e1);
-            let t164 = k(0.2) * t163;
-            let t165 = t112 + (t104 + t108);
-            let t166 = t123 * t165;
-            let t167 = t166 * t115 - (t92 - (t66 - t85));
-            let t168 = t165 - t122 * t166;
-            let t169 = t146 + t166 * t150;
-            let t170 = t152 * t169 + (t139 * t168 + t137 * t167);
-            let t171 = t127 + t126;
-            let t172 = k(0.2) * t171;
-            let t173 = t113 - (t105 - t109);
-            let t174 = t123 * t173;
-            let t175 = t174 * t115 - (t93 - (t73 - t87));
-            let t176 = t173 - t122 * t174;
-            let t177 = t147 - t174 * t150;
-            let t178 = t152 * t177 - (t139 * t176 + t137 * t175);
-            let t179 = link_4_e0 * link_4_e2;
-            let t180 = link_4_e1 * link_4_e3;
-            let t181 = t180 - t179;
-            let t182 = k(0.2) * t181;
-            let t183 = t76 - t157 * t158;
-            let t184 = t78 - t165 * t158;
-            let t185 = t80 - t173 * t158;
-            let t186 = t182 * t185 - (t172 * t184 + t164 * t183);
-            let t187 = t83 - t165 * t166;
-            let t188 = t84 - t173 * t166;
-            let t189 = t182 * t188 - (t172 * t187 + t164 * t184);
-            let t190 = t86 - t173 * t174;
-            let t191 = t182 * t190 - (t172 * t188 + t164 * t185);
-            let t192 = t182 * t191 - (t172 * t189 + t164 * t186);
-            let t193 = t192 - k(2.0) * (t182 * t178 + (t172 * t170 + t164 * t162));
-            let t194 = t193 - (k(0.01) + (t152 * t156 + (t139 * t154 + t137 * t153)));
-            let t195 = t164 + t186 + t162;
-            let t196 = t172 + t189 + t170;
-            let t197 = t182 - t191 + t178;
-            let t198 = k(2.0) * (t182 * t197 + (t172 * t196 + t164 * t195)) - t192;
-            let t199 = k(2.0) * t163;
+            let t0 = link_6_e0 * link_6_e3;
+            let t1 = link_6_e1 * link_6_e2;
+            let t2 = k(2.0) * (t1 - t0);
+            let t3 = link_5_e0 * link_5_e0;
+            let t4 = k(2.0) * (k(0.5) - T::fused(link_5_e1, link_5_e1, t3));
+            let t5 = link_6_e0 * link_6_e0;
+            let t6 = k(2.0) * (k(0.5) - T::fused(link_6_e2, link_6_e2, t5));
+            let t7 = link_5_e0 * link_5_e3;
+            let t8 = link_5_e1 * link_5_e2;
+            let t9 = k(2.0) * (t8 + t7);
+            let t10 = link_6_e0 * link_6_e1;
+            let t11 = link_6_e2 * link_6_e3;
+            let t12 = t11 + t10;
+            let t13 = k(2.0) * t12;
+            let t14 = link_5_e0 * link_5_e2;
+            let t15 = link_5_e1 * link_5_e3;
+            let t16 = t15 - t14;
+            let t17 = k(2.0) * t16;
+            let t18 = T::fused(t17, t13, -T::fused(t4, t2, t9 * t6));
+            let t19 = k(0.0066) * t18;
+            let t20 = link_6_e0 * link_6_e2;
+            let t21 = link_6_e1 * link_6_e3;
+            let t22 = k(2.0) * (t21 + t20);
+            let t23 = k(2.0) * (t11 - t10);
+            let t24 = k(0.5) - T::fused(link_6_e3, link_6_e3, t5);
+            let t25 = k(2.0) * t24;
+            let t26 = T::fused(t17, t25, -T::fused(-t4, t22, t9 * t23));
+            let t27 = k(0.0002) * t26;
+            let t28 = k(2.0) * (k(0.5) - T::fused(link_6_e1, link_6_e1, t5));
+            let t29 = k(2.0) * (t8 - t7);
+            let t30 = k(2.0) * (t1 + t0);
+            let t31 = k(2.0) * (k(0.5) - T::fused(link_5_e2, link_5_e2, t3));
+            let t32 = t21 - t20;
+            let t33 = k(2.0) * t32;
+            let t34 = link_5_e0 * link_5_e1;
+            let t35 = link_5_e2 * link_5_e3;
+            let t36 = t35 + t34;
+            let t37 = k(2.0) * t36;
+            let t38 = T::fused(t37, t33, -T::fused(t29, t28, t31 * t30));
+            let t39 = k(0.05) * t38;
+            let t40 = t18 * t39;
+            let t41 = T::fused(t37, t13, T::fused(t31, t6, t29 * t2));
+            let t42 = k(0.373134328358209) * t41;
+            let t43 = t41 * t42;
+            let t44 = k(0.01) * t43;
+            let t45 = T::fused(k(0.2), t40, t44)
+                - (k(0.005) + T::fused(t18, t19, t26 * t27));
+            let t46 = k(0.1) * t43;
+            let t47 = k(0.05) - t46 - t40;
+            let t48 = T::fused(t37, t25, -T::fused(-t31, t23, t29 * t22));
+            let t49 = T::fused(t17, t33, T::fused(t4, t28, t9 * t30));
+            let t50 = k(0.05) * t49;
+            let t51 = t18 * t50;
+            let t52 = t41 * t39;
+            let t53 = k(0.373134328358209) * t18;
+            let t54 = t41 * t53;
+            let t55 = k(0.01) * t54;
+            let t56 = T::fused(-k(0.1), t52 - t51, t55) + T::fused(t41, t19, t48 * t27);
+            let t57 = k(0.1) * t54;
+            let t58 = t57 + t51;
+            let t59 = t57 - t52;
+            let t60 = T::fused(k(0.1), t59 + t58, t55) + t56;
+            let t61 = k(0.0066) * t41;
+            let t62 = k(0.0002) * t48;
+            let t63 = t41 * t50;
+            let t64 = t18 * t53;
+            let t65 = k(0.01) * t64;
+            let t66 = T::fused(-k(0.2), t63, t65)
+                - (k(0.005) + T::fused(t41, t61, t48 * t62));
+            let t67 = k(0.1) * t64;
+            let t68 = k(0.05) - t67 + t63;
+            let t69 = k(1.0)
+                / (T::fused(k(0.2), t68, -t65) + (k(0.01) + (k(0.0016) - t66)));
+            let t70 = t69 * t60;
+            let t71 = T::fused(
+                t60,
+                t70,
+                -(T::fused(k(0.2), t47, -t44) + (k(0.01) + (k(0.0017) - t45))),
+            );
+            let t72 = link_4_e0 * link_4_e3;
+            let t73 = link_4_e1 * link_4_e2;
+            let t74 = k(2.0) * (t73 - t72);
+            let t75 = link_4_e0 * link_4_e0;
+            let t76 = k(2.0) * (k(0.5) - T::fused(link_4_e2, link_4_e2, t75));
+            let t77 = link_4_e0 * link_4_e1;
+            let t78 = link_4_e2 * link_4_e3;
+            let t79 = t78 + t77;
+            let t80 = k(2.0) * t79;
+            let t81 = T::fused(t80, t17, -T::fused(t74, t4, t76 * t9));
+            let t82 = k(2.0) * (t35 - t34);
+            let t83 = k(2.0) * (t15 + t14);
+            let t84 = k(0.5) - T::fused(link_5_e3, link_5_e3, t3);
+            let t85 = k(2.0) * t84;
+            let t86 = T::fused(t85, t13, -T::fused(-t82, t6, t83 * t2));
+            let t87 = T::fused(t85, t25, T::fused(t82, t23, t83 * t22));
+            let t88 = t86 * t39;
+            let t89 = k(0.1) * t88;
+            let t90 = t86 * t50;
+            let t91 = k(0.1) * t90;
+            let t92 = t91 + (t91 + T::fused(t86, t61, t87 * t62));
+            let t93 = T::fused(t92, t70, t89 + (t89 - T::fused(t86, t19, t87 * t27)));
+            let t94 = T::fused(t80, t85, -T::fused(-t76, t82, t74 * t83));
+            let t95 = T::fused(t81, t71, t94 * t93);
+            let t96 = T::fused(
+                t92,
+                t69 * t92,
+                -(k(0.0002) + T::fused(t86, k(0.0066) * t86, t87 * (k(0.0002) * t87))),
+            );
+            let t97 = T::fused(t81, t93, t94 * t96);
+            let t98 = t68 + (k(0.1) - t67);
+            let t99 = t69 * t98;
+            let t100 = T::fused(t99, t60, -(t57 + t58));
+            let t101 = k(2.0) * (k(0.5) - T::fused(link_4_e1, link_4_e1, t75));
+            let t102 = k(2.0) * (t73 + t72);
+            let t103 = link_4_e0 * link_4_e2;
+            let t104 = link_4_e1 * link_4_e3;
+            let t105 = t104 - t103;
+            let t106 = k(2.0) * t105;
+            let t107 = T::fused(t106, t17, T::fused(t101, t4, t102 * t9));
+            let t108 = t57 + t59;
+            let t109 = t69 * t108;
+            let t110 = T::fused(t109, t60, -(k(0.1) - t46 + t47));
+            let t111 = T::fused(t106, t37, -T::fused(t101, t29, t102 * t31));
+            let t112 = T::fused(t85, t33, -T::fused(-t83, t28, t82 * t30));
+            let t113 = k(0.05) * t112;
+            let t114 = t86 * t42;
+            let t115 = k(0.1) * t114;
+            let t116 = t86 * t53;
+            let t117 = k(0.1) * t116;
+            let t118 = t117 + T::fused(-t41, t113, t117);
+            let t119 = t69 * t118;
+            let t120 = T::fused(t119, t60, t115 + T::fused(t18, t113, t115));
+            let t121 = T::fused(t106, t85, -T::fused(-t101, t83, t102 * t82));
+            let t122 = T::fused(t121, t120, T::fused(-t107, t100, t111 * t110));
+            let t123 = T::fused(-t99, t92, t90);
+            let t124 = T::fused(t109, t92, t88);
+            let t125 = T::fused(t86, t113, t119 * t92);
+            let t126 = T::fused(t121, t125, T::fused(t107, t123, t111 * t124));
+            let t127 = T::fused(t81, t122, t94 * t126);
+            let t128 = T::fused(t98, t99, t64);
+            let t129 = T::fused(-t108, t99, t54);
+            let t130 = T::fused(-t118, t99, t116);
+            let t131 = T::fused(t121, t130, T::fused(t107, t128, t111 * t129));
+            let t132 = T::fused(t108, t109, t43);
+            let t133 = T::fused(t118, t109, t114);
+            let t134 = T::fused(t121, t133, T::fused(t107, t129, t111 * t132));
+            let t135 = T::fused(t86, k(0.373134328358209) * t86, t118 * t119);
+            let t136 = T::fused(t121, t135, T::fused(t107, t130, t111 * t133));
+            let t137 = T::fused(t121, t136, T::fused(t107, t131, t111 * t134));
+            let t138 = k(0.01) * t137;
+            let t139 = T::fused(-k(0.2), t127, t138)
+                - (k(0.01) - T::fused(t81, t95, t94 * t97));
+            let t140 = k(0.1) * t137;
+            let t141 = k(0.1) - t140 + t127;
+            let t142 = T::fused(t107, t71, t121 * t93);
+            let t143 = T::fused(t107, t93, t121 * t96);
+            let t144 = T::fused(t80, t37, T::fused(t76, t31, t74 * t29));
+            let t145 = T::fused(t94, t120, T::fused(-t81, t100, t144 * t110));
+            let t146 = T::fused(t94, t125, T::fused(t81, t123, t144 * t124));
+            let t147 = T::fused(t81, t145, t94 * t146);
+            let t148 = T::fused(t107, t122, t121 * t126);
+            let t149 = T::fused(t94, t136, T::fused(t81, t131, t144 * t134));
+            let t150 = k(0.01) * t149;
+            let t151 = T::fused(k(0.1), t148 - t147, t150)
+                - T::fused(t81, t142, t94 * t143);
+            let t152 = k(0.1) * t149;
+            let t153 = t152 - t147;
+            let t154 = t152 + t148;
+            let t155 = T::fused(k(0.1), t154 + t153, t150) + t151;
+            let t156 = T::fused(t107, t145, t121 * t146);
+            let t157 = T::fused(t94, t130, T::fused(t81, t128, t144 * t129));
+            let t158 = T::fused(t94, t133, T::fused(t81, t129, t144 * t132));
+            let t159 = T::fused(t135, t94, T::fused(t130, t81, t144 * t133));
+            let t160 = T::fused(t94, t159, T::fused(t81, t157, t144 * t158));
+            let t161 = k(0.01) * t160;
+            let t162 = T::fused(k(0.2), t156, t161)
+                - (k(0.01) - T::fused(t107, t142, t121 * t143));
+            let t163 = k(0.1) * t160;
+            let t164 = k(0.1) - t163 - t156;
+            let t165 = k(1.0)
+                / (T::fused(k(0.2), t164, -t161) + (k(0.015) + (k(0.0017) - t162)));
+            let t166 = t165 * t155;
+            let t167 = T::fused(
+                t155,
+                t166,
+                -(T::fused(k(0.2), t141, -t138) + (k(0.015) + (k(0.0016) - t139))),
+            );
+            let t168 = link_3_e0 * link_3_e0;
+            let t169 = k(2.0) * (k(0.5) - T::fused(link_3_e1, link_3_e1, t168));
+            let t170 = link_3_e0 * link_3_e3;
+            let t171 = link_3_e1 * link_3_e2;
+            let t172 = k(2.0) * (t171 + t170);
+            let t173 = link_3_e0 * link_3_e2;
+            let t174 = link_3_e1 * link_3_e3;
+            let t175 = t174 - t173;
+            let t176 = k(2.0) * t175;
+            let t177 = T::fused(t176, t80, -T::fused(t169, t74, t172 * t76));
+            let t178 = k(2.0) * (t104 + t103);
+            let t179 = k(2.0) * (t78 - t77);
+            let t180 = k(0.5) - T::fused(link_4_e3, link_4_e3, t75);
+            let t181 = k(2.0) * t180;
+            let t182 = T::fused(t181, t17, -T::fused(-t178, t4, t179 * t9));
+            let t183 = T::fused(t181, t85, T::fused(t179, t82, t178 * t83));
+            let t184 = T::fused(t182, t122, t183 * t126);
+            let t185 = k(0.1) * t184;
+            let t186 = T::fused(t182, t145, t183 * t146);
+            let t187 = k(0.1) * t186;
+            let t188 = t187 + (t187 + T::fused(t182, t142, t183 * t143));
+            let t189 = T::fused(
+                t188,
+                t166,
+                t185 + (t185 - T::fused(t182, t95, t183 * t97)),
+            );
+            let t190 = T::fused(t176, t181, -T::fused(-t169, t178, t172 * t179));
+            let t191 = T::fused(-t177, t167, t190 * t189);
+            let t192 = T::fused(
+                t182,
+                T::fused(t182, t71, t183 * t93),
+                t183 * T::fused(t182, t93, t183 * t96),
+            );
+            let t193 = T::fused(t188, t165 * t188, -(k(0.0002) - t192));
+            let t194 = T::fused(-t177, t189, t190 * t193);
+            let t195 = t152 + t154;
+            let t196 = t165 * t195;
+            let t197 = T::fused(t196, t155, -(k(0.15) - t140 + t141));
+            let t198 = k(2.0) * (t171 - t170);
+            let t199 = k(2.0) * (k(0.5) - T::fused(link_3_e2, link_3_e2, t168));
             (
-                t0,
-                t3,
+                t2,
                 t4,
-                t5,
                 t6,
-                t7,
-                t8,
                 t9,
-                t10,
-                t11,
                 t12,
                 t13,
-                t14,
-                t15,
                 t16,
                 t17,
                 t18,
-                t19,
-                t20,
-                t21,
                 t22,
                 t23,
                 t24,
                 t25,
+                t26,
                 t28,
                 t29,
+                t30,
+                t31,
                 t32,
-                t34,
-                t35,
-                t39,
-                t42,
-                t43,
-                t47,
+                t33,
+                t36,
+                t37,
+                t38,
+                t41,
                 t48,
-                t52,
-                t53,
-                t54,
-                t55,
-                t57,
-                t58,
-                t61,
-                t62,
-                t63,
-                t66,
-                t67,
-                t68,
-                t73,
+                t49,
+                t60,
+                t69,
+                t71,
                 t74,
                 t76,
-                t77,
-                t78,
                 t79,
                 t80,
+                t81,
+                t82,
                 t83,
                 t84,
+                t85,
                 t86,
-                t95,
+                t87,
+                t92,
+                t93,
+                t94,
                 t96,
-                t97,
                 t98,
-                t99,
-                t103,
-                t104,
+                t100,
+                t101,
+                t102,
                 t105,
-                t115,
-                t122,
+                t106,
+                t107,
+                t108,
+                t110,
+                t111,
+                t112,
+                t118,
+                t120,
+                t121,
                 t123,
+                t124,
                 t125,
                 t128,
                 t129,
@@ -4482,35 +5061,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
                 t135,
                 t136,
                 t137,
-                t138,
-                t139,
-                t140,
-                t141,
-                t142,
-                t143,
                 t144,
-                t150,
-                t151,
+                t149,
                 t152,
                 t153,
-                t154,
                 t155,
-                t156,
                 t157,
+                t158,
                 t159,
                 t160,
-                t161,
-                t162,
                 t163,
                 t164,
                 t165,
                 t167,
                 t168,
                 t169,
-                t170,
-                t171,
                 t172,
                 t173,
+                t174,
                 t175,
                 t176,
                 t177,
@@ -4521,13 +5089,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
                 t182,
                 t183,
                 t184,
-                t185,
                 t186,
-                t187,
                 t188,
                 t189,
                 t190,
                 t191,
+                t193,
                 t194,
                 t195,
                 t196,
@@ -4537,93 +5104,87 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             )
         };
         let (
-            t200,
-            t201,
             t202,
             t203,
             t204,
+            t205,
+            t207,
             t208,
             t209,
-            t210,
-            t224,
-            t229,
+            t216,
+            t218,
+            t219,
+            t221,
+            t222,
+            t223,
+            t226,
+            t227,
+            t228,
             t230,
-            t232,
+            t231,
             t235,
-            t239,
-            t243,
-            t244,
-            t245,
-            t246,
-            t247,
-            t248,
-            t249,
-            t250,
-            t257,
-            t258,
-            t259,
-            t262,
-            t264,
-            t266,
+            t242,
+            t256,
+            t265,
             t267,
-            t268,
-            t269,
+            t270,
             t272,
-            t273,
             t275,
             t276,
             t277,
+            t278,
+            t279,
             t280,
             t281,
+            t282,
             t283,
-            t284,
-            t285,
+            t288,
+            t289,
             t290,
-            t291,
-            t292,
             t293,
             t295,
-            t296,
+            t297,
             t298,
+            t299,
+            t302,
+            t303,
+            t304,
+            t305,
             t307,
             t308,
             t309,
-            t310,
-            t311,
-            t312,
             t316,
-            t317,
             t318,
+            t319,
+            t321,
+            t322,
+            t323,
+            t326,
+            t327,
             t328,
+            t329,
+            t330,
+            t331,
+            t332,
             t335,
             t336,
-            t338,
-            t341,
-            t342,
-            t343,
+            t337,
             t344,
-            t345,
-            t346,
-            t347,
-            t348,
             t349,
-            t350,
-            t351,
             t352,
             t353,
-            t354,
             t355,
-            t356,
             t357,
             t358,
+            t359,
+            t360,
+            t363,
             t364,
             t365,
-            t366,
             t367,
             t368,
+            t369,
             t370,
-            t371,
-            t372,
             t373,
             t374,
             t375,
@@ -4636,14 +5197,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             t382,
             t383,
             t384,
-            t385,
             t386,
-            t387,
             t388,
             t389,
             t390,
             t391,
-            t392,
             t393,
             t394,
             t395,
@@ -4652,303 +5210,344 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             t398,
             t399,
         ) = {
-            let t200 = k(2.0) * t171;
-            let t201 = k(2.0) * t181;
-            let t202 = t201 * t47 + (t200 * t39 + t199 * t32);
-            let t203 = t201 * t97 - (t200 * t95 + t199 * t96);
-            let t204 = t201 * t142 - (t200 * t140 - t199 * t141);
-            let t205 = t204 * t151 + (t203 * t138 + t202 * t125);
-            let t206 = t202 * t138;
-            let t207 = t204 * t155 + t202 * t151;
-            let t208 = k(0.2) * t128;
-            let t209 = k(0.2) * t131;
-            let t210 = k(0.2) * t135;
-            let t211 = t204 * t161 + (t203 * t160 + t202 * t159);
-            let t212 = t204 * t169 + (t203 * t168 + t202 * t167);
-            let t213 = t204 * t177 - (t203 * t176 + t202 * t175);
-            let t214 = t182 * t213 + (t172 * t212 + t164 * t211)
-                - (t210 * t178 - (t209 * t170 + t208 * t162));
-            let t215 = t210 * t191 + (t209 * t189 + t208 * t186);
-            let t216 = t215 + t214 + (t152 * t207 + (t139 * t206 + t137 * t205));
-            let t217 = t210 * t185 + (t209 * t184 + t208 * t183);
-            let t218 = t208 - t217 + t211;
-            let t219 = t210 * t188 + (t209 * t187 + t208 * t184);
-            let t220 = t209 - t219 + t212;
-            let t221 = t210 * t190 + (t209 * t188 + t208 * t185);
-            let t222 = t210 - t221 - t213;
-            let t223 = t182 * t222 - (t172 * t220 + t164 * t218)
-                + (t210 * t197 - (t209 * t196 + t208 * t195));
-            let t224 = t223 - t215 - t216;
-            let t225 = t210 * t221 + (t209 * t219 + t208 * t217);
-            let t226 = t225 + k(2.0) * (t210 * t213 - (t209 * t212 + t208 * t211));
-            let t227 = t226 - (k(0.01) + (t204 * t207 + (t203 * t206 + t202 * t205)));
-            let t228 = k(2.0) * (t210 * t222 + (t209 * t220 + t208 * t218)) - t225;
-            let t229 = t228 + (k(0.015) + (k(0.0017) - t227));
-            let t230 = k(1.0) / t229;
-            let t231 = t230 * t224;
-            let t232 = t224 * t231 - (t198 + (k(0.015) + (k(0.0016) - t194)));
-            let t233 = link_3_e0 * link_3_e0;
-            let t234 = k(0.5) - (t233 + link_3_e1 * link_3_e1);
-            let t235 = k(2.0) * t234;
-            let t236 = link_3_e0 * link_3_e3;
-            let t237 = link_3_e1 * link_3_e2;
-            let t238 = t237 + t236;
-            let t239 = k(2.0) * t238;
-            let t240 = link_3_e0 * link_3_e2;
-            let t241 = link_3_e1 * link_3_e3;
-            let t242 = t241 - t240;
-            let t243 = k(2.0) * t242;
-            let t244 = t243 * t136 - (t239 * t132 + t235 * t129);
-            let t245 = k(2.0) * (t180 + t179);
-            let t246 = k(2.0) * (t134 - t133);
-            let t247 = k(2.0) * (k(0.5) - (t130 + link_4_e3 * link_4_e3));
-            let t248 = t247 * t47 - (t246 * t39 - t245 * t32);
-            let t249 = t247 * t97 - (t245 * t96 - t246 * t95);
-            let t250 = t245 * t141 + t246 * t140 + t247 * t142;
-            let t251 = t250 * t161 + (t249 * t160 + t248 * t159);
-            let t252 = t250 * t169 + (t249 * t168 + t248 * t167);
-            let t253 = t250 * t177 - (t249 * t176 + t248 * t175);
-            let t254 = t182 * t253 + (t172 * t252 + t164 * t251);
-            let t255 = t254 + (t254 + (t250 * t156 + (t249 * t154 + t248 * t153)));
-            let t256 = t210 * t253 - (t209 * t252 + t208 * t251);
-            let t257 = t256 + (t256 - (t250 * t207 + (t249 * t206 + t248 * t205)));
-            let t258 = t257 * t231 - t255;
-            let t259 = t243 * t247 - (t239 * t246 - t235 * t245);
-            let t260 = t259 * t258 + t244 * t232;
-            let t261 = t249 * (t248 * t138)
-                + t248 * (t250 * t151 + (t249 * t138 + t248 * t125));
-            let t262 = t257 * (t230 * t257)
-                - (k(0.0002) + (t250 * (t250 * t155 + t248 * t151) + t261));
-            let t263 = t259 * t262 + t244 * t258;
-            let t264 = t218 - (t217 - k(0.3) * t128);
-            let t265 = t230 * t264;
-            let t266 = t264 - t229 * t265;
-            let t267 = t243 * t201 + (t239 * t200 + t235 * t199);
-            let t268 = t265 * t224 + (t195 + (t186 + k(0.3) * t163));
-            let t269 = t251 + t265 * t257;
-            let t270 = t259 * t269 + (t244 * t268 + t267 * t266);
-            let t271 = t237 - t236;
-            let t272 = k(0.2) * t271;
-            let t273 = t220 - (t219 - k(0.3) * t131);
-            let t274 = t230 * t273;
-            let t275 = t273 - t229 * t274;
-            let t276 = t274 * t224 + (t196 + (t189 + k(0.3) * t171));
-            let t277 = t252 + t274 * t257;
-            let t278 = t259 * t277 + (t244 * t276 + t267 * t275);
-            let t279 = k(0.5) - (t233 + link_3_e2 * link_3_e2);
-            let t280 = k(0.2) * t279;
-            let t281 = t222 - (t221 - k(0.3) * t135);
-            let t282 = t230 * t281;
-            let t283 = t281 - t229 * t282;
-            let t284 = t282 * t224 - (t197 - (t191 - k(0.3) * t181));
-            let t285 = t253 - t282 * t257;
-            let t286 = t259 * t285 - (t244 * t284 + t267 * t283);
-            let t287 = link_3_e0 * link_3_e1;
-            let t288 = link_3_e2 * link_3_e3;
-            let t289 = t288 + t287;
-            let t290 = k(0.2) * t289;
-            let t291 = t183 + t264 * t265;
-            let t292 = t184 + t273 * t265;
-            let t293 = t185 + t281 * t265;
-            let t294 = t290 * t293 + (t280 * t292 + t272 * t291);
-            let t295 = t187 + t273 * t274;
-            let t296 = t188 + t281 * t274;
-            let t297 = t290 * t296 + (t280 * t295 + t272 * t292);
-            let t298 = t190 + t281 * t282;
-            let t299 = t290 * t298 + (t280 * t296 + t272 * t293);
-            let t300 = t290 * t299 + (t280 * t297 + t272 * t294);
-            let t301 = t300 + k(2.0) * (t290 * t286 - (t280 * t278 + t272 * t270));
-            let t302 = k(0.02)
-                + (k(0.0017) - (t301 - (k(0.015) - (t259 * t263 + t244 * t260))));
-            let t303 = t294 - k(0.3) * t271 - t270;
-            let t304 = t297 - k(0.3) * t279 - t278;
-            let t305 = t299 - k(0.3) * t289 + t286;
-            let t306 = k(2.0) * (t290 * t305 + (t280 * t304 + t272 * t303)) + t300;
-            let t307 = k(2.0) * t279;
-            let t308 = k(2.0) * t271;
-            let t309 = k(2.0) * t289;
-            let t310 = t309 * t136 + (t308 * t129 + t307 * t132);
-            let t311 = t309 * t247 - (t308 * t245 - t307 * t246);
-            let t312 = t309 * t201 - (t307 * t200 + t308 * t199);
-            let t313 = t311 * t269 + (t310 * t268 + t312 * t266);
-            let t314 = t311 * t277 + (t310 * t276 + t312 * t275);
-            let t315 = t311 * t285 - (t310 * t284 + t312 * t283);
-            let t316 = k(0.2) * t234;
-            let t317 = k(0.2) * t238;
-            let t318 = k(0.2) * t242;
-            let t319 = t318 * t286 + (t317 * t278 + t316 * t270)
-                - (t290 * t315 - (t280 * t314 + t272 * t313));
-            let t320 = t318 * t293 - (t317 * t292 + t316 * t291);
-            let t321 = t318 * t296 - (t317 * t295 + t316 * t292);
-            let t322 = t318 * t298 - (t317 * t296 + t316 * t293);
-            let t323 = t290 * t322 + (t280 * t321 + t272 * t320);
-            let t324 = t320 + k(0.3) * t234 + t313;
-            let t325 = t321 + k(0.3) * t238 + t314;
-            let t326 = t322 - k(0.3) * t242 - t315;
-            let t327 = t318 * t305 - (t317 * t304 + t316 * t303)
-                + (t290 * t326 + (t280 * t325 + t272 * t324));
-            let t328 = t327 + t323 + (t323 + t319 - (t311 * t263 + t310 * t260));
-            let t329 = t311 * t258 + t310 * t232;
-            let t330 = t311 * t262 + t310 * t258;
-            let t331 = t318 * t322 - (t317 * t321 + t316 * t320);
-            let t332 = t331 - k(2.0) * (t318 * t315 + (t317 * t314 + t316 * t313));
-            let t333 = k(0.02)
-                + (k(0.0016) - (t332 - (k(0.015) - (t311 * t330 + t310 * t329))));
-            let t334 = k(2.0) * (t318 * t326 - (t317 * t325 + t316 * t324)) + t331;
-            let t335 = t334 - t333;
-            let t336 = k(1.0) / t335;
-            let t337 = t336 * t328;
-            let t338 = t328 * t337 - (t306 - t302);
-            let t339 = link_2_e0 * link_2_e3;
-            let t340 = link_2_e1 * link_2_e2;
-            let t341 = t340 - t339;
-            let t342 = k(2.0) * t341;
-            let t343 = link_2_e0 * link_2_e0;
-            let t344 = k(0.5) - (t343 + link_2_e2 * link_2_e2);
-            let t345 = k(2.0) * t344;
-            let t346 = link_2_e0 * link_2_e1;
-            let t347 = link_2_e2 * link_2_e3;
-            let t348 = t347 + t346;
-            let t349 = k(2.0) * t348;
-            let t350 = t349 * t243 - (t345 * t239 + t342 * t235);
-            let t351 = t328 - t335 * t337;
-            let t352 = t349 * t309 + (t342 * t308 + t345 * t307);
-            let t353 = k(2.0) * (t288 - t287);
-            let t354 = k(2.0) * (t241 + t240);
-            let t355 = k(2.0) * (k(0.5) - (t233 + link_3_e3 * link_3_e3));
-            let t356 = t355 * t136 - (t354 * t129 - t353 * t132);
-            let t357 = t354 * t245 + t353 * t246 + t355 * t247;
-            let t358 = t355 * t201 - (t353 * t200 - t354 * t199);
-            let t359 = t357 * t269 + (t356 * t268 + t358 * t266);
-            let t360 = t357 * t277 + (t356 * t276 + t358 * t275);
-            let t361 = t357 * t285 - (t356 * t284 + t358 * t283);
-            let t362 = t290 * t361 - (t280 * t360 + t272 * t359);
-            let t363 = t318 * t361 + (t317 * t360 + t316 * t359);
-            let t364 = t363 + (t363 - (t357 * t330 + t356 * t329));
-            let t365 = t364 * t337 - (t362 + (t362 + (t357 * t263 + t356 * t260)));
-            let t366 = t349 * t355 - (t342 * t354 - t345 * t353);
-            let t367 = t366 * t365 + (t352 * t351 + t350 * t338);
-            let t368 = t350 * t351;
-            let t369 = t357 * (t357 * t262 + t356 * t258)
-                + t356 * (t357 * t258 + t356 * t232);
-            let t370 = t364 * (t336 * t364) + (k(0.0002) - t369);
-            let t371 = t366 * t370 + t350 * t365;
-            let t372 = t324 + (t320 + k(0.4) * t234);
-            let t373 = t336 * t372;
-            let t374 = t373 * t328 - (t303 + (t294 - k(0.4) * t271));
-            let t375 = t372 - t335 * t373;
-            let t376 = t359 + t373 * t364;
-            let t377 = t366 * t376 + (t352 * t375 + t350 * t374);
-            let t378 = k(0.5) - (t343 + link_2_e1 * link_2_e1);
-            let t379 = k(0.2) * t378;
-            let t380 = t325 + (t321 + k(0.4) * t238);
-            let t381 = t336 * t380;
-            let t382 = t381 * t328 - (t304 + (t297 - k(0.4) * t279));
-            let t383 = t380 - t335 * t381;
-            let t384 = t360 + t381 * t364;
-            let t385 = t366 * t384 + (t352 * t383 + t350 * t382);
-            let t386 = t340 + t339;
-            let t387 = k(0.2) * t386;
-            let t388 = t326 + (t322 - k(0.4) * t242);
-            let t389 = t336 * t388;
-            let t390 = t389 * t328 - (t305 + (t299 - k(0.4) * t289));
-            let t391 = t388 - t335 * t389;
-            let t392 = t361 - t389 * t364;
-            let t393 = t366 * t392 - (t352 * t391 + t350 * t390);
-            let t394 = link_2_e0 * link_2_e2;
-            let t395 = link_2_e1 * link_2_e3;
-            let t396 = t395 - t394;
-            let t397 = k(0.2) * t396;
-            let t398 = t291 - t372 * t373;
-            let t399 = t292 - t380 * t373;
+            let t200 = link_3_e0 * link_3_e1;
+            let t201 = link_3_e2 * link_3_e3;
+            let t202 = t201 + t200;
+            let t203 = k(2.0) * t202;
+            let t204 = T::fused(t203, t106, -T::fused(t198, t101, t199 * t102));
+            let t205 = t164 + (k(0.15) - t163);
+            let t206 = t165 * t205;
+            let t207 = T::fused(t206, t155, -(t152 + t153));
+            let t208 = T::fused(t203, t80, T::fused(t199, t76, t198 * t74));
+            let t209 = T::fused(t181, t37, -T::fused(-t179, t31, t178 * t29));
+            let t210 = T::fused(t183, t120, T::fused(-t182, t100, t209 * t110));
+            let t211 = T::fused(t183, t125, T::fused(t182, t123, t209 * t124));
+            let t212 = T::fused(t183, t136, T::fused(t182, t131, t209 * t134));
+            let t213 = k(0.1) * t212;
+            let t214 = T::fused(t183, t159, T::fused(t182, t157, t209 * t158));
+            let t215 = k(0.1) * t214;
+            let t216 = t215 + (t215 + T::fused(t107, t210, t121 * t211));
+            let t217 = t165 * t216;
+            let t218 = T::fused(
+                t217,
+                t155,
+                t213 + (t213 - T::fused(t81, t210, t94 * t211)),
+            );
+            let t219 = T::fused(t203, t181, -T::fused(-t199, t179, t198 * t178));
+            let t220 = T::fused(t219, t218, -T::fused(-t204, t197, t208 * t207));
+            let t221 = T::fused(t196, t188, t184);
+            let t222 = T::fused(-t206, t188, t186);
+            let t223 = T::fused(t217, t188, T::fused(t182, t210, t183 * t211));
+            let t224 = T::fused(t219, t223, T::fused(t204, t221, t208 * t222));
+            let t225 = T::fused(-t177, t220, t190 * t224);
+            let t226 = T::fused(t195, t196, t137);
+            let t227 = T::fused(-t205, t196, t149);
+            let t228 = T::fused(t216, t196, t212);
+            let t229 = T::fused(t219, t228, T::fused(t204, t226, t208 * t227));
+            let t230 = T::fused(t205, t206, t160);
+            let t231 = T::fused(-t216, t206, t214);
+            let t232 = T::fused(t219, t231, T::fused(t204, t227, t208 * t230));
+            let t233 = T::fused(
+                t182,
+                T::fused(t183, t130, T::fused(t182, t128, t209 * t129)),
+                t209 * T::fused(t183, t133, T::fused(t182, t129, t209 * t132)),
+            );
+            let t234 = T::fused(
+                t183,
+                T::fused(t183, t135, T::fused(t182, t130, t209 * t133)),
+                t233,
+            );
+            let t235 = T::fused(t216, t217, t234);
+            let t236 = T::fused(t219, t235, T::fused(t204, t228, t208 * t231));
+            let t237 = T::fused(t219, t236, T::fused(t204, t229, t208 * t232));
+            let t238 = k(0.01) * t237;
+            let t239 = T::fused(k(0.2), t225, t238)
+                - (k(0.015) - T::fused(-t177, t191, t190 * t194));
+            let t240 = k(0.1) * t237;
+            let t241 = k(0.15) - t240 - t225;
+            let t242 = T::fused(t176, t106, T::fused(t169, t101, t172 * t102));
+            let t243 = T::fused(t190, t218, -T::fused(-t242, t197, t177 * t207));
+            let t244 = T::fused(t190, t223, T::fused(t242, t221, t177 * t222));
+            let t245 = T::fused(-t177, t243, t190 * t244);
+            let t246 = T::fused(-t208, t220, t219 * t224);
+            let t247 = T::fused(t190, t228, T::fused(t242, t226, t177 * t227));
+            let t248 = T::fused(t190, t231, T::fused(t242, t227, t177 * t230));
+            let t249 = T::fused(t235, t190, T::fused(t242, t228, t231 * t177));
+            let t250 = T::fused(t219, t249, T::fused(t204, t247, t208 * t248));
+            let t251 = k(0.01) * t250;
+            let t252 = T::fused(-k(0.1), t246 - t245, t251)
+                - T::fused(-t208, t191, t219 * t194);
+            let t253 = k(0.1) * t250;
+            let t254 = t253 + t245;
+            let t255 = t253 - t246;
+            let t256 = T::fused(k(0.1), t255 + t254, t251) + t252;
+            let t257 = T::fused(-t208, t167, t219 * t189);
+            let t258 = T::fused(-t208, t189, t219 * t193);
+            let t259 = T::fused(-t208, t243, t219 * t244);
+            let t260 = T::fused(t190, t249, T::fused(t242, t247, t177 * t248));
+            let t261 = k(0.01) * t260;
+            let t262 = T::fused(-k(0.2), t259, t261)
+                - (k(0.015) - T::fused(-t208, t257, t219 * t258));
+            let t263 = k(0.1) * t260;
+            let t264 = k(0.15) - t263 + t259;
+            let t265 = k(1.0)
+                / (T::fused(k(0.2), t264, -t261) + (k(0.02) + (k(0.0016) - t262)));
+            let t266 = t265 * t256;
+            let t267 = T::fused(
+                t256,
+                t266,
+                -(T::fused(k(0.2), t241, -t238) + (k(0.02) + (k(0.0017) - t239))),
+            );
+            let t268 = link_2_e0 * link_2_e3;
+            let t269 = link_2_e1 * link_2_e2;
+            let t270 = k(2.0) * (t269 - t268);
+            let t271 = link_2_e0 * link_2_e0;
+            let t272 = k(2.0) * (k(0.5) - T::fused(link_2_e2, link_2_e2, t271));
+            let t273 = link_2_e0 * link_2_e1;
+            let t274 = link_2_e2 * link_2_e3;
+            let t275 = t274 + t273;
+            let t276 = k(2.0) * t275;
+            let t277 = T::fused(t276, t176, -T::fused(t270, t169, t272 * t172));
+            let t278 = k(2.0) * (t201 - t200);
+            let t279 = k(2.0) * (t174 + t173);
+            let t280 = k(0.5) - T::fused(link_3_e3, link_3_e3, t168);
+            let t281 = k(2.0) * t280;
+            let t282 = T::fused(t281, t80, -T::fused(-t278, t76, t279 * t74));
+            let t283 = T::fused(t281, t181, T::fused(t278, t179, t279 * t178));
+            let t284 = T::fused(-t282, t220, t283 * t224);
+            let t285 = k(0.1) * t284;
+            let t286 = T::fused(-t282, t243, t283 * t244);
+            let t287 = k(0.1) * t286;
+            let t288 = t287 + (t287 - T::fused(-t282, t257, t283 * t258));
+            let t289 = T::fused(
+                t288,
+                t266,
+                t285 + (t285 + T::fused(-t282, t191, t283 * t194)),
+            );
+            let t290 = T::fused(t276, t281, -T::fused(-t272, t278, t270 * t279));
+            let t291 = T::fused(t277, t267, t290 * t289);
+            let t292 = T::fused(
+                -t282,
+                T::fused(-t282, t167, t283 * t189),
+                t283 * T::fused(-t282, t189, t283 * t193),
+            );
+            let t293 = T::fused(t288, t265 * t288, -(k(0.0002) - t292));
+            let t294 = T::fused(t277, t289, t290 * t293);
+            let t295 = t264 + (k(0.2) - t263);
+            let t296 = t265 * t295;
+            let t297 = T::fused(t296, t256, -(t253 + t254));
+            let t298 = k(2.0) * (k(0.5) - T::fused(link_2_e1, link_2_e1, t271));
+            let t299 = k(2.0) * (t269 + t268);
+            let t300 = link_2_e0 * link_2_e2;
+            let t301 = link_2_e1 * link_2_e3;
+            let t302 = t301 - t300;
+            let t303 = k(2.0) * t302;
+            let t304 = T::fused(t303, t176, T::fused(t298, t169, t299 * t172));
+            let t305 = t253 + t255;
+            let t306 = t265 * t305;
+            let t307 = T::fused(t306, t256, -(k(0.2) - t240 + t241));
+            let t308 = T::fused(t303, t203, -T::fused(t298, t198, t299 * t199));
+            let t309 = T::fused(t281, t106, -T::fused(-t279, t101, t278 * t102));
+            let t310 = T::fused(t283, t218, -T::fused(-t309, t197, t282 * t207));
+            let t311 = T::fused(t283, t223, T::fused(t309, t221, t282 * t222));
+            let t312 = T::fused(t283, t236, T::fused(t309, t229, t282 * t232));
+            let t313 = k(0.1) * t312;
+            let t314 = T::fused(t283, t249, T::fused(t309, t247, t282 * t248));
+            let t315 = k(0.1) * t314;
+            let t316 = t315 + (t315 - T::fused(-t208, t310, t219 * t311));
+            let t317 = t265 * t316;
+            let t318 = T::fused(
+                t317,
+                t256,
+                t313 + (t313 + T::fused(-t177, t310, t190 * t311)),
+            );
+            let t319 = T::fused(t303, t281, -T::fused(-t298, t279, t299 * t278));
+            let t320 = T::fused(t319, t318, T::fused(-t304, t297, t308 * t307));
+            let t321 = T::fused(-t296, t288, t286);
+            let t322 = T::fused(t306, t288, t284);
+            let t323 = T::fused(t317, t288, T::fused(-t282, t310, t283 * t311));
+            let t324 = T::fused(t319, t323, T::fused(t304, t321, t308 * t322));
+            let t325 = T::fused(t277, t320, t290 * t324);
+            let t326 = T::fused(t295, t296, t260);
+            let t327 = T::fused(-t305, t296, t250);
+            let t328 = T::fused(-t316, t296, t314);
+            let t329 = T::fused(t319, t328, T::fused(t304, t326, t308 * t327));
+            let t330 = T::fused(t305, t306, t237);
+            let t331 = T::fused(t316, t306, t312);
+            let t332 = T::fused(t319, t331, T::fused(t304, t327, t308 * t330));
+            let t333 = T::fused(
+                t309,
+                T::fused(t283, t228, T::fused(t309, t226, t282 * t227)),
+                t282 * T::fused(t283, t231, T::fused(t309, t227, t282 * t230)),
+            );
+            let t334 = T::fused(
+                t283,
+                T::fused(t283, t235, T::fused(t309, t228, t282 * t231)),
+                t333,
+            );
+            let t335 = T::fused(t316, t317, t334);
+            let t336 = T::fused(t319, t335, T::fused(t304, t328, t308 * t331));
+            let t337 = T::fused(t319, t336, T::fused(t304, t329, t308 * t332));
+            let t338 = k(0.01) * t337;
+            let t339 = T::fused(-k(0.2), t325, t338)
+                - (k(0.02) - T::fused(t277, t291, t290 * t294));
+            let t340 = k(0.1) * t337;
+            let t341 = k(0.2) - t340 + t325;
+            let t342 = T::fused(t304, t267, t319 * t289);
+            let t343 = T::fused(t304, t289, t319 * t293);
+            let t344 = T::fused(t276, t203, T::fused(t272, t199, t270 * t198));
+            let t345 = T::fused(t290, t318, T::fused(-t277, t297, t344 * t307));
+            let t346 = T::fused(t290, t323, T::fused(t277, t321, t344 * t322));
+            let t347 = T::fused(t277, t345, t290 * t346);
+            let t348 = T::fused(t304, t320, t319 * t324);
+            let t349 = T::fused(t290, t336, T::fused(t277, t329, t344 * t332));
+            let t350 = k(0.01) * t349;
+            let t351 = T::fused(k(0.1), t348 - t347, t350)
+                - T::fused(t277, t342, t290 * t343);
+            let t352 = k(0.1) * t349;
+            let t353 = t352 - t347;
+            let t354 = t352 + t348;
+            let t355 = T::fused(k(0.1), t354 + t353, t350) + t351;
+            let t356 = T::fused(t304, t345, t319 * t346);
+            let t357 = T::fused(t290, t328, T::fused(t277, t326, t344 * t327));
+            let t358 = T::fused(t290, t331, T::fused(t277, t327, t344 * t330));
+            let t359 = T::fused(t335, t290, T::fused(t328, t277, t344 * t331));
+            let t360 = T::fused(t290, t359, T::fused(t277, t357, t344 * t358));
+            let t361 = k(0.01) * t360;
+            let t362 = T::fused(k(0.2), t356, t361)
+                - (k(0.02) - T::fused(t304, t342, t319 * t343));
+            let t363 = k(0.1) * t360;
+            let t364 = k(0.2) - t363 - t356;
+            let t365 = k(1.0)
+                / (T::fused(k(0.2), t364, -t361) + (k(0.025) + (k(0.0017) - t362)));
+            let t366 = t365 * t355;
+            let t367 = T::fused(
+                t355,
+                t366,
+                -(T::fused(k(0.2), t341, -t338) + (k(0.025) + (k(0.0016) - t339))),
+            );
+            let t368 = link_1_e0 * link_1_e0;
+            let t369 = k(0.5) - T::fused(link_1_e2, link_1_e2, t368);
+            let t370 = k(2.0) * t369;
+            let t371 = link_1_e0 * link_1_e3;
+            let t372 = link_1_e1 * link_1_e2;
+            let t373 = k(2.0) * (t372 - t371);
+            let t374 = link_1_e0 * link_1_e1;
+            let t375 = link_1_e2 * link_1_e3;
+            let t376 = k(2.0) * (t375 + t374);
+            let t377 = T::fused(t376, t276, T::fused(t370, t272, t373 * t270));
+            let t378 = k(2.0) * (t301 + t300);
+            let t379 = k(2.0) * (t274 - t273);
+            let t380 = k(0.5) - T::fused(link_2_e3, link_2_e3, t271);
+            let t381 = k(2.0) * t380;
+            let t382 = T::fused(t381, t176, -T::fused(-t378, t169, t379 * t172));
+            let t383 = T::fused(t381, t281, T::fused(t379, t278, t378 * t279));
+            let t384 = T::fused(t382, t320, t383 * t324);
+            let t385 = k(0.1) * t384;
+            let t386 = T::fused(t382, t345, t383 * t346);
+            let t387 = k(0.1) * t386;
+            let t388 = t387 + (t387 + T::fused(t382, t342, t383 * t343));
+            let t389 = T::fused(
+                t388,
+                t366,
+                t385 + (t385 - T::fused(t382, t291, t383 * t294)),
+            );
+            let t390 = T::fused(t376, t381, -T::fused(-t370, t379, t373 * t378));
+            let t391 = T::fused(-t377, t367, t390 * t389);
+            let t392 = T::fused(
+                t382,
+                T::fused(t382, t267, t383 * t289),
+                t383 * T::fused(t382, t289, t383 * t293),
+            );
+            let t393 = T::fused(t388, t365 * t388, -(k(0.0002) - t392));
+            let t394 = T::fused(-t377, t389, t390 * t393);
+            let t395 = t352 + t354;
+            let t396 = t365 * t395;
+            let t397 = T::fused(t396, t355, -(k(0.25) - t340 + t341));
+            let t398 = k(2.0) * (k(0.5) - T::fused(link_1_e1, link_1_e1, t368));
+            let t399 = k(2.0) * (t372 + t371);
             (
-                t200,
-                t201,
                 t202,
                 t203,
                 t204,
+                t205,
+                t207,
                 t208,
                 t209,
-                t210,
-                t224,
-                t229,
+                t216,
+                t218,
+                t219,
+                t221,
+                t222,
+                t223,
+                t226,
+                t227,
+                t228,
                 t230,
-                t232,
+                t231,
                 t235,
-                t239,
-                t243,
-                t244,
-                t245,
-                t246,
-                t247,
-                t248,
-                t249,
-                t250,
-                t257,
-                t258,
-                t259,
-                t262,
-                t264,
-                t266,
+                t242,
+                t256,
+                t265,
                 t267,
-                t268,
-                t269,
+                t270,
                 t272,
-                t273,
                 t275,
                 t276,
                 t277,
+                t278,
+                t279,
                 t280,
                 t281,
+                t282,
                 t283,
-                t284,
-                t285,
+                t288,
+                t289,
                 t290,
-                t291,
-                t292,
                 t293,
                 t295,
-                t296,
+                t297,
                 t298,
+                t299,
+                t302,
+                t303,
+                t304,
+                t305,
                 t307,
                 t308,
                 t309,
-                t310,
-                t311,
-                t312,
                 t316,
-                t317,
                 t318,
+                t319,
+                t321,
+                t322,
+                t323,
+                t326,
+                t327,
                 t328,
+                t329,
+                t330,
+                t331,
+                t332,
                 t335,
                 t336,
-                t338,
-                t341,
-                t342,
-                t343,
+                t337,
                 t344,
-                t345,
-                t346,
-                t347,
-                t348,
                 t349,
-                t350,
-                t351,
                 t352,
                 t353,
-                t354,
                 t355,
-                t356,
                 t357,
                 t358,
+                t359,
+                t360,
+                t363,
                 t364,
                 t365,
-                t366,
                 t367,
                 t368,
+                t369,
                 t370,
-                t371,
-                t372,
                 t373,
                 t374,
                 t375,
@@ -4961,14 +5560,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
                 t382,
                 t383,
                 t384,
-                t385,
                 t386,
-                t387,
                 t388,
                 t389,
                 t390,
                 t391,
-                t392,
                 t393,
                 t394,
                 t395,
@@ -4979,771 +5575,858 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             )
         };
         let (
-            t400,
             t402,
             t403,
+            t404,
             t405,
-            t414,
-            t415,
+            t407,
+            t408,
+            t409,
             t416,
-            t417,
             t418,
             t419,
+            t420,
+            t421,
+            t422,
             t423,
             t424,
-            t425,
+            t426,
+            t427,
+            t428,
+            t429,
+            t430,
+            t431,
+            t432,
+            t435,
+            t436,
+            t438,
             t439,
-            t444,
-            t445,
-            t447,
-            t448,
+            t440,
+            t441,
             t449,
-            t450,
             t451,
-            t452,
-            t453,
-            t454,
-            t455,
-            t456,
+            t458,
+            t461,
             t463,
-            t464,
             t465,
-            t466,
-            t468,
-            t469,
-            t470,
-            t472,
             t473,
-            t474,
-            t475,
-            t476,
-            t477,
-            t478,
             t480,
             t481,
             t482,
-            t483,
-            t484,
-            t485,
-            t486,
-            t488,
-            t489,
             t490,
             t491,
-            t492,
-            t493,
-            t494,
-            t495,
-            t496,
-            t497,
-            t498,
-            t499,
-            t500,
-            t501,
-            t504,
-            t505,
-            t506,
-            t507,
-            t508,
-            t520,
-            t524,
+            t510,
+            t517,
+            t518,
+            t519,
+            t527,
             t528,
-            t529,
-            t530,
-            t531,
-            t542,
-            t545,
             t547,
-            t560,
-            t562,
-            t566,
+            t553,
+            t554,
+            t555,
+            t556,
+            t564,
+            t565,
             t567,
-            t568,
-            t569,
             t570,
-            t571,
-            t576,
+            t572,
+            t574,
             t577,
+            t579,
             t580,
-            t581,
             t583,
+            t584,
             t585,
+            t587,
             t588,
             t590,
+            t591,
             t592,
+            t593,
             t594,
+            t595,
+            t596,
             t597,
             t598,
             t599,
         ) = {
-            let t400 = t293 - t388 * t373;
-            let t401 = t397 * t400 - (t387 * t399 + t379 * t398);
-            let t402 = t295 - t380 * t381;
-            let t403 = t296 - t388 * t381;
-            let t404 = t397 * t403 - (t387 * t402 + t379 * t399);
-            let t405 = t298 - t388 * t389;
-            let t406 = t397 * t405 - (t387 * t403 + t379 * t400);
-            let t407 = t397 * t406 - (t387 * t404 + t379 * t401);
-            let t408 = t407 - k(2.0) * (t397 * t393 + (t387 * t385 + t379 * t377));
-            let t409 = t408 - (k(0.02) + (t366 * t371 + (t352 * t368 + t350 * t367)));
-            let t410 = t401 + k(0.4) * t378 + t377;
-            let t411 = t404 + k(0.4) * t386 + t385;
-            let t412 = t406 - k(0.4) * t396 - t393;
-            let t413 = k(2.0) * (t397 * t412 - (t387 * t411 + t379 * t410)) + t407;
-            let t414 = k(2.0) * t378;
-            let t415 = k(2.0) * t386;
-            let t416 = k(2.0) * t396;
-            let t417 = t416 * t243 + (t415 * t239 + t414 * t235);
-            let t418 = t416 * t309 - (t415 * t307 + t414 * t308);
-            let t419 = t416 * t355 - (t415 * t353 - t414 * t354);
-            let t420 = t419 * t365 + (t418 * t351 + t417 * t338);
-            let t421 = t417 * t351;
-            let t422 = t419 * t370 + t417 * t365;
-            let t423 = k(0.2) * t341;
-            let t424 = k(0.2) * t344;
-            let t425 = k(0.2) * t348;
-            let t426 = t419 * t376 + (t418 * t375 + t417 * t374);
-            let t427 = t419 * t384 + (t418 * t383 + t417 * t382);
-            let t428 = t419 * t392 - (t418 * t391 + t417 * t390);
-            let t429 = t397 * t428 + (t387 * t427 + t379 * t426)
-                - (t425 * t393 - (t424 * t385 + t423 * t377));
-            let t430 = t425 * t406 + (t424 * t404 + t423 * t401);
-            let t431 = t430 + t429 + (t366 * t422 + (t352 * t421 + t350 * t420));
-            let t432 = t425 * t400 + (t424 * t399 + t423 * t398);
-            let t433 = t432 - k(0.4) * t341 - t426;
-            let t434 = t425 * t403 + (t424 * t402 + t423 * t399);
-            let t435 = t434 - k(0.4) * t344 - t427;
-            let t436 = t425 * t405 + (t424 * t403 + t423 * t400);
-            let t437 = t436 - k(0.4) * t348 + t428;
-            let t438 = t397 * t437 - (t387 * t435 + t379 * t433)
-                + (t425 * t412 + (t424 * t411 + t423 * t410));
-            let t439 = t438 + t430 + t431;
-            let t440 = t425 * t436 + (t424 * t434 + t423 * t432);
-            let t441 = t440 + k(2.0) * (t425 * t428 - (t424 * t427 + t423 * t426));
-            let t442 = t441 - (k(0.02) + (t419 * t422 + (t418 * t421 + t417 * t420)));
-            let t443 = k(2.0) * (t425 * t437 + (t424 * t435 + t423 * t433)) + t440;
-            let t444 = t443 - (k(0.025) + (k(0.0017) - t442));
-            let t445 = k(1.0) / t444;
-            let t446 = t445 * t439;
-            let t447 = t439 * t446 - (t413 - (k(0.025) + (k(0.0016) - t409)));
-            let t448 = k(0.5) - (t12 + link_1_e2 * link_1_e2);
-            let t449 = k(2.0) * t448;
-            let t450 = t10 * t349 + (t22 * t342 + t449 * t345);
-            let t451 = k(2.0) * (t395 + t394);
-            let t452 = k(2.0) * (t347 - t346);
-            let t453 = k(2.0) * (k(0.5) - (t343 + link_2_e3 * link_2_e3));
-            let t454 = t453 * t243 - (t452 * t239 - t451 * t235);
-            let t455 = t453 * t309 - (t451 * t308 - t452 * t307);
-            let t456 = t451 * t354 + t452 * t353 + t453 * t355;
-            let t457 = t456 * t376 + (t455 * t375 + t454 * t374);
-            let t458 = t456 * t384 + (t455 * t383 + t454 * t382);
-            let t459 = t456 * t392 - (t455 * t391 + t454 * t390);
-            let t460 = t397 * t459 + (t387 * t458 + t379 * t457);
-            let t461 = t460 + (t460 + (t456 * t371 + (t455 * t368 + t454 * t367)));
-            let t462 = t425 * t459 - (t424 * t458 + t423 * t457);
-            let t463 = t462 + (t462 - (t456 * t422 + (t455 * t421 + t454 * t420)));
-            let t464 = t463 * t446 - t461;
-            let t465 = t10 * t453 - (t22 * t451 - t449 * t452);
-            let t466 = t465 * t464 - t450 * t447;
-            let t467 = t455 * (t454 * t351)
-                + t454 * (t456 * t365 + (t455 * t351 + t454 * t338));
-            let t468 = t463 * (t445 * t463)
-                + (k(0.0002) + (t456 * (t456 * t370 + t454 * t365) + t467));
-            let t469 = t465 * t468 - t450 * t464;
-            let t470 = t433 + (t432 - k(0.5) * t341);
-            let t471 = t445 * t470;
-            let t472 = t470 - t444 * t471;
-            let t473 = t10 * t416 - (t449 * t415 + t22 * t414);
-            let t474 = t439 * t471 - (t410 + (t401 + k(0.5) * t378));
-            let t475 = t457 + t463 * t471;
-            let t476 = t465 * t475 - (t450 * t474 + t473 * t472);
-            let t477 = k(0.2) * t15;
-            let t478 = t435 + (t434 - k(0.5) * t344);
-            let t479 = t445 * t478;
-            let t480 = t478 - t444 * t479;
-            let t481 = t439 * t479 - (t411 + (t404 + k(0.5) * t386));
-            let t482 = t458 + t463 * t479;
-            let t483 = t465 * t482 - (t450 * t481 + t473 * t480);
-            let t484 = t20 + t19;
-            let t485 = k(0.2) * t484;
-            let t486 = t437 + (t436 - k(0.5) * t348);
-            let t487 = t445 * t486;
-            let t488 = t486 - t444 * t487;
-            let t489 = t487 * t439 - (t412 + (t406 - k(0.5) * t396));
-            let t490 = t459 - t487 * t463;
-            let t491 = t465 * t490 + (t450 * t489 + t473 * t488);
-            let t492 = k(0.2) * t3;
-            let t493 = t398 - t470 * t471;
-            let t494 = t399 - t478 * t471;
-            let t495 = t400 - t486 * t471;
-            let t496 = t492 * t495 - (t485 * t494 + t477 * t493);
-            let t497 = t402 - t478 * t479;
-            let t498 = t403 - t486 * t479;
-            let t499 = t492 * t498 - (t485 * t497 + t477 * t494);
-            let t500 = t405 - t486 * t487;
-            let t501 = t492 * t500 - (t485 * t498 + t477 * t495);
-            let t502 = t492 * t501 - (t485 * t499 + t477 * t496);
-            let t503 = t502 - k(2.0) * (t492 * t491 + (t485 * t483 + t477 * t476));
-            let t504 = k(0.03)
-                + (k(0.0016) - (t503 - (k(0.025) + (t465 * t469 - t450 * t466))));
-            let t505 = t496 + k(0.5) * t15 + t476;
-            let t506 = t499 + k(0.5) * t484 + t483;
-            let t507 = t501 - k(0.5) * t3 - t491;
-            let t508 = k(2.0) * (t492 * t507 - (t485 * t506 + t477 * t505)) + t502;
-            let t509 = link_6_wx * link_6_wz;
-            let t510 = k(2.0) * t57;
-            let t511 = link_6_wy * link_6_wz;
-            let t512 = link_6_wy * link_6_wy;
-            let t513 = t512 + link_6_wx * link_6_wx;
-            let t514 = link_5_wx * link_5_wz;
-            let t515 = link_5_wy * link_5_wz;
-            let t516 = link_5_wx * link_5_wx;
-            let t517 = link_5_wy * link_5_wy + t516;
-            let t518 = t141 * t517 - (t96 * t515 - t32 * t514);
-            let t519 = t518 + (t52 * t513 - (t29 * t511 - t510 * t509));
-            let t520 = k(0.1) * t519;
-            let t521 = k(2.0) * t62;
-            let t522 = t140 * t517 + (t95 * t515 - t39 * t514);
-            let t523 = t522 + (t53 * t513 + (t35 * t511 - t521 * t509));
-            let t524 = k(0.1) * t523;
-            let t525 = k(2.0) * t67;
-            let t526 = t142 * t517 + (t97 * t515 + t47 * t514);
-            let t527 = t526 + (t54 * t513 + (t43 * t511 + t525 * t509));
-            let t528 = k(0.1) * t527;
-            let t529 = t47 * t525 + (t39 * t521 + t32 * t510);
-            let t530 = t97 * t525 - (t95 * t521 + t96 * t510);
-            let t531 = t142 * t525 - (t140 * t521 - t141 * t510);
-            let t532 = link_6_wy * t55 + link_6_wz * t48;
-            let t533 = k(2.0)
-                * (link_5_wx * (link_6_wy * t99 + link_6_wz * t98) - link_5_wy * t532);
-            let t534 = link_6_wz * link_6_wz + t512;
-            let t535 = link_6_wx * link_6_wy;
-            let t536 = t509 * t144 - (t535 * t143 - t534 * t531) - t533
-                + (t517 * t531 + (t515 * t530 + t514 * t529));
-            let t537 = k(1.0) / (t143 * t99 - t144 * t98);
-            let t538 = link_5_wx * link_5_wy;
-            let t539 = link_5_wz * link_5_wz + t516;
-            let t540 = k(2.0)
-                * (link_5_wx * (link_6_wy * t144 + link_6_wz * t143) + link_5_wz * t532);
-            let t541 = t509 * t99 - (t535 * t98 - t534 * t530) + t540
-                + (t515 * t531 + (t539 * t530 - t538 * t529));
-            let t542 = t143 * t537 * t541 - t98 * t537 * t536;
-            let t543 = k(0.0066) * t542 + (t528 * t68 - (t524 * t63 - t520 * t58));
-            let t544 = t543 + (k(0.0015) * t509 - k(0.981) * t67);
-            let t545 = t144 * t537 * t541 - t99 * t537 * t536;
-            let t546 = k(0.0001) * t535 + k(0.0002) * t545;
-            let t547 = k(0.0014) * t511 - k(0.981) * t42;
-            let t548 = k(149.2537313432836) * t547;
-            let t549 = t528 * t86 + (t524 * t84 - t520 * t80) - k(0.05) * t527;
-            let t550 = t68 * t542 - t549 - (k(4.905) + t79 * t548);
-            let t551 = t528 * t80 + (t524 * t78 - t520 * t76) + k(0.05) * t519;
-            let t552 = t58 * t542 + t551 + t74 * t548;
-            let t553 = t528 * t84 + (t524 * t83 - t520 * t78) - k(0.05) * t523;
-            let t554 = t63 * t542 + t553 + t77 * t548;
-            let t555 = t66 * t554 + t61 * t552;
-            let t556 = k(0.0014) * t515
-                - (t555 - t73 * t550 + (t55 * t546 + t48 * t544));
-            let t557 = k(4.905) - t550;
-            let t558 = t104 * t554 + t103 * t552;
-            let t559 = k(0.0015) * t514
-                + (t558 + t105 * t550 + (t99 * t546 + t98 * t544));
-            let t560 = t105 * t557 - t558 - t559;
-            let t561 = t123 * t560;
-            let t562 = link_4_wx * link_4_wz;
-            let t563 = link_4_wy * link_4_wz;
-            let t564 = link_4_wy * link_4_wy;
-            let t565 = t564 + link_4_wx * link_4_wx;
-            let t566 = t245 * t565 - (t129 * t563 - t199 * t562);
-            let t567 = k(0.1) * (t566 + t518);
-            let t568 = t246 * t565 + (t132 * t563 - t200 * t562);
-            let t569 = k(0.1) * (t568 + t522);
-            let t570 = t247 * t565 + (t136 * t563 + t201 * t562);
-            let t571 = k(0.1) * (t570 + t526);
-            let t572 = link_5_wx * t152 + link_5_wz * t137;
-            let t573 = k(2.0)
-                * (link_4_wx * t572 - link_4_wy * (link_5_wx * t204 + link_5_wz * t202));
-            let t574 = t515 * t250 + (t539 * t249 - t538 * t248) + t573
-                + (t565 * t249 + (t563 * t139 + t562 * t203));
-            let t575 = k(1.0) / (t248 * t204 - t250 * t202);
-            let t576 = link_4_wz * link_4_wz + t564;
-            let t577 = link_4_wx * link_4_wy;
-            let t578 = k(2.0)
-                * (link_4_wy * (link_5_wx * t250 + link_5_wz * t248) + link_4_wz * t572);
-            let t579 = t515 * t204 + (t539 * t203 - t538 * t202) + t578
-                + (t562 * t249 - (t577 * t139 - t576 * t203));
-            let t580 = t248 * t575 * t579 - t202 * t575 * t574;
-            let t581 = t250 * t575 * t579 - t204 * t575 * t574;
-            let t582 = t151 * t581 + t125 * t580
-                + (t571 * t175 + (t569 * t167 - t567 * t159));
-            let t583 = t582 + (t115 * t561 - (t73 * t557 + t555 - t556));
-            let t584 = t138 * t580 + (t571 * t176 + (t569 * t168 - t567 * t160));
-            let t585 = t584 + (t560 - t122 * t561);
-            let t586 = t150 * t561 - (k(0.0001) * t538 + (t144 * t546 + t143 * t544));
-            let t587 = t155 * t581 + t151 * t580
-                - (t571 * t177 - (t569 * t169 - t567 * t161));
-            let t588 = t587 + t586;
-            let t589 = t177 * t581 - t175 * t580
-                - (t571 - (t571 * t190 + (t569 * t188 - t567 * t185)));
-            let t590 = t589 + (t557 - t173 * t561);
-            let t591 = t161 * t581 + t159 * t580
-                - (t567 + (t571 * t185 + (t569 * t184 - t567 * t183)));
-            let t592 = t591 - (t552 - t157 * t561);
-            let t593 = t169 * t581 + t167 * t580
-                + (t569 - (t571 * t188 + (t569 * t187 - t567 * t184)));
-            let t594 = t593 - (t554 - t165 * t561);
-            let t595 = t209 * t594 + t208 * t592;
-            let t596 = t595 - t210 * t590 + (t204 * t588 + (t203 * t585 + t202 * t583));
-            let t597 = k(4.905) + t590;
-            let t598 = t210 * t597 - t595 - (k(0.0014) * t563 + t596);
-            let t599 = t230 * t598;
+            let t400 = link_1_e0 * link_1_e2;
+            let t401 = link_1_e1 * link_1_e3;
+            let t402 = t401 - t400;
+            let t403 = k(2.0) * t402;
+            let t404 = T::fused(t403, t303, T::fused(t398, t298, t399 * t299));
+            let t405 = t364 + (k(0.25) - t363);
+            let t406 = t365 * t405;
+            let t407 = T::fused(t406, t355, -(t352 + t353));
+            let t408 = T::fused(t403, t276, -T::fused(t398, t270, t399 * t272));
+            let t409 = T::fused(t381, t203, -T::fused(-t379, t199, t378 * t198));
+            let t410 = T::fused(t383, t318, T::fused(-t382, t297, t409 * t307));
+            let t411 = T::fused(t383, t323, T::fused(t382, t321, t409 * t322));
+            let t412 = T::fused(t383, t336, T::fused(t382, t329, t409 * t332));
+            let t413 = k(0.1) * t412;
+            let t414 = T::fused(t383, t359, T::fused(t382, t357, t409 * t358));
+            let t415 = k(0.1) * t414;
+            let t416 = t415 + (t415 + T::fused(t304, t410, t319 * t411));
+            let t417 = t365 * t416;
+            let t418 = T::fused(
+                t417,
+                t355,
+                t413 + (t413 - T::fused(t277, t410, t290 * t411)),
+            );
+            let t419 = T::fused(t403, t381, -T::fused(-t398, t378, t399 * t379));
+            let t420 = T::fused(t419, t418, -T::fused(-t404, t397, t408 * t407));
+            let t421 = T::fused(t388, t396, t384);
+            let t422 = T::fused(-t388, t406, t386);
+            let t423 = T::fused(t417, t388, T::fused(t382, t410, t383 * t411));
+            let t424 = T::fused(t423, t419, T::fused(t404, t421, t422 * t408));
+            let t425 = T::fused(-t377, t420, t390 * t424);
+            let t426 = T::fused(t395, t396, t337);
+            let t427 = T::fused(-t405, t396, t349);
+            let t428 = T::fused(t416, t396, t412);
+            let t429 = T::fused(t419, t428, T::fused(t404, t426, t408 * t427));
+            let t430 = T::fused(t405, t406, t360);
+            let t431 = T::fused(-t416, t406, t414);
+            let t432 = T::fused(t419, t431, T::fused(t404, t427, t408 * t430));
+            let t433 = T::fused(
+                t382,
+                T::fused(t383, t328, T::fused(t382, t326, t409 * t327)),
+                t409 * T::fused(t383, t331, T::fused(t382, t327, t409 * t330)),
+            );
+            let t434 = T::fused(
+                t383,
+                T::fused(t383, t335, T::fused(t382, t328, t409 * t331)),
+                t433,
+            );
+            let t435 = T::fused(t416, t417, t434);
+            let t436 = T::fused(t419, t435, T::fused(t404, t428, t408 * t431));
+            let t437 = T::fused(t419, t436, T::fused(t404, t429, t408 * t432));
+            let t438 = k(0.01) * t437;
+            let t439 = T::fused(-k(0.2), t425, t438)
+                - (k(0.025) - T::fused(-t377, t391, t390 * t394));
+            let t440 = k(0.1) * t437;
+            let t441 = k(0.25) - t440 + t425;
+            let t442 = T::fused(
+                link_5_wz,
+                t112,
+                -T::fused(link_5_wx, t49, link_5_wy * t38),
+            );
+            let t443 = link_6_wx + t442;
+            let t444 = T::fused(
+                link_5_wz,
+                t86,
+                -T::fused(link_5_wx, t18, link_5_wy * t41),
+            );
+            let t445 = link_6_wy + t444;
+            let t446 = T::fused(
+                link_5_wz,
+                t87,
+                -T::fused(link_5_wx, t26, link_5_wy * t48),
+            );
+            let t447 = link_6_wz - t446;
+            let t448 = T::fused(t447, t447, t445 * t445) / t49;
+            let t449 = T::fused(-link_6_wy, t442, link_6_wx * t444)
+                - T::fused(t445, t443, t18 * t448);
+            let t450 = T::fused(-k(0.0002), t449, k(0.0001) * (link_6_wx * link_6_wy));
+            let t451 = T::fused(link_6_wx, t446, link_6_wz * t442)
+                - T::fused(-t447, t443, t26 * t448);
+            let t452 = k(0.1) * link_5_wx;
+            let t453 = link_5_wz * t452;
+            let t454 = k(0.1) * link_5_wy;
+            let t455 = link_5_wz * t454;
+            let t456 = T::fused(link_5_wy, t454, link_5_wx * t452);
+            let t457 = k(0.1) * link_6_wx;
+            let t458 = T::fused(
+                link_6_wz,
+                t457,
+                T::fused(t456, t112, T::fused(t453, t49, t455 * t38)),
+            );
+            let t459 = T::fused(k(0.0066), t451, k(0.05) * t458)
+                + T::fused(-k(0.981), t32, k(0.0015) * (link_6_wx * link_6_wz));
+            let t460 = T::fused(-k(9.81), t32, T::fused(k(0.5), t458, k(0.05) * t451));
+            let t461 = T::fused(-k(0.981), t12, k(0.0014) * (link_6_wy * link_6_wz));
+            let t462 = k(0.1) * link_6_wy;
+            let t463 = T::fused(
+                link_6_wz,
+                t462,
+                T::fused(t456, t86, T::fused(t453, t18, t455 * t41)),
+            );
+            let t464 = T::fused(
+                k(0.12686567164179105),
+                t463,
+                -T::fused(k(9.81), t12, k(7.462686567164179) * t461),
+            );
+            let t465 = T::fused(link_6_wy, t462, link_6_wx * t457)
+                + T::fused(t456, t87, T::fused(t453, t26, t455 * t48));
+            let t466 = T::fused(-k(9.81), t24, k(0.5) * t465);
+            let t467 = T::fused(t48, t466, T::fused(t38, t460, t41 * t464));
+            let t468 = T::fused(
+                k(0.0014),
+                link_5_wy * link_5_wz,
+                T::fused(k(0.1), t467, -T::fused(t26, t450, t18 * t459)),
+            );
+            let t469 = T::fused(-k(9.81), t36, t467);
+            let t470 = T::fused(t26, t466, T::fused(t49, t460, t18 * t464));
+            let t471 = T::fused(
+                k(0.0015),
+                link_5_wx * link_5_wz,
+                T::fused(k(0.1), t470, T::fused(t48, t450, t41 * t459)),
+            );
+            let t472 = T::fused(-k(9.81), t16, t470);
+            let t473 = T::fused(k(0.1), t472, t471);
+            let t474 = t69 * t473;
+            let t475 = k(0.1) * link_4_wx;
+            let t476 = link_4_wz * t475;
+            let t477 = k(0.1) * link_4_wy;
+            let t478 = link_4_wz * t477;
+            let t479 = T::fused(link_4_wy, t477, link_4_wx * t475);
+            let t480 = t453 + T::fused(t479, t182, T::fused(t476, t107, t478 * t81));
+            let t481 = t455 + T::fused(t479, t209, T::fused(t476, t111, t478 * t144));
+            let t482 = t456 + T::fused(t479, t183, T::fused(t476, t121, t478 * t94));
+            let t483 = T::fused(
+                link_4_wz,
+                t209,
+                -T::fused(link_4_wx, t111, link_4_wy * t144),
+            );
+            let t484 = link_5_wy + t483;
+            let t485 = T::fused(
+                link_4_wz,
+                t183,
+                -T::fused(link_4_wx, t121, link_4_wy * t94),
+            );
+            let t486 = link_5_wz - t485;
+            let t487 = T::fused(
+                link_4_wz,
+                t182,
+                -T::fused(link_4_wx, t107, link_4_wy * t81),
+            );
+            let t488 = link_5_wx + t487;
+            let t489 = T::fused(t486, t486, t488 * t488) / t144;
+            let t490 = T::fused(link_5_wz, t483, link_5_wy * t485)
+                - T::fused(-t486, t484, t94 * t489);
+            let t491 = T::fused(-link_5_wy, t487, link_5_wx * t483)
+                + T::fused(t488, t484, t81 * t489);
+            let t492 = T::fused(t71, t490, t93 * t491)
+                + T::fused(t120, t482, T::fused(-t100, t480, t110 * t481));
+            let t493 = t492 - T::fused(t60, t474, T::fused(k(0.1), t469, t468));
+            let t494 = T::fused(
+                t92,
+                t474,
+                -T::fused(
+                    k(0.0001),
+                    link_5_wx * link_5_wy,
+                    T::fused(t87, t450, t86 * t459),
+                ),
+            );
+            let t495 = T::fused(t93, t490, t96 * t491)
+                + T::fused(t125, t482, T::fused(t123, t480, t124 * t481));
+            let t496 = t495 - t494;
+            let t497 = T::fused(-t100, t490, t123 * t491)
+                - (t480 - T::fused(t130, t482, T::fused(t128, t480, t129 * t481)));
+            let t498 = t497 - T::fused(-t98, t474, t472);
+            let t499 = T::fused(t110, t490, t124 * t491)
+                - (t481 - T::fused(t133, t482, T::fused(t129, t480, t132 * t481)));
+            let t500 = t499 - T::fused(t108, t474, t469);
+            let t501 = T::fused(
+                -k(9.81),
+                t84,
+                T::fused(t87, t466, T::fused(t112, t460, t86 * t464)),
+            );
+            let t502 = T::fused(t120, t490, t125 * t491)
+                - (t482 - T::fused(t135, t482, T::fused(t130, t480, t133 * t481)));
+            let t503 = t502 - T::fused(t118, t474, t501);
+            let t504 = T::fused(t121, t503, T::fused(t107, t498, t111 * t500));
+            let t505 = T::fused(
+                k(0.0015),
+                link_4_wx * link_4_wz,
+                -T::fused(k(0.1), t504, -T::fused(t81, t493, t94 * t496)),
+            );
+            let t506 = T::fused(k(9.81), t105, t504);
+            let t507 = T::fused(t94, t503, T::fused(t81, t498, t144 * t500));
+            let t508 = T::fused(
+                k(0.0014),
+                link_4_wy * link_4_wz,
+                -T::fused(k(0.1), t507, T::fused(t107, t493, t121 * t496)),
+            );
+            let t509 = T::fused(k(9.81), t79, t507);
+            let t510 = T::fused(k(0.1), t509, -t508);
+            let t511 = t165 * t510;
+            let t512 = k(0.1) * link_3_wx;
+            let t513 = link_3_wz * t512;
+            let t514 = k(0.1) * link_3_wy;
+            let t515 = link_3_wz * t514;
+            let t516 = T::fused(link_3_wy, t514, link_3_wx * t512);
+            let t517 = t476 + T::fused(t516, t309, T::fused(t513, t242, t515 * t204));
+            let t518 = t478 + T::fused(t516, t282, T::fused(t513, t177, t515 * t208));
+            let t519 = t479 + T::fused(t516, t283, T::fused(t513, t190, t515 * t219));
+            let t520 = T::fused(
+                link_3_wz,
+                t309,
+                -T::fused(link_3_wx, t242, link_3_wy * t204),
+            );
+            let t521 = link_4_wx + t520;
+            let t522 = T::fused(
+                link_3_wz,
+                t283,
+                -T::fused(link_3_wx, t190, link_3_wy * t219),
+            );
+            let t523 = link_4_wz - t522;
+            let t524 = T::fused(
+                link_3_wz,
+                t282,
+                -T::fused(link_3_wx, t177, link_3_wy * t208),
+            );
+            let t525 = link_4_wy + t524;
+            let t526 = T::fused(t523, t523, t525 * t525) / t242;
+            let t527 = T::fused(link_4_wx, t522, link_4_wz * t520)
+                - T::fused(-t523, t521, t190 * t526);
+            let t528 = T::fused(-link_4_wy, t520, link_4_wx * t524)
+                - T::fused(t525, t521, t177 * t526);
+            let t529 = T::fused(t167, t527, t189 * t528)
+                + T::fused(t218, t519, -T::fused(-t197, t517, t207 * t518));
+            let t530 = t529 + T::fused(t155, t511, T::fused(k(0.1), t506, -t505));
+            let t531 = T::fused(
+                t188,
+                t511,
+                T::fused(
+                    k(0.0001),
+                    link_4_wx * link_4_wy,
+                    T::fused(t182, t493, t183 * t496),
+                ),
+            );
+            let t532 = T::fused(t189, t527, t193 * t528)
+                + T::fused(t223, t519, T::fused(t221, t517, t222 * t518));
+            let t533 = t532 + t531;
+            let t534 = T::fused(
+                -k(1.5),
+                t517,
+                T::fused(t228, t519, T::fused(t226, t517, t227 * t518)),
+            );
+            let t535 = T::fused(t197, t527, t221 * t528) + t534
+                + T::fused(t195, t511, t506);
+            let t536 = T::fused(
+                -k(1.5),
+                t518,
+                T::fused(t231, t519, T::fused(t227, t517, t230 * t518)),
+            );
+            let t537 = T::fused(-t207, t527, t222 * t528) + t536
+                + T::fused(-t205, t511, t509);
+            let t538 = T::fused(
+                k(9.81),
+                t180,
+                T::fused(t183, t503, T::fused(t182, t498, t209 * t500)),
+            );
+            let t539 = T::fused(
+                -k(1.5),
+                t519,
+                T::fused(t235, t519, T::fused(t228, t517, t231 * t518)),
+            );
+            let t540 = T::fused(t218, t527, t223 * t528) + t539
+                + T::fused(t216, t511, t538);
+            let t541 = T::fused(t219, t540, T::fused(t204, t535, t208 * t537));
+            let t542 = T::fused(
+                k(0.0014),
+                link_3_wy * link_3_wz,
+                -T::fused(k(0.1), t541, T::fused(-t177, t530, t190 * t533)),
+            );
+            let t543 = T::fused(k(9.81), t202, t541);
+            let t544 = T::fused(t190, t540, T::fused(t242, t535, t177 * t537));
+            let t545 = T::fused(
+                k(0.0015),
+                link_3_wx * link_3_wz,
+                -T::fused(k(0.1), t544, -T::fused(-t208, t530, t219 * t533)),
+            );
+            let t546 = T::fused(k(9.81), t175, t544);
+            let t547 = T::fused(k(0.1), t546, -t545);
+            let t548 = t265 * t547;
+            let t549 = k(0.1) * link_2_wx;
+            let t550 = link_2_wz * t549;
+            let t551 = k(0.1) * link_2_wy;
+            let t552 = link_2_wz * t551;
+            let t553 = T::fused(link_2_wy, t551, link_2_wx * t549);
+            let t554 = t513 + T::fused(t553, t382, T::fused(t550, t304, t552 * t277));
+            let t555 = t515 + T::fused(t553, t409, T::fused(t550, t308, t552 * t344));
+            let t556 = t516 + T::fused(t553, t383, T::fused(t550, t319, t552 * t290));
+            let t557 = T::fused(
+                link_2_wz,
+                t409,
+                -T::fused(link_2_wx, t308, link_2_wy * t344),
+            );
+            let t558 = link_3_wy + t557;
+            let t559 = T::fused(
+                link_2_wz,
+                t383,
+                -T::fused(link_2_wx, t319, link_2_wy * t290),
+            );
+            let t560 = link_3_wz - t559;
+            let t561 = T::fused(
+                link_2_wz,
+                t382,
+                -T::fused(link_2_wx, t304, link_2_wy * t277),
+            );
+            let t562 = link_3_wx + t561;
+            let t563 = T::fused(t560, t560, t562 * t562) / t344;
+            let t564 = T::fused(link_3_wz, t557, link_3_wy * t559)
+                - T::fused(-t560, t558, t290 * t563);
+            let t565 = T::fused(-link_3_wy, t561, link_3_wx * t557)
+                + T::fused(t562, t558, t277 * t563);
+            let t566 = T::fused(t267, t564, t289 * t565)
+                + T::fused(t318, t556, T::fused(-t297, t554, t307 * t555));
+            let t567 = t566 + T::fused(t256, t548, T::fused(k(0.1), t543, -t542));
+            let t568 = T::fused(
+                t288,
+                t548,
+                T::fused(
+                    k(0.0001),
+                    link_3_wx * link_3_wy,
+                    T::fused(-t282, t530, t283 * t533),
+                ),
+            );
+            let t569 = T::fused(t289, t564, t293 * t565)
+                + T::fused(t323, t556, T::fused(t321, t554, t322 * t555));
+            let t570 = t569 + t568;
+            let t571 = T::fused(
+                -k(2.0),
+                t554,
+                T::fused(t328, t556, T::fused(t326, t554, t327 * t555)),
+            );
+            let t572 = T::fused(-t297, t564, t321 * t565) + t571
+                + T::fused(-t295, t548, t546);
+            let t573 = T::fused(
+                -k(2.0),
+                t555,
+                T::fused(t331, t556, T::fused(t327, t554, t330 * t555)),
+            );
+            let t574 = T::fused(t307, t564, t322 * t565) + t573
+                + T::fused(t305, t548, t543);
+            let t575 = T::fused(
+                k(9.81),
+                t280,
+                T::fused(t283, t540, T::fused(t309, t535, t282 * t537)),
+            );
+            let t576 = T::fused(
+                -k(2.0),
+                t556,
+                T::fused(t335, t556, T::fused(t328, t554, t331 * t555)),
+            );
+            let t577 = T::fused(t318, t564, t323 * t565) + t576
+                + T::fused(t316, t548, t575);
+            let t578 = T::fused(t319, t577, T::fused(t304, t572, t308 * t574));
+            let t579 = T::fused(
+                k(0.0015),
+                link_2_wx * link_2_wz,
+                -T::fused(k(0.1), t578, -T::fused(t277, t567, t290 * t570)),
+            );
+            let t580 = T::fused(k(9.81), t302, t578);
+            let t581 = T::fused(t290, t577, T::fused(t277, t572, t344 * t574));
+            let t582 = T::fused(
+                k(0.0014),
+                link_2_wy * link_2_wz,
+                -T::fused(k(0.1), t581, T::fused(t304, t567, t319 * t570)),
+            );
+            let t583 = T::fused(k(9.81), t275, t581);
+            let t584 = T::fused(k(0.1), t583, -t582);
+            let t585 = t365 * t584;
+            let t586 = k(0.1) * link_1_wx;
+            let t587 = link_1_wz * t586;
+            let t588 = T::fused(t376, t303, -T::fused(t373, t298, t370 * t299));
+            let t589 = k(0.1) * link_1_wy;
+            let t590 = link_1_wz * t589;
+            let t591 = k(2.0) * (t401 + t400);
+            let t592 = k(2.0) * (t375 - t374);
+            let t593 = k(2.0) * (k(0.5) - T::fused(link_1_e3, link_1_e3, t368));
+            let t594 = T::fused(t593, t303, -T::fused(-t591, t298, t592 * t299));
+            let t595 = T::fused(link_1_wy, t589, link_1_wx * t586);
+            let t596 = t550 + T::fused(t595, t594, T::fused(t587, t404, t590 * t588));
+            let t597 = T::fused(t593, t276, -T::fused(-t592, t272, t591 * t270));
+            let t598 = t552 + T::fused(t595, t597, T::fused(t587, t408, t590 * t377));
+            let t599 = T::fused(t593, t381, T::fused(t592, t379, t591 * t378));
             (
-                t400,
                 t402,
                 t403,
+                t404,
                 t405,
-                t414,
-                t415,
+                t407,
+                t408,
+                t409,
                 t416,
-                t417,
                 t418,
                 t419,
+                t420,
+                t421,
+                t422,
                 t423,
                 t424,
-                t425,
+                t426,
+                t427,
+                t428,
+                t429,
+                t430,
+                t431,
+                t432,
+                t435,
+                t436,
+                t438,
                 t439,
-                t444,
-                t445,
-                t447,
-                t448,
+                t440,
+                t441,
                 t449,
-                t450,
                 t451,
-                t452,
-                t453,
-                t454,
-                t455,
-                t456,
+                t458,
+                t461,
                 t463,
-                t464,
                 t465,
-                t466,
-                t468,
-                t469,
-                t470,
-                t472,
                 t473,
-                t474,
-                t475,
-                t476,
-                t477,
-                t478,
                 t480,
                 t481,
                 t482,
-                t483,
-                t484,
-                t485,
-                t486,
-                t488,
-                t489,
                 t490,
                 t491,
-                t492,
-                t493,
-                t494,
-                t495,
-                t496,
-                t497,
-                t498,
-                t499,
-                t500,
-                t501,
-                t504,
-                t505,
-                t506,
-                t507,
-                t508,
-                t520,
-                t524,
+                t510,
+                t517,
+                t518,
+                t519,
+                t527,
                 t528,
-                t529,
-                t530,
-                t531,
-                t542,
-                t545,
                 t547,
-                t560,
-                t562,
-                t566,
+                t553,
+                t554,
+                t555,
+                t556,
+                t564,
+                t565,
                 t567,
-                t568,
-                t569,
                 t570,
-                t571,
-                t576,
+                t572,
+                t574,
                 t577,
+                t579,
                 t580,
-                t581,
                 t583,
+                t584,
                 t585,
+                t587,
                 t588,
                 t590,
+                t591,
                 t592,
+                t593,
                 t594,
+                t595,
+                t596,
                 t597,
                 t598,
                 t599,
             )
         };
         let (
-            t749,
-            t752,
-            t754,
-            t756,
-            t758,
-            t763,
-            t764,
-            t766,
-            t768,
-            t770,
-            t772,
-            t773,
-            t778,
-            t780,
-            t782,
-            t784,
-            t786,
-            t789,
-            t791,
-            t792,
-            t794,
-            t795,
-            t796,
-            t797,
-            t798,
-            t799,
+            t638,
+            t645,
+            t646,
+            t649,
+            t651,
+            t653,
+            t654,
+            t659,
+            t661,
+            t662,
+            t664,
+            t666,
+            t671,
+            t672,
+            t673,
+            t675,
+            t677,
+            t679,
+            t680,
+            t685,
+            t687,
+            t688,
+            t690,
+            t692,
+            t697,
+            t698,
+            t699,
+            t701,
+            t703,
+            t705,
+            t708,
+            t709,
+            t711,
+            t712,
+            t713,
         ) = {
-            let t600 = link_3_wx * link_3_wz;
-            let t601 = link_3_wy * link_3_wz;
-            let t602 = link_3_wx * link_3_wx;
-            let t603 = link_3_wy * link_3_wy + t602;
-            let t604 = t354 * t603 - (t308 * t601 - t235 * t600);
-            let t605 = t604 + t566;
-            let t606 = k(0.1) * t605;
-            let t607 = t353 * t603 + (t307 * t601 - t239 * t600);
-            let t608 = t607 + t568;
-            let t609 = k(0.1) * t608;
-            let t610 = t355 * t603 + (t309 * t601 + t243 * t600);
-            let t611 = t610 + t570;
-            let t612 = k(0.1) * t611;
-            let t613 = t612 * t283 + (t609 * t275 - t606 * t266) - (t598 - t229 * t599);
-            let t614 = t172 * t594 + t164 * t592;
-            let t615 = t614 + t182 * t590 + (t152 * t588 + (t139 * t585 + t137 * t583));
-            let t616 = t224 * t599 - (t182 * t597 + t614 - (k(0.0015) * t562 - t615));
-            let t617 = link_4_wy * t259 + link_4_wz * t244;
-            let t618 = k(2.0)
-                * (link_3_wx * (link_4_wy * t311 + link_4_wz * t310) - link_3_wy * t617);
-            let t619 = t562 * t357 - (t577 * t356 - t576 * t358) - t618
-                + (t603 * t358 + (t601 * t312 + t600 * t267));
-            let t620 = k(1.0) / (t356 * t311 - t357 * t310);
-            let t621 = link_3_wx * link_3_wy;
-            let t622 = link_3_wz * link_3_wz + t602;
-            let t623 = k(2.0)
-                * (link_3_wx * (link_4_wy * t357 + link_4_wz * t356) + link_3_wz * t617);
-            let t624 = t562 * t311 - (t577 * t310 - t576 * t312) + t623
-                + (t601 * t358 + (t622 * t312 - t621 * t267));
-            let t625 = t356 * t620 * t624 - t310 * t620 * t619;
-            let t626 = t357 * t620 * t624 - t311 * t620 * t619;
-            let t627 = t258 * t626 + t232 * t625
-                + (t612 * t284 + (t609 * t276 - t606 * t268));
-            let t628 = t627 - t616;
-            let t629 = k(0.0001) * t577 - (t250 * t588 + (t249 * t585 + t248 * t583));
-            let t630 = t262 * t626 + t258 * t625
-                - (t612 * t285 - (t609 * t277 - t606 * t269));
-            let t631 = t630 - (t257 * t599 + t629);
-            let t632 = t612 * t298 + (t609 * t296 - t606 * t293) - k(0.15) * t611;
-            let t633 = t285 * t626 - t284 * t625 - t632 - (t597 - t281 * t599);
-            let t634 = t612 * t293 + (t609 * t292 - t606 * t291) + k(0.15) * t605;
-            let t635 = t269 * t626 + t268 * t625 + t634 - (t592 + t264 * t599);
-            let t636 = t612 * t296 + (t609 * t295 - t606 * t292) - k(0.15) * t608;
-            let t637 = t277 * t626 + t276 * t625 + t636 - (t594 + t273 * t599);
-            let t638 = t280 * t637 + t272 * t635;
-            let t639 = t638 - t290 * t633 - (t259 * t631 + (t244 * t628 + t267 * t613));
-            let t640 = k(4.905) - t633;
-            let t641 = t317 * t637 + t316 * t635;
-            let t642 = t641 + t318 * t633 - (t311 * t631 + (t310 * t628 + t312 * t613));
-            let t643 = t318 * t640 - t641 - (k(0.0015) * t600 + t642);
-            let t644 = t336 * t643;
-            let t645 = t328 * t644 - (t290 * t640 + t638 - (k(0.0014) * t601 - t639));
-            let t646 = link_2_wx * link_2_wz;
-            let t647 = link_2_wy * link_2_wz;
-            let t648 = link_2_wy * link_2_wy;
-            let t649 = t648 + link_2_wx * link_2_wx;
-            let t650 = t451 * t649 - (t342 * t647 - t414 * t646);
-            let t651 = t650 + t604;
-            let t652 = k(0.1) * t651;
-            let t653 = t452 * t649 + (t345 * t647 - t415 * t646);
-            let t654 = t653 + t607;
+            let t600 = t553 + T::fused(t595, t599, T::fused(t587, t419, t590 * t390));
+            let t601 = T::fused(
+                link_1_wz,
+                t594,
+                -T::fused(link_1_wx, t404, link_1_wy * t588),
+            );
+            let t602 = link_2_wx + t601;
+            let t603 = T::fused(
+                link_1_wz,
+                t599,
+                -T::fused(link_1_wx, t419, link_1_wy * t390),
+            );
+            let t604 = link_2_wz - t603;
+            let t605 = T::fused(
+                link_1_wz,
+                t597,
+                -T::fused(link_1_wx, t408, link_1_wy * t377),
+            );
+            let t606 = link_2_wy + t605;
+            let t607 = T::fused(t604, t604, t606 * t606) / t404;
+            let t608 = T::fused(link_2_wx, t603, link_2_wz * t601)
+                - T::fused(-t604, t602, t419 * t607);
+            let t609 = T::fused(-link_2_wy, t601, link_2_wx * t605)
+                - T::fused(t606, t602, t408 * t607);
+            let t610 = T::fused(t367, t608, t389 * t609)
+                + T::fused(t418, t600, -T::fused(-t397, t596, t407 * t598));
+            let t611 = T::fused(
+                t388,
+                t585,
+                T::fused(
+                    k(0.0001),
+                    link_2_wx * link_2_wy,
+                    T::fused(t382, t567, t383 * t570),
+                ),
+            );
+            let t612 = T::fused(t389, t608, t393 * t609)
+                + T::fused(t423, t600, T::fused(t421, t596, t422 * t598));
+            let t613 = T::fused(
+                -t377,
+                t610 + T::fused(t355, t585, T::fused(k(0.1), t580, -t579)),
+                t390 * (t612 + t611),
+            );
+            let t614 = T::fused(
+                -k(2.5),
+                t596,
+                T::fused(t428, t600, T::fused(t426, t596, t427 * t598)),
+            );
+            let t615 = T::fused(t397, t608, t421 * t609) + t614
+                + T::fused(t395, t585, t580);
+            let t616 = T::fused(
+                -k(2.5),
+                t598,
+                T::fused(t431, t600, T::fused(t427, t596, t430 * t598)),
+            );
+            let t617 = T::fused(-t407, t608, t422 * t609) + t616
+                + T::fused(-t405, t585, t583);
+            let t618 = T::fused(
+                k(9.81),
+                t380,
+                T::fused(t383, t577, T::fused(t382, t572, t409 * t574)),
+            );
+            let t619 = T::fused(
+                -k(2.5),
+                t600,
+                T::fused(t435, t600, T::fused(t428, t596, t431 * t598)),
+            );
+            let t620 = T::fused(t418, t608, t423 * t609) + t619
+                + T::fused(t416, t585, t618);
+            let t621 = T::fused(t419, t620, T::fused(t404, t615, t408 * t617));
+            let t622 = link_1_wx * link_1_wz;
+            let t623 = T::fused(
+                k(0.1),
+                T::fused(k(9.81), t402, t621),
+                -T::fused(k(0.0015), t622, -T::fused(k(0.1), t621, -t613)),
+            );
+            let t624 = link_1_wy * link_1_wz;
+            let t625 = link_1_wx * link_1_wx;
+            let t626 = T::fused(link_1_wy, link_1_wy, t625);
+            let t627 = k(0.1)
+                * T::fused(t591, t626, -T::fused(-t398, t622, t373 * t624));
+            let t628 = k(0.1) * T::fused(t592, t626, T::fused(-t399, t622, t370 * t624));
+            let t629 = k(0.1) * T::fused(t593, t626, T::fused(t403, t622, t376 * t624));
+            let t630 = T::fused(t403, t629, -T::fused(-t398, t627, t399 * t628));
+            let t631 = T::fused(
+                -t377,
+                T::fused(t390, t418, -T::fused(-t588, t397, t377 * t407)),
+                t390 * T::fused(t390, t423, T::fused(t588, t421, t377 * t422)),
+            );
+            let t632 = T::fused(t390, t436, T::fused(t588, t429, t377 * t432));
+            let t633 = k(0.1) * t632;
+            let t634 = t633 - t631;
+            let t635 = T::fused(t376, t629, T::fused(-t373, t627, t370 * t628));
+            let t636 = T::fused(
+                -t377,
+                T::fused(t599, t418, -T::fused(-t594, t397, t597 * t407)),
+                t390 * T::fused(t599, t423, T::fused(t594, t421, t597 * t422)),
+            );
+            let t637 = k(0.1) * T::fused(t599, t436, T::fused(t594, t429, t597 * t432));
+            let t638 = T::fused(t593, t629, T::fused(t591, t627, t592 * t628));
+            let t639 = T::fused(
+                t638,
+                t637 + (t637 - t636),
+                T::fused(-(k(0.3) - t440 + t441), t630, t635 * (t633 + t634)),
+            );
+            let t640 = T::fused(
+                -t377,
+                T::fused(-t408, t367, t419 * t389),
+                t390 * T::fused(-t408, t389, t419 * t393),
+            );
+            let t641 = T::fused(-t408, t420, t419 * t424);
+            let t642 = k(0.01) * t632;
+            let t643 = T::fused(k(0.1), t634 + (t633 + t641), t642)
+                + (T::fused(-k(0.1), t631 - t641, t642) - t640);
+            let t644 = T::fused(link_1_wz, link_1_wz, t625) * (k(0.5) / t369);
+            let t645 = T::fused(-t592, t644, t624);
+            let t646 = T::fused(-t399, t644, link_1_wx * link_1_wy);
+            let t647 = k(0.1) * T::fused(-t597, t420, t599 * t424);
+            let t648 = T::fused(
+                t645,
+                t643,
+                (t647 + (t647 - T::fused(-t597, t391, t599 * t394))) * t646,
+            );
+            let t649 = (t648 + t639 + t623)
+                / (T::fused(k(0.2), t441, -t438) + (k(0.03) + (k(0.0016) - t439)));
+            let t650 = k(0.1) * t649;
+            let t651 = t630 + t650;
+            let t652 = k(0.1) * t645;
+            let t653 = t652 + t635;
+            let t654 = t608 + T::fused(-t597, t646, T::fused(-t645, t408, t377 * t649));
             let t655 = k(0.1) * t654;
-            let t656 = t453 * t649 + (t349 * t647 + t416 * t646);
-            let t657 = t656 + t610;
-            let t658 = k(0.1) * t657;
-            let t659 = link_3_wx * t366 + link_3_wz * t350;
-            let t660 = k(2.0)
-                * (link_2_wx * t659 - link_2_wy * (link_3_wx * t419 + link_3_wz * t417));
-            let t661 = t601 * t456 + (t622 * t455 - t621 * t454) + t660
-                + (t649 * t455 + (t647 * t352 + t646 * t418));
-            let t662 = k(1.0) / (t454 * t419 - t456 * t417);
-            let t663 = link_2_wz * link_2_wz + t648;
-            let t664 = link_2_wx * link_2_wy;
-            let t665 = k(2.0)
-                * (link_2_wy * (link_3_wx * t456 + link_3_wz * t454) + link_2_wz * t659);
-            let t666 = t601 * t419 + (t622 * t418 - t621 * t417) + t665
-                + (t646 * t455 - (t664 * t352 - t663 * t418));
-            let t667 = t454 * t662 * t666 - t417 * t662 * t661;
-            let t668 = t456 * t662 * t666 - t419 * t662 * t661;
-            let t669 = t365 * t668 + t338 * t667
-                + (t658 * t390 + (t655 * t382 - t652 * t374));
-            let t670 = t669 + t645;
-            let t671 = t351 * t667 + (t658 * t391 + (t655 * t383 - t652 * t375));
-            let t672 = t671 + (t643 - t335 * t644);
-            let t673 = k(0.0001) * t621 - (t357 * t631 + (t356 * t628 + t358 * t613));
-            let t674 = t370 * t668 + t365 * t667
-                - (t658 * t392 - (t655 * t384 - t652 * t376));
-            let t675 = t674 + (t364 * t644 - t673);
-            let t676 = t658 * t405 + (t655 * t403 - t652 * t400) - k(0.2) * t657;
-            let t677 = t392 * t668 - t390 * t667 + t676 + (t640 - t388 * t644);
-            let t678 = t658 * t400 + (t655 * t399 - t652 * t398) + k(0.2) * t651;
-            let t679 = t376 * t668 + t374 * t667 - t678 - (t635 - t372 * t644);
-            let t680 = t658 * t403 + (t655 * t402 - t652 * t399) - k(0.2) * t654;
-            let t681 = t384 * t668 + t382 * t667 - t680 - (t637 - t380 * t644);
-            let t682 = t424 * t681 + t423 * t679;
-            let t683 = t682 - t425 * t677 + (t419 * t675 + (t418 * t672 + t417 * t670));
-            let t684 = k(4.905) + t677;
-            let t685 = t425 * t684 - t682 - (k(0.0014) * t647 + t683);
-            let t686 = t445 * t685;
-            let t687 = link_1_wx * link_1_wz;
-            let t688 = link_1_wy * link_1_wy + t5;
-            let t689 = t17 * t688 - (t22 * t11 - t16 * t687);
-            let t690 = t689 + t650;
+            let t656 = t650 + t651;
+            let t657 = t652 + t653;
+            let t658 = t596 + T::fused(t594, t638, T::fused(t404, t656, t588 * t657));
+            let t659 = t658 + t655;
+            let t660 = t598 + T::fused(t597, t638, T::fused(t408, t656, t377 * t657));
+            let t661 = t600 + T::fused(t599, t638, T::fused(t419, t656, t390 * t657));
+            let t662 = t609 - T::fused(-t599, t646, T::fused(-t645, t419, t390 * t649));
+            let t663 = T::fused(t355, t654, t388 * t662)
+                + T::fused(t416, t661, -T::fused(-t395, t658, t405 * t660));
+            let t664 = t365 * (t584 + t663);
+            let t665 = k(0.1) * t664;
+            let t666 = t660 + t665;
+            let t667 = t655 + t659;
+            let t668 = t665 + t666;
+            let t669 = t554 + T::fused(t382, t661, T::fused(t304, t667, t277 * t668));
+            let t670 = t555 + T::fused(t409, t661, T::fused(t308, t667, t344 * t668));
+            let t671 = t556 + T::fused(t383, t661, T::fused(t319, t667, t290 * t668));
+            let t672 = t564 + T::fused(t382, t662, -T::fused(-t304, t664, t277 * t654));
+            let t673 = t565 + T::fused(t383, t662, -T::fused(-t319, t664, t290 * t654));
+            let t674 = T::fused(t256, t672, t288 * t673)
+                + T::fused(t316, t671, T::fused(-t295, t669, t305 * t670));
+            let t675 = t265 * (t547 + t674);
+            let t676 = k(0.1) * t675;
+            let t677 = t669 + t676;
+            let t678 = k(0.1) * t672;
+            let t679 = t678 + t670;
+            let t680 = t527 - T::fused(t282, t673, -T::fused(-t177, t672, t208 * t675));
+            let t681 = k(0.1) * t680;
+            let t682 = t676 + t677;
+            let t683 = t678 + t679;
+            let t684 = t517 + T::fused(t309, t671, T::fused(t242, t682, t204 * t683));
+            let t685 = t684 + t681;
+            let t686 = t518 + T::fused(t282, t671, T::fused(t177, t682, t208 * t683));
+            let t687 = t519 + T::fused(t283, t671, T::fused(t190, t682, t219 * t683));
+            let t688 = t528 + T::fused(t283, t673, -T::fused(-t190, t672, t219 * t675));
+            let t689 = T::fused(t155, t680, t188 * t688)
+                + T::fused(t216, t687, -T::fused(-t195, t684, t205 * t686));
+            let t690 = t165 * (t510 + t689);
             let t691 = k(0.1) * t690;
-            let t692 = k(2.0) * t484;
-            let t693 = k(2.0) * (t8 - t7);
-            let t694 = t693 * t688 + (t449 * t11 - t692 * t687);
-            let t695 = t694 + t653;
-            let t696 = k(0.1) * t695;
-            let t697 = t13 * t688 + (t10 * t11 + t4 * t687);
-            let t698 = t697 + t656;
-            let t699 = k(0.1) * t698;
-            let t700 = t699 * t488 + (t696 * t480 - t691 * t472) + (t685 - t444 * t686);
-            let t701 = t387 * t681 + t379 * t679;
-            let t702 = t701 + t397 * t677 + (t366 * t675 + (t352 * t672 + t350 * t670));
-            let t703 = t439 * t686 - (t397 * t684 + t701 - (k(0.0015) * t646 - t702));
-            let t704 = t4 * t416 + (t692 * t415 + t16 * t414);
-            let t705 = t13 * t416 - (t693 * t415 - t17 * t414);
-            let t706 = t4 * t349 - (t692 * t345 + t16 * t342);
-            let t707 = t4 * t453 - (t692 * t452 - t16 * t451);
-            let t708 = link_2_wy * t707 + link_2_wz * t706;
-            let t709 = k(2.0)
-                * (link_1_wx * (link_2_wy * t465 + link_2_wz * t450) - link_1_wy * t708);
-            let t710 = t13 * t349 - (t17 * t342 - t693 * t345);
-            let t711 = t17 * t451 + t693 * t452 + t13 * t453;
-            let t712 = t646 * t711 - (t664 * t710 - t663 * t705) - t709
-                + (t688 * t705 + (t11 * t473 + t687 * t704));
-            let t713 = k(1.0) / (t710 * t465 - t711 * t450);
-            let t714 = k(2.0)
-                * (link_1_wx * (link_2_wy * t711 + link_2_wz * t710) + link_1_wz * t708);
-            let t715 = t646 * t465 - (t664 * t450 - t663 * t473) + t714
-                + (t11 * t705 + (t6 * t473 - t0 * t704));
-            let t716 = t710 * t713 * t715 - t450 * t713 * t712;
-            let t717 = t711 * t713 * t715 - t465 * t713 * t712;
-            let t718 = t464 * t717 - t447 * t716
-                - (t699 * t489 + (t696 * t481 - t691 * t474));
-            let t719 = k(0.0001) * t664 - (t456 * t675 + (t455 * t672 + t454 * t670));
-            let t720 = t468 * t717 - t464 * t716
-                + (t699 * t490 - (t696 * t482 - t691 * t475));
-            let t721 = t465 * (t720 - (t463 * t686 - t719))
-                - (t450 * (t718 - t703) - t473 * t700);
-            let t722 = t699 * t500 + (t696 * t498 - t691 * t495) - k(0.25) * t698;
-            let t723 = t490 * t717 + t489 * t716 - t722 - (t684 - t486 * t686);
-            let t724 = t699 * t495 + (t696 * t494 - t691 * t493) + k(0.25) * t690;
-            let t725 = t475 * t717 - t474 * t716 + t724 - (t679 + t470 * t686);
-            let t726 = t699 * t498 + (t696 * t497 - t691 * t494) - k(0.25) * t695;
-            let t727 = t482 * t717 - t481 * t716 + t726 - (t681 + t478 * t686);
-            let t728 = t485 * t727 + t477 * t725;
-            let t729 = t492 * (k(4.905) - t723) - t728
-                - (k(0.0015) * t687 + (t728 + t492 * t723 + t721));
-            let t730 = k(0.1) * t689;
-            let t731 = k(0.1) * t694;
-            let t732 = t731 * (t506 + (t499 + k(0.6) * t484))
-                - t730 * (t505 + (t496 + k(0.6) * t15));
-            let t733 = k(0.1) * t697;
-            let t734 = t465 * (t707 * t468 - t706 * t464)
-                - t450 * (t707 * t464 - t706 * t447);
-            let t735 = k(0.2) * t448;
-            let t736 = k(0.2) * t9;
-            let t737 = t707 * t475 - (t706 * t474 + t704 * t472);
-            let t738 = t707 * t482 - (t706 * t481 + t704 * t480);
-            let t739 = t707 * t490 + (t706 * t489 + t704 * t488);
-            let t740 = t492 * t739 + (t485 * t738 + t477 * t737)
-                - (t736 * t491 - (t735 * t483 + t25 * t476));
-            let t741 = t736 * t501 + (t735 * t499 + t25 * t496);
-            let t742 = t736 * t495 + (t735 * t494 + t25 * t493) - k(0.5) * t21;
-            let t743 = t736 * t498 + (t735 * t497 + t25 * t494) - k(0.5) * t448;
-            let t744 = t736 * t500 + (t735 * t498 + t25 * t495) - k(0.5) * t9;
-            let t745 = t492 * (t744 + t739)
-                - (t485 * (t743 - t738) + t477 * (t742 - t737));
-            let t746 = t745 + (t736 * t507 + (t735 * t506 + t25 * t505)) + t741;
-            let t747 = t485 * (t711 * t482 - (t710 * t481 + t705 * t480))
-                + t477 * (t711 * t475 - (t710 * t474 + t705 * t472));
-            let t748 = t492 * (t711 * t490 + (t710 * t489 + t705 * t488)) + t747;
-            let t749 = t13 * t18 * t23 - t17 * t18 * t14;
-            let t750 = t749 * (t748 + (t748 + (t711 * t469 - t710 * t466)))
-                + t24 * (t746 + (t741 + t740 + t734));
-            let t751 = t750 + (t733 * (t507 + (t501 - k(0.6) * t3)) + t732) + t729;
-            let t752 = t751 / (t508 - t504);
-            let t753 = t477 * t752 + t25 * t24;
-            let t754 = t730 - t753;
-            let t755 = t485 * t752 + t735 * t24;
-            let t756 = t731 + t755;
-            let t757 = t492 * t752 - t736 * t24;
-            let t758 = t733 - t757;
-            let t759 = t691 - (t753 - t754);
-            let t760 = t696 + (t755 + t756);
-            let t761 = t699 - (t757 - t758);
-            let t762 = t705 * t749 + (t473 * t752 + t704 * t24);
-            let t763 = t716 - (t710 * t749 + (t450 * t752 + t706 * t24));
-            let t764 = t717 - (t711 * t749 + (t465 * t752 + t707 * t24));
-            let t765 = t463 * t764 - (t439 * t763 + t444 * t762)
-                - (t486 * t761 + (t478 * t760 - t470 * t759));
-            let t766 = t762 - t445 * (t685 - t765);
-            let t767 = t379 * t763 - t423 * t766;
-            let t768 = t759 + t767;
-            let t769 = t387 * t763 - t424 * t766;
-            let t770 = t760 - t769;
-            let t771 = t397 * t763 + t425 * t766;
-            let t772 = t761 + t771;
-            let t773 = t667 - (t454 * t764 + (t350 * t763 - t417 * t766));
-            let t774 = t652 + (t767 + t768);
-            let t775 = t655 - (t769 - t770);
-            let t776 = t658 + (t771 + t772);
-            let t777 = t455 * t764 + (t352 * t763 - t418 * t766);
-            let t778 = t668 - (t456 * t764 + (t366 * t763 - t419 * t766));
-            let t779 = t364 * t778 + (t335 * t777 + t328 * t773)
-                + (t388 * t776 + (t380 * t775 - t372 * t774));
-            let t780 = t777 - t336 * (t643 + t779);
-            let t781 = t316 * t780 - t272 * t773;
-            let t782 = t774 + t781;
-            let t783 = t317 * t780 - t280 * t773;
-            let t784 = t775 - t783;
-            let t785 = t318 * t780 + t290 * t773;
-            let t786 = t776 + t785;
-            let t787 = t606 + (t781 + t782);
-            let t788 = t609 - (t783 - t784);
-            let t789 = t612 + (t785 + t786);
-            let t790 = t358 * t778 - (t312 * t780 - t267 * t773);
-            let t791 = t625 - (t356 * t778 - (t310 * t780 - t244 * t773));
-            let t792 = t626 - (t357 * t778 - (t311 * t780 - t259 * t773));
-            let t793 = t257 * t792 + (t224 * t791 + t229 * t790)
-                + (t281 * t789 + (t273 * t788 - t264 * t787));
-            let t794 = t790 + t230 * (t598 - t793);
-            let t795 = t164 * t791 - t208 * t794;
-            let t796 = t787 + t795;
-            let t797 = t172 * t791 - t209 * t794;
-            let t798 = t788 - t797;
-            let t799 = t182 * t791 + t210 * t794;
+            let t692 = t686 + t691;
+            let t693 = t681 + t685;
+            let t694 = t691 + t692;
+            let t695 = t480 + T::fused(t182, t687, T::fused(t107, t693, t81 * t694));
+            let t696 = t481 + T::fused(t209, t687, T::fused(t111, t693, t144 * t694));
+            let t697 = t482 + T::fused(t183, t687, T::fused(t121, t693, t94 * t694));
+            let t698 = t490 + T::fused(t182, t688, -T::fused(-t107, t690, t81 * t680));
+            let t699 = t491 + T::fused(t183, t688, -T::fused(-t121, t690, t94 * t680));
+            let t700 = T::fused(t60, t698, t92 * t699)
+                + T::fused(t118, t697, T::fused(-t98, t695, t108 * t696));
+            let t701 = t69 * (t473 - t700);
+            let t702 = k(0.1) * t701;
+            let t703 = t695 - t702;
+            let t704 = k(0.1) * t698;
+            let t705 = t704 + t696;
+            let t706 = t702 - t703;
+            let t707 = t704 + t705;
+            let t708 = t451 - T::fused(t86, t699, T::fused(t18, t698, t41 * t701));
+            let t709 = T::fused(
+                k(0.1),
+                t708,
+                t458 + T::fused(t112, t697, T::fused(-t49, t706, t38 * t707)),
+            );
+            let t710 = t463 + T::fused(t86, t697, T::fused(-t18, t706, t41 * t707));
+            let t711 = T::fused(k(0.05), t710, t461);
+            let t712 = T::fused(-k(14.925373134328359), t711, t710);
+            let t713 = t465 + T::fused(t87, t697, T::fused(-t26, t706, t48 * t707));
             (
-                t749,
-                t752,
-                t754,
-                t756,
-                t758,
-                t763,
-                t764,
-                t766,
-                t768,
-                t770,
-                t772,
-                t773,
-                t778,
-                t780,
-                t782,
-                t784,
-                t786,
-                t789,
-                t791,
-                t792,
-                t794,
-                t795,
-                t796,
-                t797,
-                t798,
-                t799,
+                t638,
+                t645,
+                t646,
+                t649,
+                t651,
+                t653,
+                t654,
+                t659,
+                t661,
+                t662,
+                t664,
+                t666,
+                t671,
+                t672,
+                t673,
+                t675,
+                t677,
+                t679,
+                t680,
+                t685,
+                t687,
+                t688,
+                t690,
+                t692,
+                t697,
+                t698,
+                t699,
+                t701,
+                t703,
+                t705,
+                t708,
+                t709,
+                t711,
+                t712,
+                t713,
             )
         };
-        let (t800, t801, t806, t808, t810, t812, t814, t815, t816, t817, t820, t821) = {
-            let t800 = t789 + t799;
-            let t801 = t580 - (t248 * t792 + (t137 * t791 - t202 * t794));
-            let t802 = t567 + (t795 + t796);
-            let t803 = t569 - (t797 - t798);
-            let t804 = t571 + (t799 + t800);
-            let t805 = t249 * t792 + (t139 * t791 - t203 * t794);
-            let t806 = t581 - (t250 * t792 + (t152 * t791 - t204 * t794));
-            let t807 = t150 * t806 + (t122 * t805 + t115 * t801)
-                + (t173 * t804 + (t165 * t803 - t157 * t802));
-            let t808 = t805 - t123 * (t560 + t807);
-            let t809 = t103 * t808 - t61 * t801;
-            let t810 = t802 + t809;
-            let t811 = t104 * t808 - t66 * t801;
-            let t812 = t803 - t811;
-            let t813 = t105 * t808 + t73 * t801;
-            let t814 = t804 + t813;
-            let t815 = t520 + (t809 + t810);
-            let t816 = t524 - (t811 - t812);
-            let t817 = t528 + (t813 + t814);
-            let t818 = t531 * t806 - (t530 * t808 - t529 * t801);
-            let t819 = k(0.0067) * t818 + (t79 * t817 + (t77 * t816 - t74 * t815));
-            let t820 = t818 - k(149.2537313432836) * (t547 + t819);
-            let t821 = t542 - (t143 * t806 - (t98 * t808 - t48 * t801));
-            (t800, t801, t806, t808, t810, t812, t814, t815, t816, t817, t820, t821)
-        };
         *out = [
-            t754,
-            t756,
-            -t758,
-            -t24,
-            -t752,
-            t749,
-            t768,
-            t770,
-            -t772,
-            -t766,
-            t763,
-            -t764,
-            t782,
-            t784,
-            -t786,
-            -t773,
-            t780,
-            t778,
-            t796,
-            t798,
-            -t800,
-            -t794,
-            t791,
-            -t792,
-            t810,
-            t812,
-            -t814,
-            -t801,
-            t808,
-            t806,
-            t815 + (k(0.2) * t57 * t821 - k(0.2) * t28 * t820),
-            t816 - (k(0.2) * t62 * t821 - k(0.2) * t34 * t820),
-            -(t817 + (k(0.2) * t67 * t821 + k(0.2) * t42 * t820)),
-            -t820,
-            t821,
-            t144 * t806 - (t99 * t808 - t55 * t801) - t545,
+            T::fused(t591, t638, -T::fused(-t398, t651, t373 * t653)),
+            T::fused(t592, t638, T::fused(-t399, t651, t370 * t653)),
+            -T::fused(t593, t638, T::fused(t403, t651, t376 * t653)),
+            -t645,
+            t649,
+            t646,
+            T::fused(t378, t661, -T::fused(-t298, t659, t270 * t666)),
+            T::fused(t379, t661, T::fused(-t299, t659, t272 * t666)),
+            -T::fused(t381, t661, T::fused(t303, t659, t276 * t666)),
+            -t664,
+            t654,
+            t662,
+            T::fused(t279, t671, -T::fused(-t169, t677, t198 * t679)),
+            T::fused(t278, t671, T::fused(-t172, t677, t199 * t679)),
+            -T::fused(t281, t671, T::fused(t176, t677, t203 * t679)),
+            -t672,
+            t675,
+            t673,
+            T::fused(t178, t687, -T::fused(-t101, t685, t74 * t692)),
+            T::fused(t179, t687, T::fused(-t102, t685, t76 * t692)),
+            -T::fused(t181, t687, T::fused(t106, t685, t80 * t692)),
+            -t690,
+            t680,
+            t688,
+            T::fused(t83, t697, -T::fused(-t4, t703, t29 * t705)),
+            T::fused(t82, t697, T::fused(-t9, t703, t31 * t705)),
+            -T::fused(t85, t697, T::fused(t17, t703, t37 * t705)),
+            -t698,
+            -t701,
+            t699,
+            T::fused(t22, t713, -T::fused(-t28, t709, t2 * t712)),
+            T::fused(t23, t713, T::fused(-t30, t709, t6 * t712)),
+            -T::fused(t25, t713, T::fused(t33, t709, t13 * t712)),
+            k(149.2537313432836) * t711,
+            t708,
+            t449 + T::fused(t87, t699, T::fused(t26, t698, t48 * t701)),
         ];
     }
     /// Writes λ: 834 operations (318 ±, 510 ×, 6 ÷).
@@ -5843,7 +6526,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             t15,
             t19,
             t22,
-            t51,
+            t48,
             t56,
             t67,
             t68,
@@ -5909,29 +6592,36 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             let t7 = link_3_dsy + t6;
             let t8 = link_2_dsy + t7;
             let t9 = k(0.5) * (link_1_dsy + t8);
-            let t10 = k(4.905) + k(0.5) * link_6_dsz;
-            let t11 = k(4.905) + k(0.5) * link_5_dsz + t10;
-            let t12 = k(4.905) + k(0.5) * link_4_dsz + t11;
-            let t13 = k(4.905) + k(0.5) * link_3_dsz + t12;
-            let t14 = k(4.905) + k(0.5) * link_2_dsz + t13;
-            let t15 = k(4.905) + k(0.5) * link_1_dsz + t14;
+            let t10 = T::fused(k(0.5), link_6_dsz, k(4.905));
+            let t11 = T::fused(k(0.5), link_5_dsz, k(4.905)) + t10;
+            let t12 = T::fused(k(0.5), link_4_dsz, k(4.905)) + t11;
+            let t13 = T::fused(k(0.5), link_3_dsz, k(4.905)) + t12;
+            let t14 = T::fused(k(0.5), link_2_dsz, k(4.905)) + t13;
+            let t15 = T::fused(k(0.5), link_1_dsz, k(4.905)) + t14;
             let t16 = link_6_e0 * link_6_e3;
             let t17 = link_6_e1 * link_6_e2;
             let t18 = t17 - t16;
             let t19 = k(0.5) * link_6_dsx;
             let t20 = link_6_e0 * link_6_e0;
-            let t21 = k(0.5) - (t20 + link_6_e2 * link_6_e2);
+            let t21 = k(0.5) - T::fused(link_6_e2, link_6_e2, t20);
             let t22 = k(0.5) * link_6_dsy;
             let t23 = link_6_e0 * link_6_e1;
             let t24 = link_6_e2 * link_6_e3;
             let t25 = t24 + t23;
-            let t26 = t10 * (k(0.2) * t25)
-                - (t22 * (k(0.2) * t21) - t19 * (k(0.2) * t18));
-            let t27 = k(0.0014) * (link_6_wy * link_6_wz) - k(0.0017) * link_6_dwx - t26;
-            let t28 = k(0.5) - (t20 + link_6_e1 * link_6_e1);
+            let t26 = T::fused(
+                t10,
+                k(0.2) * t25,
+                -T::fused(-t19, k(0.2) * t18, t22 * (k(0.2) * t21)),
+            );
+            let t27 = T::fused(
+                -k(0.0017),
+                link_6_dwx,
+                k(0.0014) * (link_6_wy * link_6_wz),
+            ) - t26;
+            let t28 = k(0.5) - T::fused(link_6_e1, link_6_e1, t20);
             let t29 = k(2.0) * t28;
             let t30 = link_5_e0 * link_5_e0;
-            let t31 = k(0.5) - (t30 + link_5_e1 * link_5_e1);
+            let t31 = k(0.5) - T::fused(link_5_e1, link_5_e1, t30);
             let t32 = k(2.0) * t31;
             let t33 = t17 + t16;
             let t34 = k(2.0) * t33;
@@ -5947,34 +6637,55 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             let t44 = link_5_e1 * link_5_e3;
             let t45 = t44 - t43;
             let t46 = k(2.0) * t45;
-            let t47 = k(2.0) * t18;
-            let t48 = k(2.0) * t21;
-            let t49 = k(2.0) * t25;
-            let t50 = t10 * (k(0.2) * t41)
-                + (t22 * (k(0.2) * t33) - t19 * (k(0.2) * t28));
-            let t51 = k(0.0015) * (link_6_wx * link_6_wz) + k(0.0016) * link_6_dwy - t50;
-            let t52 = t51 * (t46 * t49 - (t38 * t48 + t32 * t47))
-                - (t46 * t42 + (t38 * t34 + t32 * t29)) * t27;
+            let t47 = T::fused(
+                t10,
+                k(0.2) * t41,
+                T::fused(-t19, k(0.2) * t28, t22 * (k(0.2) * t33)),
+            );
+            let t48 = T::fused(
+                k(0.0016),
+                link_6_dwy,
+                k(0.0015) * (link_6_wx * link_6_wz),
+            ) - t47;
+            let t49 = k(2.0) * t18;
+            let t50 = k(2.0) * t21;
+            let t51 = k(2.0) * t25;
+            let t52 = T::fused(
+                -T::fused(t46, t42, T::fused(t32, t29, t38 * t34)),
+                t27,
+                T::fused(t46, t51, -T::fused(t32, t49, t38 * t50)) * t48,
+            );
             let t53 = k(2.0) * (t40 + t39);
             let t54 = k(2.0) * (t24 - t23);
-            let t55 = k(2.0) * (k(0.5) - (t20 + link_6_e3 * link_6_e3));
-            let t56 = k(0.0001) * (link_6_wx * link_6_wy) - k(0.0002) * link_6_dwz;
-            let t57 = t56 * (t46 * t55 - (t38 * t54 - t32 * t53)) + t52;
+            let t55 = k(2.0) * (k(0.5) - T::fused(link_6_e3, link_6_e3, t20));
+            let t56 = T::fused(
+                -k(0.0002),
+                link_6_dwz,
+                k(0.0001) * (link_6_wx * link_6_wy),
+            );
+            let t57 = T::fused(
+                t56,
+                T::fused(t46, t55, -T::fused(-t32, t53, t38 * t54)),
+                t52,
+            );
             let t58 = t36 - t35;
             let t59 = k(0.2) * t58;
-            let t60 = k(0.5) - (t30 + link_5_e2 * link_5_e2);
+            let t60 = k(0.5) - T::fused(link_5_e2, link_5_e2, t30);
             let t61 = k(0.2) * t60;
             let t62 = link_5_e0 * link_5_e1;
             let t63 = link_5_e2 * link_5_e3;
             let t64 = t63 + t62;
             let t65 = k(0.2) * t64;
-            let t66 = k(0.0014) * (link_5_wy * link_5_wz) - k(0.0017) * link_5_dwx
-                - (t10 * t65 - (t22 * t61 - t19 * t59) + t57);
+            let t66 = T::fused(
+                -k(0.0017),
+                link_5_dwx,
+                k(0.0014) * (link_5_wy * link_5_wz),
+            ) - (T::fused(t10, t65, -T::fused(-t19, t59, t22 * t61)) + t57);
             let t67 = k(0.5) * t0;
             let t68 = k(0.5) * t5;
-            let t69 = t11 * t65 - (t68 * t61 - t67 * t59) - t66;
+            let t69 = T::fused(t11, t65, -T::fused(-t67, t59, t68 * t61)) - t66;
             let t70 = link_4_e0 * link_4_e0;
-            let t71 = k(0.5) - (t70 + link_4_e1 * link_4_e1);
+            let t71 = k(0.5) - T::fused(link_4_e1, link_4_e1, t70);
             let t72 = k(2.0) * t71;
             let t73 = link_4_e0 * link_4_e3;
             let t74 = link_4_e1 * link_4_e2;
@@ -5984,44 +6695,63 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             let t78 = link_4_e1 * link_4_e3;
             let t79 = t78 - t77;
             let t80 = k(2.0) * t79;
-            let t81 = t80 * t46 + (t76 * t38 + t72 * t32);
+            let t81 = T::fused(t80, t46, T::fused(t72, t32, t76 * t38));
             let t82 = k(2.0) * t58;
             let t83 = k(2.0) * t60;
             let t84 = k(2.0) * t64;
-            let t85 = t84 * t49 + (t82 * t47 + t83 * t48);
-            let t86 = t85 * t51 - (t84 * t42 - (t83 * t34 + t82 * t29)) * t27;
-            let t87 = t84 * t55 - (t82 * t53 - t83 * t54);
+            let t85 = T::fused(t84, t51, T::fused(t83, t50, t82 * t49));
+            let t86 = T::fused(
+                -T::fused(t84, t42, -T::fused(t82, t29, t83 * t34)),
+                t27,
+                t85 * t48,
+            );
+            let t87 = T::fused(t84, t55, -T::fused(-t83, t54, t82 * t53));
             let t88 = k(0.2) * t31;
             let t89 = k(0.2) * t37;
             let t90 = k(0.2) * t45;
-            let t91 = t10 * t90 + (t22 * t89 - t19 * t88) - (t56 * t87 + t86);
-            let t92 = t11 * t90 + (t68 * t89 - t67 * t88)
-                - (k(0.0015) * (link_5_wx * link_5_wz) + k(0.0016) * link_5_dwy - t91);
-            let t93 = (t80 * t84 - (t76 * t83 + t72 * t82)) * t92 - t81 * t69;
+            let t91 = T::fused(t10, t90, T::fused(-t19, t88, t22 * t89))
+                - T::fused(t56, t87, t86);
+            let t92 = T::fused(t11, t90, T::fused(-t67, t88, t68 * t89))
+                - (T::fused(k(0.0016), link_5_dwy, k(0.0015) * (link_5_wx * link_5_wz))
+                    - t91);
+            let t93 = T::fused(
+                -t81,
+                t69,
+                T::fused(t80, t84, -T::fused(t72, t82, t76 * t83)) * t92,
+            );
             let t94 = k(2.0) * (t44 + t43);
             let t95 = k(2.0) * (t63 - t62);
-            let t96 = k(2.0) * (k(0.5) - (t30 + link_5_e3 * link_5_e3));
-            let t97 = t96 * t49 - (t94 * t47 - t95 * t48);
-            let t98 = t97 * t51 - (t96 * t42 - (t95 * t34 - t94 * t29)) * t27;
-            let t99 = t94 * t53 + t95 * t54 + t96 * t55;
-            let t100 = k(0.0001) * (link_5_wx * link_5_wy) - k(0.0002) * link_5_dwz
-                + (t56 * t99 + t98);
-            let t101 = t80 * t96 - (t76 * t95 - t72 * t94);
+            let t96 = k(2.0) * (k(0.5) - T::fused(link_5_e3, link_5_e3, t30));
+            let t97 = T::fused(t96, t51, -T::fused(-t95, t50, t94 * t49));
+            let t98 = T::fused(
+                -T::fused(t96, t42, -T::fused(-t94, t29, t95 * t34)),
+                t27,
+                t97 * t48,
+            );
+            let t99 = T::fused(t96, t55, T::fused(t95, t54, t94 * t53));
+            let t100 = T::fused(
+                -k(0.0002),
+                link_5_dwz,
+                k(0.0001) * (link_5_wx * link_5_wy),
+            ) + T::fused(t56, t99, t98);
+            let t101 = T::fused(t80, t96, -T::fused(-t72, t94, t76 * t95));
             let t102 = t74 - t73;
             let t103 = k(0.2) * t102;
-            let t104 = k(0.5) - (t70 + link_4_e2 * link_4_e2);
+            let t104 = k(0.5) - T::fused(link_4_e2, link_4_e2, t70);
             let t105 = k(0.2) * t104;
             let t106 = link_4_e0 * link_4_e1;
             let t107 = link_4_e2 * link_4_e3;
             let t108 = t107 + t106;
             let t109 = k(0.2) * t108;
-            let t110 = t11 * t109 - (t68 * t105 - t67 * t103) + (t101 * t100 - t93);
+            let t110 = T::fused(t11, t109, -T::fused(-t67, t103, t68 * t105))
+                + T::fused(t101, t100, -t93);
             let t111 = k(0.5) * t1;
             let t112 = k(0.5) * t6;
-            let t113 = t12 * t109 - (t112 * t105 - t111 * t103)
-                - (k(0.0014) * (link_4_wy * link_4_wz) - k(0.0017) * link_4_dwx - t110);
+            let t113 = T::fused(t12, t109, -T::fused(-t111, t103, t112 * t105))
+                - (T::fused(-k(0.0017), link_4_dwx, k(0.0014) * (link_4_wy * link_4_wz))
+                    - t110);
             let t114 = link_3_e0 * link_3_e0;
-            let t115 = k(0.5) - (t114 + link_3_e1 * link_3_e1);
+            let t115 = k(0.5) - T::fused(link_3_e1, link_3_e1, t114);
             let t116 = k(2.0) * t115;
             let t117 = link_3_e0 * link_3_e3;
             let t118 = link_3_e1 * link_3_e2;
@@ -6034,41 +6764,68 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             let t125 = k(2.0) * t102;
             let t126 = k(2.0) * t104;
             let t127 = k(2.0) * t108;
-            let t128 = (t127 * t84 + (t125 * t82 + t126 * t83)) * t92
-                - (t127 * t46 - (t126 * t38 + t125 * t32)) * t69;
-            let t129 = (t127 * t96 - (t125 * t94 - t126 * t95)) * t100 - t128;
+            let t128 = T::fused(
+                -T::fused(t127, t46, -T::fused(t125, t32, t126 * t38)),
+                t69,
+                T::fused(t127, t84, T::fused(t126, t83, t125 * t82)) * t92,
+            );
+            let t129 = T::fused(
+                T::fused(t127, t96, -T::fused(-t126, t95, t125 * t94)),
+                t100,
+                -t128,
+            );
             let t130 = k(0.2) * t71;
             let t131 = k(0.2) * t75;
             let t132 = k(0.2) * t79;
-            let t133 = k(0.0015) * (link_4_wx * link_4_wz) + k(0.0016) * link_4_dwy
-                - (t11 * t132 + (t68 * t131 - t67 * t130) - t129);
-            let t134 = t12 * t132 + (t112 * t131 - t111 * t130) - t133;
-            let t135 = (t124 * t127 - (t120 * t126 + t116 * t125)) * t134
-                - (t124 * t80 + (t120 * t76 + t116 * t72)) * t113;
+            let t133 = T::fused(
+                k(0.0016),
+                link_4_dwy,
+                k(0.0015) * (link_4_wx * link_4_wz),
+            ) - (T::fused(t11, t132, T::fused(-t67, t130, t68 * t131)) - t129);
+            let t134 = T::fused(t12, t132, T::fused(-t111, t130, t112 * t131)) - t133;
+            let t135 = T::fused(
+                -T::fused(t124, t80, T::fused(t116, t72, t120 * t76)),
+                t113,
+                T::fused(t124, t127, -T::fused(t116, t125, t120 * t126)) * t134,
+            );
             let t136 = k(2.0) * (t78 + t77);
             let t137 = k(2.0) * (t107 - t106);
-            let t138 = k(2.0) * (k(0.5) - (t70 + link_4_e3 * link_4_e3));
-            let t139 = t138 * t46 - (t137 * t38 - t136 * t32);
-            let t140 = (t138 * t84 - (t136 * t82 - t137 * t83)) * t92 - t139 * t69;
-            let t141 = t136 * t94 + t137 * t95 + t138 * t96;
-            let t142 = k(0.0001) * (link_4_wx * link_4_wy) - k(0.0002) * link_4_dwz
-                + (t141 * t100 - t140);
-            let t143 = (t124 * t138 - (t120 * t137 - t116 * t136)) * t142 - t135;
+            let t138 = k(2.0) * (k(0.5) - T::fused(link_4_e3, link_4_e3, t70));
+            let t139 = T::fused(t138, t46, -T::fused(-t136, t32, t137 * t38));
+            let t140 = T::fused(
+                -t139,
+                t69,
+                T::fused(t138, t84, -T::fused(-t137, t83, t136 * t82)) * t92,
+            );
+            let t141 = T::fused(t138, t96, T::fused(t137, t95, t136 * t94));
+            let t142 = T::fused(
+                -k(0.0002),
+                link_4_dwz,
+                k(0.0001) * (link_4_wx * link_4_wy),
+            ) + T::fused(t141, t100, -t140);
+            let t143 = T::fused(
+                T::fused(t124, t138, -T::fused(-t116, t136, t120 * t137)),
+                t142,
+                -t135,
+            );
             let t144 = t118 - t117;
             let t145 = k(0.2) * t144;
-            let t146 = k(0.5) - (t114 + link_3_e2 * link_3_e2);
+            let t146 = k(0.5) - T::fused(link_3_e2, link_3_e2, t114);
             let t147 = k(0.2) * t146;
             let t148 = link_3_e0 * link_3_e1;
             let t149 = link_3_e2 * link_3_e3;
             let t150 = t149 + t148;
             let t151 = k(0.2) * t150;
-            let t152 = k(0.0014) * (link_3_wy * link_3_wz) - k(0.0017) * link_3_dwx
-                - (t12 * t151 - (t112 * t147 - t111 * t145) + t143);
+            let t152 = T::fused(
+                -k(0.0017),
+                link_3_dwx,
+                k(0.0014) * (link_3_wy * link_3_wz),
+            ) - (T::fused(t12, t151, -T::fused(-t111, t145, t112 * t147)) + t143);
             let t153 = k(0.5) * t2;
             let t154 = k(0.5) * t7;
-            let t155 = t13 * t151 - (t154 * t147 - t153 * t145) - t152;
+            let t155 = T::fused(t13, t151, -T::fused(-t153, t145, t154 * t147)) - t152;
             let t156 = link_2_e0 * link_2_e0;
-            let t157 = k(0.5) - (t156 + link_2_e1 * link_2_e1);
+            let t157 = k(0.5) - T::fused(link_2_e1, link_2_e1, t156);
             let t158 = k(2.0) * t157;
             let t159 = link_2_e0 * link_2_e3;
             let t160 = link_2_e1 * link_2_e2;
@@ -6078,42 +6835,61 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             let t164 = link_2_e1 * link_2_e3;
             let t165 = t164 - t163;
             let t166 = k(2.0) * t165;
-            let t167 = t166 * t124 + (t162 * t120 + t158 * t116);
+            let t167 = T::fused(t166, t124, T::fused(t158, t116, t162 * t120));
             let t168 = k(2.0) * t144;
             let t169 = k(2.0) * t146;
             let t170 = k(2.0) * t150;
-            let t171 = t170 * t127 + (t168 * t125 + t169 * t126);
-            let t172 = t171 * t134 - (t170 * t80 - (t169 * t76 + t168 * t72)) * t113;
-            let t173 = t170 * t138 - (t168 * t136 - t169 * t137);
+            let t171 = T::fused(t170, t127, T::fused(t169, t126, t168 * t125));
+            let t172 = T::fused(
+                -T::fused(t170, t80, -T::fused(t168, t72, t169 * t76)),
+                t113,
+                t171 * t134,
+            );
+            let t173 = T::fused(t170, t138, -T::fused(-t169, t137, t168 * t136));
             let t174 = k(0.2) * t115;
             let t175 = k(0.2) * t119;
             let t176 = k(0.2) * t123;
-            let t177 = t12 * t176 + (t112 * t175 - t111 * t174) - (t173 * t142 - t172);
-            let t178 = t13 * t176 + (t154 * t175 - t153 * t174)
-                - (k(0.0015) * (link_3_wx * link_3_wz) + k(0.0016) * link_3_dwy - t177);
-            let t179 = (t166 * t170 - (t162 * t169 + t158 * t168)) * t178 - t167 * t155;
+            let t177 = T::fused(t12, t176, T::fused(-t111, t174, t112 * t175))
+                - T::fused(t173, t142, -t172);
+            let t178 = T::fused(t13, t176, T::fused(-t153, t174, t154 * t175))
+                - (T::fused(k(0.0016), link_3_dwy, k(0.0015) * (link_3_wx * link_3_wz))
+                    - t177);
+            let t179 = T::fused(
+                -t167,
+                t155,
+                T::fused(t166, t170, -T::fused(t158, t168, t162 * t169)) * t178,
+            );
             let t180 = k(2.0) * (t122 + t121);
             let t181 = k(2.0) * (t149 - t148);
-            let t182 = k(2.0) * (k(0.5) - (t114 + link_3_e3 * link_3_e3));
-            let t183 = t182 * t127 - (t180 * t125 - t181 * t126);
-            let t184 = t183 * t134 - (t182 * t80 - (t181 * t76 - t180 * t72)) * t113;
-            let t185 = t180 * t136 + t181 * t137 + t182 * t138;
-            let t186 = k(0.0001) * (link_3_wx * link_3_wy) - k(0.0002) * link_3_dwz
-                + (t185 * t142 - t184);
-            let t187 = t166 * t182 - (t162 * t181 - t158 * t180);
+            let t182 = k(2.0) * (k(0.5) - T::fused(link_3_e3, link_3_e3, t114));
+            let t183 = T::fused(t182, t127, -T::fused(-t181, t126, t180 * t125));
+            let t184 = T::fused(
+                -T::fused(t182, t80, -T::fused(-t180, t72, t181 * t76)),
+                t113,
+                t183 * t134,
+            );
+            let t185 = T::fused(t182, t138, T::fused(t181, t137, t180 * t136));
+            let t186 = T::fused(
+                -k(0.0002),
+                link_3_dwz,
+                k(0.0001) * (link_3_wx * link_3_wy),
+            ) + T::fused(t185, t142, -t184);
+            let t187 = T::fused(t166, t182, -T::fused(-t158, t180, t162 * t181));
             let t188 = t160 - t159;
             let t189 = k(0.2) * t188;
-            let t190 = k(0.5) - (t156 + link_2_e2 * link_2_e2);
+            let t190 = k(0.5) - T::fused(link_2_e2, link_2_e2, t156);
             let t191 = k(0.2) * t190;
             let t192 = link_2_e0 * link_2_e1;
             let t193 = link_2_e2 * link_2_e3;
             let t194 = t193 + t192;
             let t195 = k(0.2) * t194;
-            let t196 = t13 * t195 - (t154 * t191 - t153 * t189) + (t187 * t186 - t179);
+            let t196 = T::fused(t13, t195, -T::fused(-t153, t189, t154 * t191))
+                + T::fused(t187, t186, -t179);
             let t197 = k(0.5) * t3;
             let t198 = k(0.5) * t8;
-            let t199 = t14 * t195 - (t198 * t191 - t197 * t189)
-                - (k(0.0014) * (link_2_wy * link_2_wz) - k(0.0017) * link_2_dwx - t196);
+            let t199 = T::fused(t14, t195, -T::fused(-t197, t189, t198 * t191))
+                - (T::fused(-k(0.0017), link_2_dwx, k(0.0014) * (link_2_wy * link_2_wz))
+                    - t196);
             (
                 t4,
                 t9,
@@ -6125,7 +6901,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
                 t15,
                 t19,
                 t22,
-                t51,
+                t48,
                 t56,
                 t67,
                 t68,
@@ -6205,7 +6981,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             t254,
         ) = {
             let t200 = link_1_e0 * link_1_e0;
-            let t201 = k(2.0) * (k(0.5) - (t200 + link_1_e1 * link_1_e1));
+            let t201 = k(2.0) * (k(0.5) - T::fused(link_1_e1, link_1_e1, t200));
             let t202 = link_1_e0 * link_1_e3;
             let t203 = link_1_e1 * link_1_e2;
             let t204 = k(2.0) * (t203 + t202);
@@ -6215,56 +6991,90 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             let t208 = k(2.0) * t188;
             let t209 = k(2.0) * t190;
             let t210 = k(2.0) * t194;
-            let t211 = (t210 * t170 + (t208 * t168 + t209 * t169)) * t178
-                - (t210 * t124 - (t209 * t120 + t208 * t116)) * t155;
-            let t212 = (t210 * t182 - (t208 * t180 - t209 * t181)) * t186 - t211;
+            let t211 = T::fused(
+                -T::fused(t210, t124, -T::fused(t208, t116, t209 * t120)),
+                t155,
+                T::fused(t210, t170, T::fused(t209, t169, t208 * t168)) * t178,
+            );
+            let t212 = T::fused(
+                T::fused(t210, t182, -T::fused(-t209, t181, t208 * t180)),
+                t186,
+                -t211,
+            );
             let t213 = k(0.2) * t157;
             let t214 = k(0.2) * t161;
             let t215 = k(0.2) * t165;
-            let t216 = k(0.0015) * (link_2_wx * link_2_wz) + k(0.0016) * link_2_dwy
-                - (t13 * t215 + (t154 * t214 - t153 * t213) - t212);
-            let t217 = t14 * t215 + (t198 * t214 - t197 * t213) - t216;
-            let t218 = (t207 * t210 - (t204 * t209 + t201 * t208)) * t217
-                - (t207 * t166 + (t204 * t162 + t201 * t158)) * t199;
+            let t216 = T::fused(
+                k(0.0016),
+                link_2_dwy,
+                k(0.0015) * (link_2_wx * link_2_wz),
+            ) - (T::fused(t13, t215, T::fused(-t153, t213, t154 * t214)) - t212);
+            let t217 = T::fused(t14, t215, T::fused(-t197, t213, t198 * t214)) - t216;
+            let t218 = T::fused(
+                -T::fused(t207, t166, T::fused(t201, t158, t204 * t162)),
+                t199,
+                T::fused(t207, t210, -T::fused(t201, t208, t204 * t209)) * t217,
+            );
             let t219 = k(2.0) * (t164 + t163);
             let t220 = k(2.0) * (t193 - t192);
-            let t221 = k(2.0) * (k(0.5) - (t156 + link_2_e3 * link_2_e3));
-            let t222 = t221 * t124 - (t220 * t120 - t219 * t116);
-            let t223 = (t221 * t170 - (t219 * t168 - t220 * t169)) * t178 - t222 * t155;
-            let t224 = t219 * t180 + t220 * t181 + t221 * t182;
-            let t225 = k(0.0001) * (link_2_wx * link_2_wy) - k(0.0002) * link_2_dwz
-                + (t224 * t186 - t223);
-            let t226 = (t207 * t221 - (t204 * t220 - t201 * t219)) * t225 - t218;
+            let t221 = k(2.0) * (k(0.5) - T::fused(link_2_e3, link_2_e3, t156));
+            let t222 = T::fused(t221, t124, -T::fused(-t219, t116, t220 * t120));
+            let t223 = T::fused(
+                -t222,
+                t155,
+                T::fused(t221, t170, -T::fused(-t220, t169, t219 * t168)) * t178,
+            );
+            let t224 = T::fused(t221, t182, T::fused(t220, t181, t219 * t180));
+            let t225 = T::fused(
+                -k(0.0002),
+                link_2_dwz,
+                k(0.0001) * (link_2_wx * link_2_wy),
+            ) + T::fused(t224, t186, -t223);
+            let t226 = T::fused(
+                T::fused(t207, t221, -T::fused(-t201, t219, t204 * t220)),
+                t225,
+                -t218,
+            );
             let t227 = t203 - t202;
             let t228 = k(0.2) * t227;
-            let t229 = k(0.5) - (t200 + link_1_e2 * link_1_e2);
+            let t229 = k(0.5) - T::fused(link_1_e2, link_1_e2, t200);
             let t230 = k(0.2) * t229;
             let t231 = link_1_e0 * link_1_e1;
             let t232 = link_1_e2 * link_1_e3;
             let t233 = t232 + t231;
             let t234 = k(0.2) * t233;
-            let t235 = k(0.0014) * (link_1_wy * link_1_wz) - k(0.0017) * link_1_dwx
-                - (t14 * t234 - (t198 * t230 - t197 * t228) + t226);
-            let t236 = t15 * t234 - (t9 * t230 - t4 * t228) - t235;
-            let t237 = k(2.0) * (k(0.5) - (t200 + link_1_e3 * link_1_e3));
+            let t235 = T::fused(
+                -k(0.0017),
+                link_1_dwx,
+                k(0.0014) * (link_1_wy * link_1_wz),
+            ) - (T::fused(t14, t234, -T::fused(-t197, t228, t198 * t230)) + t226);
+            let t236 = T::fused(t15, t234, -T::fused(-t4, t228, t9 * t230)) - t235;
+            let t237 = k(2.0) * (k(0.5) - T::fused(link_1_e3, link_1_e3, t200));
             let t238 = k(2.0) * (t206 + t205);
-            let t239 = k(1.0) / (t238 * t207 - t201 * t237);
+            let t239 = k(1.0) / T::fused(-t201, t237, t238 * t207);
             let t240 = k(2.0) * (t232 - t231);
-            let t241 = t237 * t210 - (t238 * t208 - t240 * t209);
-            let t242 = t241 * t217 - (t237 * t166 - (t240 * t162 - t238 * t158)) * t199;
-            let t243 = t238 * t219 + t240 * t220 + t237 * t221;
-            let t244 = k(0.0001) * (link_1_wx * link_1_wy) - k(0.0002) * link_1_dwz
-                + (t243 * t225 - t242);
+            let t241 = T::fused(t237, t210, -T::fused(-t240, t209, t238 * t208));
+            let t242 = T::fused(
+                -T::fused(t237, t166, -T::fused(-t238, t158, t240 * t162)),
+                t199,
+                t241 * t217,
+            );
+            let t243 = T::fused(t237, t221, T::fused(t240, t220, t238 * t219));
+            let t244 = T::fused(
+                -k(0.0002),
+                link_1_dwz,
+                k(0.0001) * (link_1_wx * link_1_wy),
+            ) + T::fused(t243, t225, -t242);
             let t245 = k(2.0) * t229;
             let t246 = k(2.0) * t227;
             let t247 = k(2.0) * t233;
-            let t248 = t247 * t210 + (t246 * t208 + t245 * t209);
-            let t249 = t247 * t221 - (t246 * t219 - t245 * t220);
-            let t250 = k(1.0) / (t241 * t249 - t243 * t248);
-            let t251 = k(1.0) / (t222 * t187 - t224 * t167);
-            let t252 = k(1.0) / (t183 * t173 - t185 * t171);
-            let t253 = k(1.0) / (t139 * t101 - t141 * t81);
-            let t254 = k(1.0) / (t97 * t87 - t99 * t85);
+            let t248 = T::fused(t247, t210, T::fused(t245, t209, t246 * t208));
+            let t249 = T::fused(t247, t221, -T::fused(-t245, t220, t246 * t219));
+            let t250 = k(1.0) / T::fused(-t243, t248, t241 * t249);
+            let t251 = k(1.0) / T::fused(-t224, t167, t222 * t187);
+            let t252 = k(1.0) / T::fused(-t185, t171, t183 * t173);
+            let t253 = k(1.0) / T::fused(-t141, t81, t139 * t101);
+            let t254 = k(1.0) / T::fused(-t99, t85, t97 * t87);
             (
                 t201,
                 t207,
@@ -6292,39 +7102,40 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             -t4,
             -t9,
             -t15,
-            -(t238 * t239 * t244 + t201 * t239 * t236),
-            -(t237 * t239 * t244 + t207 * t239 * t236),
+            -T::fused(t201 * t239, t236, t238 * t239 * t244),
+            -T::fused(t207 * t239, t236, t237 * t239 * t244),
             -t197,
             -t198,
             -t14,
-            t248 * t250 * t217 - t249 * t250 * t225,
-            t243 * t250 * t225 - t241 * t250 * t217,
+            T::fused(-(t249 * t250), t225, t248 * t250 * t217),
+            T::fused(-(t241 * t250), t217, t243 * t250 * t225),
             -t153,
             -t154,
             -t13,
-            t187 * t251 * t186 + t167 * t251 * t155,
-            t224 * t251 * t186 + t222 * t251 * t155,
+            T::fused(t167 * t251, t155, t187 * t251 * t186),
+            T::fused(t222 * t251, t155, t224 * t251 * t186),
             -t111,
             -t112,
             -t12,
-            t171 * t252 * t134 - t173 * t252 * t142,
-            t185 * t252 * t142 - t183 * t252 * t134,
+            T::fused(-(t173 * t252), t142, t171 * t252 * t134),
+            T::fused(-(t183 * t252), t134, t185 * t252 * t142),
             -t67,
             -t68,
             -t11,
-            t101 * t253 * t100 + t81 * t253 * t69,
-            t141 * t253 * t100 + t139 * t253 * t69,
+            T::fused(t81 * t253, t69, t101 * t253 * t100),
+            T::fused(t139 * t253, t69, t141 * t253 * t100),
             -t19,
             -t22,
             -t10,
-            -(t56 * (t87 * t254) + t85 * t254 * t51),
-            t56 * (t99 * t254) + t97 * t254 * t51,
+            -T::fused(t85 * t254, t48, t56 * (t87 * t254)),
+            T::fused(t97 * t254, t48, t56 * (t99 * t254)),
         ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
     type Joints = [T; 12];
     type Rates = [T; 6];
+    type Solution = [T; 66];
     fn joint_start(&self) -> Self::Joints {
         let k = T::constant;
         [
@@ -6345,7 +7156,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
     fn rates(&self) -> Self::Rates {
         [T::constant(0.0); 6]
     }
-    /// Writes u̇: 1193 operations (547 ±, 641 ×, 5 ÷) and 12 functions.
+    fn solution(&self) -> Self::Solution {
+        [T::constant(0.0); 66]
+    }
+    /// Writes u̇: 1108 operations (498 ±, 605 ×, 5 ÷) and 12 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
         let k = T::constant;
         let x0 = x[0];
@@ -6365,626 +7179,772 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
             t2,
             t4,
             t7,
-            t8,
+            t9,
             t10,
-            t11,
+            t12,
             t13,
-            t14,
+            t17,
             t18,
-            t19,
+            t21,
             t22,
-            t23,
+            t28,
             t29,
-            t30,
-            t34,
-            t36,
-            t39,
-            t43,
+            t33,
+            t35,
+            t38,
+            t42,
             t44,
-            t46,
-            t48,
-            t53,
-            t54,
+            t49,
+            t50,
+            t51,
             t55,
-            t59,
+            t56,
+            t57,
             t60,
-            t61,
+            t63,
             t64,
             t68,
-            t69,
-            t73,
-            t77,
+            t72,
+            t74,
+            t75,
+            t76,
             t78,
-            t80,
-            t81,
-            t82,
             t84,
+            t86,
+            t88,
+            t89,
             t91,
-            t93,
+            t92,
             t95,
             t96,
+            t97,
             t98,
             t99,
+            t100,
             t102,
-            t104,
-            t105,
+            t106,
             t107,
-            t108,
-            t109,
-            t110,
-            t111,
-            t113,
-            t116,
-            t117,
-            t118,
+            t119,
             t120,
-            t121,
-            t123,
-            t132,
+            t124,
+            t128,
+            t129,
+            t130,
+            t133,
             t134,
-            t135,
+            t136,
             t137,
-            t138,
-            t139,
-            t140,
-            t145,
+            t141,
+            t147,
             t149,
-            t150,
-            t151,
             t154,
-            t155,
             t156,
-            t158,
+            t157,
             t159,
-            t161,
-            t168,
-            t170,
+            t162,
+            t163,
+            t164,
+            t166,
+            t167,
+            t169,
+            t171,
+            t172,
+            t173,
             t175,
             t177,
             t178,
+            t179,
             t180,
-            t183,
+            t182,
             t184,
             t185,
+            t186,
             t187,
             t188,
             t189,
+            t190,
             t191,
+            t192,
             t193,
             t194,
             t195,
+            t196,
             t197,
             t198,
             t199,
         ) = {
             let t0 = x5.cos();
-            let t1 = k(0.05) + k(0.05) * t0;
+            let t1 = T::fused(k(0.05), t0, k(0.05));
             let t2 = k(0.1) + t1;
             let t3 = k(0.0066) * t0;
             let t4 = x5.sin();
             let t5 = k(0.0002) * t4;
-            let t6 = k(0.0016) + (k(0.005) + (t4 * t5 + t0 * t3) + k(0.01) * t0);
-            let t7 = k(0.01) + t6 + k(0.2) * t1;
-            let t8 = k(1.0) / t7;
-            let t9 = t8 * t2;
-            let t10 = t2 * t9;
-            let t11 = x4.cos();
-            let t12 = t11 * t10;
-            let t13 = t4 * (k(0.373134328358209) * t4);
-            let t14 = x4.sin();
-            let t15 = t14 * t13;
-            let t16 = t14 * t15 + t11 * t12;
-            let t17 = k(0.373134328358209) * t0;
-            let t18 = t4 * t17;
-            let t19 = k(0.2) * t18;
-            let t20 = t14 * t19;
-            let t21 = k(0.005) * t4;
-            let t22 = t21 + (t21 - (t0 * t5 - t4 * t3));
-            let t23 = t22 * t9 - k(0.05) * t4;
-            let t24 = t11 * t23;
-            let t25 = t14 * t24 - t11 * t20;
-            let t26 = t14 * t18;
-            let t27 = k(0.1) * t26;
-            let t28 = t27 - t25;
-            let t29 = t27 + t28;
-            let t30 = t0 * t17;
-            let t31 = k(0.01) * t30;
-            let t32 = k(0.1) * t30;
-            let t33 = k(0.05) - t32;
-            let t34 = t31 - k(0.2) * t33 - (k(0.01) + (k(0.0017) + (k(0.005) - t31)));
-            let t35 = t11 * t34;
-            let t36 = t22 * (t8 * t22)
-                - (k(0.0002) + (t0 * (k(0.0002) * t0) + t4 * (k(0.0066) * t4)));
-            let t37 = t14 * t36;
-            let t38 = k(0.1) - t32;
-            let t39 = t38 + t33;
-            let t40 = t11 * t39;
-            let t41 = t31 - k(0.2) * t40 - (k(0.01) - (t14 * t37 + t11 * t35));
-            let t42 = t38 + t40;
-            let t43 = k(0.2) * t42 - t31 + (k(0.015) + (k(0.0017) - t41));
-            let t44 = k(1.0) / t43;
-            let t45 = t44 * t29;
-            let t46 = t29 * t45 + t16;
-            let t47 = k(0.1) * t46;
-            let t48 = t2 - t7 * t9;
-            let t49 = t11 * t48;
-            let t50 = k(0.1) * t16;
-            let t51 = k(0.1) - t50 + t49;
-            let t52 = k(0.01) * t26;
-            let t53 = t52 + (k(0.1) * t28 + t52) + (t52 - k(0.1) * t25);
-            let t54 = t45 * t53 - (k(0.15) - t50 + t51);
-            let t55 = x3.cos();
-            let t56 = t11 * t24 + t14 * t20;
-            let t57 = t14 * t39;
-            let t58 = k(0.1) * t57;
-            let t59 = t58 + (t58 + (t11 * t37 - t14 * t35));
-            let t60 = t45 * t59 - t56;
-            let t61 = x3.sin();
-            let t62 = t61 * t60 + t55 * t54;
-            let t63 = k(0.15) - t47 - t62;
-            let t64 = t63 + (k(0.2) - t47);
-            let t65 = k(0.01) * t16;
-            let t66 = k(0.2) * t51 - t65
-                + (k(0.015) + (k(0.0016) + (k(0.01) - (t65 - k(0.2) * t49))));
-            let t67 = t44 * t53;
-            let t68 = t53 * t67 - t66;
-            let t69 = t59 * t67 - k(0.2) * t56;
-            let t70 = t61 * t69;
-            let t71 = t70 + t55 * t68;
-            let t72 = t55 * t69;
-            let t73 = t59 * (t44 * t59)
-                - (k(0.0002) - (t11 * (t11 * t36) + t14 * (t14 * t34)));
-            let t74 = t61 * t73 + t72;
-            let t75 = k(0.01) * t46;
-            let t76 = t75 + k(0.2) * t62 - (k(0.015) - (t61 * t74 + t55 * t71));
-            let t77 = k(0.2) * t63 - t75 + (k(0.02) + (k(0.0016) - t76));
-            let t78 = k(1.0) / t77;
-            let t79 = t78 * t64;
-            let t80 = t64 - t77 * t79;
-            let t81 = x2.cos();
-            let t82 = t42 + (k(0.15) - t32);
-            let t83 = t44 * t82;
-            let t84 = t53 * t83 - k(0.2) * t26;
-            let t85 = t11 * t15 - t14 * t12;
-            let t86 = k(0.1) * t85;
-            let t87 = t11 * t19;
-            let t88 = t14 * t23;
-            let t89 = t11 * t18;
-            let t90 = k(0.1) * t89;
-            let t91 = t90 + (t90 + (t14 * t88 + t11 * t87));
-            let t92 = t44 * t91;
-            let t93 = t53 * t92 + (t86 + (t86 + t14 * t48));
-            let t94 = t55 * t93 - t61 * t84;
-            let t95 = t57 - t59 * t83;
-            let t96 = t59 * t92 + (t11 * t88 - t14 * t87);
-            let t97 = t55 * t96 + t61 * t95;
-            let t98 = t26 - t45 * t82;
-            let t99 = t45 * t91 + t85;
-            let t100 = t55 * t99 + t61 * t98;
-            let t101 = k(0.1) * t100;
-            let t102 = t101 + (t101 + (t61 * t97 + t55 * t94));
-            let t103 = t78 * t102;
-            let t104 = t102 - t77 * t103;
-            let t105 = x2.sin();
-            let t106 = t105 * t104 - t81 * t80;
-            let t107 = t46 + t64 * t79;
-            let t108 = t100 - t102 * t79;
-            let t109 = t105 * t108 + t81 * t107;
-            let t110 = t30 + t82 * t83;
-            let t111 = t89 - t91 * t83;
-            let t112 = t55 * t111;
-            let t113 = t91 * t92 + (t11 * (t11 * t13) + t14 * (t14 * t10));
-            let t114 = t61 * t111;
-            let t115 = t55 * (t114 + t55 * t113) + t61 * (t112 + t61 * t110);
-            let t116 = t102 * t103 + t115;
-            let t117 = t105 * t116 + t81 * t108;
-            let t118 = t105 * t117 + t81 * t109;
-            let t119 = k(0.01) * t118;
-            let t120 = k(0.1) * t118;
-            let t121 = k(0.2) - t120 - t106;
-            let t122 = k(0.2) * t121 - t119
-                + (k(0.025) + (k(0.0016) + (k(0.02) - (t119 + k(0.2) * t106))));
-            let t123 = t29 - t43 * t45;
-            let t124 = t61 * t93 + t55 * t84;
-            let t125 = t61 * t96 - t55 * t95;
-            let t126 = t61 * t125 + t55 * t124;
-            let t127 = t61 * t99 - t55 * t98;
-            let t128 = k(0.01) * t127;
-            let t129 = k(0.1) * t127;
-            let t130 = t129 - t123;
-            let t131 = t129 + t126;
-            let t132 = k(0.1) * (t131 + t130) + t128 + (t128 + k(0.1) * (t126 - t123));
-            let t133 = t78 * t132;
-            let t134 = t132 - t77 * t133;
-            let t135 = t129 + t131;
-            let t136 = t78 * t135;
-            let t137 = t135 - t77 * t136;
-            let t138 = t132 * t79 - (t129 + t130);
-            let t139 = t82 - t43 * t83;
-            let t140 = t91 - t43 * t92;
-            let t141 = t114 - t55 * t110;
-            let t142 = t61 * t113 - t112;
-            let t143 = t55 * t142 + t61 * t141;
-            let t144 = k(0.1) * t143;
-            let t145 = t132 * t103 + (t144 + (t144 - (t55 * t140 - t61 * t139)));
-            let t146 = t105 * t145 - t81 * t138;
-            let t147 = t55 * t60 - t61 * t54;
-            let t148 = k(0.1) * t147;
-            let t149 = t148 + (t148 + (t55 * t74 - t61 * t71));
-            let t150 = t147 - t149 * t79;
-            let t151 = t149 * t103 + (t55 * t97 - t61 * t94);
-            let t152 = t105 * t151 + t81 * t150;
-            let t153 = t105 * t152 - t81 * t146;
-            let t154 = t127 - t135 * t79;
-            let t155 = t136 * t102 + t143;
-            let t156 = t105 * t155 + t81 * t154;
-            let t157 = k(0.01) * t156;
-            let t158 = k(0.1) * t156;
-            let t159 = t158 + t137;
-            let t160 = t158 - t153;
-            let t161 = k(0.1) * (t160 + t159) + t157
-                + (t157 - k(0.1) * (t153 - t137) + t81 * t134);
-            let t162 = t61 * t140 + t55 * t139;
-            let t163 = t61 * t142 - t55 * t141;
-            let t164 = k(0.01) * t163;
-            let t165 = k(0.1) * t163;
-            let t166 = k(0.15) - t165 + t162;
-            let t167 = k(0.2) * t166 - t164
-                + (k(0.02) + (k(0.0017) + (k(0.015) - (t164 - k(0.2) * t162))));
-            let t168 = t132 * t133 - t167;
-            let t169 = t55 * t125 - t61 * t124;
-            let t170 = t149 * t133 + k(0.2) * t169;
-            let t171 = t105 * t170;
-            let t172 = t171 - t81 * t168;
-            let t173 = t81 * t170;
-            let t174 = t55 * (t70 - t55 * t73) + t61 * (t72 - t61 * t68);
-            let t175 = t149 * (t78 * t149) - (k(0.0002) + t174);
-            let t176 = t105 * t175 - t173;
-            let t177 = t136 * t132 - (k(0.2) - t165 + t166);
-            let t178 = t136 * t149 + t169;
-            let t179 = t105 * t178 - t81 * t177;
-            let t180 = t135 * t136 + t163;
-            let t181 = k(0.01) * t180;
-            let t182 = t181 - k(0.2) * t179 - (k(0.02) - (t105 * t176 - t81 * t172));
-            let t183 = k(0.1) * t180;
-            let t184 = k(0.2) - t183 + t179;
-            let t185 = k(1.0) / (k(0.2) * t184 - t181 + (k(0.025) + (k(0.0017) - t182)));
-            let t186 = t185 * t161;
-            let t187 = t161 * t186 - t122;
-            let t188 = x1.cos();
-            let t189 = t81 * t152 + t105 * t146;
-            let t190 = k(0.1) * t189;
-            let t191 = t81 * t178 + t105 * t177;
-            let t192 = k(0.1) * t191;
-            let t193 = t192 + (t192 - (t81 * t176 + t105 * t172));
-            let t194 = t193 * t186 + (t190 + (t190 + t105 * t134));
-            let t195 = x1.sin();
-            let t196 = t81 * (t171 + t81 * t175) + t105 * (t173 + t105 * t168);
-            let t197 = t193 * (t185 * t193) - (k(0.0002) - t196);
-            let t198 = t195 * (t195 * t197 + t188 * t194)
-                + t188 * (t195 * t194 + t188 * t187);
-            let t199 = t158 + t160;
+            let t6 = k(0.0016)
+                + T::fused(k(0.01), t0, k(0.005) + T::fused(t0, t3, t4 * t5));
+            let t7 = k(1.0) / T::fused(k(0.2), t1, k(0.01) + t6);
+            let t8 = t7 * t2;
+            let t9 = t2 * t8;
+            let t10 = x4.cos();
+            let t11 = t10 * t9;
+            let t12 = t4 * (k(0.373134328358209) * t4);
+            let t13 = x4.sin();
+            let t14 = t13 * t12;
+            let t15 = T::fused(t10, t11, t13 * t14);
+            let t16 = k(0.373134328358209) * t0;
+            let t17 = t4 * t16;
+            let t18 = k(0.2) * t17;
+            let t19 = t13 * t18;
+            let t20 = k(0.005) * t4;
+            let t21 = t20 + (t20 - T::fused(-t4, t3, t0 * t5));
+            let t22 = T::fused(-k(0.05), t4, t21 * t8);
+            let t23 = t10 * t22;
+            let t24 = T::fused(-t10, t19, t13 * t23);
+            let t25 = t13 * t17;
+            let t26 = k(0.1) * t25;
+            let t27 = t26 - t24;
+            let t28 = t26 + t27;
+            let t29 = t0 * t16;
+            let t30 = k(0.01) * t29;
+            let t31 = k(0.1) * t29;
+            let t32 = k(0.05) - t31;
+            let t33 = T::fused(-k(0.2), t32, t30)
+                - (k(0.01) + (k(0.0017) + (k(0.005) - t30)));
+            let t34 = t10 * t33;
+            let t35 = T::fused(
+                t21,
+                t7 * t21,
+                -(k(0.0002) + T::fused(t4, k(0.0066) * t4, t0 * (k(0.0002) * t0))),
+            );
+            let t36 = t13 * t35;
+            let t37 = k(0.1) - t31;
+            let t38 = t37 + t32;
+            let t39 = t10 * t38;
+            let t40 = T::fused(-k(0.2), t39, t30)
+                - (k(0.01) - T::fused(t10, t34, t13 * t36));
+            let t41 = t37 + t39;
+            let t42 = k(1.0)
+                / (T::fused(k(0.2), t41, -t30) + (k(0.015) + (k(0.0017) - t40)));
+            let t43 = t42 * t28;
+            let t44 = T::fused(t28, t43, t15);
+            let t45 = k(0.1) * t44;
+            let t46 = k(0.1) * t15;
+            let t47 = k(0.1) - t46;
+            let t48 = k(0.01) * t25;
+            let t49 = t48 + T::fused(k(0.1), t27, t48) + T::fused(-k(0.1), t24, t48);
+            let t50 = T::fused(t43, t49, -(k(0.15) - t46 + t47));
+            let t51 = x3.cos();
+            let t52 = T::fused(t13, t19, t10 * t23);
+            let t53 = t13 * t38;
+            let t54 = k(0.1) * t53;
+            let t55 = t54 + (t54 + T::fused(-t13, t34, t10 * t36));
+            let t56 = T::fused(t43, t55, -t52);
+            let t57 = x3.sin();
+            let t58 = T::fused(t51, t50, t57 * t56);
+            let t59 = k(0.15) - t45 - t58;
+            let t60 = t59 + (k(0.2) - t45);
+            let t61 = k(0.01) * t15;
+            let t62 = t42 * t49;
+            let t63 = T::fused(
+                t49,
+                t62,
+                -(T::fused(k(0.2), t47, -t61)
+                    + (k(0.015) + (k(0.0016) + (k(0.01) - t61)))),
+            );
+            let t64 = T::fused(-k(0.2), t52, t55 * t62);
+            let t65 = t57 * t64;
+            let t66 = T::fused(t51, t63, t65);
+            let t67 = t51 * t64;
+            let t68 = T::fused(
+                t55,
+                t42 * t55,
+                -(k(0.0002) - T::fused(t13, t13 * t33, t10 * (t10 * t35))),
+            );
+            let t69 = T::fused(t57, t68, t67);
+            let t70 = k(0.01) * t44;
+            let t71 = T::fused(k(0.2), t58, t70)
+                - (k(0.015) - T::fused(t51, t66, t57 * t69));
+            let t72 = k(1.0)
+                / (T::fused(k(0.2), t59, -t70) + (k(0.02) + (k(0.0016) - t71)));
+            let t73 = t72 * t60;
+            let t74 = T::fused(t60, t73, t44);
+            let t75 = x2.cos();
+            let t76 = t41 + (k(0.15) - t31);
+            let t77 = t42 * t76;
+            let t78 = T::fused(-k(0.2), t25, t49 * t77);
+            let t79 = T::fused(-t13, t11, t10 * t14);
+            let t80 = t10 * t18;
+            let t81 = t13 * t22;
+            let t82 = t10 * t17;
+            let t83 = k(0.1) * t82;
+            let t84 = t83 + (t83 + T::fused(t10, t80, t13 * t81));
+            let t85 = t42 * t84;
+            let t86 = T::fused(k(0.2), t79, t49 * t85);
+            let t87 = T::fused(-t57, t78, t51 * t86);
+            let t88 = T::fused(-t55, t77, t53);
+            let t89 = T::fused(t55, t85, T::fused(-t13, t80, t10 * t81));
+            let t90 = T::fused(t57, t88, t51 * t89);
+            let t91 = T::fused(-t43, t76, t25);
+            let t92 = T::fused(t43, t84, t79);
+            let t93 = T::fused(t57, t91, t51 * t92);
+            let t94 = k(0.1) * t93;
+            let t95 = t94 + (t94 + T::fused(t51, t87, t57 * t90));
+            let t96 = T::fused(-t95, t73, t93);
+            let t97 = x2.sin();
+            let t98 = T::fused(t75, t74, t97 * t96);
+            let t99 = T::fused(t76, t77, t29);
+            let t100 = T::fused(-t84, t77, t82);
+            let t101 = t51 * t100;
+            let t102 = T::fused(t84, t85, T::fused(t13, t13 * t9, t10 * (t10 * t12)));
+            let t103 = t57 * t100;
+            let t104 = T::fused(
+                t57,
+                T::fused(t57, t99, t101),
+                t51 * T::fused(t51, t102, t103),
+            );
+            let t105 = t72 * t95;
+            let t106 = T::fused(t95, t105, t104);
+            let t107 = T::fused(t75, t96, t97 * t106);
+            let t108 = T::fused(t75, t98, t97 * t107);
+            let t109 = k(0.01) * t108;
+            let t110 = k(0.1) * t108;
+            let t111 = k(0.2) - t110;
+            let t112 = T::fused(-t51, t91, t57 * t92);
+            let t113 = T::fused(t51, t78, t57 * t86);
+            let t114 = T::fused(-t51, t88, t57 * t89);
+            let t115 = T::fused(t51, t113, t57 * t114);
+            let t116 = k(0.01) * t112;
+            let t117 = k(0.1) * t112;
+            let t118 = t117 + t115;
+            let t119 = t116 + T::fused(k(0.1), t118, t116)
+                + T::fused(k(0.1), t115, t116);
+            let t120 = T::fused(-k(0.2), t112, t119 * t73);
+            let t121 = T::fused(-t51, t99, t103);
+            let t122 = T::fused(t57, t102, -t101);
+            let t123 = T::fused(t57, t121, t51 * t122);
+            let t124 = T::fused(k(0.2), t123, t119 * t105);
+            let t125 = T::fused(-t75, t120, t97 * t124);
+            let t126 = T::fused(-t57, t50, t51 * t56);
+            let t127 = k(0.1) * t126;
+            let t128 = t127 + (t127 + T::fused(-t57, t66, t51 * t69));
+            let t129 = T::fused(-t128, t73, t126);
+            let t130 = T::fused(t128, t105, T::fused(-t57, t87, t51 * t90));
+            let t131 = T::fused(t75, t129, t97 * t130);
+            let t132 = T::fused(-t75, t125, t97 * t131);
+            let t133 = t117 + t118;
+            let t134 = T::fused(-t133, t73, t112);
+            let t135 = t72 * t133;
+            let t136 = T::fused(t135, t95, t123);
+            let t137 = T::fused(t75, t134, t97 * t136);
+            let t138 = k(0.01) * t137;
+            let t139 = k(0.1) * t137;
+            let t140 = t139 - t132;
+            let t141 = t138 + T::fused(k(0.1), t140, t138)
+                + T::fused(-k(0.1), t132, t138);
+            let t142 = T::fused(-t51, t121, t57 * t122);
+            let t143 = k(0.01) * t142;
+            let t144 = k(0.1) * t142;
+            let t145 = k(0.15) - t144;
+            let t146 = t72 * t119;
+            let t147 = T::fused(
+                t119,
+                t146,
+                -(T::fused(k(0.2), t145, -t143)
+                    + (k(0.02) + (k(0.0017) + (k(0.015) - t143)))),
+            );
+            let t148 = T::fused(-t57, t113, t51 * t114);
+            let t149 = T::fused(k(0.2), t148, t128 * t146);
+            let t150 = t97 * t149;
+            let t151 = T::fused(-t75, t147, t150);
+            let t152 = t75 * t149;
+            let t153 = T::fused(
+                t57,
+                T::fused(-t57, t63, t67),
+                t51 * T::fused(-t51, t68, t65),
+            );
+            let t154 = T::fused(t128, t72 * t128, -(k(0.0002) + t153));
+            let t155 = T::fused(t97, t154, -t152);
+            let t156 = T::fused(t135, t119, -(k(0.2) - t144 + t145));
+            let t157 = T::fused(t135, t128, t148);
+            let t158 = T::fused(-t75, t156, t97 * t157);
+            let t159 = T::fused(t133, t135, t142);
+            let t160 = k(0.01) * t159;
+            let t161 = T::fused(-k(0.2), t158, t160)
+                - (k(0.02) - T::fused(-t75, t151, t97 * t155));
+            let t162 = k(0.1) * t159;
+            let t163 = k(0.2) - t162 + t158;
+            let t164 = k(1.0)
+                / (T::fused(k(0.2), t163, -t160) + (k(0.025) + (k(0.0017) - t161)));
+            let t165 = t164 * t141;
+            let t166 = T::fused(
+                t141,
+                t165,
+                -(T::fused(k(0.2), t111, -t109)
+                    + (k(0.025) + (k(0.0016) + (k(0.02) - t109)))),
+            );
+            let t167 = x1.cos();
+            let t168 = T::fused(t97, t125, t75 * t131);
+            let t169 = T::fused(t97, t156, t75 * t157);
+            let t170 = k(0.1) * t169;
+            let t171 = t170 + (t170 - T::fused(t97, t151, t75 * t155));
+            let t172 = T::fused(k(0.2), t168, t171 * t165);
+            let t173 = x1.sin();
+            let t174 = T::fused(
+                t97,
+                T::fused(t97, t147, t152),
+                t75 * T::fused(t75, t154, t150),
+            );
+            let t175 = T::fused(t171, t164 * t171, -(k(0.0002) - t174));
+            let t176 = T::fused(
+                t167,
+                T::fused(t167, t166, t173 * t172),
+                t173 * T::fused(t167, t172, t173 * t175),
+            );
+            let t177 = t139 + t140;
+            let t178 = t164 * t177;
+            let t179 = T::fused(t178, t141, -(k(0.25) - t110 + t111));
+            let t180 = T::fused(t178, t171, t168);
+            let t181 = T::fused(t167, t179, t173 * t180);
+            let t182 = T::fused(t177, t178, t108);
+            let t183 = k(0.01) * t182;
+            let t184 = k(0.1) * t182;
+            let t185 = k(0.25) - t184 - t181;
+            let t186 = T::fused(k(0.2), t185, -t183)
+                + (k(0.03)
+                    + (k(0.0016) - (T::fused(k(0.2), t181, t183) - (k(0.025) - t176))));
+            let t187 = u0 * t173;
+            let t188 = u1 * t187;
+            let t189 = T::fused(-u1, t97, t75 * t187);
+            let t190 = T::fused(u1, t75, t97 * t187);
+            let t191 = u3 + t190;
+            let t192 = u0 * t167;
+            let t193 = u2 + t192;
+            let t194 = T::fused(t57, t193, t51 * t189);
+            let t195 = T::fused(t10, t191, t13 * t194);
+            let t196 = T::fused(-t13, t191, t10 * t194);
+            let t197 = T::fused(-t51, t193, t57 * t189);
+            let t198 = u4 - t197;
+            let t199 = T::fused(t4, t198, t0 * t196);
             (
                 t0,
                 t2,
                 t4,
                 t7,
-                t8,
+                t9,
                 t10,
-                t11,
+                t12,
                 t13,
-                t14,
+                t17,
                 t18,
-                t19,
+                t21,
                 t22,
-                t23,
+                t28,
                 t29,
-                t30,
-                t34,
-                t36,
-                t39,
-                t43,
+                t33,
+                t35,
+                t38,
+                t42,
                 t44,
-                t46,
-                t48,
-                t53,
-                t54,
+                t49,
+                t50,
+                t51,
                 t55,
-                t59,
+                t56,
+                t57,
                 t60,
-                t61,
+                t63,
                 t64,
                 t68,
-                t69,
-                t73,
-                t77,
+                t72,
+                t74,
+                t75,
+                t76,
                 t78,
-                t80,
-                t81,
-                t82,
                 t84,
+                t86,
+                t88,
+                t89,
                 t91,
-                t93,
+                t92,
                 t95,
                 t96,
+                t97,
                 t98,
                 t99,
+                t100,
                 t102,
-                t104,
-                t105,
+                t106,
                 t107,
-                t108,
-                t109,
-                t110,
-                t111,
-                t113,
-                t116,
-                t117,
-                t118,
+                t119,
                 t120,
-                t121,
-                t123,
-                t132,
+                t124,
+                t128,
+                t129,
+                t130,
+                t133,
                 t134,
-                t135,
+                t136,
                 t137,
-                t138,
-                t139,
-                t140,
-                t145,
+                t141,
+                t147,
                 t149,
-                t150,
-                t151,
                 t154,
-                t155,
                 t156,
-                t158,
+                t157,
                 t159,
-                t161,
-                t168,
-                t170,
+                t162,
+                t163,
+                t164,
+                t166,
+                t167,
+                t169,
+                t171,
+                t172,
+                t173,
                 t175,
                 t177,
                 t178,
+                t179,
                 t180,
-                t183,
+                t182,
                 t184,
                 t185,
+                t186,
                 t187,
                 t188,
                 t189,
+                t190,
                 t191,
+                t192,
                 t193,
                 t194,
                 t195,
+                t196,
                 t197,
                 t198,
                 t199,
             )
         };
-        let (t359, t367, t377, t388, t393, t398) = {
-            let t200 = t185 * t199;
-            let t201 = t200 * t161 - (k(0.25) - t120 + t121);
-            let t202 = t200 * t193 + t189;
-            let t203 = t195 * t202 + t188 * t201;
-            let t204 = t199 * t200 + t118;
-            let t205 = k(0.01) * t204;
-            let t206 = k(0.1) * t204;
-            let t207 = k(0.25) - t206 - t203;
-            let t208 = k(0.2) * t207 - t205
-                + (k(0.03) + (k(0.0016) - (t205 + k(0.2) * t203 - (k(0.025) - t198))));
-            let t209 = u0 * t195;
-            let t210 = u1 * t209;
-            let t211 = t81 * t209 - u1 * t105;
-            let t212 = t105 * t209 + u1 * t81;
-            let t213 = u3 + t212;
-            let t214 = u0 * t188;
-            let t215 = u2 + t214;
-            let t216 = t55 * t211 + t61 * t215;
-            let t217 = t14 * t216 + t11 * t213;
-            let t218 = t11 * t216 - t14 * t213;
-            let t219 = t61 * t211 - t55 * t215;
-            let t220 = u4 - t219;
-            let t221 = t0 * t218 + t4 * t220;
-            let t222 = u5 + t217;
-            let t223 = k(0.1) * t222;
-            let t224 = k(0.1) * t217;
-            let t225 = t218 * t224;
-            let t226 = t225 + t223 * t221;
-            let t227 = u5 * t221;
-            let t228 = k(0.0066) * t227 + k(0.05) * t226 + k(0.0015) * (t222 * t221);
-            let t229 = t4 * t218 - t0 * t220;
-            let t230 = k(0.0002) * (u5 * t229) + k(0.0001) * (t229 * t222);
-            let t231 = k(0.05) * t227 + k(0.5) * t226;
-            let t232 = k(0.1) * t231;
-            let t233 = t232 + (t4 * t230 + t0 * t228) + k(0.0015) * (t218 * t217);
-            let t234 = t232 + t233;
-            let t235 = t8 * t234;
-            let t236 = k(0.1) * t213;
-            let t237 = t216 * t236;
-            let t238 = k(0.1) * t219;
-            let t239 = t219 * t238 + t213 * t236;
-            let t240 = t14 * t239 - t11 * t237 - t225;
-            let t241 = u4 * t217;
-            let t242 = t23 * t241 - (t240 - t10 * t240) + (t231 - t2 * t235);
-            let t243 = t229 * t221;
-            let t244 = k(0.1) * t229;
-            let t245 = k(0.1) * t220;
-            let t246 = t218 * t245;
-            let t247 = t220 * t245 + t217 * t224;
-            let t248 = t4 * t247 + t0 * t246 - t244 * t221;
-            let t249 = k(0.12686567164179105) * t248 + k(0.010447761194029851) * t243;
-            let t250 = t0 * t247 - t4 * t246 + (t229 * t244 + t222 * t223);
-            let t251 = k(0.5) * t250;
-            let t252 = t216 * t238;
-            let t253 = t252 - t246;
-            let t254 = t11 * t239 + t14 * t237 + t247;
-            let t255 = u4 * t218;
-            let t256 = t19 * t255 - (t254 - (t13 * t254 - t18 * t253))
-                - (t0 * t251 + t4 * t249);
-            let t257 = t14 * t256 - t11 * t242;
-            let t258 = k(0.1) * t257;
-            let t259 = t258 + (t48 * t240 - (t234 - t7 * t235))
-                - k(0.0015) * (t216 * t213);
-            let t260 = t4 * t251 - t0 * t249;
-            let t261 = k(0.1) * t260;
-            let t262 = t34 * t255 + (t19 * t254 + t39 * t253)
-                + (t261 + (t261 - k(0.0014) * (t218 * t220)));
-            let t263 = t22 * t235 + (t0 * t230 - t4 * t228 - k(0.0001) * (t220 * t217));
-            let t264 = t36 * t241 + t23 * t240 - t263;
-            let t265 = t39 * t255 - (t253 + (t18 * t254 - t30 * t253)) - t260;
-            let t266 = k(0.1) * t265;
-            let t267 = t266 - (t14 * t264 + t11 * t262) - k(0.0014) * (t219 * t216);
-            let t268 = t266 + t267;
-            let t269 = t44 * t268;
-            let t270 = k(0.1) * t212;
-            let t271 = t211 * t270;
-            let t272 = t271 + t237;
-            let t273 = k(0.1) * t215;
-            let t274 = t211 * t273;
-            let t275 = t215 * t273 + t212 * t270;
-            let t276 = t61 * t275 + t55 * t274 - t252;
-            let t277 = t55 * t275 - t61 * t274 + t239;
-            let t278 = u3 * t216;
-            let t279 = u3 * t219;
-            let t280 = t69 * t279 + t68 * t278
-                + (t93 * t277 - (t84 * t276 - t54 * t272));
-            let t281 = t280 - (t53 * t269 - (t258 + t259));
-            let t282 = t59 * t269
-                - (t11 * t264 - t14 * t262 - k(0.0001) * (t219 * t213));
-            let t283 = t73 * t279 + t69 * t278
-                + (t96 * t277 + (t95 * t276 + t60 * t272));
-            let t284 = t283 - t282;
-            let t285 = t99 * t277 + (t98 * t276 + t46 * t272) - k(1.5) * t272;
-            let t286 = t60 * t279 + t54 * t278 + t285 - (t29 * t269 - t257);
+        let (
+            t212,
+            t221,
+            t226,
+            t331,
+            t336,
+            t339,
+            t346,
+            t349,
+            t356,
+            t359,
+            t362,
+            t364,
+            t366,
+        ) = {
+            let t200 = u5 + t195;
+            let t201 = k(0.1) * t200;
+            let t202 = k(0.1) * t195;
+            let t203 = t196 * t202;
+            let t204 = T::fused(t201, t199, t203);
+            let t205 = u5 * t199;
+            let t206 = T::fused(
+                k(0.0015),
+                t200 * t199,
+                T::fused(k(0.05), t204, k(0.0066) * t205),
+            );
+            let t207 = T::fused(-t0, t198, t4 * t196);
+            let t208 = T::fused(k(0.0001), t207 * t200, k(0.0002) * (u5 * t207));
+            let t209 = T::fused(k(0.5), t204, k(0.05) * t205);
+            let t210 = k(0.1) * t209;
+            let t211 = T::fused(
+                k(0.0015),
+                t196 * t195,
+                t210 + T::fused(t0, t206, t4 * t208),
+            );
+            let t212 = t210 + t211;
+            let t213 = t7 * t212;
+            let t214 = k(0.1) * t191;
+            let t215 = t194 * t214;
+            let t216 = k(0.1) * t197;
+            let t217 = T::fused(t191, t214, t197 * t216);
+            let t218 = T::fused(-t10, t215, t13 * t217) - t203;
+            let t219 = u4 * t195;
+            let t220 = T::fused(t22, t219, -T::fused(-t9, t218, t218))
+                + T::fused(-t2, t213, t209);
+            let t221 = t207 * t199;
+            let t222 = k(0.1) * t207;
+            let t223 = k(0.1) * t198;
+            let t224 = t196 * t223;
+            let t225 = T::fused(t195, t202, t198 * t223);
+            let t226 = T::fused(-t222, t199, T::fused(t0, t224, t4 * t225));
+            let t227 = T::fused(
+                k(0.010447761194029851),
+                t221,
+                k(0.12686567164179105) * t226,
+            );
+            let t228 = T::fused(-t4, t224, t0 * t225)
+                + T::fused(t200, t201, t207 * t222);
+            let t229 = k(0.5) * t228;
+            let t230 = t194 * t216;
+            let t231 = t230 - t224;
+            let t232 = T::fused(t13, t215, t10 * t217) + t225;
+            let t233 = u4 * t196;
+            let t234 = T::fused(t18, t233, -(t232 - T::fused(-t17, t231, t12 * t232)))
+                - T::fused(t4, t227, t0 * t229);
+            let t235 = T::fused(-t10, t220, t13 * t234);
+            let t236 = k(0.1) * t235;
+            let t237 = T::fused(-t0, t227, t4 * t229);
+            let t238 = k(0.1) * t237;
+            let t239 = T::fused(t33, t233, T::fused(t38, t231, t18 * t232))
+                + (t238 + T::fused(-k(0.0014), t196 * t198, t238));
+            let t240 = T::fused(
+                t21,
+                t213,
+                T::fused(-k(0.0001), t198 * t195, T::fused(-t4, t206, t0 * t208)),
+            );
+            let t241 = T::fused(t22, t218, t35 * t219) - t240;
+            let t242 = T::fused(t38, t233, -(t231 + T::fused(-t29, t231, t17 * t232)))
+                - t237;
+            let t243 = k(0.1) * t242;
+            let t244 = T::fused(
+                -k(0.0014),
+                t197 * t194,
+                t243 - T::fused(t10, t239, t13 * t241),
+            );
+            let t245 = t243 + t244;
+            let t246 = t42 * t245;
+            let t247 = k(0.1) * t190;
+            let t248 = t189 * t247;
+            let t249 = t248 + t215;
+            let t250 = k(0.1) * t193;
+            let t251 = t189 * t250;
+            let t252 = T::fused(t190, t247, t193 * t250);
+            let t253 = T::fused(t51, t251, t57 * t252) - t230;
+            let t254 = T::fused(-t57, t251, t51 * t252) + t217;
+            let t255 = u3 * t194;
+            let t256 = u3 * t197;
+            let t257 = T::fused(t63, t255, t64 * t256)
+                + T::fused(t86, t254, -T::fused(-t50, t249, t78 * t253));
+            let t258 = t257
+                - T::fused(t49, t246, -(t236 + T::fused(-k(0.0015), t194 * t191, t236)));
+            let t259 = T::fused(
+                t55,
+                t246,
+                -T::fused(-k(0.0001), t197 * t191, T::fused(-t13, t239, t10 * t241)),
+            );
+            let t260 = T::fused(t64, t255, t68 * t256)
+                + T::fused(t89, t254, T::fused(t56, t249, t88 * t253));
+            let t261 = t260 - t259;
+            let t262 = T::fused(
+                -k(1.5),
+                t249,
+                T::fused(t92, t254, T::fused(t44, t249, t91 * t253)),
+            );
+            let t263 = T::fused(t50, t255, t56 * t256) + t262
+                - T::fused(t28, t246, -t235);
+            let t264 = k(0.1) * t263;
+            let t265 = T::fused(
+                -k(0.0015),
+                t190 * t189,
+                t264 + T::fused(t51, t258, t57 * t261),
+            );
+            let t266 = t264 + t265;
+            let t267 = t72 * t266;
+            let t268 = k(0.1) * u1;
+            let t269 = t268 * t187;
+            let t270 = k(0.1) * t192;
+            let t271 = T::fused(t192, t270, u1 * t268);
+            let t272 = T::fused(-t75, t269, t97 * t271) - t248;
+            let t273 = t187 * t270;
+            let t274 = t273 + t251;
+            let t275 = T::fused(t97, t269, t75 * t271) + t252;
+            let t276 = T::fused(
+                k(2.0),
+                t272,
+                T::fused(t96, t275, -T::fused(t74, t272, t134 * t274)),
+            );
+            let t277 = u2 * t189;
+            let t278 = u2 * t190;
+            let t279 = T::fused(t120, t277, t129 * t278) + t276
+                + T::fused(-t60, t267, t263);
+            let t280 = T::fused(
+                -k(1.5),
+                t253,
+                T::fused(t100, t254, T::fused(t91, t249, t99 * t253)),
+            );
+            let t281 = T::fused(-t78, t255, t88 * t256) + t280
+                - T::fused(-t76, t246, t242);
+            let t282 = T::fused(
+                -k(1.5),
+                t254,
+                T::fused(t102, t254, T::fused(t92, t249, t100 * t253)),
+            );
+            let t283 = T::fused(t86, t255, t89 * t256) + t282
+                - T::fused(t84, t246, -T::fused(t13, t220, t10 * t234));
+            let t284 = T::fused(
+                -k(2.0),
+                t275,
+                T::fused(t106, t275, -T::fused(t96, t272, t136 * t274)),
+            );
+            let t285 = T::fused(-t124, t277, t130 * t278) + t284
+                + T::fused(t95, t267, T::fused(t57, t281, t51 * t283));
+            let t286 = T::fused(t75, t279, t97 * t285);
             let t287 = k(0.1) * t286;
-            let t288 = t287 + (t61 * t284 + t55 * t281) - k(0.0015) * (t212 * t211);
-            let t289 = t287 + t288;
-            let t290 = t78 * t289;
-            let t291 = k(0.1) * u1;
-            let t292 = t291 * t209;
-            let t293 = k(0.1) * t214;
-            let t294 = u1 * t291 + t214 * t293;
-            let t295 = t105 * t294 - t81 * t292 - t271;
-            let t296 = t209 * t293;
-            let t297 = t296 + t274;
-            let t298 = t81 * t294 + t105 * t292 + t275;
-            let t299 = u2 * t211;
-            let t300 = t134 * t299 - (t104 * t298 - (t137 * t297 - t80 * t295));
-            let t301 = t108 * t298 - (t154 * t297 + t107 * t295) + k(2.0) * t295;
-            let t302 = u2 * t212;
-            let t303 = t150 * t302 + t138 * t299 + t301 + (t286 - t64 * t290);
-            let t304 = t111 * t277 + (t110 * t276 + t98 * t272) - k(1.5) * t276;
-            let t305 = t95 * t279 - t84 * t278 + t304 - (t265 - t82 * t269);
-            let t306 = t113 * t277 + (t111 * t276 + t99 * t272) - k(1.5) * t277;
-            let t307 = t96 * t279 + t93 * t278 + t306
-                - (t91 * t269 - (t11 * t256 + t14 * t242));
-            let t308 = t116 * t298 - (t155 * t297 + t108 * t295) - k(2.0) * t298;
-            let t309 = t151 * t302 - t145 * t299 + t308
-                + (t102 * t290 + (t55 * t307 + t61 * t305));
-            let t310 = t105 * t309 + t81 * t303;
-            let t311 = k(0.1) * t310;
-            let t312 = t311 + (t311 - (t300 - (t289 - t77 * t290)) - k(0.0015) * t210);
-            let t313 = t140 * t277 - (t139 * t276 - t123 * t272) - (t268 - t43 * t269);
-            let t314 = t61 * t307 - t55 * t305;
-            let t315 = k(0.1) * t314;
-            let t316 = t132 * t290 + (t315 + (t315 - t313 + k(0.0014) * (t211 * t215)));
-            let t317 = t170 * t302 - t168 * t299
-                + (t145 * t298 - (t177 * t297 - t138 * t295));
-            let t318 = t317 + t316;
-            let t319 = t149 * t290
-                + (t55 * t284 - t61 * t281 + k(0.0001) * (t212 * t215));
-            let t320 = t175 * t302 - t170 * t299
-                + (t151 * t298 - (t178 * t297 + t150 * t295));
-            let t321 = t320 + t319;
-            let t322 = t155 * t298 - (t180 * t297 + t154 * t295) + k(2.0) * t297;
-            let t323 = t178 * t302 - t177 * t299 + t322 + (t135 * t290 + t314);
-            let t324 = k(0.1) * t323;
-            let t325 = t324 - (t105 * t321 - t81 * t318) + k(0.0014) * (t214 * t209);
-            let t326 = t324 + t325;
-            let t327 = t185 * t326;
-            let t328 = u0 * (k(0.1) * u0);
-            let t329 = t195 * t328 + t296;
-            let t330 = t184 + (k(0.25) - t183);
-            let t331 = t185 * t330;
-            let t332 = t331 * t161 - (t158 + t159);
-            let t333 = t188 * t328 + t294;
-            let t334 = t81 * t117 - t105 * t109;
-            let t335 = k(0.1) * t334;
-            let t336 = t81 * t145 + t105 * t138;
-            let t337 = t81 * t151 - t105 * t150;
-            let t338 = k(0.1) * (t81 * t155 - t105 * t154);
-            let t339 = t338 + (t338 - (t105 * t337 - t81 * t336));
-            let t340 = t185 * t339;
-            let t341 = t340 * t161 + (t335 + (t335 + (t81 * t104 + t105 * t80)));
-            let t342 = u1 * t214;
-            let t343 = t342 * t194 - t210 * t187
-                - (t341 * t333 + (t332 * t329 + t201 * t292));
-            let t344 = t193 * t327 + (t81 * t321 + t105 * t318 + k(0.0001) * t342);
-            let t345 = t191 - t193 * t331;
-            let t346 = t340 * t193 + (t81 * t337 + t105 * t336);
-            let t347 = t342 * t197 - t210 * t194
-                - (t346 * t333 - (t345 * t329 - t202 * t292));
-            let t348 = t195 * (t347 - t344) + t188 * (t343 - (t161 * t327 + t312));
-            let t349 = t156 - t200 * t330;
-            let t350 = t200 * t339 + t334;
-            let t351 = t350 * t333 - (t349 * t329 - t204 * t292) - k(2.5) * t292;
-            let t352 = t202 * t342 - t201 * t210 - t351 - (t199 * t327 + t310);
-            let t353 = k(0.1) * t352;
-            let t354 = k(9.81) * x0.sin();
-            let t355 = t328 + k(9.81) * x0.cos();
-            let t356 = t195 * (t188 * t346 - t195 * t345)
-                + t188 * (t188 * t341 + t195 * t332);
-            let t357 = k(0.1) * (t188 * t350 - t195 * t349);
-            let t358 = (t357 + (t357 + t356)) * t355 + (k(0.3) - t206 + t207) * t354;
-            let t359 = (t358 - (t353 + (t353 + t348))) / t208;
-            let t360 = k(0.1) * t359;
-            let t361 = t292 + (t360 - (t354 - t360));
-            let t362 = t329 + t195 * t355;
-            let t363 = t333 + t188 * t355;
-            let t364 = t210 + t188 * t359;
-            let t365 = t342 - t195 * t359;
-            let t366 = t193 * t365 - t161 * t364
-                - (t339 * t363 + (t330 * t362 + t199 * t361));
-            let t367 = t185 * (t326 - t366);
-            let t368 = k(0.1) * t364;
-            let t369 = t368 + (t361 + t368);
-            let t370 = t295 + (t105 * t363 - t81 * t369);
-            let t371 = k(0.1) * t367;
-            let t372 = t297 - (t371 - (t362 - t371));
-            let t373 = t298 + (t81 * t363 + t105 * t369);
-            let t374 = t299 + (t105 * t365 - t81 * t367);
-            let t375 = t302 - (t81 * t365 + t105 * t367);
-            let t376 = t149 * t375 - (t77 * t364 + t132 * t374)
-                + (t102 * t373 - (t135 * t372 - t64 * t370));
-            let t377 = t78 * (t289 + t376);
-            let t378 = t364 + t377;
-            let t379 = k(0.1) * t378;
-            let t380 = t272 + (t379 - (t370 - t379));
-            let t381 = k(0.1) * t374;
-            let t382 = t381 + (t372 + t381);
-            let t383 = t276 + (t61 * t373 + t55 * t382);
-            let t384 = t277 + (t55 * t373 - t61 * t382);
-            let t385 = t278 - (t61 * t375 - t55 * t378);
-            let t386 = t279 + (t55 * t375 + t61 * t378);
-            let t387 = t59 * t386 + (t53 * t385 - t43 * t374)
-                + (t91 * t384 - (t82 * t383 - t29 * t380));
-            let t388 = t44 * (t268 - t387);
-            let t389 = k(0.1) * t385;
-            let t390 = t389 + (t380 + t389);
-            let t391 = t374 - t388;
-            let t392 = t22 * (t241 + (t11 * t386 + t14 * t391)) - t7 * t385;
-            let t393 = t234 - (t392 + t2 * (t240 + (t14 * t384 - t11 * t390)));
-            let t394 = k(0.1) * t391;
-            let t395 = t255 - (t14 * t386 - t11 * t391);
-            let t396 = k(0.1) * t395;
-            let t397 = t4 * (t254 + (t11 * t384 + t14 * t390))
-                + t0 * (t396 + (t396 - (t253 - (t394 + (t383 + t394)))));
-            let t398 = k(149.2537313432836)
-                * (k(0.0067) * t395 + k(0.05) * (t248 + t397) - k(0.0014) * t243);
-            (t359, t367, t377, t388, t393, t398)
+            let t288 = T::fused(-t51, t281, t57 * t283);
+            let t289 = k(0.1) * t288;
+            let t290 = T::fused(-t147, t277, t149 * t278)
+                + T::fused(t124, t275, -T::fused(-t120, t272, t156 * t274));
+            let t291 = t290
+                + T::fused(t119, t267, t289 + T::fused(k(0.0014), t189 * t193, t289));
+            let t292 = T::fused(
+                t128,
+                t267,
+                T::fused(k(0.0001), t190 * t193, T::fused(-t57, t258, t51 * t261)),
+            );
+            let t293 = T::fused(-t149, t277, t154 * t278)
+                + T::fused(t130, t275, -T::fused(t129, t272, t157 * t274));
+            let t294 = t293 + t292;
+            let t295 = T::fused(
+                k(2.0),
+                t274,
+                T::fused(t136, t275, -T::fused(t134, t272, t159 * t274)),
+            );
+            let t296 = T::fused(-t156, t277, t157 * t278) + t295
+                + T::fused(t133, t267, t288);
+            let t297 = k(0.1) * t296;
+            let t298 = T::fused(
+                k(0.0014),
+                t192 * t187,
+                t297 - T::fused(-t75, t291, t97 * t294),
+            );
+            let t299 = t297 + t298;
+            let t300 = t164 * t299;
+            let t301 = u0 * (k(0.1) * u0);
+            let t302 = T::fused(t173, t301, t273);
+            let t303 = t163 + (k(0.25) - t162);
+            let t304 = t164 * t303;
+            let t305 = T::fused(-k(0.2), t137, t304 * t141);
+            let t306 = T::fused(t167, t301, t271);
+            let t307 = T::fused(-t97, t98, t75 * t107);
+            let t308 = T::fused(t97, t120, t75 * t124);
+            let t309 = T::fused(-t97, t129, t75 * t130);
+            let t310 = k(0.1) * T::fused(-t97, t134, t75 * t136);
+            let t311 = t310 + (t310 - T::fused(-t75, t308, t97 * t309));
+            let t312 = t164 * t311;
+            let t313 = T::fused(k(0.2), t307, t312 * t141);
+            let t314 = u1 * t192;
+            let t315 = T::fused(-t188, t166, t314 * t172)
+                - T::fused(t313, t306, T::fused(t179, t269, t305 * t302));
+            let t316 = T::fused(
+                t171,
+                t300,
+                T::fused(k(0.0001), t314, T::fused(t97, t291, t75 * t294)),
+            );
+            let t317 = T::fused(-t171, t304, t169);
+            let t318 = T::fused(t312, t171, T::fused(t97, t308, t75 * t309));
+            let t319 = T::fused(-t188, t172, t314 * t175)
+                - T::fused(t318, t306, -T::fused(-t180, t269, t317 * t302));
+            let t320 = T::fused(
+                t167,
+                t315 - T::fused(t141, t300, t287 + T::fused(-k(0.0015), t188, t287)),
+                t173 * (t319 - t316),
+            );
+            let t321 = T::fused(-t178, t303, t137);
+            let t322 = T::fused(t178, t311, t307);
+            let t323 = T::fused(
+                -k(2.5),
+                t269,
+                T::fused(t322, t306, -T::fused(-t182, t269, t321 * t302)),
+            );
+            let t324 = T::fused(-t179, t188, t180 * t314) - t323
+                - T::fused(t177, t300, t286);
+            let t325 = k(0.1) * t324;
+            let t326 = k(9.81) * x0.sin();
+            let t327 = T::fused(k(9.81), x0.cos(), t301);
+            let t328 = T::fused(
+                t167,
+                T::fused(t173, t305, t167 * t313),
+                t173 * T::fused(-t173, t317, t167 * t318),
+            );
+            let t329 = k(0.1) * T::fused(-t173, t321, t167 * t322);
+            let t330 = T::fused(
+                k(0.3) - t184 + t185,
+                t326,
+                (t329 + (t329 + t328)) * t327,
+            );
+            let t331 = (t330 - (t325 + (t325 + t320))) / t186;
+            let t332 = k(0.1) * t331;
+            let t333 = t269 + (t332 - (t326 - t332));
+            let t334 = T::fused(t173, t327, t302);
+            let t335 = T::fused(t167, t327, t306);
+            let t336 = T::fused(t167, t331, t188);
+            let t337 = T::fused(-t173, t331, t314);
+            let t338 = T::fused(-t141, t336, t171 * t337)
+                - T::fused(t311, t335, T::fused(t177, t333, t303 * t334));
+            let t339 = t164 * (t299 - t338);
+            let t340 = k(0.1) * t336;
+            let t341 = t340 + (t333 + t340);
+            let t342 = t272 + T::fused(-t75, t341, t97 * t335);
+            let t343 = k(0.1) * t339;
+            let t344 = t274 - (t343 - (t334 - t343));
+            let t345 = t275 + T::fused(t97, t341, t75 * t335);
+            let t346 = t277 + T::fused(-t75, t339, t97 * t337);
+            let t347 = t278 - T::fused(t97, t339, t75 * t337);
+            let t348 = T::fused(-t119, t346, t128 * t347)
+                + T::fused(t95, t345, -T::fused(-t60, t342, t133 * t344));
+            let t349 = t72 * (t266 + t348);
+            let t350 = k(0.1) * t349;
+            let t351 = t249 + (t350 - (t342 - t350));
+            let t352 = k(0.1) * t346;
+            let t353 = t352 + (t344 + t352);
+            let t354 = t253 + T::fused(t51, t353, t57 * t345);
+            let t355 = t254 + T::fused(-t57, t353, t51 * t345);
+            let t356 = t255 - T::fused(-t51, t349, t57 * t347);
+            let t357 = t256 + T::fused(t57, t349, t51 * t347);
+            let t358 = T::fused(t49, t356, t55 * t357)
+                + T::fused(t84, t355, -T::fused(-t28, t351, t76 * t354));
+            let t359 = t42 * (t245 - t358);
+            let t360 = k(0.1) * t356;
+            let t361 = t360 + (t351 + t360);
+            let t362 = T::fused(
+                t2,
+                t218 + T::fused(-t10, t361, t13 * t355),
+                t21 * (t219 + T::fused(-t13, t359, t10 * t357)),
+            );
+            let t363 = k(0.1) * t359;
+            let t364 = t233 - T::fused(t10, t359, t13 * t357);
+            let t365 = k(0.1) * t364;
+            let t366 = T::fused(
+                t0,
+                t365 + (t365 - (t231 + (t363 - (t354 - t363)))),
+                t4 * (t232 + T::fused(t13, t361, t10 * t355)),
+            );
+            (
+                t212,
+                t221,
+                t226,
+                t331,
+                t336,
+                t339,
+                t346,
+                t349,
+                t356,
+                t359,
+                t362,
+                t364,
+                t366,
+            )
         };
-        *out = [-t359, -t367, -t377, -t388, t8 * t393, -t398];
+        *out = [
+            -t331,
+            -t339,
+            t336 - t349,
+            -(t346 + t359),
+            T::fused(t7, t212 - t362, t356),
+            -T::fused(
+                k(149.2537313432836),
+                T::fused(-k(0.0014), t221, k(0.05) * (t226 + t366)),
+                t364,
+            ),
+        ];
     }
     /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
@@ -7030,7 +7990,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
         let t1 = t0.cos();
         let t2 = t0.sin();
         let t3 = t2 * t1;
-        let t4 = k(0.5) - t1 * t1;
+        let t4 = T::fused(-t1, t1, k(0.5));
         let t5 = k(0.5) * x1;
         let t6 = t5.cos();
         let t7 = t2 * t6;
@@ -7041,39 +8001,39 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
         let t12 = t1 * t10;
         let t13 = t12 * t11;
         let t14 = k(0.2) * (t13 - t9);
-        let t15 = t14 - k(0.4) * t3;
+        let t15 = T::fused(-k(0.4), t3, t14);
         let t16 = t8 * t12;
         let t17 = t7 * t11;
         let t18 = t17 + t16;
         let t19 = t8 * t8;
-        let t20 = k(0.2) * (k(0.5) - (t19 + t11 * t11));
-        let t21 = t20 + k(0.4) * t4;
+        let t20 = k(0.2) * (k(0.5) - T::fused(t11, t11, t19));
+        let t21 = T::fused(k(0.4), t4, t20);
         let t22 = k(0.5) * x2;
         let t23 = t22.sin();
         let t24 = t22.cos();
-        let t25 = t7 * t24 + t8 * t23;
-        let t26 = t8 * t24 - t7 * t23;
+        let t25 = T::fused(t8, t23, t7 * t24);
+        let t26 = T::fused(-t7, t23, t8 * t24);
         let t27 = t26 * t25;
-        let t28 = t11 * t24 - t12 * t23;
-        let t29 = t12 * t24 + t11 * t23;
+        let t28 = T::fused(-t12, t23, t11 * t24);
+        let t29 = T::fused(t11, t23, t12 * t24);
         let t30 = t29 * t28;
         let t31 = k(0.2) * (t30 - t27);
         let t32 = t31 + (t14 + t15);
         let t33 = t26 * t29;
         let t34 = t25 * t28;
         let t35 = k(0.2) * (t34 + t33);
-        let t36 = t35 + k(0.4) * t18;
+        let t36 = T::fused(k(0.4), t18, t35);
         let t37 = t26 * t26;
-        let t38 = k(0.2) * (k(0.5) - (t37 + t28 * t28));
+        let t38 = k(0.2) * (k(0.5) - T::fused(t28, t28, t37));
         let t39 = t38 + (t20 + t21);
         let t40 = k(0.5) * x3;
         let t41 = t40.sin();
         let t42 = t40.cos();
-        let t43 = t25 * t42 - t28 * t41;
-        let t44 = t26 * t42 - t29 * t41;
+        let t43 = T::fused(-t28, t41, t25 * t42);
+        let t44 = T::fused(-t29, t41, t26 * t42);
         let t45 = t44 * t43;
-        let t46 = t28 * t42 + t25 * t41;
-        let t47 = t29 * t42 + t26 * t41;
+        let t46 = T::fused(t25, t41, t28 * t42);
+        let t47 = T::fused(t26, t41, t29 * t42);
         let t48 = t47 * t46;
         let t49 = k(0.2) * (t48 - t45);
         let t50 = t49 + (t31 + t32);
@@ -7082,16 +8042,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
         let t53 = k(0.2) * (t52 + t51);
         let t54 = t53 + (t35 + t36);
         let t55 = t44 * t44;
-        let t56 = k(0.2) * (k(0.5) - (t55 + t46 * t46));
+        let t56 = k(0.2) * (k(0.5) - T::fused(t46, t46, t55));
         let t57 = t56 + (t38 + t39);
         let t58 = k(0.5) * x4;
         let t59 = t58.sin();
         let t60 = t58.cos();
-        let t61 = t43 * t60 + t44 * t59;
-        let t62 = t44 * t60 - t43 * t59;
+        let t61 = T::fused(t44, t59, t43 * t60);
+        let t62 = T::fused(-t43, t59, t44 * t60);
         let t63 = t62 * t61;
-        let t64 = t46 * t60 - t47 * t59;
-        let t65 = t47 * t60 + t46 * t59;
+        let t64 = T::fused(-t47, t59, t46 * t60);
+        let t65 = T::fused(t46, t59, t47 * t60);
         let t66 = t65 * t64;
         let t67 = k(0.2) * (t66 - t63);
         let t68 = t67 + (t49 + t50);
@@ -7100,16 +8060,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
         let t71 = k(0.2) * (t70 + t69);
         let t72 = t71 + (t53 + t54);
         let t73 = t62 * t62;
-        let t74 = k(0.2) * (k(0.5) - (t73 + t64 * t64));
+        let t74 = k(0.2) * (k(0.5) - T::fused(t64, t64, t73));
         let t75 = t74 + (t56 + t57);
         let t76 = k(0.5) * x5;
         let t77 = t76.sin();
         let t78 = t76.cos();
-        let t79 = t61 * t78 - t64 * t77;
-        let t80 = t62 * t78 - t65 * t77;
+        let t79 = T::fused(-t64, t77, t61 * t78);
+        let t80 = T::fused(-t65, t77, t62 * t78);
         let t81 = t80 * t79;
-        let t82 = t64 * t78 + t61 * t77;
-        let t83 = t65 * t78 + t62 * t77;
+        let t82 = T::fused(t61, t77, t64 * t78);
+        let t83 = T::fused(t62, t77, t65 * t78);
         let t84 = t83 * t82;
         let t85 = t80 * t83;
         let t86 = t79 * t82;
@@ -7118,86 +8078,117 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
         let t89 = k(2.0) * t4 * t88;
         let t90 = k(2.0) * t3 * t88;
         let t91 = k(2.0) * t10;
-        let t92 = u0 * (k(1.0) - t10 * t91);
+        let t92 = u0 * T::fused(-t10, t91, k(1.0));
         let t93 = k(0.1) * t92;
         let t94 = k(0.1) * u1;
         let t95 = t8 * t11;
         let t96 = t12 * t7;
-        let t97 = k(2.0) * (t96 + t95) * t94
-            + k(2.0) * (k(0.5) - (t19 + t12 * t12)) * t93;
-        let t98 = k(2.0) * t89 + t97;
-        let t99 = k(2.0) * (k(0.5) - (t19 + t7 * t7)) * t94 + k(2.0) * (t96 - t95) * t93;
-        let t100 = k(2.0) * (t17 - t16) * t94 - k(2.0) * (t13 + t9) * t93;
-        let t101 = k(2.0) * t90 - t100;
+        let t97 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(t12, t12, t19)),
+            t93,
+            k(2.0) * (t96 + t95) * t94,
+        );
+        let t98 = T::fused(k(2.0), t89, t97);
+        let t99 = T::fused(
+            k(2.0) * (t96 - t95),
+            t93,
+            k(2.0) * (k(0.5) - T::fused(t7, t7, t19)) * t94,
+        );
+        let t100 = T::fused(-(k(2.0) * (t13 + t9)), t93, k(2.0) * (t17 - t16) * t94);
+        let t101 = T::fused(k(2.0), t90, -t100);
         let t102 = u0 * (t6 * t91);
         let t103 = u2 + t92;
         let t104 = k(0.1) * t103;
         let t105 = k(2.0) * t23;
-        let t106 = k(1.0) - t23 * t105;
+        let t106 = T::fused(-t23, t105, k(1.0));
         let t107 = t24 * t105;
-        let t108 = t107 * t102 + u1 * t106;
+        let t108 = T::fused(u1, t106, t107 * t102);
         let t109 = k(0.1) * t108;
         let t110 = t26 * t28;
         let t111 = t29 * t25;
-        let t112 = k(2.0) * (t111 + t110) * t109
-            + k(2.0) * (k(0.5) - (t37 + t29 * t29)) * t104;
+        let t112 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(t29, t29, t37)),
+            t104,
+            k(2.0) * (t111 + t110) * t109,
+        );
         let t113 = t97 + t98 + t112;
-        let t114 = k(2.0) * (k(0.5) - (t37 + t25 * t25)) * t109
-            + k(2.0) * (t111 - t110) * t104;
-        let t115 = k(2.0) * t99 + t114;
-        let t116 = k(2.0) * (t34 - t33) * t109 - k(2.0) * (t30 + t27) * t104;
+        let t114 = T::fused(
+            k(2.0) * (t111 - t110),
+            t104,
+            k(2.0) * (k(0.5) - T::fused(t25, t25, t37)) * t109,
+        );
+        let t115 = T::fused(k(2.0), t99, t114);
+        let t116 = T::fused(-(k(2.0) * (t30 + t27)), t104, k(2.0) * (t34 - t33) * t109);
         let t117 = t100 - t101 + t116;
-        let t118 = t106 * t102 - u1 * t107;
+        let t118 = T::fused(-u1, t107, t106 * t102);
         let t119 = k(2.0) * t41;
-        let t120 = k(1.0) - t41 * t119;
+        let t120 = T::fused(-t41, t119, k(1.0));
         let t121 = t42 * t119;
-        let t122 = t121 * t118 - t120 * t103;
+        let t122 = T::fused(-t120, t103, t121 * t118);
         let t123 = k(0.1) * t122;
         let t124 = u3 + t108;
         let t125 = k(0.1) * t124;
         let t126 = t44 * t46;
         let t127 = t47 * t43;
-        let t128 = k(2.0) * (t127 + t126) * t125
-            - k(2.0) * (k(0.5) - (t55 + t47 * t47)) * t123;
+        let t128 = T::fused(
+            -(k(2.0) * (k(0.5) - T::fused(t47, t47, t55))),
+            t123,
+            k(2.0) * (t127 + t126) * t125,
+        );
         let t129 = t112 + t113 + t128;
-        let t130 = k(2.0) * (k(0.5) - (t55 + t43 * t43)) * t125
-            - k(2.0) * (t127 - t126) * t123;
+        let t130 = T::fused(
+            -(k(2.0) * (t127 - t126)),
+            t123,
+            k(2.0) * (k(0.5) - T::fused(t43, t43, t55)) * t125,
+        );
         let t131 = t114 + t115 + t130;
-        let t132 = k(2.0) * (t52 - t51) * t125 + k(2.0) * (t48 + t45) * t123;
+        let t132 = T::fused(k(2.0) * (t48 + t45), t123, k(2.0) * (t52 - t51) * t125);
         let t133 = t116 + t117 + t132;
-        let t134 = t120 * t118 + t121 * t103;
+        let t134 = T::fused(t121, t103, t120 * t118);
         let t135 = u4 - t122;
         let t136 = k(0.1) * t135;
         let t137 = k(2.0) * t59;
-        let t138 = k(1.0) - t59 * t137;
+        let t138 = T::fused(-t59, t137, k(1.0));
         let t139 = t60 * t137;
-        let t140 = t139 * t134 + t138 * t124;
+        let t140 = T::fused(t138, t124, t139 * t134);
         let t141 = k(0.1) * t140;
         let t142 = t62 * t64;
         let t143 = t65 * t61;
-        let t144 = k(2.0) * (t143 + t142) * t141
-            + k(2.0) * (k(0.5) - (t73 + t65 * t65)) * t136;
+        let t144 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(t65, t65, t73)),
+            t136,
+            k(2.0) * (t143 + t142) * t141,
+        );
         let t145 = t128 + t129 + t144;
-        let t146 = k(2.0) * (k(0.5) - (t73 + t61 * t61)) * t141
-            + k(2.0) * (t143 - t142) * t136;
+        let t146 = T::fused(
+            k(2.0) * (t143 - t142),
+            t136,
+            k(2.0) * (k(0.5) - T::fused(t61, t61, t73)) * t141,
+        );
         let t147 = t130 + t131 + t146;
-        let t148 = k(2.0) * (t70 - t69) * t141 - k(2.0) * (t66 + t63) * t136;
+        let t148 = T::fused(-(k(2.0) * (t66 + t63)), t136, k(2.0) * (t70 - t69) * t141);
         let t149 = t132 + t133 + t148;
-        let t150 = t138 * t134 - t139 * t124;
+        let t150 = T::fused(-t139, t124, t138 * t134);
         let t151 = k(2.0) * t77;
-        let t152 = k(1.0) - t77 * t151;
+        let t152 = T::fused(-t77, t151, k(1.0));
         let t153 = t78 * t151;
-        let t154 = t153 * t150 - t152 * t135;
+        let t154 = T::fused(-t152, t135, t153 * t150);
         let t155 = k(0.1) * t154;
         let t156 = u5 + t140;
         let t157 = k(0.1) * t156;
         let t158 = t80 * t82;
         let t159 = t83 * t79;
-        let t160 = k(2.0) * (t159 + t158) * t157
-            - k(2.0) * (k(0.5) - (t87 + t83 * t83)) * t155;
-        let t161 = k(2.0) * (k(0.5) - (t87 + t79 * t79)) * t157
-            - k(2.0) * (t159 - t158) * t155;
-        let t162 = k(2.0) * (t86 - t85) * t157 + k(2.0) * (t84 + t81) * t155;
+        let t160 = T::fused(
+            -(k(2.0) * (k(0.5) - T::fused(t83, t83, t87))),
+            t155,
+            k(2.0) * (t159 + t158) * t157,
+        );
+        let t161 = T::fused(
+            -(k(2.0) * (t159 - t158)),
+            t155,
+            k(2.0) * (k(0.5) - T::fused(t79, t79, t87)) * t157,
+        );
+        let t162 = T::fused(k(2.0) * (t84 + t81), t155, k(2.0) * (t86 - t85) * t157);
         *y = [
             -(k(0.2) * t3),
             k(0.0),
@@ -7234,9 +8225,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
             t65,
             t61,
             -t64,
-            k(0.2) * (t84 - t81) + (t67 + t68),
-            k(0.2) * (t86 + t85) + (t71 + t72),
-            k(0.2) * (k(0.5) - (t87 + t82 * t82)) + (t74 + t75),
+            T::fused(k(0.2), t84 - t81, t67 + t68),
+            T::fused(k(0.2), t86 + t85, t71 + t72),
+            T::fused(k(0.2), k(0.5) - T::fused(t82, t82, t87), t74 + t75),
             t80,
             t83,
             t79,
@@ -7276,7 +8267,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
             -(t148 + t149 + t162),
             t156,
             -t154,
-            -(t152 * t150 + t153 * t135),
+            -T::fused(t153, t135, t152 * t150),
         ];
     }
     /// Writes the joint state of a maximal state: 265 operations (120 ±, 145 ×, 0 ÷) and 18 functions.
@@ -7324,93 +8315,117 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
         let x4 = x[4];
         let x5 = x[5];
         let t0 = x0.sin();
-        let t1 = k(2.0) * (link_1_e1 * link_1_e3 + link_1_e0 * link_1_e2);
+        let t1 = k(2.0) * T::fused(link_1_e0, link_1_e2, link_1_e1 * link_1_e3);
         let t2 = x0.cos();
         let t3 = link_1_e2 * link_1_e2;
         let t4 = link_1_e0 * link_1_e0;
         let t5 = link_1_e3 * link_1_e3;
-        let t6 = k(1.0) - (t5 + (t4 + link_1_e1 * link_1_e1 + t3));
-        let t7 = k(2.0) * (k(0.5) - (t4 + t5)) - t6;
-        let t8 = (t7 * t0 + t1 * t2).atan2(t1 * t0 - t7 * t2);
+        let t6 = k(1.0) - (t5 + (T::fused(link_1_e1, link_1_e1, t4) + t3));
+        let t7 = T::fused(k(2.0), k(0.5) - (t4 + t5), -t6);
+        let t8 = T::fused(t1, t2, t7 * t0).atan2(T::fused(-t7, t2, t1 * t0));
         let t9 = x1.sin();
         let t10 = link_2_e0 * link_2_e0;
-        let t11 = t10 + link_2_e1 * link_2_e1;
+        let t11 = T::fused(link_2_e1, link_2_e1, t10);
         let t12 = link_2_e3 * link_2_e3;
-        let t13 = k(1.0) - (t12 + (t11 + link_2_e2 * link_2_e2));
-        let t14 = k(2.0) * (k(0.5) - (t10 + t12)) - t13;
+        let t13 = k(1.0) - (t12 + T::fused(link_2_e2, link_2_e2, t11));
+        let t14 = T::fused(k(2.0), k(0.5) - (t10 + t12), -t13);
         let t15 = link_1_e0 * link_1_e1;
         let t16 = link_1_e2 * link_1_e3;
-        let t17 = k(2.0) * (link_2_e2 * link_2_e3 - link_2_e0 * link_2_e1);
+        let t17 = k(2.0) * T::fused(-link_2_e0, link_2_e1, link_2_e2 * link_2_e3);
         let t18 = link_2_e0 * link_2_e2;
         let t19 = link_2_e1 * link_2_e3;
         let t20 = k(2.0) * (t19 + t18);
-        let t21 = k(2.0) * (link_1_e1 * link_1_e2 - link_1_e0 * link_1_e3) * t20
-            - t17 * (k(2.0) * (k(0.5) - (t4 + t3)) - t6);
-        let t22 = t21 - k(2.0) * (t16 + t15) * t14;
+        let t21 = T::fused(
+            -t17,
+            T::fused(k(2.0), k(0.5) - (t4 + t3), -t6),
+            k(2.0) * T::fused(-link_1_e0, link_1_e3, link_1_e1 * link_1_e2) * t20,
+        );
+        let t22 = T::fused(-(k(2.0) * (t16 + t15)), t14, t21);
         let t23 = x1.cos();
-        let t24 = t1 * t20 + k(2.0) * (t16 - t15) * t17 + t7 * t14;
-        let t25 = -(t24 * t9 + t22 * t23).atan2(t24 * t23 - t22 * t9);
+        let t24 = T::fused(t7, t14, T::fused(k(2.0) * (t16 - t15), t17, t1 * t20));
+        let t25 = -T::fused(t22, t23, t24 * t9).atan2(T::fused(-t22, t9, t24 * t23));
         let t26 = x2.sin();
         let t27 = link_3_e2 * link_3_e2;
         let t28 = link_3_e0 * link_3_e0;
         let t29 = link_3_e3 * link_3_e3;
-        let t30 = k(1.0) - (t29 + (t28 + link_3_e1 * link_3_e1 + t27));
-        let t31 = k(2.0) * (k(0.5) - (t28 + t29)) - t30;
+        let t30 = k(1.0) - (t29 + (T::fused(link_3_e1, link_3_e1, t28) + t27));
+        let t31 = T::fused(k(2.0), k(0.5) - (t28 + t29), -t30);
         let t32 = link_3_e0 * link_3_e1;
         let t33 = link_3_e2 * link_3_e3;
         let t34 = k(2.0) * (t33 - t32);
-        let t35 = k(2.0) * (link_3_e1 * link_3_e3 + link_3_e0 * link_3_e2);
-        let t36 = t35 * (k(2.0) * (k(0.5) - t11) - t13)
-            - k(2.0) * (link_2_e1 * link_2_e2 + link_2_e0 * link_2_e3) * t34;
-        let t37 = t36 + k(2.0) * (t19 - t18) * t31;
+        let t35 = k(2.0) * T::fused(link_3_e0, link_3_e2, link_3_e1 * link_3_e3);
+        let t36 = T::fused(
+            -(k(2.0) * T::fused(link_2_e0, link_2_e3, link_2_e1 * link_2_e2)),
+            t34,
+            t35 * T::fused(k(2.0), k(0.5) - t11, -t13),
+        );
+        let t37 = T::fused(k(2.0) * (t19 - t18), t31, t36);
         let t38 = x2.cos();
-        let t39 = t20 * t35 + t17 * t34 + t14 * t31;
-        let t40 = -(t39 * t26 + t37 * t38).atan2(t39 * t38 - t37 * t26);
+        let t39 = T::fused(t14, t31, T::fused(t17, t34, t20 * t35));
+        let t40 = -T::fused(t37, t38, t39 * t26).atan2(T::fused(-t37, t26, t39 * t38));
         let t41 = x3.sin();
         let t42 = link_4_e0 * link_4_e0;
-        let t43 = t42 + link_4_e1 * link_4_e1;
+        let t43 = T::fused(link_4_e1, link_4_e1, t42);
         let t44 = link_4_e3 * link_4_e3;
-        let t45 = k(1.0) - (t44 + (t43 + link_4_e2 * link_4_e2));
-        let t46 = k(2.0) * (k(0.5) - (t42 + t44)) - t45;
-        let t47 = k(2.0) * (link_4_e2 * link_4_e3 - link_4_e0 * link_4_e1);
+        let t45 = k(1.0) - (t44 + T::fused(link_4_e2, link_4_e2, t43));
+        let t46 = T::fused(k(2.0), k(0.5) - (t42 + t44), -t45);
+        let t47 = k(2.0) * T::fused(-link_4_e0, link_4_e1, link_4_e2 * link_4_e3);
         let t48 = link_4_e0 * link_4_e2;
         let t49 = link_4_e1 * link_4_e3;
         let t50 = k(2.0) * (t49 + t48);
-        let t51 = k(2.0) * (link_3_e1 * link_3_e2 - link_3_e0 * link_3_e3) * t50
-            - t47 * (k(2.0) * (k(0.5) - (t28 + t27)) - t30);
-        let t52 = t51 - k(2.0) * (t33 + t32) * t46;
+        let t51 = T::fused(
+            -t47,
+            T::fused(k(2.0), k(0.5) - (t28 + t27), -t30),
+            k(2.0) * T::fused(-link_3_e0, link_3_e3, link_3_e1 * link_3_e2) * t50,
+        );
+        let t52 = T::fused(-(k(2.0) * (t33 + t32)), t46, t51);
         let t53 = x3.cos();
-        let t54 = t35 * t50 + t34 * t47 + t31 * t46;
-        let t55 = -(t54 * t41 + t52 * t53).atan2(t54 * t53 - t52 * t41);
+        let t54 = T::fused(t31, t46, T::fused(t34, t47, t35 * t50));
+        let t55 = -T::fused(t52, t53, t54 * t41).atan2(T::fused(-t52, t41, t54 * t53));
         let t56 = x4.sin();
         let t57 = link_5_e2 * link_5_e2;
         let t58 = link_5_e0 * link_5_e0;
         let t59 = link_5_e3 * link_5_e3;
-        let t60 = k(1.0) - (t59 + (t58 + link_5_e1 * link_5_e1 + t57));
-        let t61 = k(2.0) * (k(0.5) - (t58 + t59)) - t60;
+        let t60 = k(1.0) - (t59 + (T::fused(link_5_e1, link_5_e1, t58) + t57));
+        let t61 = T::fused(k(2.0), k(0.5) - (t58 + t59), -t60);
         let t62 = link_5_e0 * link_5_e1;
         let t63 = link_5_e2 * link_5_e3;
         let t64 = k(2.0) * (t63 - t62);
-        let t65 = k(2.0) * (link_5_e1 * link_5_e3 + link_5_e0 * link_5_e2);
-        let t66 = t65 * (k(2.0) * (k(0.5) - t43) - t45)
-            - k(2.0) * (link_4_e1 * link_4_e2 + link_4_e0 * link_4_e3) * t64;
-        let t67 = t66 + k(2.0) * (t49 - t48) * t61;
+        let t65 = k(2.0) * T::fused(link_5_e0, link_5_e2, link_5_e1 * link_5_e3);
+        let t66 = T::fused(
+            -(k(2.0) * T::fused(link_4_e0, link_4_e3, link_4_e1 * link_4_e2)),
+            t64,
+            t65 * T::fused(k(2.0), k(0.5) - t43, -t45),
+        );
+        let t67 = T::fused(k(2.0) * (t49 - t48), t61, t66);
         let t68 = x4.cos();
-        let t69 = t50 * t65 + t47 * t64 + t46 * t61;
-        let t70 = -(t69 * t56 + t67 * t68).atan2(t69 * t68 - t67 * t56);
+        let t69 = T::fused(t46, t61, T::fused(t47, t64, t50 * t65));
+        let t70 = -T::fused(t67, t68, t69 * t56).atan2(T::fused(-t67, t56, t69 * t68));
         let t71 = x5.sin();
         let t72 = link_6_e0 * link_6_e0;
         let t73 = link_6_e3 * link_6_e3;
-        let t74 = k(2.0) * (k(0.5) - (t72 + t73))
-            - (k(1.0) - (t73 + (t72 + link_6_e1 * link_6_e1 + link_6_e2 * link_6_e2)));
-        let t75 = k(2.0) * (link_6_e2 * link_6_e3 - link_6_e0 * link_6_e1);
-        let t76 = k(2.0) * (link_6_e1 * link_6_e3 + link_6_e0 * link_6_e2);
-        let t77 = k(2.0) * (link_5_e1 * link_5_e2 - link_5_e0 * link_5_e3) * t76
-            - t75 * (k(2.0) * (k(0.5) - (t58 + t57)) - t60);
-        let t78 = t77 - k(2.0) * (t63 + t62) * t74;
+        let t74 = T::fused(
+            k(2.0),
+            k(0.5) - (t72 + t73),
+            -(k(1.0)
+                - (t73
+                    + T::fused(
+                        link_6_e2,
+                        link_6_e2,
+                        T::fused(link_6_e1, link_6_e1, t72),
+                    ))),
+        );
+        let t75 = k(2.0) * T::fused(-link_6_e0, link_6_e1, link_6_e2 * link_6_e3);
+        let t76 = k(2.0) * T::fused(link_6_e0, link_6_e2, link_6_e1 * link_6_e3);
+        let t77 = T::fused(
+            -t75,
+            T::fused(k(2.0), k(0.5) - (t58 + t57), -t60),
+            k(2.0) * T::fused(-link_5_e0, link_5_e3, link_5_e1 * link_5_e2) * t76,
+        );
+        let t78 = T::fused(-(k(2.0) * (t63 + t62)), t74, t77);
         let t79 = x5.cos();
-        let t80 = t65 * t76 + t64 * t75 + t61 * t74;
-        let t81 = -(t80 * t71 + t78 * t79).atan2(t80 * t79 - t78 * t71);
+        let t80 = T::fused(t61, t74, T::fused(t64, t75, t65 * t76));
+        let t81 = -T::fused(t78, t79, t80 * t71).atan2(T::fused(-t78, t71, t80 * t79));
         x[0] = x0 + t8;
         x[1] = x1 + t25;
         x[2] = x2 + t40;
@@ -7424,7 +8439,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
         x[10] = link_5_wy - link_4_wy;
         x[11] = link_6_wx - link_5_wx;
     }
-    /// Writes u̇ at a state that satisfies the constraints: 1292 operations (588 ±, 699 ×, 5 ÷).
+    /// Writes u̇ at a state that satisfies the constraints: 1207 operations (539 ±, 663 ×, 5 ÷).
     fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let link_1_e0 = y[3];
@@ -7467,401 +8482,498 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
             t4,
             t7,
             t10,
-            t11,
-            t13,
-            t16,
-            t18,
-            t20,
+            t12,
+            t15,
+            t17,
+            t19,
+            t23,
             t24,
-            t25,
+            t27,
             t28,
-            t29,
+            t34,
             t35,
-            t36,
-            t40,
-            t42,
-            t45,
-            t49,
+            t39,
+            t41,
+            t44,
+            t48,
             t50,
-            t52,
-            t54,
+            t55,
+            t56,
             t59,
-            t60,
             t63,
-            t67,
-            t68,
-            t70,
+            t64,
+            t66,
+            t69,
+            t72,
             t73,
             t77,
-            t78,
-            t82,
+            t81,
+            t83,
             t86,
             t87,
             t89,
-            t92,
-            t93,
             t95,
+            t97,
+            t99,
+            t100,
             t102,
-            t104,
+            t103,
             t106,
             t107,
             t109,
             t110,
-            t113,
-            t115,
-            t117,
+            t111,
+            t112,
+            t114,
+            t118,
             t119,
-            t120,
-            t121,
-            t122,
-            t123,
-            t125,
-            t128,
-            t129,
-            t130,
+            t131,
             t132,
-            t133,
-            t135,
-            t144,
+            t136,
+            t140,
+            t141,
+            t142,
+            t145,
             t146,
-            t147,
+            t148,
             t149,
-            t150,
-            t151,
-            t152,
-            t157,
-            t158,
+            t153,
+            t159,
             t161,
-            t162,
-            t163,
-            t164,
             t166,
-            t167,
             t168,
-            t170,
+            t169,
             t171,
-            t172,
-            t173,
-            t180,
-            t182,
+            t174,
+            t175,
+            t176,
+            t178,
+            t181,
             t183,
-            t184,
             t185,
-            t187,
+            t186,
             t188,
-            t189,
             t190,
+            t191,
             t192,
+            t193,
+            t194,
             t195,
             t196,
             t197,
             t198,
             t199,
         ) = {
-            let t0 = link_5_e1 * link_6_e0 - link_5_e0 * link_6_e1
-                - link_5_e3 * link_6_e2 + link_5_e2 * link_6_e3;
+            let t0 = T::fused(
+                link_5_e2,
+                link_6_e3,
+                T::fused(
+                    -link_5_e3,
+                    link_6_e2,
+                    T::fused(-link_5_e0, link_6_e1, link_5_e1 * link_6_e0),
+                ),
+            );
             let t1 = k(2.0) * t0;
-            let t2 = k(1.0) - t0 * t1;
-            let t3 = k(0.05) + k(0.05) * t2;
+            let t2 = T::fused(-t0, t1, k(1.0));
+            let t3 = T::fused(k(0.05), t2, k(0.05));
             let t4 = k(0.1) + t3;
             let t5 = k(0.0066) * t2;
-            let t6 = link_5_e0 * link_6_e0 + link_5_e1 * link_6_e1
-                + link_5_e2 * link_6_e2 + link_5_e3 * link_6_e3;
+            let t6 = T::fused(
+                link_5_e3,
+                link_6_e3,
+                T::fused(
+                    link_5_e2,
+                    link_6_e2,
+                    T::fused(link_5_e1, link_6_e1, link_5_e0 * link_6_e0),
+                ),
+            );
             let t7 = t6 * t1;
             let t8 = k(0.0002) * t7;
-            let t9 = k(0.0016) + (k(0.005) + (t7 * t8 + t2 * t5) + k(0.01) * t2);
-            let t10 = k(0.01) + t9 + k(0.2) * t3;
-            let t11 = k(1.0) / t10;
-            let t12 = t11 * t4;
-            let t13 = t4 * t12;
-            let t14 = link_4_e2 * link_5_e0 + link_4_e3 * link_5_e1
-                - link_4_e0 * link_5_e2 - link_4_e1 * link_5_e3;
-            let t15 = k(2.0) * t14;
-            let t16 = k(1.0) - t14 * t15;
-            let t17 = t16 * t13;
-            let t18 = t7 * (k(0.373134328358209) * t7);
-            let t19 = link_4_e0 * link_5_e0 + link_4_e1 * link_5_e1
-                + link_4_e2 * link_5_e2 + link_4_e3 * link_5_e3;
-            let t20 = t19 * t15;
-            let t21 = t20 * t18;
-            let t22 = t20 * t21 + t16 * t17;
-            let t23 = k(0.373134328358209) * t2;
-            let t24 = t7 * t23;
-            let t25 = k(0.2) * t24;
-            let t26 = t20 * t25;
-            let t27 = k(0.005) * t7;
-            let t28 = t27 + (t27 - (t2 * t8 - t7 * t5));
-            let t29 = t28 * t12 - k(0.05) * t7;
-            let t30 = t16 * t29;
-            let t31 = t20 * t30 - t16 * t26;
-            let t32 = t20 * t24;
-            let t33 = k(0.1) * t32;
-            let t34 = t33 - t31;
-            let t35 = t33 + t34;
-            let t36 = t2 * t23;
-            let t37 = k(0.01) * t36;
-            let t38 = k(0.1) * t36;
-            let t39 = k(0.05) - t38;
-            let t40 = t37 - k(0.2) * t39 - (k(0.01) + (k(0.0017) + (k(0.005) - t37)));
-            let t41 = t16 * t40;
-            let t42 = t28 * (t11 * t28)
-                - (k(0.0002) + (t2 * (k(0.0002) * t2) + t7 * (k(0.0066) * t7)));
-            let t43 = t20 * t42;
-            let t44 = k(0.1) - t38;
-            let t45 = t44 + t39;
-            let t46 = t16 * t45;
-            let t47 = t37 - k(0.2) * t46 - (k(0.01) - (t20 * t43 + t16 * t41));
-            let t48 = t44 + t46;
-            let t49 = k(0.2) * t48 - t37 + (k(0.015) + (k(0.0017) - t47));
-            let t50 = k(1.0) / t49;
-            let t51 = t50 * t35;
-            let t52 = t35 * t51 + t22;
-            let t53 = k(0.1) * t52;
-            let t54 = t4 - t10 * t12;
-            let t55 = t16 * t54;
-            let t56 = k(0.1) * t22;
-            let t57 = k(0.1) - t56 + t55;
-            let t58 = k(0.01) * t32;
-            let t59 = t58 + (k(0.1) * t34 + t58) + (t58 - k(0.1) * t31);
-            let t60 = t51 * t59 - (k(0.15) - t56 + t57);
-            let t61 = link_3_e1 * link_4_e0 - link_3_e0 * link_4_e1
-                - link_3_e3 * link_4_e2 + link_3_e2 * link_4_e3;
-            let t62 = k(2.0) * t61;
-            let t63 = k(1.0) - t61 * t62;
-            let t64 = t16 * t30 + t20 * t26;
-            let t65 = t20 * t45;
-            let t66 = k(0.1) * t65;
-            let t67 = t66 + (t66 + (t16 * t43 - t20 * t41));
-            let t68 = t51 * t67 - t64;
-            let t69 = link_3_e0 * link_4_e0 + link_3_e1 * link_4_e1
-                + link_3_e2 * link_4_e2 + link_3_e3 * link_4_e3;
-            let t70 = t69 * t62;
-            let t71 = t70 * t68 + t63 * t60;
-            let t72 = k(0.15) - t53 - t71;
-            let t73 = t72 + (k(0.2) - t53);
-            let t74 = k(0.01) * t22;
-            let t75 = k(0.2) * t57 - t74
-                + (k(0.015) + (k(0.0016) + (k(0.01) - (t74 - k(0.2) * t55))));
-            let t76 = t50 * t59;
-            let t77 = t59 * t76 - t75;
-            let t78 = t67 * t76 - k(0.2) * t64;
-            let t79 = t70 * t78;
-            let t80 = t79 + t63 * t77;
-            let t81 = t63 * t78;
-            let t82 = t67 * (t50 * t67)
-                - (k(0.0002) - (t16 * (t16 * t42) + t20 * (t20 * t40)));
-            let t83 = t70 * t82 + t81;
-            let t84 = k(0.01) * t52;
-            let t85 = t84 + k(0.2) * t71 - (k(0.015) - (t70 * t83 + t63 * t80));
-            let t86 = k(0.2) * t72 - t84 + (k(0.02) + (k(0.0016) - t85));
-            let t87 = k(1.0) / t86;
-            let t88 = t87 * t73;
-            let t89 = t73 - t86 * t88;
-            let t90 = link_2_e2 * link_3_e0 + link_2_e3 * link_3_e1
-                - link_2_e0 * link_3_e2 - link_2_e1 * link_3_e3;
-            let t91 = k(2.0) * t90;
-            let t92 = k(1.0) - t90 * t91;
-            let t93 = t48 + (k(0.15) - t38);
-            let t94 = t50 * t93;
-            let t95 = t59 * t94 - k(0.2) * t32;
-            let t96 = t16 * t21 - t20 * t17;
-            let t97 = k(0.1) * t96;
-            let t98 = t16 * t25;
-            let t99 = t20 * t29;
-            let t100 = t16 * t24;
-            let t101 = k(0.1) * t100;
-            let t102 = t101 + (t101 + (t20 * t99 + t16 * t98));
-            let t103 = t50 * t102;
-            let t104 = t59 * t103 + (t97 + (t97 + t20 * t54));
-            let t105 = t63 * t104 - t70 * t95;
-            let t106 = t65 - t67 * t94;
-            let t107 = t67 * t103 + (t16 * t99 - t20 * t98);
-            let t108 = t63 * t107 + t70 * t106;
-            let t109 = t32 - t51 * t93;
-            let t110 = t51 * t102 + t96;
-            let t111 = t63 * t110 + t70 * t109;
-            let t112 = k(0.1) * t111;
-            let t113 = t112 + (t112 + (t70 * t108 + t63 * t105));
-            let t114 = t87 * t113;
-            let t115 = t113 - t86 * t114;
-            let t116 = link_2_e0 * link_3_e0 + link_2_e1 * link_3_e1
-                + link_2_e2 * link_3_e2 + link_2_e3 * link_3_e3;
-            let t117 = t116 * t91;
-            let t118 = t117 * t115 - t92 * t89;
-            let t119 = t52 + t73 * t88;
-            let t120 = t111 - t113 * t88;
-            let t121 = t117 * t120 + t92 * t119;
-            let t122 = t36 + t93 * t94;
-            let t123 = t100 - t102 * t94;
-            let t124 = t63 * t123;
-            let t125 = t102 * t103 + (t16 * (t16 * t18) + t20 * (t20 * t13));
-            let t126 = t70 * t123;
-            let t127 = t63 * (t126 + t63 * t125) + t70 * (t124 + t70 * t122);
-            let t128 = t113 * t114 + t127;
-            let t129 = t117 * t128 + t92 * t120;
-            let t130 = t117 * t129 + t92 * t121;
-            let t131 = k(0.01) * t130;
-            let t132 = k(0.1) * t130;
-            let t133 = k(0.2) - t132 - t118;
-            let t134 = k(0.2) * t133 - t131
-                + (k(0.025) + (k(0.0016) + (k(0.02) - (t131 + k(0.2) * t118))));
-            let t135 = t35 - t49 * t51;
-            let t136 = t70 * t104 + t63 * t95;
-            let t137 = t70 * t107 - t63 * t106;
-            let t138 = t70 * t137 + t63 * t136;
-            let t139 = t70 * t110 - t63 * t109;
-            let t140 = k(0.01) * t139;
-            let t141 = k(0.1) * t139;
-            let t142 = t141 - t135;
-            let t143 = t141 + t138;
-            let t144 = k(0.1) * (t143 + t142) + t140 + (t140 + k(0.1) * (t138 - t135));
-            let t145 = t87 * t144;
-            let t146 = t144 - t86 * t145;
-            let t147 = t141 + t143;
-            let t148 = t87 * t147;
-            let t149 = t147 - t86 * t148;
-            let t150 = t144 * t88 - (t141 + t142);
-            let t151 = t93 - t49 * t94;
-            let t152 = t102 - t49 * t103;
-            let t153 = t126 - t63 * t122;
-            let t154 = t70 * t125 - t124;
-            let t155 = t63 * t154 + t70 * t153;
-            let t156 = k(0.1) * t155;
-            let t157 = t144 * t114 + (t156 + (t156 - (t63 * t152 - t70 * t151)));
-            let t158 = t117 * t157 - t92 * t150;
-            let t159 = t63 * t68 - t70 * t60;
-            let t160 = k(0.1) * t159;
-            let t161 = t160 + (t160 + (t63 * t83 - t70 * t80));
-            let t162 = t159 - t161 * t88;
-            let t163 = t161 * t114 + (t63 * t108 - t70 * t105);
-            let t164 = t117 * t163 + t92 * t162;
-            let t165 = t117 * t164 - t92 * t158;
-            let t166 = t139 - t147 * t88;
-            let t167 = t148 * t113 + t155;
-            let t168 = t117 * t167 + t92 * t166;
-            let t169 = k(0.01) * t168;
-            let t170 = k(0.1) * t168;
-            let t171 = t170 + t149;
-            let t172 = t170 - t165;
-            let t173 = k(0.1) * (t172 + t171) + t169
-                + (t169 - k(0.1) * (t165 - t149) + t92 * t146);
-            let t174 = t70 * t152 + t63 * t151;
-            let t175 = t70 * t154 - t63 * t153;
-            let t176 = k(0.01) * t175;
-            let t177 = k(0.1) * t175;
-            let t178 = k(0.15) - t177 + t174;
-            let t179 = k(0.2) * t178 - t176
-                + (k(0.02) + (k(0.0017) + (k(0.015) - (t176 - k(0.2) * t174))));
-            let t180 = t144 * t145 - t179;
-            let t181 = t63 * t137 - t70 * t136;
-            let t182 = t161 * t145 + k(0.2) * t181;
-            let t183 = t117 * t182;
-            let t184 = t183 - t92 * t180;
-            let t185 = t92 * t182;
-            let t186 = t63 * (t79 - t63 * t82) + t70 * (t81 - t70 * t77);
-            let t187 = t161 * (t87 * t161) - (k(0.0002) + t186);
-            let t188 = t117 * t187 - t185;
-            let t189 = t148 * t144 - (k(0.2) - t177 + t178);
-            let t190 = t148 * t161 + t181;
-            let t191 = t117 * t190 - t92 * t189;
-            let t192 = t147 * t148 + t175;
-            let t193 = k(0.01) * t192;
-            let t194 = t193 - k(0.2) * t191 - (k(0.02) - (t117 * t188 - t92 * t184));
-            let t195 = k(0.1) * t192;
-            let t196 = k(0.2) - t195 + t191;
-            let t197 = k(1.0) / (k(0.2) * t196 - t193 + (k(0.025) + (k(0.0017) - t194)));
-            let t198 = t197 * t173;
-            let t199 = t173 * t198 - t134;
+            let t9 = k(0.0016)
+                + T::fused(k(0.01), t2, k(0.005) + T::fused(t2, t5, t7 * t8));
+            let t10 = k(1.0) / T::fused(k(0.2), t3, k(0.01) + t9);
+            let t11 = t10 * t4;
+            let t12 = t4 * t11;
+            let t13 = T::fused(
+                -link_4_e1,
+                link_5_e3,
+                T::fused(
+                    -link_4_e0,
+                    link_5_e2,
+                    T::fused(link_4_e3, link_5_e1, link_4_e2 * link_5_e0),
+                ),
+            );
+            let t14 = k(2.0) * t13;
+            let t15 = T::fused(-t13, t14, k(1.0));
+            let t16 = t15 * t12;
+            let t17 = t7 * (k(0.373134328358209) * t7);
+            let t18 = T::fused(
+                link_4_e3,
+                link_5_e3,
+                T::fused(
+                    link_4_e2,
+                    link_5_e2,
+                    T::fused(link_4_e1, link_5_e1, link_4_e0 * link_5_e0),
+                ),
+            );
+            let t19 = t18 * t14;
+            let t20 = t19 * t17;
+            let t21 = T::fused(t15, t16, t19 * t20);
+            let t22 = k(0.373134328358209) * t2;
+            let t23 = t7 * t22;
+            let t24 = k(0.2) * t23;
+            let t25 = t19 * t24;
+            let t26 = k(0.005) * t7;
+            let t27 = t26 + (t26 - T::fused(-t7, t5, t2 * t8));
+            let t28 = T::fused(-k(0.05), t7, t27 * t11);
+            let t29 = t15 * t28;
+            let t30 = T::fused(-t15, t25, t19 * t29);
+            let t31 = t19 * t23;
+            let t32 = k(0.1) * t31;
+            let t33 = t32 - t30;
+            let t34 = t32 + t33;
+            let t35 = t2 * t22;
+            let t36 = k(0.01) * t35;
+            let t37 = k(0.1) * t35;
+            let t38 = k(0.05) - t37;
+            let t39 = T::fused(-k(0.2), t38, t36)
+                - (k(0.01) + (k(0.0017) + (k(0.005) - t36)));
+            let t40 = t15 * t39;
+            let t41 = T::fused(
+                t27,
+                t10 * t27,
+                -(k(0.0002) + T::fused(t7, k(0.0066) * t7, t2 * (k(0.0002) * t2))),
+            );
+            let t42 = t19 * t41;
+            let t43 = k(0.1) - t37;
+            let t44 = t43 + t38;
+            let t45 = t15 * t44;
+            let t46 = T::fused(-k(0.2), t45, t36)
+                - (k(0.01) - T::fused(t15, t40, t19 * t42));
+            let t47 = t43 + t45;
+            let t48 = k(1.0)
+                / (T::fused(k(0.2), t47, -t36) + (k(0.015) + (k(0.0017) - t46)));
+            let t49 = t48 * t34;
+            let t50 = T::fused(t34, t49, t21);
+            let t51 = k(0.1) * t50;
+            let t52 = k(0.1) * t21;
+            let t53 = k(0.1) - t52;
+            let t54 = k(0.01) * t31;
+            let t55 = t54 + T::fused(k(0.1), t33, t54) + T::fused(-k(0.1), t30, t54);
+            let t56 = T::fused(t49, t55, -(k(0.15) - t52 + t53));
+            let t57 = T::fused(
+                link_3_e2,
+                link_4_e3,
+                T::fused(
+                    -link_3_e3,
+                    link_4_e2,
+                    T::fused(-link_3_e0, link_4_e1, link_3_e1 * link_4_e0),
+                ),
+            );
+            let t58 = k(2.0) * t57;
+            let t59 = T::fused(-t57, t58, k(1.0));
+            let t60 = T::fused(t19, t25, t15 * t29);
+            let t61 = t19 * t44;
+            let t62 = k(0.1) * t61;
+            let t63 = t62 + (t62 + T::fused(-t19, t40, t15 * t42));
+            let t64 = T::fused(t49, t63, -t60);
+            let t65 = T::fused(
+                link_3_e3,
+                link_4_e3,
+                T::fused(
+                    link_3_e2,
+                    link_4_e2,
+                    T::fused(link_3_e1, link_4_e1, link_3_e0 * link_4_e0),
+                ),
+            );
+            let t66 = t65 * t58;
+            let t67 = T::fused(t59, t56, t66 * t64);
+            let t68 = k(0.15) - t51 - t67;
+            let t69 = t68 + (k(0.2) - t51);
+            let t70 = k(0.01) * t21;
+            let t71 = t48 * t55;
+            let t72 = T::fused(
+                t55,
+                t71,
+                -(T::fused(k(0.2), t53, -t70)
+                    + (k(0.015) + (k(0.0016) + (k(0.01) - t70)))),
+            );
+            let t73 = T::fused(-k(0.2), t60, t63 * t71);
+            let t74 = t66 * t73;
+            let t75 = T::fused(t59, t72, t74);
+            let t76 = t59 * t73;
+            let t77 = T::fused(
+                t63,
+                t48 * t63,
+                -(k(0.0002) - T::fused(t19, t19 * t39, t15 * (t15 * t41))),
+            );
+            let t78 = T::fused(t66, t77, t76);
+            let t79 = k(0.01) * t50;
+            let t80 = T::fused(k(0.2), t67, t79)
+                - (k(0.015) - T::fused(t59, t75, t66 * t78));
+            let t81 = k(1.0)
+                / (T::fused(k(0.2), t68, -t79) + (k(0.02) + (k(0.0016) - t80)));
+            let t82 = t81 * t69;
+            let t83 = T::fused(t69, t82, t50);
+            let t84 = T::fused(
+                -link_2_e1,
+                link_3_e3,
+                T::fused(
+                    -link_2_e0,
+                    link_3_e2,
+                    T::fused(link_2_e3, link_3_e1, link_2_e2 * link_3_e0),
+                ),
+            );
+            let t85 = k(2.0) * t84;
+            let t86 = T::fused(-t84, t85, k(1.0));
+            let t87 = t47 + (k(0.15) - t37);
+            let t88 = t48 * t87;
+            let t89 = T::fused(-k(0.2), t31, t55 * t88);
+            let t90 = T::fused(-t19, t16, t15 * t20);
+            let t91 = t15 * t24;
+            let t92 = t19 * t28;
+            let t93 = t15 * t23;
+            let t94 = k(0.1) * t93;
+            let t95 = t94 + (t94 + T::fused(t15, t91, t19 * t92));
+            let t96 = t48 * t95;
+            let t97 = T::fused(k(0.2), t90, t55 * t96);
+            let t98 = T::fused(-t66, t89, t59 * t97);
+            let t99 = T::fused(-t63, t88, t61);
+            let t100 = T::fused(t63, t96, T::fused(-t19, t91, t15 * t92));
+            let t101 = T::fused(t66, t99, t59 * t100);
+            let t102 = T::fused(-t49, t87, t31);
+            let t103 = T::fused(t49, t95, t90);
+            let t104 = T::fused(t66, t102, t59 * t103);
+            let t105 = k(0.1) * t104;
+            let t106 = t105 + (t105 + T::fused(t59, t98, t66 * t101));
+            let t107 = T::fused(-t106, t82, t104);
+            let t108 = T::fused(
+                link_2_e3,
+                link_3_e3,
+                T::fused(
+                    link_2_e2,
+                    link_3_e2,
+                    T::fused(link_2_e1, link_3_e1, link_2_e0 * link_3_e0),
+                ),
+            );
+            let t109 = t108 * t85;
+            let t110 = T::fused(t86, t83, t109 * t107);
+            let t111 = T::fused(t87, t88, t35);
+            let t112 = T::fused(-t95, t88, t93);
+            let t113 = t59 * t112;
+            let t114 = T::fused(t95, t96, T::fused(t19, t19 * t12, t15 * (t15 * t17)));
+            let t115 = t66 * t112;
+            let t116 = T::fused(
+                t66,
+                T::fused(t66, t111, t113),
+                t59 * T::fused(t59, t114, t115),
+            );
+            let t117 = t81 * t106;
+            let t118 = T::fused(t106, t117, t116);
+            let t119 = T::fused(t86, t107, t109 * t118);
+            let t120 = T::fused(t86, t110, t109 * t119);
+            let t121 = k(0.01) * t120;
+            let t122 = k(0.1) * t120;
+            let t123 = k(0.2) - t122;
+            let t124 = T::fused(-t59, t102, t66 * t103);
+            let t125 = T::fused(t59, t89, t66 * t97);
+            let t126 = T::fused(-t59, t99, t66 * t100);
+            let t127 = T::fused(t59, t125, t66 * t126);
+            let t128 = k(0.01) * t124;
+            let t129 = k(0.1) * t124;
+            let t130 = t129 + t127;
+            let t131 = t128 + T::fused(k(0.1), t130, t128)
+                + T::fused(k(0.1), t127, t128);
+            let t132 = T::fused(-k(0.2), t124, t131 * t82);
+            let t133 = T::fused(-t59, t111, t115);
+            let t134 = T::fused(t66, t114, -t113);
+            let t135 = T::fused(t66, t133, t59 * t134);
+            let t136 = T::fused(k(0.2), t135, t131 * t117);
+            let t137 = T::fused(-t86, t132, t109 * t136);
+            let t138 = T::fused(-t66, t56, t59 * t64);
+            let t139 = k(0.1) * t138;
+            let t140 = t139 + (t139 + T::fused(-t66, t75, t59 * t78));
+            let t141 = T::fused(-t140, t82, t138);
+            let t142 = T::fused(t140, t117, T::fused(-t66, t98, t59 * t101));
+            let t143 = T::fused(t86, t141, t109 * t142);
+            let t144 = T::fused(-t86, t137, t109 * t143);
+            let t145 = t129 + t130;
+            let t146 = T::fused(-t145, t82, t124);
+            let t147 = t81 * t145;
+            let t148 = T::fused(t147, t106, t135);
+            let t149 = T::fused(t86, t146, t109 * t148);
+            let t150 = k(0.01) * t149;
+            let t151 = k(0.1) * t149;
+            let t152 = t151 - t144;
+            let t153 = t150 + T::fused(k(0.1), t152, t150)
+                + T::fused(-k(0.1), t144, t150);
+            let t154 = T::fused(-t59, t133, t66 * t134);
+            let t155 = k(0.01) * t154;
+            let t156 = k(0.1) * t154;
+            let t157 = k(0.15) - t156;
+            let t158 = t81 * t131;
+            let t159 = T::fused(
+                t131,
+                t158,
+                -(T::fused(k(0.2), t157, -t155)
+                    + (k(0.02) + (k(0.0017) + (k(0.015) - t155)))),
+            );
+            let t160 = T::fused(-t66, t125, t59 * t126);
+            let t161 = T::fused(k(0.2), t160, t140 * t158);
+            let t162 = t109 * t161;
+            let t163 = T::fused(-t86, t159, t162);
+            let t164 = t86 * t161;
+            let t165 = T::fused(
+                t66,
+                T::fused(-t66, t72, t76),
+                t59 * T::fused(-t59, t77, t74),
+            );
+            let t166 = T::fused(t140, t81 * t140, -(k(0.0002) + t165));
+            let t167 = T::fused(t109, t166, -t164);
+            let t168 = T::fused(t147, t131, -(k(0.2) - t156 + t157));
+            let t169 = T::fused(t147, t140, t160);
+            let t170 = T::fused(-t86, t168, t109 * t169);
+            let t171 = T::fused(t145, t147, t154);
+            let t172 = k(0.01) * t171;
+            let t173 = T::fused(-k(0.2), t170, t172)
+                - (k(0.02) - T::fused(-t86, t163, t109 * t167));
+            let t174 = k(0.1) * t171;
+            let t175 = k(0.2) - t174 + t170;
+            let t176 = k(1.0)
+                / (T::fused(k(0.2), t175, -t172) + (k(0.025) + (k(0.0017) - t173)));
+            let t177 = t176 * t153;
+            let t178 = T::fused(
+                t153,
+                t177,
+                -(T::fused(k(0.2), t123, -t121)
+                    + (k(0.025) + (k(0.0016) + (k(0.02) - t121)))),
+            );
+            let t179 = T::fused(
+                link_1_e2,
+                link_2_e3,
+                T::fused(
+                    -link_1_e3,
+                    link_2_e2,
+                    T::fused(-link_1_e0, link_2_e1, link_1_e1 * link_2_e0),
+                ),
+            );
+            let t180 = k(2.0) * t179;
+            let t181 = T::fused(-t179, t180, k(1.0));
+            let t182 = T::fused(t109, t137, t86 * t143);
+            let t183 = T::fused(t109, t168, t86 * t169);
+            let t184 = k(0.1) * t183;
+            let t185 = t184 + (t184 - T::fused(t109, t163, t86 * t167));
+            let t186 = T::fused(k(0.2), t182, t185 * t177);
+            let t187 = T::fused(
+                link_1_e3,
+                link_2_e3,
+                T::fused(
+                    link_1_e2,
+                    link_2_e2,
+                    T::fused(link_1_e1, link_2_e1, link_1_e0 * link_2_e0),
+                ),
+            );
+            let t188 = t187 * t180;
+            let t189 = T::fused(
+                t109,
+                T::fused(t109, t159, t164),
+                t86 * T::fused(t86, t166, t162),
+            );
+            let t190 = T::fused(t185, t176 * t185, -(k(0.0002) - t189));
+            let t191 = T::fused(
+                t181,
+                T::fused(t181, t178, t188 * t186),
+                t188 * T::fused(t181, t186, t188 * t190),
+            );
+            let t192 = t151 + t152;
+            let t193 = t176 * t192;
+            let t194 = T::fused(t193, t153, -(k(0.25) - t122 + t123));
+            let t195 = T::fused(t193, t185, t182);
+            let t196 = T::fused(t181, t194, t188 * t195);
+            let t197 = T::fused(t192, t193, t120);
+            let t198 = k(0.01) * t197;
+            let t199 = k(0.1) * t197;
             (
                 t2,
                 t4,
                 t7,
                 t10,
-                t11,
-                t13,
-                t16,
-                t18,
-                t20,
+                t12,
+                t15,
+                t17,
+                t19,
+                t23,
                 t24,
-                t25,
+                t27,
                 t28,
-                t29,
+                t34,
                 t35,
-                t36,
-                t40,
-                t42,
-                t45,
-                t49,
+                t39,
+                t41,
+                t44,
+                t48,
                 t50,
-                t52,
-                t54,
+                t55,
+                t56,
                 t59,
-                t60,
                 t63,
-                t67,
-                t68,
-                t70,
+                t64,
+                t66,
+                t69,
+                t72,
                 t73,
                 t77,
-                t78,
-                t82,
+                t81,
+                t83,
                 t86,
                 t87,
                 t89,
-                t92,
-                t93,
                 t95,
+                t97,
+                t99,
+                t100,
                 t102,
-                t104,
+                t103,
                 t106,
                 t107,
                 t109,
                 t110,
-                t113,
-                t115,
-                t117,
+                t111,
+                t112,
+                t114,
+                t118,
                 t119,
-                t120,
-                t121,
-                t122,
-                t123,
-                t125,
-                t128,
-                t129,
-                t130,
+                t131,
                 t132,
-                t133,
-                t135,
-                t144,
+                t136,
+                t140,
+                t141,
+                t142,
+                t145,
                 t146,
-                t147,
+                t148,
                 t149,
-                t150,
-                t151,
-                t152,
-                t157,
-                t158,
+                t153,
+                t159,
                 t161,
-                t162,
-                t163,
-                t164,
                 t166,
-                t167,
                 t168,
-                t170,
+                t169,
                 t171,
-                t172,
-                t173,
-                t180,
-                t182,
+                t174,
+                t175,
+                t176,
+                t178,
+                t181,
                 t183,
-                t184,
                 t185,
-                t187,
+                t186,
                 t188,
-                t189,
                 t190,
+                t191,
                 t192,
+                t193,
+                t194,
                 t195,
                 t196,
                 t197,
@@ -7870,305 +8982,350 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
             )
         };
         let (
-            t254,
-            t260,
-            t261,
-            t263,
-            t268,
-            t273,
-            t274,
-            t275,
-            t288,
-            t292,
-            t296,
-            t297,
-            t298,
-            t299,
+            t232,
+            t241,
+            t246,
+            t352,
+            t357,
+            t360,
+            t367,
+            t370,
+            t377,
             t380,
-            t388,
-            t391,
-            t393,
-            t394,
-            t395,
-            t396,
-            t398,
-            t399,
+            t383,
+            t385,
+            t387,
         ) = {
-            let t200 = link_1_e1 * link_2_e0 - link_1_e0 * link_2_e1
-                - link_1_e3 * link_2_e2 + link_1_e2 * link_2_e3;
-            let t201 = k(2.0) * t200;
-            let t202 = k(1.0) - t200 * t201;
-            let t203 = t92 * t164 + t117 * t158;
-            let t204 = k(0.1) * t203;
-            let t205 = t92 * t190 + t117 * t189;
-            let t206 = k(0.1) * t205;
-            let t207 = t206 + (t206 - (t92 * t188 + t117 * t184));
-            let t208 = t207 * t198 + (t204 + (t204 + t117 * t146));
-            let t209 = link_1_e0 * link_2_e0 + link_1_e1 * link_2_e1
-                + link_1_e2 * link_2_e2 + link_1_e3 * link_2_e3;
-            let t210 = t209 * t201;
-            let t211 = t92 * (t183 + t92 * t187) + t117 * (t185 + t117 * t180);
-            let t212 = t207 * (t197 * t207) - (k(0.0002) - t211);
-            let t213 = t210 * (t210 * t212 + t202 * t208)
-                + t202 * (t210 * t208 + t202 * t199);
-            let t214 = t170 + t172;
-            let t215 = t197 * t214;
-            let t216 = t215 * t173 - (k(0.25) - t132 + t133);
-            let t217 = t215 * t207 + t203;
-            let t218 = t210 * t217 + t202 * t216;
-            let t219 = t214 * t215 + t130;
-            let t220 = k(0.01) * t219;
-            let t221 = k(0.1) * t219;
-            let t222 = k(0.25) - t221 - t218;
-            let t223 = k(0.2) * t222 - t220
-                + (k(0.03) + (k(0.0016) - (t220 + k(0.2) * t218 - (k(0.025) - t213))));
-            let t224 = link_1_wy * t210;
-            let t225 = link_1_wx - link_2_wx;
-            let t226 = t225 * t224;
-            let t227 = t92 * t224 + t225 * t117;
-            let t228 = t117 * t224 - t225 * t92;
-            let t229 = link_3_wx - link_4_wx;
-            let t230 = t229 - t228;
-            let t231 = link_1_wy * t202;
-            let t232 = link_2_wy - link_3_wy;
-            let t233 = t232 - t231;
-            let t234 = t63 * t227 - t70 * t233;
-            let t235 = t20 * t234 - t16 * t230;
-            let t236 = t16 * t234 + t20 * t230;
-            let t237 = t70 * t227 + t63 * t233;
-            let t238 = link_4_wy - link_5_wy;
-            let t239 = t238 + t237;
-            let t240 = t2 * t236 - t7 * t239;
-            let t241 = link_5_wx - link_6_wx;
-            let t242 = t241 - t235;
-            let t243 = k(0.1) * t242;
-            let t244 = k(0.1) * t235;
-            let t245 = t236 * t244;
-            let t246 = t245 - t243 * t240;
-            let t247 = t241 * t240;
-            let t248 = k(0.0066) * t247 - k(0.05) * t246 + k(0.0015) * (t242 * t240);
-            let t249 = t7 * t236 + t2 * t239;
-            let t250 = k(0.0002) * (t241 * t249) + k(0.0001) * (t249 * t242);
-            let t251 = k(0.05) * t247 - k(0.5) * t246;
-            let t252 = k(0.1) * t251;
-            let t253 = t252 + (t7 * t250 + t2 * t248) - k(0.0015) * (t236 * t235);
-            let t254 = t252 + t253;
-            let t255 = t11 * t254;
-            let t256 = k(0.1) * t230;
-            let t257 = t234 * t256;
-            let t258 = k(0.1) * t237;
-            let t259 = t237 * t258 + t230 * t256;
-            let t260 = t20 * t259 + t16 * t257 - t245;
-            let t261 = t238 * t235;
-            let t262 = t29 * t261 + (t260 - t13 * t260) + (t251 - t4 * t255);
-            let t263 = t249 * t240;
-            let t264 = k(0.1) * t249;
-            let t265 = k(0.1) * t239;
-            let t266 = t236 * t265;
-            let t267 = t239 * t265 + t235 * t244;
-            let t268 = t7 * t267 - t2 * t266 - t264 * t240;
-            let t269 = k(0.12686567164179105) * t268 + k(0.010447761194029851) * t263;
-            let t270 = t2 * t267 + t7 * t266 + (t249 * t264 + t242 * t243);
-            let t271 = k(0.5) * t270;
-            let t272 = t234 * t258;
-            let t273 = t272 + t266;
-            let t274 = t16 * t259 - t20 * t257 + t267;
-            let t275 = t238 * t236;
-            let t276 = t25 * t275 + (t274 - (t18 * t274 - t24 * t273))
-                + (t2 * t271 + t7 * t269);
-            let t277 = t20 * t276 - t16 * t262;
-            let t278 = k(0.1) * t277;
-            let t279 = t278 - (t54 * t260 + (t254 - t10 * t255))
-                - k(0.0015) * (t234 * t230);
-            let t280 = t7 * t271 - t2 * t269;
-            let t281 = k(0.1) * t280;
-            let t282 = t40 * t275 - (t25 * t274 + t45 * t273)
-                - (t281 + (t281 + k(0.0014) * (t236 * t239)));
-            let t283 = t28 * t255 + (t2 * t250 - t7 * t248 - k(0.0001) * (t239 * t235));
-            let t284 = t42 * t261 - t29 * t260 - t283;
-            let t285 = t45 * t275 + (t273 + (t24 * t274 - t36 * t273)) + t280;
-            let t286 = k(0.1) * t285;
-            let t287 = t286 - (t20 * t284 + t16 * t282) + k(0.0014) * (t237 * t234);
-            let t288 = t286 + t287;
-            let t289 = t50 * t288;
-            let t290 = k(0.1) * t228;
-            let t291 = t227 * t290;
-            let t292 = t291 - t257;
-            let t293 = k(0.1) * t233;
-            let t294 = t227 * t293;
-            let t295 = t233 * t293 + t228 * t290;
-            let t296 = t70 * t295 - t63 * t294 - t272;
-            let t297 = t63 * t295 + t70 * t294 + t259;
-            let t298 = t229 * t234;
-            let t299 = t229 * t237;
-            let t300 = t78 * t299 + t77 * t298
-                - (t104 * t297 - (t95 * t296 - t60 * t292));
-            let t301 = t300 - (t59 * t289 - (t278 + t279));
-            let t302 = t67 * t289
-                - (t16 * t284 - t20 * t282 - k(0.0001) * (t237 * t230));
-            let t303 = t82 * t299 + t78 * t298
-                - (t107 * t297 + (t106 * t296 + t68 * t292));
-            let t304 = t303 - t302;
-            let t305 = t110 * t297 + (t109 * t296 + t52 * t292) - k(1.5) * t292;
-            let t306 = t68 * t299 + t60 * t298 - t305 - (t35 * t289 - t277);
-            let t307 = k(0.1) * t306;
-            let t308 = t307 + (t70 * t304 + t63 * t301) + k(0.0015) * (t228 * t227);
-            let t309 = t307 + t308;
-            let t310 = t87 * t309;
-            let t311 = k(0.1) * t225;
-            let t312 = t224 * t311;
-            let t313 = k(0.1) * t231;
-            let t314 = t231 * t313 + t225 * t311;
-            let t315 = t117 * t314 + t92 * t312 - t291;
-            let t316 = t224 * t313;
-            let t317 = t316 - t294;
-            let t318 = t92 * t314 - t117 * t312 + t295;
-            let t319 = t232 * t227;
-            let t320 = t146 * t319 + (t115 * t318 - (t149 * t317 - t89 * t315));
-            let t321 = t120 * t318 - (t166 * t317 + t119 * t315) + k(2.0) * t315;
-            let t322 = t232 * t228;
-            let t323 = t162 * t322 + t150 * t319 - t321 + (t306 - t73 * t310);
-            let t324 = t123 * t297 + (t122 * t296 + t109 * t292) - k(1.5) * t296;
-            let t325 = t106 * t299 - t95 * t298 - t324 - (t285 - t93 * t289);
-            let t326 = t125 * t297 + (t123 * t296 + t110 * t292) - k(1.5) * t297;
-            let t327 = t107 * t299 + t104 * t298 - t326
-                - (t102 * t289 - (t16 * t276 + t20 * t262));
-            let t328 = t128 * t318 - (t167 * t317 + t120 * t315) - k(2.0) * t318;
-            let t329 = t163 * t322 - t157 * t319 - t328
-                + (t113 * t310 + (t63 * t327 + t70 * t325));
-            let t330 = t117 * t329 + t92 * t323;
-            let t331 = k(0.1) * t330;
-            let t332 = t331 + (t331 - (t320 - (t309 - t86 * t310)) - k(0.0015) * t226);
-            let t333 = t152 * t297 - (t151 * t296 - t135 * t292) + (t288 - t49 * t289);
-            let t334 = t70 * t327 - t63 * t325;
-            let t335 = k(0.1) * t334;
-            let t336 = t144 * t310 + (t335 + (t335 + t333 + k(0.0014) * (t227 * t233)));
-            let t337 = t182 * t322 - t180 * t319
-                - (t157 * t318 - (t189 * t317 - t150 * t315));
-            let t338 = t337 + t336;
-            let t339 = t161 * t310
-                + (t63 * t304 - t70 * t301 + k(0.0001) * (t228 * t233));
-            let t340 = t187 * t322 - t182 * t319
-                - (t163 * t318 - (t190 * t317 + t162 * t315));
-            let t341 = t340 + t339;
-            let t342 = t167 * t318 - (t192 * t317 + t166 * t315) + k(2.0) * t317;
-            let t343 = t190 * t322 - t189 * t319 - t342 + (t147 * t310 + t334);
-            let t344 = k(0.1) * t343;
-            let t345 = t344 - (t117 * t341 - t92 * t338) - k(0.0014) * (t231 * t224);
-            let t346 = t344 + t345;
-            let t347 = t197 * t346;
-            let t348 = link_1_wy * (k(0.1) * link_1_wy);
-            let t349 = t210 * t348 + t316;
-            let t350 = t196 + (k(0.25) - t195);
-            let t351 = t197 * t350;
-            let t352 = t351 * t173 - (t170 + t171);
-            let t353 = t202 * t348 + t314;
-            let t354 = t92 * t129 - t117 * t121;
-            let t355 = k(0.1) * t354;
-            let t356 = t92 * t157 + t117 * t150;
-            let t357 = t92 * t163 - t117 * t162;
-            let t358 = k(0.1) * (t92 * t167 - t117 * t166);
-            let t359 = t358 + (t358 - (t117 * t357 - t92 * t356));
-            let t360 = t197 * t359;
-            let t361 = t360 * t173 + (t355 + (t355 + (t92 * t115 + t117 * t89)));
-            let t362 = t225 * t231;
-            let t363 = t362 * t208 - t226 * t199
-                + (t361 * t353 + (t352 * t349 - t216 * t312));
-            let t364 = t207 * t347 + (t92 * t341 + t117 * t338 + k(0.0001) * t362);
-            let t365 = t205 - t207 * t351;
-            let t366 = t360 * t207 + (t92 * t357 + t117 * t356);
-            let t367 = t362 * t212 - t226 * t208
-                + (t366 * t353 - (t365 * t349 + t217 * t312));
-            let t368 = t210 * (t367 - t364) + t202 * (t363 - (t173 * t347 + t332));
-            let t369 = t168 - t215 * t350;
-            let t370 = t215 * t359 + t354;
-            let t371 = t370 * t353 - (t369 * t349 + t219 * t312) + k(2.5) * t312;
-            let t372 = t217 * t362 - t216 * t226 + t371 - (t214 * t347 + t330);
-            let t373 = k(0.1) * t372;
-            let t374 = k(2.0) * link_1_e2;
-            let t375 = k(9.81) * (link_1_e0 * t374);
-            let t376 = t348 + k(9.81) * (k(1.0) - link_1_e2 * t374);
-            let t377 = t210 * (t202 * t366 - t210 * t365)
-                + t202 * (t202 * t361 + t210 * t352);
-            let t378 = k(0.1) * (t202 * t370 - t210 * t369);
-            let t379 = (t378 + (t378 + t377)) * t376 - (k(0.3) - t221 + t222) * t375;
-            let t380 = (t379 + (t373 + (t373 + t368))) / t223;
-            let t381 = k(0.1) * t380;
-            let t382 = t312 - (t381 + (t375 + t381));
-            let t383 = t349 + t210 * t376;
-            let t384 = t353 + t202 * t376;
-            let t385 = t226 - t202 * t380;
-            let t386 = t362 + t210 * t380;
-            let t387 = t207 * t386 - t173 * t385
-                + (t359 * t384 + (t350 * t383 - t214 * t382));
-            let t388 = t197 * (t346 - t387);
-            let t389 = k(0.1) * t385;
-            let t390 = t389 + (t382 + t389);
-            let t391 = t315 + (t117 * t384 + t92 * t390);
-            let t392 = k(0.1) * t388;
-            let t393 = t317 + (t392 + (t383 + t392));
-            let t394 = t318 + (t92 * t384 - t117 * t390);
-            let t395 = t319 + (t117 * t386 - t92 * t388);
-            let t396 = t322 - (t92 * t386 + t117 * t388);
-            let t397 = t161 * t396 - (t86 * t385 + t144 * t395)
-                - (t113 * t394 - (t147 * t393 - t73 * t391));
-            let t398 = t87 * (t309 + t397);
-            let t399 = t385 + t398;
-            (
-                t254,
-                t260,
-                t261,
-                t263,
-                t268,
-                t273,
-                t274,
-                t275,
-                t288,
+            let t200 = k(0.25) - t199 - t196;
+            let t201 = T::fused(k(0.2), t200, -t198)
+                + (k(0.03)
+                    + (k(0.0016) - (T::fused(k(0.2), t196, t198) - (k(0.025) - t191))));
+            let t202 = link_1_wy * t188;
+            let t203 = link_1_wx - link_2_wx;
+            let t204 = t203 * t202;
+            let t205 = T::fused(t203, t109, t86 * t202);
+            let t206 = T::fused(-t203, t86, t109 * t202);
+            let t207 = link_3_wx - link_4_wx;
+            let t208 = t207 - t206;
+            let t209 = link_1_wy * t181;
+            let t210 = link_2_wy - link_3_wy;
+            let t211 = t210 - t209;
+            let t212 = T::fused(-t66, t211, t59 * t205);
+            let t213 = T::fused(-t15, t208, t19 * t212);
+            let t214 = T::fused(t19, t208, t15 * t212);
+            let t215 = T::fused(t59, t211, t66 * t205);
+            let t216 = link_4_wy - link_5_wy;
+            let t217 = t216 + t215;
+            let t218 = T::fused(-t7, t217, t2 * t214);
+            let t219 = link_5_wx - link_6_wx;
+            let t220 = t219 - t213;
+            let t221 = k(0.1) * t220;
+            let t222 = k(0.1) * t213;
+            let t223 = t214 * t222;
+            let t224 = T::fused(-t221, t218, t223);
+            let t225 = t219 * t218;
+            let t226 = T::fused(
+                k(0.0015),
+                t220 * t218,
+                T::fused(-k(0.05), t224, k(0.0066) * t225),
+            );
+            let t227 = T::fused(t2, t217, t7 * t214);
+            let t228 = T::fused(k(0.0001), t227 * t220, k(0.0002) * (t219 * t227));
+            let t229 = T::fused(-k(0.5), t224, k(0.05) * t225);
+            let t230 = k(0.1) * t229;
+            let t231 = T::fused(
+                -k(0.0015),
+                t214 * t213,
+                t230 + T::fused(t2, t226, t7 * t228),
+            );
+            let t232 = t230 + t231;
+            let t233 = t10 * t232;
+            let t234 = k(0.1) * t208;
+            let t235 = t212 * t234;
+            let t236 = k(0.1) * t215;
+            let t237 = T::fused(t208, t234, t215 * t236);
+            let t238 = T::fused(t15, t235, t19 * t237) - t223;
+            let t239 = t216 * t213;
+            let t240 = T::fused(t28, t239, T::fused(-t12, t238, t238))
+                + T::fused(-t4, t233, t229);
+            let t241 = t227 * t218;
+            let t242 = k(0.1) * t227;
+            let t243 = k(0.1) * t217;
+            let t244 = t214 * t243;
+            let t245 = T::fused(t213, t222, t217 * t243);
+            let t246 = T::fused(-t242, t218, T::fused(-t2, t244, t7 * t245));
+            let t247 = T::fused(
+                k(0.010447761194029851),
+                t241,
+                k(0.12686567164179105) * t246,
+            );
+            let t248 = T::fused(t7, t244, t2 * t245) + T::fused(t220, t221, t227 * t242);
+            let t249 = k(0.5) * t248;
+            let t250 = t212 * t236;
+            let t251 = t250 + t244;
+            let t252 = T::fused(-t19, t235, t15 * t237) + t245;
+            let t253 = t216 * t214;
+            let t254 = T::fused(t24, t253, t252 - T::fused(-t23, t251, t17 * t252))
+                + T::fused(t7, t247, t2 * t249);
+            let t255 = T::fused(-t15, t240, t19 * t254);
+            let t256 = k(0.1) * t255;
+            let t257 = T::fused(-t2, t247, t7 * t249);
+            let t258 = k(0.1) * t257;
+            let t259 = T::fused(t39, t253, -T::fused(t44, t251, t24 * t252))
+                - (t258 + T::fused(k(0.0014), t214 * t217, t258));
+            let t260 = T::fused(
+                t27,
+                t233,
+                T::fused(-k(0.0001), t217 * t213, T::fused(-t7, t226, t2 * t228)),
+            );
+            let t261 = T::fused(-t28, t238, t41 * t239) - t260;
+            let t262 = T::fused(t44, t253, t251 + T::fused(-t35, t251, t23 * t252))
+                + t257;
+            let t263 = k(0.1) * t262;
+            let t264 = T::fused(
+                k(0.0014),
+                t215 * t212,
+                t263 - T::fused(t15, t259, t19 * t261),
+            );
+            let t265 = t263 + t264;
+            let t266 = t48 * t265;
+            let t267 = k(0.1) * t206;
+            let t268 = t205 * t267;
+            let t269 = t268 - t235;
+            let t270 = k(0.1) * t211;
+            let t271 = t205 * t270;
+            let t272 = T::fused(t206, t267, t211 * t270);
+            let t273 = T::fused(-t59, t271, t66 * t272) - t250;
+            let t274 = T::fused(t66, t271, t59 * t272) + t237;
+            let t275 = t207 * t212;
+            let t276 = t207 * t215;
+            let t277 = T::fused(t72, t275, t73 * t276)
+                - T::fused(t97, t274, -T::fused(-t56, t269, t89 * t273));
+            let t278 = t277
+                - T::fused(t55, t266, -(t256 + T::fused(-k(0.0015), t212 * t208, t256)));
+            let t279 = T::fused(
+                t63,
+                t266,
+                -T::fused(-k(0.0001), t215 * t208, T::fused(-t19, t259, t15 * t261)),
+            );
+            let t280 = T::fused(t73, t275, t77 * t276)
+                - T::fused(t100, t274, T::fused(t64, t269, t99 * t273));
+            let t281 = t280 - t279;
+            let t282 = T::fused(
+                -k(1.5),
+                t269,
+                T::fused(t103, t274, T::fused(t50, t269, t102 * t273)),
+            );
+            let t283 = T::fused(t56, t275, t64 * t276) - t282
+                - T::fused(t34, t266, -t255);
+            let t284 = k(0.1) * t283;
+            let t285 = T::fused(
+                k(0.0015),
+                t206 * t205,
+                t284 + T::fused(t59, t278, t66 * t281),
+            );
+            let t286 = t284 + t285;
+            let t287 = t81 * t286;
+            let t288 = k(0.1) * t203;
+            let t289 = t202 * t288;
+            let t290 = k(0.1) * t209;
+            let t291 = T::fused(t203, t288, t209 * t290);
+            let t292 = T::fused(t86, t289, t109 * t291) - t268;
+            let t293 = t202 * t290;
+            let t294 = t293 - t271;
+            let t295 = T::fused(-t109, t289, t86 * t291) + t272;
+            let t296 = T::fused(
+                k(2.0),
                 t292,
-                t296,
-                t297,
-                t298,
-                t299,
+                T::fused(t107, t295, -T::fused(t83, t292, t146 * t294)),
+            );
+            let t297 = t210 * t205;
+            let t298 = t210 * t206;
+            let t299 = T::fused(t132, t297, t141 * t298) - t296
+                + T::fused(-t69, t287, t283);
+            let t300 = T::fused(
+                -k(1.5),
+                t273,
+                T::fused(t112, t274, T::fused(t102, t269, t111 * t273)),
+            );
+            let t301 = T::fused(-t89, t275, t99 * t276) - t300
+                - T::fused(-t87, t266, t262);
+            let t302 = T::fused(
+                -k(1.5),
+                t274,
+                T::fused(t114, t274, T::fused(t103, t269, t112 * t273)),
+            );
+            let t303 = T::fused(t97, t275, t100 * t276) - t302
+                - T::fused(t95, t266, -T::fused(t19, t240, t15 * t254));
+            let t304 = T::fused(
+                -k(2.0),
+                t295,
+                T::fused(t118, t295, -T::fused(t107, t292, t148 * t294)),
+            );
+            let t305 = T::fused(-t136, t297, t142 * t298) - t304
+                + T::fused(t106, t287, T::fused(t66, t301, t59 * t303));
+            let t306 = T::fused(t86, t299, t109 * t305);
+            let t307 = k(0.1) * t306;
+            let t308 = T::fused(-t59, t301, t66 * t303);
+            let t309 = k(0.1) * t308;
+            let t310 = T::fused(-t159, t297, t161 * t298)
+                - T::fused(t136, t295, -T::fused(-t132, t292, t168 * t294));
+            let t311 = t310
+                + T::fused(t131, t287, t309 + T::fused(k(0.0014), t205 * t211, t309));
+            let t312 = T::fused(
+                t140,
+                t287,
+                T::fused(k(0.0001), t206 * t211, T::fused(-t66, t278, t59 * t281)),
+            );
+            let t313 = T::fused(-t161, t297, t166 * t298)
+                - T::fused(t142, t295, -T::fused(t141, t292, t169 * t294));
+            let t314 = t313 + t312;
+            let t315 = T::fused(
+                k(2.0),
+                t294,
+                T::fused(t148, t295, -T::fused(t146, t292, t171 * t294)),
+            );
+            let t316 = T::fused(-t168, t297, t169 * t298) - t315
+                + T::fused(t145, t287, t308);
+            let t317 = k(0.1) * t316;
+            let t318 = T::fused(
+                -k(0.0014),
+                t209 * t202,
+                t317 - T::fused(-t86, t311, t109 * t314),
+            );
+            let t319 = t317 + t318;
+            let t320 = t176 * t319;
+            let t321 = link_1_wy * (k(0.1) * link_1_wy);
+            let t322 = T::fused(t321, t188, t293);
+            let t323 = t175 + (k(0.25) - t174);
+            let t324 = t176 * t323;
+            let t325 = T::fused(-k(0.2), t149, t324 * t153);
+            let t326 = T::fused(t321, t181, t291);
+            let t327 = T::fused(-t109, t110, t86 * t119);
+            let t328 = T::fused(t109, t132, t86 * t136);
+            let t329 = T::fused(-t109, t141, t86 * t142);
+            let t330 = k(0.1) * T::fused(-t109, t146, t86 * t148);
+            let t331 = t330 + (t330 - T::fused(-t86, t328, t109 * t329));
+            let t332 = t176 * t331;
+            let t333 = T::fused(k(0.2), t327, t332 * t153);
+            let t334 = t203 * t209;
+            let t335 = T::fused(-t204, t178, t334 * t186)
+                + T::fused(t333, t326, T::fused(-t194, t289, t325 * t322));
+            let t336 = T::fused(
+                t185,
+                t320,
+                T::fused(k(0.0001), t334, T::fused(t109, t311, t86 * t314)),
+            );
+            let t337 = T::fused(-t185, t324, t183);
+            let t338 = T::fused(t332, t185, T::fused(t109, t328, t86 * t329));
+            let t339 = T::fused(-t204, t186, t334 * t190)
+                + T::fused(t338, t326, -T::fused(t195, t289, t337 * t322));
+            let t340 = T::fused(
+                t181,
+                t335 - T::fused(t153, t320, t307 + T::fused(-k(0.0015), t204, t307)),
+                t188 * (t339 - t336),
+            );
+            let t341 = T::fused(-t193, t323, t149);
+            let t342 = T::fused(t193, t331, t327);
+            let t343 = T::fused(
+                k(2.5),
+                t289,
+                T::fused(t342, t326, -T::fused(t197, t289, t341 * t322)),
+            );
+            let t344 = T::fused(-t194, t204, t195 * t334) + t343
+                - T::fused(t192, t320, t306);
+            let t345 = k(0.1) * t344;
+            let t346 = k(2.0) * link_1_e2;
+            let t347 = k(9.81) * (link_1_e0 * t346);
+            let t348 = T::fused(k(9.81), T::fused(-link_1_e2, t346, k(1.0)), t321);
+            let t349 = T::fused(
+                t181,
+                T::fused(t188, t325, t181 * t333),
+                t188 * T::fused(-t188, t337, t181 * t338),
+            );
+            let t350 = k(0.1) * T::fused(-t188, t341, t181 * t342);
+            let t351 = T::fused(
+                -(k(0.3) - t199 + t200),
+                t347,
+                (t350 + (t350 + t349)) * t348,
+            );
+            let t352 = (t351 + (t345 + (t345 + t340))) / t201;
+            let t353 = k(0.1) * t352;
+            let t354 = t289 - (t353 + (t347 + t353));
+            let t355 = T::fused(t188, t348, t322);
+            let t356 = T::fused(t181, t348, t326);
+            let t357 = T::fused(-t181, t352, t204);
+            let t358 = T::fused(t188, t352, t334);
+            let t359 = T::fused(-t153, t357, t185 * t358)
+                + T::fused(t331, t356, T::fused(-t192, t354, t323 * t355));
+            let t360 = t176 * (t319 - t359);
+            let t361 = k(0.1) * t357;
+            let t362 = t361 + (t354 + t361);
+            let t363 = t292 + T::fused(t86, t362, t109 * t356);
+            let t364 = k(0.1) * t360;
+            let t365 = t294 + (t364 + (t355 + t364));
+            let t366 = t295 + T::fused(-t109, t362, t86 * t356);
+            let t367 = t297 + T::fused(-t86, t360, t109 * t358);
+            let t368 = t298 - T::fused(t109, t360, t86 * t358);
+            let t369 = T::fused(-t131, t367, t140 * t368)
+                - T::fused(t106, t366, -T::fused(-t69, t363, t145 * t365));
+            let t370 = t81 * (t286 + t369);
+            let t371 = k(0.1) * t370;
+            let t372 = t269 - (t371 + (t363 + t371));
+            let t373 = k(0.1) * t367;
+            let t374 = t373 - (t365 - t373);
+            let t375 = t273 + T::fused(-t59, t374, t66 * t366);
+            let t376 = t274 + T::fused(t66, t374, t59 * t366);
+            let t377 = t275 - T::fused(-t59, t370, t66 * t368);
+            let t378 = t276 + T::fused(t66, t370, t59 * t368);
+            let t379 = T::fused(t55, t377, t63 * t378)
+                - T::fused(t95, t376, -T::fused(-t34, t372, t87 * t375));
+            let t380 = t48 * (t265 - t379);
+            let t381 = k(0.1) * t377;
+            let t382 = t381 - (t372 - t381);
+            let t383 = T::fused(
+                -t4,
+                t238 + T::fused(t15, t382, t19 * t376),
+                t27 * (t239 + T::fused(-t19, t380, t15 * t378)),
+            );
+            let t384 = k(0.1) * t380;
+            let t385 = t253 - T::fused(t15, t380, t19 * t378);
+            let t386 = k(0.1) * t385;
+            let t387 = T::fused(
+                -t2,
+                t386 + (t386 + (t251 - (t384 + (t375 + t384)))),
+                t7 * (t252 + T::fused(-t19, t382, t15 * t376)),
+            );
+            (
+                t232,
+                t241,
+                t246,
+                t352,
+                t357,
+                t360,
+                t367,
+                t370,
+                t377,
                 t380,
-                t388,
-                t391,
-                t393,
-                t394,
-                t395,
-                t396,
-                t398,
-                t399,
+                t383,
+                t385,
+                t387,
             )
         };
-        let (t409, t414, t419) = {
-            let t400 = k(0.1) * t399;
-            let t401 = t292 - (t400 + (t391 + t400));
-            let t402 = k(0.1) * t395;
-            let t403 = t402 - (t393 - t402);
-            let t404 = t296 + (t70 * t394 - t63 * t403);
-            let t405 = t297 + (t63 * t394 + t70 * t403);
-            let t406 = t298 - (t70 * t396 - t63 * t399);
-            let t407 = t299 + (t63 * t396 + t70 * t399);
-            let t408 = t67 * t407 + (t59 * t406 - t49 * t395)
-                - (t102 * t405 - (t93 * t404 - t35 * t401));
-            let t409 = t50 * (t288 - t408);
-            let t410 = k(0.1) * t406;
-            let t411 = t410 - (t401 - t410);
-            let t412 = t395 - t409;
-            let t413 = t28 * (t261 + (t16 * t407 + t20 * t412)) - t10 * t406;
-            let t414 = t254 - (t413 - t4 * (t260 + (t20 * t405 + t16 * t411)));
-            let t415 = k(0.1) * t412;
-            let t416 = t275 - (t20 * t407 - t16 * t412);
-            let t417 = k(0.1) * t416;
-            let t418 = t7 * (t274 + (t16 * t405 - t20 * t411))
-                - t2 * (t417 + (t417 + (t273 + (t415 - (t404 - t415)))));
-            let t419 = k(149.2537313432836)
-                * (k(0.0067) * t416 - k(0.05) * (t268 + t418) + k(0.0014) * t263);
-            (t409, t414, t419)
-        };
-        *out = [t380, -t388, -t398, -t409, t11 * t414, -t419];
+        *out = [
+            t352,
+            -t360,
+            t357 - t370,
+            -(t367 + t380),
+            T::fused(t10, t232 - t383, t377),
+            T::fused(
+                k(149.2537313432836),
+                T::fused(-k(0.0014), t241, k(0.05) * (t246 + t387)),
+                -t385,
+            ),
+        ];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 1685 operations (769 ±, 911 ×, 5 ÷).
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 1625 operations (731 ±, 889 ×, 5 ÷).
     fn corrected_accelerations(
         &self,
         _t: T,
@@ -8226,72 +9383,74 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
             t13,
             t17,
             t22,
-            t23,
-            t29,
-            t33,
+            t24,
+            t27,
+            t31,
             t34,
-            t35,
+            t36,
             t38,
             t40,
             t42,
-            t44,
-            t49,
+            t47,
+            t48,
             t50,
-            t52,
+            t55,
+            t56,
             t57,
             t58,
-            t59,
             t60,
-            t62,
-            t68,
+            t65,
+            t76,
             t79,
-            t82,
-            t88,
-            t89,
-            t90,
-            t98,
+            t85,
+            t86,
+            t94,
+            t100,
+            t102,
             t105,
-            t106,
-            t107,
-            t110,
+            t108,
+            t112,
+            t114,
             t115,
+            t116,
+            t117,
             t118,
-            t119,
-            t120,
-            t121,
             t122,
-            t123,
+            t124,
+            t125,
+            t126,
             t128,
-            t130,
             t131,
             t132,
-            t134,
-            t138,
+            t136,
             t139,
+            t141,
+            t142,
             t143,
+            t144,
             t146,
             t148,
             t149,
-            t150,
             t151,
-            t153,
             t154,
             t155,
             t156,
+            t157,
             t158,
-            t161,
-            t162,
-            t163,
             t164,
             t165,
+            t166,
+            t169,
             t171,
-            t172,
             t173,
             t175,
+            t176,
+            t177,
             t178,
+            t179,
             t180,
+            t181,
             t182,
-            t183,
             t184,
             t185,
             t186,
@@ -8300,8 +9459,6 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
             t189,
             t190,
             t191,
-            t192,
-            t193,
             t194,
             t195,
             t196,
@@ -8314,223 +9471,336 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
             let t2 = k(0.1) * link_6_wx;
             let t3 = k(0.1) * link_5_wx;
             let t4 = link_5_wz * t3;
-            let t5 = t4 + link_6_wz * t2;
-            let t6 = k(0.0015) * (link_6_wx * link_6_wz)
-                + (k(0.05) * t5 - k(0.0066) * t1);
-            let t7 = link_5_e1 * link_6_e0 - link_5_e0 * link_6_e1
-                - link_5_e3 * link_6_e2 + link_5_e2 * link_6_e3;
+            let t5 = T::fused(link_6_wz, t2, t4);
+            let t6 = T::fused(
+                k(0.0015),
+                link_6_wx * link_6_wz,
+                T::fused(-k(0.0066), t1, k(0.05) * t5),
+            );
+            let t7 = T::fused(
+                link_5_e2,
+                link_6_e3,
+                T::fused(
+                    -link_5_e3,
+                    link_6_e2,
+                    T::fused(-link_5_e0, link_6_e1, link_5_e1 * link_6_e0),
+                ),
+            );
             let t8 = k(2.0) * t7;
-            let t9 = k(1.0) - t7 * t8;
+            let t9 = T::fused(-t7, t8, k(1.0));
             let t10 = link_6_wy * t0;
-            let t11 = k(0.0001) * (link_6_wx * link_6_wy) - k(0.0002) * t10;
-            let t12 = link_5_e0 * link_6_e0 + link_5_e1 * link_6_e1
-                + link_5_e2 * link_6_e2 + link_5_e3 * link_6_e3;
+            let t11 = T::fused(-k(0.0002), t10, k(0.0001) * (link_6_wx * link_6_wy));
+            let t12 = T::fused(
+                link_5_e3,
+                link_6_e3,
+                T::fused(
+                    link_5_e2,
+                    link_6_e2,
+                    T::fused(link_5_e1, link_6_e1, link_5_e0 * link_6_e0),
+                ),
+            );
             let t13 = t12 * t8;
-            let t14 = k(0.5) * t5 - k(0.05) * t1;
+            let t14 = T::fused(-k(0.05), t1, k(0.5) * t5);
             let t15 = k(0.1) * t14;
-            let t16 = k(0.0015) * (link_5_wx * link_5_wz)
-                + (t15 - (t13 * t11 - t9 * t6));
+            let t16 = T::fused(
+                k(0.0015),
+                link_5_wx * link_5_wz,
+                t15 - T::fused(-t9, t6, t13 * t11),
+            );
             let t17 = t15 + t16;
-            let t18 = k(0.05) + k(0.05) * t9;
+            let t18 = T::fused(k(0.05), t9, k(0.05));
             let t19 = k(0.0066) * t9;
             let t20 = k(0.0002) * t13;
-            let t21 = k(0.0016) + (k(0.005) + (t13 * t20 + t9 * t19) + k(0.01) * t9);
-            let t22 = k(0.01) + t21 + k(0.2) * t18;
-            let t23 = k(1.0) / t22;
-            let t24 = t23 * t17;
-            let t25 = k(0.1) * link_4_wx;
-            let t26 = link_4_wz * t25;
-            let t27 = link_4_e2 * link_5_e0 + link_4_e3 * link_5_e1
-                - link_4_e0 * link_5_e2 - link_4_e1 * link_5_e3;
-            let t28 = k(2.0) * t27;
-            let t29 = k(1.0) - t27 * t28;
-            let t30 = k(0.1) * link_4_wy;
-            let t31 = link_4_wx * t25 + link_4_wy * t30;
-            let t32 = link_4_e0 * link_5_e0 + link_4_e1 * link_5_e1
-                + link_4_e2 * link_5_e2 + link_4_e3 * link_5_e3;
-            let t33 = t32 * t28;
-            let t34 = t4 - (t33 * t31 - t29 * t26);
-            let t35 = k(0.1) + t18;
-            let t36 = t23 * t35;
-            let t37 = t35 - t22 * t36;
-            let t38 = t35 * t36;
-            let t39 = link_4_wy - link_5_wy;
-            let t40 = link_5_wx * t39;
-            let t41 = k(0.005) * t13;
-            let t42 = t41 + (t41 - (t9 * t20 - t13 * t19));
-            let t43 = t42 * t36 - k(0.05) * t13;
-            let t44 = t43 * t40 - (t34 - t38 * t34) - (t14 - t35 * t24);
-            let t45 = k(0.1) * link_5_wy;
-            let t46 = link_5_wz * t45;
-            let t47 = link_5_wx * t3 + link_5_wy * t45;
-            let t48 = k(0.1) * link_6_wy;
-            let t49 = link_6_wz * t48 + (t13 * t47 + t9 * t46);
-            let t50 = link_6_wy * link_6_wz;
-            let t51 = k(0.010447761194029851) * t50 - k(0.12686567164179105) * t49;
-            let t52 = link_6_wx * t2 + link_6_wy * t48 + (t9 * t47 - t13 * t46);
-            let t53 = k(0.5) * t52;
-            let t54 = k(0.373134328358209) * t9;
-            let t55 = t13 * t54;
-            let t56 = link_4_wz * t30;
-            let t57 = t56 + t46;
-            let t58 = t47 + (t29 * t31 + t33 * t26);
-            let t59 = t13 * (k(0.373134328358209) * t13);
-            let t60 = link_5_wz * t39;
-            let t61 = k(0.2) * t55;
-            let t62 = t61 * t60 + (t58 - (t59 * t58 + t57 * t55))
-                + (t9 * t53 - t13 * t51);
-            let t63 = t33 * t62 - t29 * t44;
+            let t21 = k(0.0016)
+                + T::fused(k(0.01), t9, k(0.005) + T::fused(t9, t19, t13 * t20));
+            let t22 = k(1.0) / T::fused(k(0.2), t18, k(0.01) + t21);
+            let t23 = t22 * t17;
+            let t24 = k(0.1) + t18;
+            let t25 = T::fused(
+                -link_4_e1,
+                link_5_e3,
+                T::fused(
+                    -link_4_e0,
+                    link_5_e2,
+                    T::fused(link_4_e3, link_5_e1, link_4_e2 * link_5_e0),
+                ),
+            );
+            let t26 = k(2.0) * t25;
+            let t27 = T::fused(-t25, t26, k(1.0));
+            let t28 = k(0.1) * link_4_wx;
+            let t29 = link_4_wz * t28;
+            let t30 = T::fused(
+                link_4_e3,
+                link_5_e3,
+                T::fused(
+                    link_4_e2,
+                    link_5_e2,
+                    T::fused(link_4_e1, link_5_e1, link_4_e0 * link_5_e0),
+                ),
+            );
+            let t31 = t30 * t26;
+            let t32 = k(0.1) * link_4_wy;
+            let t33 = T::fused(link_4_wy, t32, link_4_wx * t28);
+            let t34 = t4 - T::fused(-t29, t27, t33 * t31);
+            let t35 = t22 * t24;
+            let t36 = t24 * t35;
+            let t37 = link_4_wy - link_5_wy;
+            let t38 = link_5_wx * t37;
+            let t39 = k(0.005) * t13;
+            let t40 = t39 + (t39 - T::fused(-t13, t19, t9 * t20));
+            let t41 = T::fused(-k(0.05), t13, t40 * t35);
+            let t42 = T::fused(t41, t38, -T::fused(-t36, t34, t34))
+                - T::fused(-t24, t23, t14);
+            let t43 = k(0.1) * link_5_wy;
+            let t44 = link_5_wz * t43;
+            let t45 = T::fused(link_5_wy, t43, link_5_wx * t3);
+            let t46 = k(0.1) * link_6_wy;
+            let t47 = T::fused(link_6_wz, t46, T::fused(t44, t9, t45 * t13));
+            let t48 = link_6_wy * link_6_wz;
+            let t49 = T::fused(
+                -k(0.12686567164179105),
+                t47,
+                k(0.010447761194029851) * t48,
+            );
+            let t50 = T::fused(link_6_wy, t46, link_6_wx * t2)
+                + T::fused(-t44, t13, t45 * t9);
+            let t51 = k(0.5) * t50;
+            let t52 = k(0.373134328358209) * t9;
+            let t53 = t13 * t52;
+            let t54 = link_4_wz * t32;
+            let t55 = t54 + t44;
+            let t56 = t45 + T::fused(t29, t31, t33 * t27);
+            let t57 = t13 * (k(0.373134328358209) * t13);
+            let t58 = link_5_wz * t37;
+            let t59 = k(0.2) * t53;
+            let t60 = T::fused(t59, t58, t56 - T::fused(t55, t53, t57 * t56))
+                + T::fused(-t13, t49, t9 * t51);
+            let t61 = T::fused(-t27, t42, t31 * t60);
+            let t62 = k(0.1) * t61;
+            let t63 = T::fused(t9, t49, t13 * t51);
             let t64 = k(0.1) * t63;
-            let t65 = k(0.0015) * (link_4_wx * link_4_wz)
-                + (t64 + (t37 * t34 + (t17 - t22 * t24)));
-            let t66 = t13 * t53 + t9 * t51;
-            let t67 = k(0.1) * t66;
-            let t68 = t9 * t54;
-            let t69 = k(0.1) * t68;
-            let t70 = k(0.05) - t69;
-            let t71 = k(0.1) - t69;
-            let t72 = t71 + t70;
-            let t73 = k(0.01) * t68;
-            let t74 = t73 - k(0.2) * t70 - (k(0.01) + (k(0.0017) + (k(0.005) - t73)));
-            let t75 = t74 * t60 - (t61 * t58 - t57 * t72)
-                - (t67 - (k(0.0014) * (link_5_wy * link_5_wz) - t67));
-            let t76 = t42 * t24
-                - (k(0.0001) * (link_5_wx * link_5_wy) + (t9 * t11 + t13 * t6));
-            let t77 = t42 * (t23 * t42)
-                - (k(0.0002) + (t9 * (k(0.0002) * t9) + t13 * (k(0.0066) * t13)));
-            let t78 = t77 * t40 + t43 * t34 + t76;
-            let t79 = t72 * t60 - (t57 - (t55 * t58 + t57 * t68)) + t66;
-            let t80 = k(0.1) * t79;
-            let t81 = k(0.0014) * (link_4_wy * link_4_wz)
-                - (t80 - (t33 * t78 + t29 * t75));
-            let t82 = t80 - t81;
-            let t83 = t29 * t74;
-            let t84 = t33 * t77;
-            let t85 = t29 * t72;
-            let t86 = t73 - k(0.2) * t85 - (k(0.01) - (t33 * t84 + t29 * t83));
-            let t87 = t71 + t85;
-            let t88 = k(0.2) * t87 - t73 + (k(0.015) + (k(0.0017) - t86));
-            let t89 = k(1.0) / t88;
-            let t90 = t89 * t82;
-            let t91 = t33 * t61;
-            let t92 = t29 * t43;
-            let t93 = t33 * t92 - t29 * t91;
-            let t94 = t33 * t55;
-            let t95 = k(0.01) * t94;
-            let t96 = k(0.1) * t94;
-            let t97 = t96 - t93;
-            let t98 = t95 + (k(0.1) * t97 + t95) + (t95 - k(0.1) * t93);
-            let t99 = t29 * t37;
-            let t100 = t29 * t38;
-            let t101 = t33 * t59;
-            let t102 = t33 * t101 + t29 * t100;
-            let t103 = k(0.1) * t102;
-            let t104 = k(0.1) - t103 + t99;
-            let t105 = t96 + t97;
-            let t106 = t89 * t105;
-            let t107 = t106 * t98 - (k(0.15) - t103 + t104);
-            let t108 = k(0.1) * link_3_wx;
-            let t109 = link_3_wz * t108;
-            let t110 = t109 + t26;
-            let t111 = k(0.1) * link_3_wy;
-            let t112 = link_3_wz * t111;
-            let t113 = link_3_e1 * link_4_e0 - link_3_e0 * link_4_e1
-                - link_3_e3 * link_4_e2 + link_3_e2 * link_4_e3;
-            let t114 = k(2.0) * t113;
-            let t115 = k(1.0) - t113 * t114;
-            let t116 = link_3_wx * t108 + link_3_wy * t111;
-            let t117 = link_3_e0 * link_4_e0 + link_3_e1 * link_4_e1
-                + link_3_e2 * link_4_e2 + link_3_e3 * link_4_e3;
-            let t118 = t117 * t114;
-            let t119 = t56 + (t118 * t116 + t115 * t112);
-            let t120 = t87 + (k(0.15) - t69);
-            let t121 = t89 * t120;
-            let t122 = t98 * t121 - k(0.2) * t94;
-            let t123 = t31 + (t115 * t116 - t118 * t112);
-            let t124 = t29 * t101 - t33 * t100;
-            let t125 = k(0.1) * t124;
-            let t126 = t29 * t61;
-            let t127 = t33 * t43;
-            let t128 = t29 * t55;
-            let t129 = k(0.1) * t128;
-            let t130 = t129 + (t129 + (t33 * t127 + t29 * t126));
-            let t131 = t89 * t130;
-            let t132 = t98 * t131 + (t125 + (t125 + t33 * t37));
-            let t133 = link_3_wx - link_4_wx;
-            let t134 = link_4_wz * t133;
-            let t135 = k(0.01) * t102;
-            let t136 = k(0.2) * t104 - t135
-                + (k(0.015) + (k(0.0016) + (k(0.01) - (t135 - k(0.2) * t99))));
-            let t137 = t89 * t98;
-            let t138 = t98 * t137 - t136;
-            let t139 = link_4_wy * t133;
-            let t140 = t29 * t92 + t33 * t91;
-            let t141 = t33 * t72;
-            let t142 = k(0.1) * t141;
-            let t143 = t142 + (t142 + (t29 * t84 - t33 * t83));
-            let t144 = t143 * t137 - k(0.2) * t140;
-            let t145 = t144 * t139 - t138 * t134
-                + (t132 * t123 - (t122 * t119 - t110 * t107));
-            let t146 = t145 + (t98 * t90 - (t64 + t65));
-            let t147 = t143 * t90
-                + (k(0.0001) * (link_4_wx * link_4_wy) - (t29 * t78 - t33 * t75));
-            let t148 = t106 * t143 - t140;
-            let t149 = t141 - t143 * t121;
-            let t150 = t143 * t131 + (t29 * t127 - t33 * t126);
-            let t151 = t143 * (t89 * t143)
-                - (k(0.0002) - (t29 * (t29 * t77) + t33 * (t33 * t74)));
-            let t152 = t151 * t139 - t144 * t134
-                + (t150 * t123 + (t149 * t119 + t110 * t148));
-            let t153 = t152 + t147;
-            let t154 = t105 * t106 + t102;
-            let t155 = t94 - t106 * t120;
-            let t156 = t106 * t130 + t124;
-            let t157 = k(1.5) * t110 - (t156 * t123 + (t155 * t119 + t110 * t154));
-            let t158 = t148 * t139 - t107 * t134 - t157 + (t105 * t90 - t63);
-            let t159 = k(0.1) * t158;
-            let t160 = k(0.0015) * (link_3_wx * link_3_wz)
-                - (t159 + (t118 * t153 + t115 * t146));
-            let t161 = t159 - t160;
-            let t162 = t118 * t144;
-            let t163 = t162 + t115 * t138;
-            let t164 = t115 * t144;
-            let t165 = t118 * t151 + t164;
-            let t166 = t118 * t148 + t115 * t107;
-            let t167 = k(0.01) * t154;
-            let t168 = t167 + k(0.2) * t166 - (k(0.015) - (t118 * t165 + t115 * t163));
-            let t169 = k(0.1) * t154;
-            let t170 = k(0.15) - t169 - t166;
-            let t171 = k(0.2) * t170 - t167 + (k(0.02) + (k(0.0016) - t168));
-            let t172 = k(1.0) / t171;
-            let t173 = t172 * t161;
-            let t174 = k(0.1) * link_2_wx;
-            let t175 = link_2_wz * t174;
-            let t176 = link_2_e2 * link_3_e0 + link_2_e3 * link_3_e1
-                - link_2_e0 * link_3_e2 - link_2_e1 * link_3_e3;
-            let t177 = k(2.0) * t176;
-            let t178 = k(1.0) - t176 * t177;
-            let t179 = k(0.1) * link_2_wy;
-            let t180 = link_2_wx * t174 + link_2_wy * t179;
-            let t181 = link_2_e0 * link_3_e0 + link_2_e1 * link_3_e1
-                + link_2_e2 * link_3_e2 + link_2_e3 * link_3_e3;
-            let t182 = t181 * t177;
-            let t183 = t109 - (t182 * t180 - t178 * t175);
-            let t184 = t170 + (k(0.2) - t169);
-            let t185 = t172 * t184;
-            let t186 = t184 - t171 * t185;
-            let t187 = t118 * t132 + t115 * t122;
-            let t188 = t118 * t150 - t115 * t149;
-            let t189 = t118 * t188 + t115 * t187;
-            let t190 = t118 * t156 - t115 * t155;
-            let t191 = k(0.1) * t190;
-            let t192 = t191 + t189;
-            let t193 = t191 + t192;
-            let t194 = t172 * t193;
-            let t195 = t193 - t171 * t194;
-            let t196 = link_2_wz * t179;
-            let t197 = t196 + t112;
-            let t198 = t116 + (t178 * t180 + t182 * t175);
-            let t199 = t115 * t132 - t118 * t122;
+            let t65 = t9 * t52;
+            let t66 = k(0.1) * t65;
+            let t67 = k(0.05) - t66;
+            let t68 = k(0.1) - t66;
+            let t69 = t68 + t67;
+            let t70 = k(0.01) * t65;
+            let t71 = T::fused(-k(0.2), t67, t70)
+                - (k(0.01) + (k(0.0017) + (k(0.005) - t70)));
+            let t72 = T::fused(t71, t58, -T::fused(-t55, t69, t59 * t56))
+                - (t64 - T::fused(k(0.0014), link_5_wy * link_5_wz, -t64));
+            let t73 = T::fused(
+                t40,
+                t23,
+                -T::fused(k(0.0001), link_5_wx * link_5_wy, T::fused(t13, t6, t9 * t11)),
+            );
+            let t74 = T::fused(
+                t40,
+                t22 * t40,
+                -(k(0.0002) + T::fused(t13, k(0.0066) * t13, t9 * (k(0.0002) * t9))),
+            );
+            let t75 = T::fused(t41, t34, t74 * t38) + t73;
+            let t76 = T::fused(t69, t58, -(t55 - T::fused(t55, t65, t53 * t56))) + t63;
+            let t77 = k(0.1) * t76;
+            let t78 = T::fused(
+                k(0.0014),
+                link_4_wy * link_4_wz,
+                -(t77 - T::fused(t27, t72, t31 * t75)),
+            );
+            let t79 = t77 - t78;
+            let t80 = t27 * t71;
+            let t81 = t31 * t74;
+            let t82 = t27 * t69;
+            let t83 = T::fused(-k(0.2), t82, t70)
+                - (k(0.01) - T::fused(t27, t80, t31 * t81));
+            let t84 = t68 + t82;
+            let t85 = k(1.0)
+                / (T::fused(k(0.2), t84, -t70) + (k(0.015) + (k(0.0017) - t83)));
+            let t86 = t85 * t79;
+            let t87 = t31 * t59;
+            let t88 = t27 * t41;
+            let t89 = T::fused(-t27, t87, t31 * t88);
+            let t90 = t31 * t53;
+            let t91 = k(0.01) * t90;
+            let t92 = k(0.1) * t90;
+            let t93 = t92 - t89;
+            let t94 = t91 + T::fused(k(0.1), t93, t91) + T::fused(-k(0.1), t89, t91);
+            let t95 = t27 * t36;
+            let t96 = t31 * t57;
+            let t97 = T::fused(t27, t95, t31 * t96);
+            let t98 = k(0.1) * t97;
+            let t99 = k(0.1) - t98;
+            let t100 = t92 + t93;
+            let t101 = t85 * t100;
+            let t102 = T::fused(t101, t94, -(k(0.15) - t98 + t99));
+            let t103 = k(0.1) * link_3_wx;
+            let t104 = link_3_wz * t103;
+            let t105 = t104 + t29;
+            let t106 = T::fused(
+                link_3_e2,
+                link_4_e3,
+                T::fused(
+                    -link_3_e3,
+                    link_4_e2,
+                    T::fused(-link_3_e0, link_4_e1, link_3_e1 * link_4_e0),
+                ),
+            );
+            let t107 = k(2.0) * t106;
+            let t108 = T::fused(-t106, t107, k(1.0));
+            let t109 = k(0.1) * link_3_wy;
+            let t110 = link_3_wz * t109;
+            let t111 = T::fused(
+                link_3_e3,
+                link_4_e3,
+                T::fused(
+                    link_3_e2,
+                    link_4_e2,
+                    T::fused(link_3_e1, link_4_e1, link_3_e0 * link_4_e0),
+                ),
+            );
+            let t112 = t111 * t107;
+            let t113 = T::fused(link_3_wy, t109, link_3_wx * t103);
+            let t114 = t54 + T::fused(t110, t108, t113 * t112);
+            let t115 = t84 + (k(0.15) - t66);
+            let t116 = t85 * t115;
+            let t117 = T::fused(-k(0.2), t90, t94 * t116);
+            let t118 = t33 + T::fused(-t110, t112, t113 * t108);
+            let t119 = T::fused(-t31, t95, t27 * t96);
+            let t120 = t27 * t59;
+            let t121 = t31 * t41;
+            let t122 = t27 * t53;
+            let t123 = k(0.1) * t122;
+            let t124 = t123 + (t123 + T::fused(t27, t120, t31 * t121));
+            let t125 = t85 * t124;
+            let t126 = T::fused(k(0.2), t119, t94 * t125);
+            let t127 = link_3_wx - link_4_wx;
+            let t128 = link_4_wz * t127;
+            let t129 = k(0.01) * t97;
+            let t130 = t85 * t94;
+            let t131 = T::fused(
+                t94,
+                t130,
+                -(T::fused(k(0.2), t99, -t129)
+                    + (k(0.015) + (k(0.0016) + (k(0.01) - t129)))),
+            );
+            let t132 = link_4_wy * t127;
+            let t133 = T::fused(t31, t87, t27 * t88);
+            let t134 = t31 * t69;
+            let t135 = k(0.1) * t134;
+            let t136 = t135 + (t135 + T::fused(-t31, t80, t27 * t81));
+            let t137 = T::fused(-k(0.2), t133, t136 * t130);
+            let t138 = T::fused(-t131, t128, t137 * t132)
+                + T::fused(t126, t118, -T::fused(-t105, t102, t117 * t114));
+            let t139 = t138
+                + T::fused(
+                    t94,
+                    t86,
+                    -(t62 + T::fused(k(0.0015), link_4_wx * link_4_wz, t62)),
+                );
+            let t140 = T::fused(
+                t136,
+                t86,
+                T::fused(
+                    k(0.0001),
+                    link_4_wx * link_4_wy,
+                    -T::fused(-t31, t72, t27 * t75),
+                ),
+            );
+            let t141 = T::fused(t101, t136, -t133);
+            let t142 = T::fused(-t136, t116, t134);
+            let t143 = T::fused(t136, t125, T::fused(-t31, t120, t27 * t121));
+            let t144 = T::fused(
+                t136,
+                t85 * t136,
+                -(k(0.0002) - T::fused(t31, t31 * t71, t27 * (t27 * t74))),
+            );
+            let t145 = T::fused(-t137, t128, t144 * t132)
+                + T::fused(t143, t118, T::fused(t105, t141, t142 * t114));
+            let t146 = t145 + t140;
+            let t147 = T::fused(t100, t101, t97);
+            let t148 = T::fused(-t101, t115, t90);
+            let t149 = T::fused(t101, t124, t119);
+            let t150 = T::fused(
+                k(1.5),
+                t105,
+                -T::fused(t149, t118, T::fused(t105, t147, t148 * t114)),
+            );
+            let t151 = T::fused(-t102, t128, t141 * t132) - t150
+                + T::fused(t100, t86, -t61);
+            let t152 = k(0.1) * t151;
+            let t153 = T::fused(
+                k(0.0015),
+                link_3_wx * link_3_wz,
+                -(t152 + T::fused(t108, t139, t112 * t146)),
+            );
+            let t154 = t152 - t153;
+            let t155 = t112 * t137;
+            let t156 = T::fused(t108, t131, t155);
+            let t157 = t108 * t137;
+            let t158 = T::fused(t112, t144, t157);
+            let t159 = T::fused(t108, t102, t112 * t141);
+            let t160 = k(0.01) * t147;
+            let t161 = T::fused(k(0.2), t159, t160)
+                - (k(0.015) - T::fused(t108, t156, t112 * t158));
+            let t162 = k(0.1) * t147;
+            let t163 = k(0.15) - t162 - t159;
+            let t164 = k(1.0)
+                / (T::fused(k(0.2), t163, -t160) + (k(0.02) + (k(0.0016) - t161)));
+            let t165 = t164 * t154;
+            let t166 = t163 + (k(0.2) - t162);
+            let t167 = T::fused(
+                -link_2_e1,
+                link_3_e3,
+                T::fused(
+                    -link_2_e0,
+                    link_3_e2,
+                    T::fused(link_2_e3, link_3_e1, link_2_e2 * link_3_e0),
+                ),
+            );
+            let t168 = k(2.0) * t167;
+            let t169 = T::fused(-t167, t168, k(1.0));
+            let t170 = k(0.1) * link_2_wx;
+            let t171 = link_2_wz * t170;
+            let t172 = T::fused(
+                link_2_e3,
+                link_3_e3,
+                T::fused(
+                    link_2_e2,
+                    link_3_e2,
+                    T::fused(link_2_e1, link_3_e1, link_2_e0 * link_3_e0),
+                ),
+            );
+            let t173 = t172 * t168;
+            let t174 = k(0.1) * link_2_wy;
+            let t175 = T::fused(link_2_wy, t174, link_2_wx * t170);
+            let t176 = t104 - T::fused(-t171, t169, t175 * t173);
+            let t177 = t164 * t166;
+            let t178 = T::fused(t166, t177, t147);
+            let t179 = T::fused(t108, t117, t112 * t126);
+            let t180 = T::fused(-t108, t142, t112 * t143);
+            let t181 = T::fused(t108, t179, t112 * t180);
+            let t182 = T::fused(-t108, t148, t112 * t149);
+            let t183 = k(0.1) * t182;
+            let t184 = t183 + t181;
+            let t185 = t183 + t184;
+            let t186 = T::fused(-t185, t177, t182);
+            let t187 = link_2_wz * t174;
+            let t188 = t187 + t110;
+            let t189 = t113 + T::fused(t171, t173, t175 * t169);
+            let t190 = T::fused(-t112, t117, t108 * t126);
+            let t191 = T::fused(t112, t142, t108 * t143);
+            let t192 = T::fused(t112, t148, t108 * t149);
+            let t193 = k(0.1) * t192;
+            let t194 = t193 + (t193 + T::fused(t108, t190, t112 * t191));
+            let t195 = T::fused(-t194, t177, t192);
+            let t196 = T::fused(
+                -k(2.0),
+                t176,
+                T::fused(t195, t189, -T::fused(-t178, t176, t188 * t186)),
+            );
+            let t197 = link_2_wy - link_3_wy;
+            let t198 = link_3_wz * t197;
+            let t199 = k(0.01) * t182;
             (
                 t1,
                 t5,
@@ -8539,72 +9809,74 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
                 t13,
                 t17,
                 t22,
-                t23,
-                t29,
-                t33,
+                t24,
+                t27,
+                t31,
                 t34,
-                t35,
+                t36,
                 t38,
                 t40,
                 t42,
-                t44,
-                t49,
+                t47,
+                t48,
                 t50,
-                t52,
+                t55,
+                t56,
                 t57,
                 t58,
-                t59,
                 t60,
-                t62,
-                t68,
+                t65,
+                t76,
                 t79,
-                t82,
-                t88,
-                t89,
-                t90,
-                t98,
+                t85,
+                t86,
+                t94,
+                t100,
+                t102,
                 t105,
-                t106,
-                t107,
-                t110,
+                t108,
+                t112,
+                t114,
                 t115,
+                t116,
+                t117,
                 t118,
-                t119,
-                t120,
-                t121,
                 t122,
-                t123,
+                t124,
+                t125,
+                t126,
                 t128,
-                t130,
                 t131,
                 t132,
-                t134,
-                t138,
+                t136,
                 t139,
+                t141,
+                t142,
                 t143,
+                t144,
                 t146,
                 t148,
                 t149,
-                t150,
                 t151,
-                t153,
                 t154,
                 t155,
                 t156,
+                t157,
                 t158,
-                t161,
-                t162,
-                t163,
                 t164,
                 t165,
+                t166,
+                t169,
                 t171,
-                t172,
                 t173,
                 t175,
+                t176,
+                t177,
                 t178,
+                t179,
                 t180,
+                t181,
                 t182,
-                t183,
                 t184,
                 t185,
                 t186,
@@ -8613,8 +9885,6 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
                 t189,
                 t190,
                 t191,
-                t192,
-                t193,
                 t194,
                 t195,
                 t196,
@@ -8624,303 +9894,421 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
             )
         };
         let (
-            t203,
-            t207,
-            t211,
-            t220,
-            t223,
-            t278,
-            t288,
-            t289,
-            t299,
-            t306,
-            t311,
-            t316,
-            t317,
-            t319,
-            t320,
-            t321,
-            t322,
-            t325,
-            t326,
-            t332,
-            t336,
-            t341,
-            t346,
-            t364,
+            t200,
+            t202,
+            t205,
+            t293,
+            t349,
+            t353,
+            t357,
+            t360,
+            t365,
+            t366,
+            t367,
+            t368,
+            t369,
+            t370,
+            t371,
             t372,
+            t375,
             t379,
-            t383,
-            t388,
-            t389,
+            t381,
+            t382,
+            t384,
+            t385,
+            t386,
+            t387,
             t390,
             t391,
             t392,
             t393,
+            t394,
+            t395,
             t396,
             t397,
             t398,
             t399,
         ) = {
-            let t200 = t115 * t150 + t118 * t149;
-            let t201 = t115 * t156 + t118 * t155;
-            let t202 = k(0.1) * t201;
-            let t203 = t202 + (t202 + (t118 * t200 + t115 * t199));
-            let t204 = t172 * t203;
-            let t205 = t203 - t171 * t204;
-            let t206 = link_2_wy - link_3_wy;
-            let t207 = link_3_wz * t206;
-            let t208 = t105 - t88 * t106;
-            let t209 = k(0.01) * t190;
-            let t210 = t191 - t208;
-            let t211 = k(0.1) * (t192 + t210) + t209 + (t209 + k(0.1) * (t189 - t208));
-            let t212 = t172 * t211;
-            let t213 = t211 - t171 * t212;
-            let t214 = t213 * t207 + (t205 * t198 - (t197 * t195 + t186 * t183));
-            let t215 = t154 + t184 * t185;
-            let t216 = t190 - t193 * t185;
-            let t217 = t201 - t203 * t185;
-            let t218 = t217 * t198 - (t197 * t216 - t215 * t183) - k(2.0) * t183;
-            let t219 = t211 * t185 - (t191 + t210);
-            let t220 = link_3_wx * t206;
-            let t221 = t115 * t148 - t118 * t107;
-            let t222 = k(0.1) * t221;
-            let t223 = t222 + (t222 + (t115 * t165 - t118 * t163));
-            let t224 = t221 - t223 * t185;
-            let t225 = t224 * t220 + t219 * t207 - t218 - (t158 - t184 * t173);
-            let t226 = t68 + t120 * t121;
-            let t227 = t128 - t130 * t121;
-            let t228 = t227 * t123 + (t226 * t119 + t110 * t155) - k(1.5) * t119;
-            let t229 = t149 * t139 + t122 * t134 + t228 + (t79 - t120 * t90);
-            let t230 = t130 * t131 + (t29 * (t29 * t59) + t33 * (t33 * t38));
-            let t231 = t230 * t123 + (t227 * t119 + t110 * t156) - k(1.5) * t123;
-            let t232 = t150 * t139 - t132 * t134 + t231
-                + (t130 * t90 - (t29 * t62 + t33 * t44));
-            let t233 = t118 * t227;
-            let t234 = t233 - t115 * t226;
-            let t235 = t115 * t227;
-            let t236 = t118 * t230 - t235;
-            let t237 = t115 * t236 + t118 * t234;
-            let t238 = t194 * t203 + t237;
-            let t239 = t115 * (t233 + t115 * t230) + t118 * (t235 + t118 * t226);
-            let t240 = t203 * t204 + t239;
-            let t241 = t240 * t198 - (t197 * t238 - t217 * t183) - k(2.0) * t198;
-            let t242 = t120 - t88 * t121;
-            let t243 = t130 - t88 * t131;
-            let t244 = k(0.1) * t237;
-            let t245 = t211 * t204 + (t244 + (t244 - (t115 * t243 - t118 * t242)));
-            let t246 = t223 * t204 + (t115 * t200 - t118 * t199);
-            let t247 = t246 * t220 - t245 * t207 - t241
-                - (t203 * t173 + (t115 * t232 + t118 * t229));
-            let t248 = t182 * t247 + t178 * t225;
-            let t249 = k(0.1) * t248;
-            let t250 = k(0.0015) * (link_2_wx * link_2_wz)
-                + (t249 - (t214 + (t161 - t171 * t173)));
-            let t251 = t243 * t123 - (t242 * t119 - t110 * t208) + (t82 - t88 * t90);
-            let t252 = t118 * t232 - t115 * t229;
+            let t200 = t199 + T::fused(k(0.1), t184, t199)
+                + T::fused(k(0.1), t181, t199);
+            let t201 = T::fused(-k(0.2), t182, t200 * t177);
+            let t202 = link_3_wx * t197;
+            let t203 = T::fused(-t112, t102, t108 * t141);
+            let t204 = k(0.1) * t203;
+            let t205 = t204 + (t204 + T::fused(-t112, t156, t108 * t158));
+            let t206 = T::fused(-t205, t177, t203);
+            let t207 = T::fused(t201, t198, t206 * t202) - t196
+                - T::fused(-t166, t165, t151);
+            let t208 = T::fused(t115, t116, t65);
+            let t209 = T::fused(-t124, t116, t122);
+            let t210 = T::fused(
+                -k(1.5),
+                t114,
+                T::fused(t209, t118, T::fused(t105, t148, t208 * t114)),
+            );
+            let t211 = T::fused(t117, t128, t142 * t132) + t210
+                + T::fused(-t115, t86, t76);
+            let t212 = T::fused(t124, t125, T::fused(t31, t31 * t36, t27 * (t27 * t57)));
+            let t213 = T::fused(
+                -k(1.5),
+                t118,
+                T::fused(t212, t118, T::fused(t105, t149, t209 * t114)),
+            );
+            let t214 = T::fused(-t126, t128, t143 * t132) + t213
+                + T::fused(t124, t86, -T::fused(t31, t42, t27 * t60));
+            let t215 = t112 * t209;
+            let t216 = T::fused(-t108, t208, t215);
+            let t217 = t108 * t209;
+            let t218 = T::fused(t112, t212, -t217);
+            let t219 = T::fused(t112, t216, t108 * t218);
+            let t220 = t164 * t185;
+            let t221 = T::fused(t220, t194, t219);
+            let t222 = T::fused(
+                t112,
+                T::fused(t112, t208, t217),
+                t108 * T::fused(t108, t212, t215),
+            );
+            let t223 = t164 * t194;
+            let t224 = T::fused(t194, t223, t222);
+            let t225 = T::fused(
+                -k(2.0),
+                t189,
+                T::fused(t224, t189, -T::fused(-t195, t176, t188 * t221)),
+            );
+            let t226 = T::fused(k(0.2), t219, t200 * t223);
+            let t227 = T::fused(t205, t223, T::fused(-t112, t190, t108 * t191));
+            let t228 = T::fused(-t226, t198, t227 * t202) - t225
+                - T::fused(t194, t165, T::fused(t112, t211, t108 * t214));
+            let t229 = T::fused(t169, t207, t173 * t228);
+            let t230 = k(0.1) * t229;
+            let t231 = T::fused(-t108, t211, t112 * t214);
+            let t232 = k(0.1) * t231;
+            let t233 = T::fused(-t108, t216, t112 * t218);
+            let t234 = k(0.1) * t233;
+            let t235 = k(0.15) - t234;
+            let t236 = T::fused(t220, t200, -(k(0.2) - t234 + t235));
+            let t237 = k(0.01) * t233;
+            let t238 = t164 * t200;
+            let t239 = T::fused(
+                t200,
+                t238,
+                -(T::fused(k(0.2), t235, -t237)
+                    + (k(0.02) + (k(0.0017) + (k(0.015) - t237)))),
+            );
+            let t240 = T::fused(-t112, t179, t108 * t180);
+            let t241 = T::fused(k(0.2), t240, t205 * t238);
+            let t242 = T::fused(-t239, t198, t241 * t202)
+                - T::fused(t226, t189, -T::fused(t201, t176, t188 * t236));
+            let t243 = t242
+                - T::fused(
+                    t200,
+                    t165,
+                    t232 + T::fused(k(0.0014), link_3_wy * link_3_wz, t232),
+                );
+            let t244 = T::fused(
+                t205,
+                t165,
+                T::fused(
+                    k(0.0001),
+                    link_3_wx * link_3_wy,
+                    T::fused(-t112, t139, t108 * t146),
+                ),
+            );
+            let t245 = T::fused(t220, t205, t240);
+            let t246 = T::fused(
+                t112,
+                T::fused(-t112, t131, t157),
+                t108 * T::fused(-t108, t144, t155),
+            );
+            let t247 = T::fused(t205, t164 * t205, -(k(0.0002) + t246));
+            let t248 = T::fused(-t241, t198, t247 * t202)
+                - T::fused(t227, t189, -T::fused(-t206, t176, t188 * t245));
+            let t249 = t248 - t244;
+            let t250 = T::fused(t185, t220, t233);
+            let t251 = T::fused(
+                k(2.0),
+                t188,
+                T::fused(t221, t189, -T::fused(-t186, t176, t188 * t250)),
+            );
+            let t252 = T::fused(-t236, t198, t245 * t202) - t251
+                - T::fused(t185, t165, t231);
             let t253 = k(0.1) * t252;
-            let t254 = t211 * t173
-                + (t253 + (k(0.0014) * (link_3_wy * link_3_wz) + (t253 - t251)));
-            let t255 = t118 * t243 + t115 * t242;
-            let t256 = t118 * t236 - t115 * t234;
-            let t257 = k(0.1) * t256;
-            let t258 = k(0.15) - t257 + t255;
-            let t259 = t194 * t211 - (k(0.2) - t257 + t258);
-            let t260 = k(0.01) * t256;
-            let t261 = k(0.2) * t258 - t260
-                + (k(0.02) + (k(0.0017) + (k(0.015) - (t260 - k(0.2) * t255))));
-            let t262 = t211 * t212 - t261;
-            let t263 = t115 * t188 - t118 * t187;
-            let t264 = t223 * t212 + k(0.2) * t263;
-            let t265 = t264 * t220 - t262 * t207
-                - (t245 * t198 - (t197 * t259 + t219 * t183));
-            let t266 = t265 - t254;
-            let t267 = t223 * t173
-                + (k(0.0001) * (link_3_wx * link_3_wy) + (t115 * t153 - t118 * t146));
-            let t268 = t194 * t223 + t263;
-            let t269 = t115 * (t162 - t115 * t151) + t118 * (t164 - t118 * t138);
-            let t270 = t223 * (t172 * t223) - (k(0.0002) + t269);
-            let t271 = t270 * t220 - t264 * t207
-                - (t246 * t198 - (t197 * t268 - t224 * t183));
-            let t272 = t271 - t267;
-            let t273 = t193 * t194 + t256;
-            let t274 = k(2.0) * t197 + (t238 * t198 - (t197 * t273 - t216 * t183));
-            let t275 = t268 * t220 - t259 * t207 - t274 - (t193 * t173 + t252);
-            let t276 = k(0.1) * t275;
-            let t277 = k(0.0014) * (link_2_wy * link_2_wz)
-                - (t276 - (t182 * t272 - t178 * t266));
-            let t278 = t276 - t277;
-            let t279 = t182 * t264;
-            let t280 = t279 - t178 * t262;
-            let t281 = t178 * t264;
-            let t282 = t182 * t270 - t281;
-            let t283 = t182 * t268 - t178 * t259;
-            let t284 = k(0.01) * t273;
-            let t285 = t284 - k(0.2) * t283 - (k(0.02) - (t182 * t282 - t178 * t280));
-            let t286 = k(0.1) * t273;
-            let t287 = k(0.2) - t286 + t283;
-            let t288 = k(0.2) * t287 - t284 + (k(0.025) + (k(0.0017) - t285));
-            let t289 = k(1.0) / t288;
-            let t290 = t289 * t278;
-            let t291 = t182 * t245 - t178 * t219;
-            let t292 = t182 * t246 + t178 * t224;
-            let t293 = t182 * t292 - t178 * t291;
-            let t294 = t182 * t238 + t178 * t216;
-            let t295 = k(0.01) * t294;
-            let t296 = k(0.1) * t294;
-            let t297 = t296 + t195;
-            let t298 = t296 - t293;
-            let t299 = k(0.1) * (t298 + t297) + t295
-                + (t295 - k(0.1) * (t293 - t195) + t178 * t213);
-            let t300 = t182 * t205 - t178 * t186;
-            let t301 = t182 * t217 + t178 * t215;
-            let t302 = t182 * t240 + t178 * t217;
-            let t303 = t182 * t302 + t178 * t301;
-            let t304 = k(0.1) * t303;
-            let t305 = k(0.2) - t304 - t300;
-            let t306 = t296 + t298;
-            let t307 = t289 * t306;
-            let t308 = t307 * t299 - (k(0.25) - t304 + t305);
-            let t309 = k(0.1) * link_1_wx;
-            let t310 = link_1_wz * t309;
-            let t311 = t310 + t175;
-            let t312 = k(0.1) * link_1_wy;
-            let t313 = link_1_wz * t312;
-            let t314 = link_1_e1 * link_2_e0 - link_1_e0 * link_2_e1
-                - link_1_e3 * link_2_e2 + link_1_e2 * link_2_e3;
-            let t315 = k(2.0) * t314;
-            let t316 = k(1.0) - t314 * t315;
-            let t317 = link_1_wx * t309 + link_1_wy * t312;
-            let t318 = link_1_e0 * link_2_e0 + link_1_e1 * link_2_e1
-                + link_1_e2 * link_2_e2 + link_1_e3 * link_2_e3;
-            let t319 = t318 * t315;
-            let t320 = t319 * t317;
-            let t321 = t196 + (t320 + t316 * t313);
-            let t322 = t287 + (k(0.25) - t286);
-            let t323 = t289 * t322;
-            let t324 = t323 * t299 - (t296 + t297);
-            let t325 = t316 * t317;
-            let t326 = t180 + (t325 - t319 * t313);
-            let t327 = t178 * t302 - t182 * t301;
-            let t328 = k(0.1) * t327;
-            let t329 = t178 * t245 + t182 * t219;
-            let t330 = t178 * t246 - t182 * t224;
-            let t331 = k(0.1) * (t178 * t238 - t182 * t216);
-            let t332 = t331 + (t331 - (t182 * t330 - t178 * t329));
-            let t333 = t289 * t332;
-            let t334 = t333 * t299 + (t328 + (t328 + (t178 * t205 + t182 * t186)));
-            let t335 = link_1_wx - link_2_wx;
-            let t336 = link_2_wz * t335;
-            let t337 = k(0.01) * t303;
-            let t338 = k(0.2) * t305 - t337
-                + (k(0.025) + (k(0.0016) + (k(0.02) - (t337 + k(0.2) * t300))));
-            let t339 = t289 * t299;
-            let t340 = t299 * t339 - t338;
-            let t341 = link_2_wy * t335;
-            let t342 = t178 * t292 + t182 * t291;
-            let t343 = k(0.1) * t342;
-            let t344 = t178 * t268 + t182 * t259;
-            let t345 = k(0.1) * t344;
-            let t346 = t345 + (t345 - (t178 * t282 + t182 * t280));
-            let t347 = t346 * t339 + (t343 + (t343 + t182 * t213));
-            let t348 = t347 * t341 - t340 * t336
-                + (t334 * t326 + (t324 * t321 + t311 * t308));
-            let t349 = t346 * t290
-                - (k(0.0001) * (link_2_wx * link_2_wy) - (t178 * t272 + t182 * t266));
-            let t350 = t307 * t346 + t342;
-            let t351 = t344 - t346 * t323;
-            let t352 = t333 * t346 + (t178 * t330 + t182 * t329);
-            let t353 = t178 * (t279 + t178 * t270) + t182 * (t281 + t182 * t262);
-            let t354 = t346 * (t289 * t346) - (k(0.0002) - t353);
-            let t355 = t354 * t341 - t347 * t336
-                + (t352 * t326 - (t351 * t321 - t311 * t350));
-            let t356 = t319 * (t355 - t349)
-                + t316 * (t348 - (t299 * t290 + (t249 + t250)));
-            let t357 = t306 * t307 + t303;
-            let t358 = t294 - t307 * t322;
-            let t359 = t307 * t332 + t327;
-            let t360 = k(2.5) * t311 - (t359 * t326 - (t358 * t321 - t311 * t357));
-            let t361 = t350 * t341 - t308 * t336 - t360 - (t306 * t290 + t248);
-            let t362 = k(0.1) * t361;
-            let t363 = k(2.0) * link_1_e2;
-            let t364 = t310 + k(9.81) * (link_1_e0 * t363);
-            let t365 = t319 * t350 + t316 * t308;
-            let t366 = k(0.1) * t357;
-            let t367 = k(0.25) - t366 - t365;
-            let t368 = t319 * (t319 * t352 + t316 * t351)
-                + t316 * (t319 * t334 - t316 * t324);
-            let t369 = t319 * t359 + t316 * t358;
-            let t370 = k(0.1) * t369;
-            let t371 = t370 + t368;
-            let t372 = t317 + k(9.81) * (k(1.0) - link_1_e2 * t363);
-            let t373 = t319 * (t316 * t352 - t319 * t351)
-                + t316 * (t316 * t334 + t319 * t324);
-            let t374 = k(0.1) * (t316 * t359 - t319 * t358);
-            let t375 = (t374 + (t374 + t373)) * t372
-                - (t313 * (t370 + t371) + (k(0.3) - t366 + t367) * t364);
-            let t376 = t306 - t288 * t307;
-            let t377 = k(0.01) * t369;
-            let t378 = k(0.1) * (t371 + (t370 + t376)) + t377
-                + (t377 + k(0.1) * (t368 + t376));
-            let t379 = link_1_wy * link_1_wz;
-            let t380 = t319 * t347 + t316 * t340;
-            let t381 = t319 * t354 + t316 * t347;
-            let t382 = k(0.1) * (t316 * t350 - t319 * t308);
-            let t383 = link_1_wx * link_1_wy;
-            let t384 = t383 * (t382 + (t382 + (t316 * t381 - t319 * t380)))
-                - t379 * t378;
-            let t385 = t384 + t375
-                + (t362 - (k(0.0015) * (link_1_wx * link_1_wz) - (t362 + t356)));
-            let t386 = k(0.01) * t357;
-            let t387 = t386 + k(0.2) * t365 - (k(0.025) - (t319 * t381 + t316 * t380));
-            let t388 = t385 / (k(0.2) * t367 - t386 + (k(0.03) + (k(0.0016) - t387)));
-            let t389 = k(0.1) * t388;
-            let t390 = t310 + t389;
-            let t391 = link_1_e0 * link_1_e0;
-            let t392 = k(0.1) * t379;
-            let t393 = t313 + t392;
-            let t394 = link_1_e0 * link_1_e3;
-            let t395 = link_1_e1 * link_1_e2;
-            let t396 = k(2.0) * (t395 - t394) * t393
-                - k(2.0) * (k(0.5) - (t391 + link_1_e1 * link_1_e1)) * t390;
-            let t397 = link_1_e0 * link_1_e2;
-            let t398 = link_1_e1 * link_1_e3;
-            let t399 = k(2.0) * (k(0.5) - (t391 + link_1_e2 * link_1_e2)) * t393
-                - k(2.0) * (t395 + t394) * t390;
-            (
-                t203,
-                t207,
-                t211,
-                t220,
-                t223,
-                t278,
-                t288,
-                t289,
-                t299,
-                t306,
+            let t254 = T::fused(
+                k(0.0014),
+                link_2_wy * link_2_wz,
+                -(t253 - T::fused(-t169, t243, t173 * t249)),
+            );
+            let t255 = t253 - t254;
+            let t256 = t173 * t241;
+            let t257 = T::fused(-t169, t239, t256);
+            let t258 = t169 * t241;
+            let t259 = T::fused(t173, t247, -t258);
+            let t260 = T::fused(-t169, t236, t173 * t245);
+            let t261 = k(0.01) * t250;
+            let t262 = T::fused(-k(0.2), t260, t261)
+                - (k(0.02) - T::fused(-t169, t257, t173 * t259));
+            let t263 = k(0.1) * t250;
+            let t264 = k(0.2) - t263 + t260;
+            let t265 = k(1.0)
+                / (T::fused(k(0.2), t264, -t261) + (k(0.025) + (k(0.0017) - t262)));
+            let t266 = t265 * t255;
+            let t267 = T::fused(-t169, t201, t173 * t226);
+            let t268 = T::fused(t169, t206, t173 * t227);
+            let t269 = T::fused(-t169, t267, t173 * t268);
+            let t270 = T::fused(t169, t186, t173 * t221);
+            let t271 = k(0.01) * t270;
+            let t272 = k(0.1) * t270;
+            let t273 = t272 - t269;
+            let t274 = t271 + T::fused(k(0.1), t273, t271)
+                + T::fused(-k(0.1), t269, t271);
+            let t275 = T::fused(t169, t178, t173 * t195);
+            let t276 = T::fused(t169, t195, t173 * t224);
+            let t277 = T::fused(t169, t275, t173 * t276);
+            let t278 = k(0.1) * t277;
+            let t279 = k(0.2) - t278;
+            let t280 = t272 + t273;
+            let t281 = t265 * t280;
+            let t282 = T::fused(t281, t274, -(k(0.25) - t278 + t279));
+            let t283 = k(0.1) * link_1_wx;
+            let t284 = link_1_wz * t283;
+            let t285 = t284 + t171;
+            let t286 = T::fused(
+                link_1_e2,
+                link_2_e3,
+                T::fused(
+                    -link_1_e3,
+                    link_2_e2,
+                    T::fused(-link_1_e0, link_2_e1, link_1_e1 * link_2_e0),
+                ),
+            );
+            let t287 = k(2.0) * t286;
+            let t288 = T::fused(-t286, t287, k(1.0));
+            let t289 = k(0.1) * link_1_wy;
+            let t290 = link_1_wz * t289;
+            let t291 = T::fused(
+                link_1_e3,
+                link_2_e3,
+                T::fused(
+                    link_1_e2,
+                    link_2_e2,
+                    T::fused(link_1_e1, link_2_e1, link_1_e0 * link_2_e0),
+                ),
+            );
+            let t292 = t291 * t287;
+            let t293 = T::fused(link_1_wy, t289, link_1_wx * t283);
+            let t294 = t293 * t292;
+            let t295 = t187 + T::fused(t290, t288, t294);
+            let t296 = t264 + (k(0.25) - t263);
+            let t297 = t265 * t296;
+            let t298 = T::fused(-k(0.2), t270, t297 * t274);
+            let t299 = t293 * t288;
+            let t300 = t175 + T::fused(-t290, t292, t299);
+            let t301 = T::fused(-t173, t275, t169 * t276);
+            let t302 = T::fused(t173, t201, t169 * t226);
+            let t303 = T::fused(-t173, t206, t169 * t227);
+            let t304 = k(0.1) * T::fused(-t173, t186, t169 * t221);
+            let t305 = t304 + (t304 - T::fused(-t169, t302, t173 * t303));
+            let t306 = t265 * t305;
+            let t307 = T::fused(k(0.2), t301, t306 * t274);
+            let t308 = link_1_wx - link_2_wx;
+            let t309 = link_2_wz * t308;
+            let t310 = k(0.01) * t277;
+            let t311 = t265 * t274;
+            let t312 = T::fused(
+                t274,
                 t311,
-                t316,
+                -(T::fused(k(0.2), t279, -t310)
+                    + (k(0.025) + (k(0.0016) + (k(0.02) - t310)))),
+            );
+            let t313 = link_2_wy * t308;
+            let t314 = T::fused(t173, t267, t169 * t268);
+            let t315 = T::fused(t173, t236, t169 * t245);
+            let t316 = k(0.1) * t315;
+            let t317 = t316 + (t316 - T::fused(t173, t257, t169 * t259));
+            let t318 = T::fused(k(0.2), t314, t317 * t311);
+            let t319 = T::fused(-t312, t309, t318 * t313)
+                + T::fused(t307, t300, T::fused(t285, t282, t298 * t295));
+            let t320 = t319
+                - T::fused(
+                    t274,
+                    t266,
+                    t230 + T::fused(k(0.0015), link_2_wx * link_2_wz, t230),
+                );
+            let t321 = T::fused(
                 t317,
-                t319,
-                t320,
-                t321,
-                t322,
-                t325,
-                t326,
-                t332,
-                t336,
-                t341,
-                t346,
-                t364,
+                t266,
+                -T::fused(
+                    k(0.0001),
+                    link_2_wx * link_2_wy,
+                    -T::fused(t173, t243, t169 * t249),
+                ),
+            );
+            let t322 = T::fused(t281, t317, t314);
+            let t323 = T::fused(-t317, t297, t315);
+            let t324 = T::fused(t306, t317, T::fused(t173, t302, t169 * t303));
+            let t325 = T::fused(
+                t173,
+                T::fused(t173, t239, t258),
+                t169 * T::fused(t169, t247, t256),
+            );
+            let t326 = T::fused(t317, t265 * t317, -(k(0.0002) - t325));
+            let t327 = T::fused(-t318, t309, t326 * t313)
+                + T::fused(t324, t300, -T::fused(-t285, t322, t323 * t295));
+            let t328 = T::fused(t280, t281, t277);
+            let t329 = T::fused(-t281, t296, t270);
+            let t330 = T::fused(t281, t305, t301);
+            let t331 = T::fused(
+                k(2.5),
+                t285,
+                -T::fused(t330, t300, -T::fused(-t285, t328, t329 * t295)),
+            );
+            let t332 = T::fused(-t282, t309, t322 * t313) - t331
+                - T::fused(t280, t266, t229);
+            let t333 = k(0.1) * t332;
+            let t334 = T::fused(
+                k(0.0015),
+                link_1_wx * link_1_wz,
+                -(t333 + T::fused(t288, t320, t292 * (t327 - t321))),
+            );
+            let t335 = k(2.0) * link_1_e2;
+            let t336 = T::fused(k(9.81), link_1_e0 * t335, t284);
+            let t337 = T::fused(t288, t282, t292 * t322);
+            let t338 = k(0.1) * t328;
+            let t339 = k(0.25) - t338 - t337;
+            let t340 = T::fused(
+                t288,
+                T::fused(-t288, t298, t292 * t307),
+                t292 * T::fused(t288, t323, t292 * t324),
+            );
+            let t341 = T::fused(t288, t329, t292 * t330);
+            let t342 = k(0.1) * t341;
+            let t343 = t342 + t340;
+            let t344 = T::fused(k(9.81), T::fused(-link_1_e2, t335, k(1.0)), t293);
+            let t345 = T::fused(
+                t288,
+                T::fused(t292, t298, t288 * t307),
+                t292 * T::fused(-t292, t323, t288 * t324),
+            );
+            let t346 = k(0.1) * T::fused(-t292, t329, t288 * t330);
+            let t347 = T::fused(
+                t346 + (t346 + t345),
+                t344,
+                -T::fused(k(0.3) - t338 + t339, t336, t290 * (t342 + t343)),
+            );
+            let t348 = k(0.01) * t341;
+            let t349 = link_1_wy * link_1_wz;
+            let t350 = T::fused(t288, t312, t292 * t318);
+            let t351 = T::fused(t288, t318, t292 * t326);
+            let t352 = k(0.1) * T::fused(-t292, t282, t288 * t322);
+            let t353 = link_1_wx * link_1_wy;
+            let t354 = T::fused(
+                -t349,
+                t348 + T::fused(k(0.1), t343, t348) + T::fused(k(0.1), t340, t348),
+                t353 * (t352 + (t352 + T::fused(-t292, t350, t288 * t351))),
+            );
+            let t355 = k(0.01) * t328;
+            let t356 = T::fused(k(0.2), t337, t355)
+                - (k(0.025) - T::fused(t288, t350, t292 * t351));
+            let t357 = (t354 + t347 + (t333 - t334))
+                / (T::fused(k(0.2), t339, -t355) + (k(0.03) + (k(0.0016) - t356)));
+            let t358 = k(0.1) * t357;
+            let t359 = t284 + t358;
+            let t360 = link_1_e0 * link_1_e0;
+            let t361 = k(0.1) * t349;
+            let t362 = t290 + t361;
+            let t363 = link_1_e0 * link_1_e3;
+            let t364 = link_1_e1 * link_1_e2;
+            let t365 = T::fused(
+                -(k(2.0) * (k(0.5) - T::fused(link_1_e1, link_1_e1, t360))),
+                t359,
+                k(2.0) * (t364 - t363) * t362,
+            );
+            let t366 = link_1_e0 * link_1_e2;
+            let t367 = link_1_e1 * link_1_e3;
+            let t368 = T::fused(
+                -(k(2.0) * (t364 + t363)),
+                t359,
+                k(2.0) * (k(0.5) - T::fused(link_1_e2, link_1_e2, t360)) * t362,
+            );
+            let t369 = link_1_e0 * link_1_e1;
+            let t370 = link_1_e2 * link_1_e3;
+            let t371 = T::fused(
+                k(2.0) * (t367 - t366),
+                t359,
+                k(2.0) * (t370 + t369) * t362,
+            );
+            let t372 = t309 + T::fused(-t288, t357, t353 * t292);
+            let t373 = k(0.1) * t372;
+            let t374 = t373 - (t285 + (t358 + t359));
+            let t375 = link_2_e0 * link_2_e0;
+            let t376 = t285 + (t358 + (t336 + t358));
+            let t377 = t361 + t362;
+            let t378 = t288 * t377;
+            let t379 = t295 + T::fused(t292, t344, t378);
+            let t380 = t292 * t377;
+            let t381 = t300 + T::fused(t288, t344, -t380);
+            let t382 = t313 + T::fused(t292, t357, t353 * t288);
+            let t383 = T::fused(-t274, t372, t317 * t382)
+                + T::fused(t305, t381, T::fused(t280, t376, t296 * t379));
+            let t384 = t265 * (t255 - t383);
+            let t385 = t349 - (t349 - t384);
+            let t386 = k(0.1) * t385;
+            let t387 = t295 + (t294 + t378) + t386;
+            let t388 = link_2_e0 * link_2_e3;
+            let t389 = link_2_e1 * link_2_e2;
+            let t390 = T::fused(
+                k(2.0) * (k(0.5) - T::fused(link_2_e1, link_2_e1, t375)),
+                t374,
+                k(2.0) * (t389 - t388) * t387,
+            );
+            let t391 = t300 + (t299 - t380);
+            let t392 = link_2_e0 * link_2_e2;
+            let t393 = link_2_e1 * link_2_e3;
+            let t394 = T::fused(
+                k(2.0) * (t389 + t388),
+                t374,
+                k(2.0) * (k(0.5) - T::fused(link_2_e2, link_2_e2, t375)) * t387,
+            );
+            let t395 = link_2_e0 * link_2_e1;
+            let t396 = link_2_e2 * link_2_e3;
+            let t397 = T::fused(
+                -(k(2.0) * (t393 - t392)),
+                t374,
+                k(2.0) * (t396 + t395) * t387,
+            );
+            let t398 = t373 + t374;
+            let t399 = t373 - (t376 - t373);
+            (
+                t200,
+                t202,
+                t205,
+                t293,
+                t349,
+                t353,
+                t357,
+                t360,
+                t365,
+                t366,
+                t367,
+                t368,
+                t369,
+                t370,
+                t371,
                 t372,
+                t375,
                 t379,
-                t383,
-                t388,
-                t389,
+                t381,
+                t382,
+                t384,
+                t385,
+                t386,
+                t387,
                 t390,
                 t391,
                 t392,
                 t393,
+                t394,
+                t395,
                 t396,
                 t397,
                 t398,
@@ -8928,13 +10316,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
             )
         };
         let (
-            t400,
-            t401,
-            t402,
-            t403,
-            t406,
+            t410,
             t413,
-            t415,
+            t414,
+            t419,
             t420,
             t421,
             t422,
@@ -8943,36 +10328,33 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
             t425,
             t426,
             t427,
-            t433,
-            t434,
-            t436,
-            t439,
-            t444,
-            t445,
-            t446,
-            t447,
+            t428,
+            t431,
+            t443,
             t448,
             t449,
             t450,
             t451,
             t452,
+            t453,
+            t454,
             t455,
+            t456,
             t461,
-            t463,
-            t468,
-            t469,
+            t464,
+            t465,
             t470,
             t471,
             t472,
             t473,
             t474,
             t475,
+            t476,
+            t477,
             t478,
-            t480,
-            t483,
-            t484,
-            t489,
-            t490,
+            t479,
+            t481,
+            t487,
             t491,
             t492,
             t493,
@@ -8980,155 +10362,174 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
             t495,
             t496,
             t497,
-            t499,
-            t503,
-            t507,
-            t508,
-            t509,
-            t510,
-            t511,
-            t512,
-            t513,
-            t514,
+            t498,
         ) = {
-            let t400 = link_1_e0 * link_1_e1;
-            let t401 = link_1_e2 * link_1_e3;
-            let t402 = k(2.0) * (t401 + t400) * t393 + k(2.0) * (t398 - t397) * t390;
-            let t403 = t336 + (t383 * t319 - t316 * t388);
-            let t404 = k(0.1) * t403;
-            let t405 = t404 - (t311 + (t389 + t390));
-            let t406 = link_2_e0 * link_2_e0;
-            let t407 = t392 + t393;
-            let t408 = t316 * t407;
-            let t409 = t311 + (t389 + (t364 + t389));
-            let t410 = t321 + (t319 * t372 + t408);
-            let t411 = t319 * t407;
-            let t412 = t326 + (t316 * t372 - t411);
-            let t413 = t341 + (t383 * t316 + t319 * t388);
-            let t414 = t346 * t413 - (t299 * t403 - t379 * t288)
-                + (t332 * t412 + (t322 * t410 + t306 * t409));
-            let t415 = t379 + t289 * (t278 - t414);
-            let t416 = k(0.1) * t415;
-            let t417 = t416 + (t321 + (t320 + t408));
-            let t418 = link_2_e0 * link_2_e3;
-            let t419 = link_2_e1 * link_2_e2;
-            let t420 = k(2.0) * (t419 - t418) * t417
-                + k(2.0) * (k(0.5) - (t406 + link_2_e1 * link_2_e1)) * t405;
-            let t421 = t326 + (t325 - t411);
-            let t422 = link_2_e0 * link_2_e2;
-            let t423 = link_2_e1 * link_2_e3;
-            let t424 = k(2.0) * (k(0.5) - (t406 + link_2_e2 * link_2_e2)) * t417
-                + k(2.0) * (t419 + t418) * t405;
-            let t425 = link_2_e0 * link_2_e1;
-            let t426 = link_2_e2 * link_2_e3;
-            let t427 = k(2.0) * (t426 + t425) * t417 - k(2.0) * (t423 - t422) * t405;
-            let t428 = t404 + t405;
-            let t429 = t404 - (t409 - t404);
-            let t430 = t183 - (t182 * t412 + t178 * t429);
-            let t431 = t197 + (t416 + (t410 + t416));
-            let t432 = t198 + (t178 * t412 - t182 * t429);
-            let t433 = t207 + (t182 * t413 - t178 * t415);
-            let t434 = t220 - (t178 * t413 + t182 * t415);
-            let t435 = t223 * t434 - (t171 * t403 + t211 * t433)
-                - (t203 * t432 - (t193 * t431 + t184 * t430));
-            let t436 = t403 - t172 * (t161 - t435);
-            let t437 = k(0.1) * t436;
-            let t438 = t437 - (t183 - (t182 * t421 + t178 * t428));
-            let t439 = link_3_e0 * link_3_e0;
-            let t440 = k(0.1) * t433;
-            let t441 = t440 - (t197 + (t416 + t417));
-            let t442 = link_3_e0 * link_3_e3;
-            let t443 = link_3_e1 * link_3_e2;
-            let t444 = k(2.0) * (t443 - t442) * t441
-                - k(2.0) * (k(0.5) - (t439 + link_3_e1 * link_3_e1)) * t438;
-            let t445 = t198 + (t178 * t421 - t182 * t428);
-            let t446 = link_3_e0 * link_3_e2;
-            let t447 = link_3_e1 * link_3_e3;
-            let t448 = k(2.0) * (k(0.5) - (t439 + link_3_e2 * link_3_e2)) * t441
-                - k(2.0) * (t443 + t442) * t438;
-            let t449 = link_3_e0 * link_3_e1;
-            let t450 = link_3_e2 * link_3_e3;
-            let t451 = k(2.0) * (t450 + t449) * t441 + k(2.0) * (t447 - t446) * t438;
-            let t452 = t134 - (t118 * t434 - t115 * t436);
-            let t453 = k(0.1) * t452;
-            let t454 = t453 - (t110 - (t437 + t438));
-            let t455 = link_4_e0 * link_4_e0;
-            let t456 = t440 + t441;
-            let t457 = t110 - (t437 - (t430 - t437));
-            let t458 = t440 - (t431 - t440);
-            let t459 = t119 + (t118 * t432 - t115 * t458);
-            let t460 = t123 + (t115 * t432 + t118 * t458);
-            let t461 = t139 - (t115 * t434 + t118 * t436);
-            let t462 = t143 * t461 - (t98 * t452 - t88 * t433)
-                + (t130 * t460 - (t120 * t459 - t105 * t457));
-            let t463 = t433 - t89 * (t82 + t462);
-            let t464 = k(0.1) * t463;
-            let t465 = t464 - (t119 + (t118 * t445 - t115 * t456));
-            let t466 = link_4_e0 * link_4_e3;
-            let t467 = link_4_e1 * link_4_e2;
-            let t468 = k(2.0) * (t467 - t466) * t465
-                - k(2.0) * (k(0.5) - (t455 + link_4_e1 * link_4_e1)) * t454;
-            let t469 = t123 + (t115 * t445 + t118 * t456);
-            let t470 = link_4_e0 * link_4_e2;
-            let t471 = link_4_e1 * link_4_e3;
-            let t472 = k(2.0) * (k(0.5) - (t455 + link_4_e2 * link_4_e2)) * t465
-                - k(2.0) * (t467 + t466) * t454;
-            let t473 = link_4_e0 * link_4_e1;
-            let t474 = link_4_e2 * link_4_e3;
-            let t475 = k(2.0) * (t474 + t473) * t465 + k(2.0) * (t471 - t470) * t454;
-            let t476 = t453 + t454;
-            let t477 = t453 - (t457 - t453);
-            let t478 = t40 - (t29 * t461 - t33 * t463);
-            let t479 = t42 * t478 - t22 * t452 + t35 * (t34 - (t33 * t460 + t29 * t477));
-            let t480 = t452 + t23 * (t17 + t479);
-            let t481 = k(0.1) * t480;
-            let t482 = t481 - (t34 - (t33 * t469 + t29 * t476));
-            let t483 = link_5_e0 * link_5_e0;
-            let t484 = t60 + (t33 * t461 + t29 * t463);
+            let t400 = t176 - T::fused(t169, t399, t173 * t381);
+            let t401 = k(0.1) * t384;
+            let t402 = t188 + (t401 + (t379 + t401));
+            let t403 = t189 + T::fused(-t173, t399, t169 * t381);
+            let t404 = t173 * t382;
+            let t405 = t198 + T::fused(-t169, t384, t404);
+            let t406 = t169 * t382;
+            let t407 = t202 - T::fused(t173, t384, t406);
+            let t408 = T::fused(-t200, t405, t205 * t407)
+                - T::fused(t194, t403, -T::fused(t166, t400, t185 * t402));
+            let t409 = t164 * (t154 - t408);
+            let t410 = t372 - (t372 + t409);
+            let t411 = k(0.1) * t410;
+            let t412 = t411 - (t176 - T::fused(t169, t398, t173 * t391));
+            let t413 = link_3_e0 * link_3_e0;
+            let t414 = t198 + T::fused(-t169, t385, t404);
+            let t415 = k(0.1) * t414;
+            let t416 = t415 - (t188 + (t386 + t387));
+            let t417 = link_3_e0 * link_3_e3;
+            let t418 = link_3_e1 * link_3_e2;
+            let t419 = T::fused(
+                -(k(2.0) * (k(0.5) - T::fused(link_3_e1, link_3_e1, t413))),
+                t412,
+                k(2.0) * (t418 - t417) * t416,
+            );
+            let t420 = t189 + T::fused(-t173, t398, t169 * t391);
+            let t421 = link_3_e0 * link_3_e2;
+            let t422 = link_3_e1 * link_3_e3;
+            let t423 = T::fused(
+                -(k(2.0) * (t418 + t417)),
+                t412,
+                k(2.0) * (k(0.5) - T::fused(link_3_e2, link_3_e2, t413)) * t416,
+            );
+            let t424 = link_3_e0 * link_3_e1;
+            let t425 = link_3_e2 * link_3_e3;
+            let t426 = T::fused(
+                k(2.0) * (t422 - t421),
+                t412,
+                k(2.0) * (t425 + t424) * t416,
+            );
+            let t427 = t202 - T::fused(t173, t385, t406);
+            let t428 = t128 - T::fused(-t108, t410, t112 * t427);
+            let t429 = k(0.1) * t428;
+            let t430 = t429 - (t105 - (t411 + t412));
+            let t431 = link_4_e0 * link_4_e0;
+            let t432 = t415 + t416;
+            let t433 = k(0.1) * t409;
+            let t434 = t105 + (t433 + (t400 + t433));
+            let t435 = k(0.1) * t405;
+            let t436 = t435 - (t402 - t435);
+            let t437 = t114 + T::fused(-t108, t436, t112 * t403);
+            let t438 = t118 + T::fused(t112, t436, t108 * t403);
+            let t439 = t128 - T::fused(t108, t409, t112 * t407);
+            let t440 = t132 - T::fused(-t112, t409, t108 * t407);
+            let t441 = T::fused(-t94, t439, t136 * t440)
+                + T::fused(t124, t438, -T::fused(-t100, t434, t115 * t437));
+            let t442 = t85 * (t79 + t441);
+            let t443 = t405 + t442 - t414;
+            let t444 = k(0.1) * t443;
+            let t445 = t444 + (t114 + T::fused(-t108, t432, t112 * t420));
+            let t446 = link_4_e0 * link_4_e3;
+            let t447 = link_4_e1 * link_4_e2;
+            let t448 = T::fused(
+                k(2.0) * (k(0.5) - T::fused(link_4_e1, link_4_e1, t431)),
+                t430,
+                k(2.0) * (t447 - t446) * t445,
+            );
+            let t449 = t118 + T::fused(t112, t432, t108 * t420);
+            let t450 = link_4_e0 * link_4_e2;
+            let t451 = link_4_e1 * link_4_e3;
+            let t452 = T::fused(
+                k(2.0) * (t447 + t446),
+                t430,
+                k(2.0) * (k(0.5) - T::fused(link_4_e2, link_4_e2, t431)) * t445,
+            );
+            let t453 = link_4_e0 * link_4_e1;
+            let t454 = link_4_e2 * link_4_e3;
+            let t455 = T::fused(
+                -(k(2.0) * (t451 - t450)),
+                t430,
+                k(2.0) * (t454 + t453) * t445,
+            );
+            let t456 = t132 - T::fused(t112, t410, t108 * t427);
+            let t457 = t429 + t430;
+            let t458 = k(0.1) * t439;
+            let t459 = t458 - (t434 - t458);
+            let t460 = T::fused(
+                t24,
+                t34 - T::fused(t27, t459, t31 * t438),
+                t40 * (t38 - T::fused(t31, t442, t27 * t440)),
+            );
+            let t461 = T::fused(-t22, t17 + t460, t439) - t428;
+            let t462 = k(0.1) * t461;
+            let t463 = t462 + (t34 - T::fused(t27, t457, t31 * t449));
+            let t464 = link_5_e0 * link_5_e0;
+            let t465 = t58 + T::fused(-t27, t443, t31 * t456);
+            let t466 = k(0.1) * t465;
+            let t467 = t466 - (t55 + (t444 + t445));
+            let t468 = link_5_e0 * link_5_e3;
+            let t469 = link_5_e1 * link_5_e2;
+            let t470 = T::fused(
+                k(2.0) * (k(0.5) - T::fused(link_5_e1, link_5_e1, t464)),
+                t463,
+                k(2.0) * (t469 - t468) * t467,
+            );
+            let t471 = t56 + T::fused(-t31, t457, t27 * t449);
+            let t472 = link_5_e0 * link_5_e2;
+            let t473 = link_5_e1 * link_5_e3;
+            let t474 = T::fused(
+                k(2.0) * (t469 + t468),
+                t463,
+                k(2.0) * (k(0.5) - T::fused(link_5_e2, link_5_e2, t464)) * t467,
+            );
+            let t475 = link_5_e0 * link_5_e1;
+            let t476 = link_5_e2 * link_5_e3;
+            let t477 = T::fused(
+                -(k(2.0) * (t473 - t472)),
+                t463,
+                k(2.0) * (t476 + t475) * t467,
+            );
+            let t478 = t38 - T::fused(t31, t443, t27 * t456);
+            let t479 = t1 - T::fused(t9, t461, t13 * t478);
+            let t480 = T::fused(k(0.1), t479, -(t5 + (t462 + t463)));
+            let t481 = link_6_e0 * link_6_e0;
+            let t482 = t466 + t467;
+            let t483 = k(0.1) * t442;
+            let t484 = t58 + T::fused(-t27, t442, t31 * t440);
             let t485 = k(0.1) * t484;
-            let t486 = t485 - (t57 - (t464 + t465));
-            let t487 = link_5_e0 * link_5_e3;
-            let t488 = link_5_e1 * link_5_e2;
-            let t489 = k(2.0) * (t488 - t487) * t486
-                - k(2.0) * (k(0.5) - (t483 + link_5_e1 * link_5_e1)) * t482;
-            let t490 = t58 + (t29 * t469 - t33 * t476);
-            let t491 = link_5_e0 * link_5_e2;
-            let t492 = link_5_e1 * link_5_e3;
-            let t493 = k(2.0) * (k(0.5) - (t483 + link_5_e2 * link_5_e2)) * t486
-                - k(2.0) * (t488 + t487) * t482;
-            let t494 = link_5_e0 * link_5_e1;
-            let t495 = link_5_e2 * link_5_e3;
-            let t496 = k(2.0) * (t495 + t494) * t486 + k(2.0) * (t492 - t491) * t482;
-            let t497 = t1 - (t13 * t478 - t9 * t480);
-            let t498 = k(0.1) * t497 - (t5 - (t481 + t482));
-            let t499 = link_6_e0 * link_6_e0;
-            let t500 = t485 + t486;
-            let t501 = t13 * (t58 + (t29 * t460 - t33 * t477))
-                - t9 * (t485 + (t485 - (t57 - (t464 - (t459 - t464)))));
-            let t502 = k(149.2537313432836)
-                * (k(0.0014) * t50 - (k(0.0067) * t484 - k(0.05) * (t49 + t501)));
-            let t503 = t484 + t502;
-            let t504 = k(0.1) * t503 - (t49 + (t13 * t490 - t9 * t500));
-            let t505 = link_6_e0 * link_6_e3;
-            let t506 = link_6_e1 * link_6_e2;
-            let t507 = k(2.0) * (t506 - t505) * t504
-                - k(2.0) * (k(0.5) - (t499 + link_6_e1 * link_6_e1)) * t498;
-            let t508 = t52 + (t9 * t490 + t13 * t500);
-            let t509 = link_6_e0 * link_6_e2;
-            let t510 = link_6_e1 * link_6_e3;
-            let t511 = k(2.0) * (k(0.5) - (t499 + link_6_e2 * link_6_e2)) * t504
-                - k(2.0) * (t506 + t505) * t498;
-            let t512 = link_6_e0 * link_6_e1;
-            let t513 = link_6_e2 * link_6_e3;
-            let t514 = k(2.0) * (t513 + t512) * t504 + k(2.0) * (t510 - t509) * t498;
+            let t486 = T::fused(
+                -t9,
+                t485 + (t485 - (t55 + (t483 + (t437 + t483)))),
+                t13 * (t56 + T::fused(-t31, t459, t27 * t438)),
+            );
+            let t487 = T::fused(
+                -k(149.2537313432836),
+                T::fused(k(0.05), t47 + t486, k(0.0014) * t48),
+                t484,
+            ) - t465;
+            let t488 = T::fused(k(0.1), t487, t47 + T::fused(-t9, t482, t13 * t471));
+            let t489 = link_6_e0 * link_6_e3;
+            let t490 = link_6_e1 * link_6_e2;
+            let t491 = T::fused(
+                k(2.0) * (k(0.5) - T::fused(link_6_e1, link_6_e1, t481)),
+                t480,
+                k(2.0) * (t490 - t489) * t488,
+            );
+            let t492 = t50 + T::fused(t13, t482, t9 * t471);
+            let t493 = link_6_e0 * link_6_e2;
+            let t494 = link_6_e1 * link_6_e3;
+            let t495 = T::fused(
+                k(2.0) * (t490 + t489),
+                t480,
+                k(2.0) * (k(0.5) - T::fused(link_6_e2, link_6_e2, t481)) * t488,
+            );
+            let t496 = link_6_e0 * link_6_e1;
+            let t497 = link_6_e2 * link_6_e3;
+            let t498 = T::fused(
+                -(k(2.0) * (t494 - t493)),
+                t480,
+                k(2.0) * (t497 + t496) * t488,
+            );
             (
-                t400,
-                t401,
-                t402,
-                t403,
-                t406,
+                t410,
                 t413,
-                t415,
+                t414,
+                t419,
                 t420,
                 t421,
                 t422,
@@ -9137,36 +10538,33 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
                 t425,
                 t426,
                 t427,
-                t433,
-                t434,
-                t436,
-                t439,
-                t444,
-                t445,
-                t446,
-                t447,
+                t428,
+                t431,
+                t443,
                 t448,
                 t449,
                 t450,
                 t451,
                 t452,
+                t453,
+                t454,
                 t455,
+                t456,
                 t461,
-                t463,
-                t468,
-                t469,
+                t464,
+                t465,
                 t470,
                 t471,
                 t472,
                 t473,
                 t474,
                 t475,
+                t476,
+                t477,
                 t478,
-                t480,
-                t483,
-                t484,
-                t489,
-                t490,
+                t479,
+                t481,
+                t487,
                 t491,
                 t492,
                 t493,
@@ -9174,55 +10572,70 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
                 t495,
                 t496,
                 t497,
-                t499,
-                t503,
-                t507,
-                t508,
-                t509,
-                t510,
-                t511,
-                t512,
-                t513,
-                t514,
+                t498,
             )
         };
         *out = [
-            k(2.0) * (t398 + t397) * t317 - t396,
-            k(2.0) * (t401 - t400) * t317 + t399,
-            -(k(2.0) * (k(0.5) - (t391 + link_1_e3 * link_1_e3)) * t317 + t402),
-            -t379,
-            t388,
-            t383,
-            k(2.0) * (t423 + t422) * t421 - t420,
-            k(2.0) * (t426 - t425) * t421 + t424,
-            -(k(2.0) * (k(0.5) - (t406 + link_2_e3 * link_2_e3)) * t421 + t427),
-            -t415,
-            -t403,
-            t413,
-            k(2.0) * (t447 + t446) * t445 + t444,
-            k(2.0) * (t450 - t449) * t445 - t448,
-            t451 - k(2.0) * (k(0.5) - (t439 + link_3_e3 * link_3_e3)) * t445,
-            t433,
-            -t436,
-            -t434,
-            k(2.0) * (t471 + t470) * t469 + t468,
-            k(2.0) * (t474 - t473) * t469 - t472,
-            t475 - k(2.0) * (k(0.5) - (t455 + link_4_e3 * link_4_e3)) * t469,
-            t463,
-            -t452,
+            T::fused(k(2.0) * (t367 + t366), t293, -t365),
+            T::fused(k(2.0) * (t370 - t369), t293, t368),
+            -T::fused(
+                k(2.0) * (k(0.5) - T::fused(link_1_e3, link_1_e3, t360)),
+                t293,
+                t371,
+            ),
+            -t349,
+            t357,
+            t353,
+            T::fused(k(2.0) * (t393 + t392), t391, -t390),
+            T::fused(k(2.0) * (t396 - t395), t391, t394),
+            -T::fused(
+                k(2.0) * (k(0.5) - T::fused(link_2_e3, link_2_e3, t375)),
+                t391,
+                t397,
+            ),
+            -t385,
+            -t372,
+            t382,
+            T::fused(k(2.0) * (t422 + t421), t420, t419),
+            T::fused(k(2.0) * (t425 - t424), t420, -t423),
+            T::fused(
+                -(k(2.0) * (k(0.5) - T::fused(link_3_e3, link_3_e3, t413))),
+                t420,
+                t426,
+            ),
+            t414,
+            -t410,
+            -t427,
+            T::fused(k(2.0) * (t451 + t450), t449, -t448),
+            T::fused(k(2.0) * (t454 - t453), t449, t452),
+            -T::fused(
+                k(2.0) * (k(0.5) - T::fused(link_4_e3, link_4_e3, t431)),
+                t449,
+                t455,
+            ),
+            -t443,
+            -t428,
+            t456,
+            T::fused(k(2.0) * (t473 + t472), t471, t470),
+            T::fused(k(2.0) * (t476 - t475), t471, -t474),
+            T::fused(
+                -(k(2.0) * (k(0.5) - T::fused(link_5_e3, link_5_e3, t464))),
+                t471,
+                t477,
+            ),
+            t465,
             t461,
-            k(2.0) * (t492 + t491) * t490 + t489,
-            k(2.0) * (t495 - t494) * t490 - t493,
-            t496 - k(2.0) * (k(0.5) - (t483 + link_5_e3 * link_5_e3)) * t490,
-            t484,
-            -t480,
             -t478,
-            k(2.0) * (t510 + t509) * t508 + t507,
-            k(2.0) * (t513 - t512) * t508 - t511,
-            t514 - k(2.0) * (k(0.5) - (t499 + link_6_e3 * link_6_e3)) * t508,
-            t503,
-            -t497,
-            t10 - (t9 * t478 + t13 * t480),
+            T::fused(k(2.0) * (t494 + t493), t492, -t491),
+            T::fused(k(2.0) * (t497 - t496), t492, t495),
+            -T::fused(
+                k(2.0) * (k(0.5) - T::fused(link_6_e3, link_6_e3, t481)),
+                t492,
+                t498,
+            ),
+            -t487,
+            -t479,
+            t10 - T::fused(-t13, t461, t9 * t478),
         ];
     }
     /// Writes λ: 499 operations (204 ±, 295 ×, 0 ÷).
@@ -9321,162 +10734,252 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
         let t7 = link_3_dsy + t6;
         let t8 = link_2_dsy + t7;
         let t9 = k(0.5) * (link_1_dsy + t8);
-        let t10 = k(4.905) + k(0.5) * link_6_dsz;
-        let t11 = k(4.905) + k(0.5) * link_5_dsz + t10;
-        let t12 = k(4.905) + k(0.5) * link_4_dsz + t11;
-        let t13 = k(4.905) + k(0.5) * link_3_dsz + t12;
-        let t14 = k(4.905) + k(0.5) * link_2_dsz + t13;
-        let t15 = k(4.905) + k(0.5) * link_1_dsz + t14;
-        let t16 = k(0.2) * (link_1_e1 * link_1_e2 - link_1_e0 * link_1_e3);
-        let t17 = k(0.2) * (k(0.5) - (link_1_e0 * link_1_e0 + link_1_e2 * link_1_e2));
-        let t18 = k(0.2) * (link_1_e2 * link_1_e3 + link_1_e0 * link_1_e1);
+        let t10 = T::fused(k(0.5), link_6_dsz, k(4.905));
+        let t11 = T::fused(k(0.5), link_5_dsz, k(4.905)) + t10;
+        let t12 = T::fused(k(0.5), link_4_dsz, k(4.905)) + t11;
+        let t13 = T::fused(k(0.5), link_3_dsz, k(4.905)) + t12;
+        let t14 = T::fused(k(0.5), link_2_dsz, k(4.905)) + t13;
+        let t15 = T::fused(k(0.5), link_1_dsz, k(4.905)) + t14;
+        let t16 = k(0.2) * T::fused(-link_1_e0, link_1_e3, link_1_e1 * link_1_e2);
+        let t17 = k(0.2)
+            * (k(0.5) - T::fused(link_1_e2, link_1_e2, link_1_e0 * link_1_e0));
+        let t18 = k(0.2) * T::fused(link_1_e0, link_1_e1, link_1_e2 * link_1_e3);
         let t19 = k(0.5) * t3;
         let t20 = k(0.5) * t8;
         let t21 = link_2_e0 * link_2_e3;
         let t22 = link_2_e1 * link_2_e2;
         let t23 = k(0.2) * (t22 - t21);
         let t24 = link_2_e0 * link_2_e0;
-        let t25 = k(0.2) * (k(0.5) - (t24 + link_2_e2 * link_2_e2));
-        let t26 = k(0.2) * (link_2_e2 * link_2_e3 + link_2_e0 * link_2_e1);
+        let t25 = k(0.2) * (k(0.5) - T::fused(link_2_e2, link_2_e2, t24));
+        let t26 = k(0.2) * T::fused(link_2_e0, link_2_e1, link_2_e2 * link_2_e3);
         let t27 = k(0.5) * t2;
         let t28 = k(0.5) * t7;
         let t29 = link_3_e0 * link_3_e3;
         let t30 = link_3_e1 * link_3_e2;
         let t31 = k(0.2) * (t30 - t29);
         let t32 = link_3_e0 * link_3_e0;
-        let t33 = k(0.2) * (k(0.5) - (t32 + link_3_e2 * link_3_e2));
-        let t34 = k(0.2) * (link_3_e2 * link_3_e3 + link_3_e0 * link_3_e1);
+        let t33 = k(0.2) * (k(0.5) - T::fused(link_3_e2, link_3_e2, t32));
+        let t34 = k(0.2) * T::fused(link_3_e0, link_3_e1, link_3_e2 * link_3_e3);
         let t35 = k(0.5) * t1;
         let t36 = k(0.5) * t6;
         let t37 = link_4_e0 * link_4_e3;
         let t38 = link_4_e1 * link_4_e2;
         let t39 = k(0.2) * (t38 - t37);
         let t40 = link_4_e0 * link_4_e0;
-        let t41 = k(0.2) * (k(0.5) - (t40 + link_4_e2 * link_4_e2));
-        let t42 = k(0.2) * (link_4_e2 * link_4_e3 + link_4_e0 * link_4_e1);
+        let t41 = k(0.2) * (k(0.5) - T::fused(link_4_e2, link_4_e2, t40));
+        let t42 = k(0.2) * T::fused(link_4_e0, link_4_e1, link_4_e2 * link_4_e3);
         let t43 = k(0.5) * t0;
         let t44 = k(0.5) * t5;
         let t45 = link_5_e0 * link_5_e3;
         let t46 = link_5_e1 * link_5_e2;
         let t47 = k(0.2) * (t46 - t45);
         let t48 = link_5_e0 * link_5_e0;
-        let t49 = k(0.2) * (k(0.5) - (t48 + link_5_e2 * link_5_e2));
-        let t50 = k(0.2) * (link_5_e2 * link_5_e3 + link_5_e0 * link_5_e1);
+        let t49 = k(0.2) * (k(0.5) - T::fused(link_5_e2, link_5_e2, t48));
+        let t50 = k(0.2) * T::fused(link_5_e0, link_5_e1, link_5_e2 * link_5_e3);
         let t51 = link_6_e0 * link_6_e3;
         let t52 = link_6_e1 * link_6_e2;
         let t53 = k(0.5) * link_6_dsx;
         let t54 = link_6_e0 * link_6_e0;
         let t55 = k(0.5) * link_6_dsy;
-        let t56 = t55 * (k(0.2) * (k(0.5) - (t54 + link_6_e2 * link_6_e2)))
-            - t53 * (k(0.2) * (t52 - t51));
-        let t57 = k(0.0014) * (link_6_wy * link_6_wz) - k(0.0017) * link_6_dwx
-            - (t10 * (k(0.2) * (link_6_e2 * link_6_e3 + link_6_e0 * link_6_e1)) - t56);
-        let t58 = k(0.0014) * (link_5_wy * link_5_wz) - k(0.0017) * link_5_dwx
-            - (t10 * t50 - (t55 * t49 - t53 * t47) - t57);
-        let t59 = t58 - (t11 * t50 - (t44 * t49 - t43 * t47));
-        let t60 = link_4_e2 * link_5_e0 + link_4_e3 * link_5_e1 - link_4_e0 * link_5_e2
-            - link_4_e1 * link_5_e3;
+        let t56 = T::fused(
+            -t53,
+            k(0.2) * (t52 - t51),
+            t55 * (k(0.2) * (k(0.5) - T::fused(link_6_e2, link_6_e2, t54))),
+        );
+        let t57 = T::fused(-k(0.0017), link_6_dwx, k(0.0014) * (link_6_wy * link_6_wz))
+            - T::fused(
+                t10,
+                k(0.2) * T::fused(link_6_e0, link_6_e1, link_6_e2 * link_6_e3),
+                -t56,
+            );
+        let t58 = T::fused(-k(0.0017), link_5_dwx, k(0.0014) * (link_5_wy * link_5_wz))
+            - (T::fused(t10, t50, -T::fused(-t53, t47, t55 * t49)) - t57);
+        let t59 = t58 - T::fused(t11, t50, -T::fused(-t43, t47, t44 * t49));
+        let t60 = T::fused(
+            -link_4_e1,
+            link_5_e3,
+            T::fused(
+                -link_4_e0,
+                link_5_e2,
+                T::fused(link_4_e3, link_5_e1, link_4_e2 * link_5_e0),
+            ),
+        );
         let t61 = k(2.0) * t60;
-        let t62 = k(1.0) - t60 * t61;
-        let t63 = t55 * (k(0.2) * (t52 + t51))
-            - t53 * (k(0.2) * (k(0.5) - (t54 + link_6_e1 * link_6_e1)));
-        let t64 = k(0.0015) * (link_6_wx * link_6_wz) + k(0.0016) * link_6_dwy
-            - (t10 * (k(0.2) * (link_6_e1 * link_6_e3 - link_6_e0 * link_6_e2)) + t63);
-        let t65 = link_5_e1 * link_6_e0 - link_5_e0 * link_6_e1 - link_5_e3 * link_6_e2
-            + link_5_e2 * link_6_e3;
+        let t62 = T::fused(-t60, t61, k(1.0));
+        let t63 = T::fused(
+            -t53,
+            k(0.2) * (k(0.5) - T::fused(link_6_e1, link_6_e1, t54)),
+            t55 * (k(0.2) * (t52 + t51)),
+        );
+        let t64 = T::fused(k(0.0016), link_6_dwy, k(0.0015) * (link_6_wx * link_6_wz))
+            - T::fused(
+                t10,
+                k(0.2) * T::fused(-link_6_e0, link_6_e2, link_6_e1 * link_6_e3),
+                t63,
+            );
+        let t65 = T::fused(
+            link_5_e2,
+            link_6_e3,
+            T::fused(
+                -link_5_e3,
+                link_6_e2,
+                T::fused(-link_5_e0, link_6_e1, link_5_e1 * link_6_e0),
+            ),
+        );
         let t66 = k(2.0) * t65;
-        let t67 = link_5_e0 * link_6_e0 + link_5_e1 * link_6_e1 + link_5_e2 * link_6_e2
-            + link_5_e3 * link_6_e3;
+        let t67 = T::fused(
+            link_5_e3,
+            link_6_e3,
+            T::fused(
+                link_5_e2,
+                link_6_e2,
+                T::fused(link_5_e1, link_6_e1, link_5_e0 * link_6_e0),
+            ),
+        );
         let t68 = t67 * t66;
-        let t69 = k(1.0) - t65 * t66;
-        let t70 = k(0.0001) * (link_6_wx * link_6_wy) - k(0.0002) * link_6_dwz;
-        let t71 = t70 * t69 + t68 * t64;
-        let t72 = k(0.0001) * (link_5_wx * link_5_wy) - k(0.0002) * link_5_dwz + t71;
-        let t73 = link_4_e0 * link_5_e0 + link_4_e1 * link_5_e1 + link_4_e2 * link_5_e2
-            + link_4_e3 * link_5_e3;
+        let t69 = T::fused(-t65, t66, k(1.0));
+        let t70 = T::fused(-k(0.0002), link_6_dwz, k(0.0001) * (link_6_wx * link_6_wy));
+        let t71 = T::fused(t68, t64, t70 * t69);
+        let t72 = T::fused(-k(0.0002), link_5_dwz, k(0.0001) * (link_5_wx * link_5_wy))
+            + t71;
+        let t73 = T::fused(
+            link_4_e3,
+            link_5_e3,
+            T::fused(
+                link_4_e2,
+                link_5_e2,
+                T::fused(link_4_e1, link_5_e1, link_4_e0 * link_5_e0),
+            ),
+        );
         let t74 = t73 * t61;
-        let t75 = t74 * t72 - t62 * t59;
-        let t76 = k(0.0014) * (link_4_wy * link_4_wz) - k(0.0017) * link_4_dwx
-            - (t75 + (t11 * t42 - (t44 * t41 - t43 * t39)));
-        let t77 = t76 - (t12 * t42 - (t36 * t41 - t35 * t39))
-            - (t12 * t34 - (t36 * t33 - t35 * t31));
-        let t78 = k(0.0014) * (link_3_wy * link_3_wz) - k(0.0017) * link_3_dwx + t77
-            - (t13 * t34 - (t28 * t33 - t27 * t31));
-        let t79 = link_2_e2 * link_3_e0 + link_2_e3 * link_3_e1 - link_2_e0 * link_3_e2
-            - link_2_e1 * link_3_e3;
+        let t75 = T::fused(-t62, t59, t74 * t72);
+        let t76 = T::fused(-k(0.0017), link_4_dwx, k(0.0014) * (link_4_wy * link_4_wz))
+            - (t75 + T::fused(t11, t42, -T::fused(-t43, t39, t44 * t41)));
+        let t77 = t76 - T::fused(t12, t42, -T::fused(-t35, t39, t36 * t41))
+            - T::fused(t12, t34, -T::fused(-t35, t31, t36 * t33));
+        let t78 = T::fused(-k(0.0017), link_3_dwx, k(0.0014) * (link_3_wy * link_3_wz))
+            + t77 - T::fused(t13, t34, -T::fused(-t27, t31, t28 * t33));
+        let t79 = T::fused(
+            -link_2_e1,
+            link_3_e3,
+            T::fused(
+                -link_2_e0,
+                link_3_e2,
+                T::fused(link_2_e3, link_3_e1, link_2_e2 * link_3_e0),
+            ),
+        );
         let t80 = k(2.0) * t79;
-        let t81 = k(1.0) - t79 * t80;
-        let t82 = k(0.2) * (k(0.5) - (t40 + link_4_e1 * link_4_e1));
+        let t81 = T::fused(-t79, t80, k(1.0));
+        let t82 = k(0.2) * (k(0.5) - T::fused(link_4_e1, link_4_e1, t40));
         let t83 = k(0.2) * (t38 + t37);
-        let t84 = k(0.2) * (link_4_e1 * link_4_e3 - link_4_e0 * link_4_e2);
-        let t85 = k(0.2) * (k(0.5) - (t48 + link_5_e1 * link_5_e1));
+        let t84 = k(0.2) * T::fused(-link_4_e0, link_4_e2, link_4_e1 * link_4_e3);
+        let t85 = k(0.2) * (k(0.5) - T::fused(link_5_e1, link_5_e1, t48));
         let t86 = k(0.2) * (t46 + t45);
-        let t87 = k(0.2) * (link_5_e1 * link_5_e3 - link_5_e0 * link_5_e2);
-        let t88 = t70 * t68 - t69 * t64;
-        let t89 = k(0.0015) * (link_5_wx * link_5_wz) + k(0.0016) * link_5_dwy
-            - (t88 + (t10 * t87 + (t55 * t86 - t53 * t85)));
-        let t90 = t89 - (t11 * t87 + (t44 * t86 - t43 * t85))
-            - (t11 * t84 + (t44 * t83 - t43 * t82));
-        let t91 = k(0.0015) * (link_4_wx * link_4_wz) + k(0.0016) * link_4_dwy + t90
-            - (t12 * t84 + (t36 * t83 - t35 * t82));
-        let t92 = link_3_e1 * link_4_e0 - link_3_e0 * link_4_e1 - link_3_e3 * link_4_e2
-            + link_3_e2 * link_4_e3;
+        let t87 = k(0.2) * T::fused(-link_5_e0, link_5_e2, link_5_e1 * link_5_e3);
+        let t88 = T::fused(-t69, t64, t70 * t68);
+        let t89 = T::fused(k(0.0016), link_5_dwy, k(0.0015) * (link_5_wx * link_5_wz))
+            - (t88 + T::fused(t10, t87, T::fused(-t53, t85, t55 * t86)));
+        let t90 = t89 - T::fused(t11, t87, T::fused(-t43, t85, t44 * t86))
+            - T::fused(t11, t84, T::fused(-t43, t82, t44 * t83));
+        let t91 = T::fused(k(0.0016), link_4_dwy, k(0.0015) * (link_4_wx * link_4_wz))
+            + t90 - T::fused(t12, t84, T::fused(-t35, t82, t36 * t83));
+        let t92 = T::fused(
+            link_3_e2,
+            link_4_e3,
+            T::fused(
+                -link_3_e3,
+                link_4_e2,
+                T::fused(-link_3_e0, link_4_e1, link_3_e1 * link_4_e0),
+            ),
+        );
         let t93 = k(2.0) * t92;
-        let t94 = link_3_e0 * link_4_e0 + link_3_e1 * link_4_e1 + link_3_e2 * link_4_e2
-            + link_3_e3 * link_4_e3;
+        let t94 = T::fused(
+            link_3_e3,
+            link_4_e3,
+            T::fused(
+                link_3_e2,
+                link_4_e2,
+                T::fused(link_3_e1, link_4_e1, link_3_e0 * link_4_e0),
+            ),
+        );
         let t95 = t94 * t93;
-        let t96 = t62 * t72 + t74 * t59;
-        let t97 = k(0.0001) * (link_4_wx * link_4_wy) - k(0.0002) * link_4_dwz + t96;
-        let t98 = k(1.0) - t92 * t93;
-        let t99 = t98 * t97 + t95 * t91;
-        let t100 = k(0.0001) * (link_3_wx * link_3_wy) - k(0.0002) * link_3_dwz + t99;
-        let t101 = link_2_e0 * link_3_e0 + link_2_e1 * link_3_e1 + link_2_e2 * link_3_e2
-            + link_2_e3 * link_3_e3;
+        let t96 = T::fused(t74, t59, t62 * t72);
+        let t97 = T::fused(-k(0.0002), link_4_dwz, k(0.0001) * (link_4_wx * link_4_wy))
+            + t96;
+        let t98 = T::fused(-t92, t93, k(1.0));
+        let t99 = T::fused(t95, t91, t98 * t97);
+        let t100 = T::fused(-k(0.0002), link_3_dwz, k(0.0001) * (link_3_wx * link_3_wy))
+            + t99;
+        let t101 = T::fused(
+            link_2_e3,
+            link_3_e3,
+            T::fused(
+                link_2_e2,
+                link_3_e2,
+                T::fused(link_2_e1, link_3_e1, link_2_e0 * link_3_e0),
+            ),
+        );
         let t102 = t101 * t80;
-        let t103 = t102 * t100 - t81 * t78;
-        let t104 = k(0.0014) * (link_2_wy * link_2_wz) - k(0.0017) * link_2_dwx
-            - (t103 + (t13 * t26 - (t28 * t25 - t27 * t23)));
-        let t105 = t104 - (t14 * t26 - (t20 * t25 - t19 * t23))
-            - (t14 * t18 - (t20 * t17 - t19 * t16));
-        let t106 = k(0.0014) * (link_1_wy * link_1_wz) - k(0.0017) * link_1_dwx + t105
-            - (t15 * t18 - (t9 * t17 - t4 * t16));
+        let t103 = T::fused(-t81, t78, t102 * t100);
+        let t104 = T::fused(-k(0.0017), link_2_dwx, k(0.0014) * (link_2_wy * link_2_wz))
+            - (t103 + T::fused(t13, t26, -T::fused(-t27, t23, t28 * t25)));
+        let t105 = t104 - T::fused(t14, t26, -T::fused(-t19, t23, t20 * t25))
+            - T::fused(t14, t18, -T::fused(-t19, t16, t20 * t17));
+        let t106 = T::fused(-k(0.0017), link_1_dwx, k(0.0014) * (link_1_wy * link_1_wz))
+            + t105 - T::fused(t15, t18, -T::fused(-t4, t16, t9 * t17));
         let t107 = k(2.0) * link_1_e2;
-        let t108 = k(1.0) - link_1_e2 * t107;
-        let t109 = k(0.2) * (k(0.5) - (t24 + link_2_e1 * link_2_e1));
+        let t108 = T::fused(-link_1_e2, t107, k(1.0));
+        let t109 = k(0.2) * (k(0.5) - T::fused(link_2_e1, link_2_e1, t24));
         let t110 = k(0.2) * (t22 + t21);
-        let t111 = k(0.2) * (link_2_e1 * link_2_e3 - link_2_e0 * link_2_e2);
-        let t112 = k(0.2) * (k(0.5) - (t32 + link_3_e1 * link_3_e1));
+        let t111 = k(0.2) * T::fused(-link_2_e0, link_2_e2, link_2_e1 * link_2_e3);
+        let t112 = k(0.2) * (k(0.5) - T::fused(link_3_e1, link_3_e1, t32));
         let t113 = k(0.2) * (t30 + t29);
-        let t114 = k(0.2) * (link_3_e1 * link_3_e3 - link_3_e0 * link_3_e2);
-        let t115 = t95 * t97 - t98 * t91;
-        let t116 = k(0.0015) * (link_3_wx * link_3_wz) + k(0.0016) * link_3_dwy
-            - (t115 + (t12 * t114 + (t36 * t113 - t35 * t112)));
-        let t117 = t116 - (t13 * t114 + (t28 * t113 - t27 * t112))
-            - (t13 * t111 + (t28 * t110 - t27 * t109));
-        let t118 = k(0.0015) * (link_2_wx * link_2_wz) + k(0.0016) * link_2_dwy + t117
-            - (t14 * t111 + (t20 * t110 - t19 * t109));
-        let t119 = link_1_e1 * link_2_e0 - link_1_e0 * link_2_e1 - link_1_e3 * link_2_e2
-            + link_1_e2 * link_2_e3;
+        let t114 = k(0.2) * T::fused(-link_3_e0, link_3_e2, link_3_e1 * link_3_e3);
+        let t115 = T::fused(-t98, t91, t95 * t97);
+        let t116 = T::fused(k(0.0016), link_3_dwy, k(0.0015) * (link_3_wx * link_3_wz))
+            - (t115 + T::fused(t12, t114, T::fused(-t35, t112, t36 * t113)));
+        let t117 = t116 - T::fused(t13, t114, T::fused(-t27, t112, t28 * t113))
+            - T::fused(t13, t111, T::fused(-t27, t109, t28 * t110));
+        let t118 = T::fused(k(0.0016), link_2_dwy, k(0.0015) * (link_2_wx * link_2_wz))
+            + t117 - T::fused(t14, t111, T::fused(-t19, t109, t20 * t110));
+        let t119 = T::fused(
+            link_1_e2,
+            link_2_e3,
+            T::fused(
+                -link_1_e3,
+                link_2_e2,
+                T::fused(-link_1_e0, link_2_e1, link_1_e1 * link_2_e0),
+            ),
+        );
         let t120 = k(2.0) * t119;
-        let t121 = link_1_e0 * link_2_e0 + link_1_e1 * link_2_e1 + link_1_e2 * link_2_e2
-            + link_1_e3 * link_2_e3;
+        let t121 = T::fused(
+            link_1_e3,
+            link_2_e3,
+            T::fused(
+                link_1_e2,
+                link_2_e2,
+                T::fused(link_1_e1, link_2_e1, link_1_e0 * link_2_e0),
+            ),
+        );
         let t122 = t121 * t120;
-        let t123 = t81 * t100 + t102 * t78;
-        let t124 = k(0.0001) * (link_2_wx * link_2_wy) - k(0.0002) * link_2_dwz + t123;
-        let t125 = k(1.0) - t119 * t120;
-        let t126 = t125 * t124 + t122 * t118;
-        let t127 = k(0.0001) * (link_1_wx * link_1_wy) - k(0.0002) * link_1_dwz + t126;
+        let t123 = T::fused(t102, t78, t81 * t100);
+        let t124 = T::fused(-k(0.0002), link_2_dwz, k(0.0001) * (link_2_wx * link_2_wy))
+            + t123;
+        let t125 = T::fused(-t119, t120, k(1.0));
+        let t126 = T::fused(t122, t118, t125 * t124);
+        let t127 = T::fused(-k(0.0002), link_1_dwz, k(0.0001) * (link_1_wx * link_1_wy))
+            + t126;
         let t128 = link_1_e0 * t107;
         *lambda = [
             -t4,
             -t9,
             -t15,
-            t128 * t127 + t108 * t106,
-            t128 * t106 - t108 * t127,
+            T::fused(t108, t106, t128 * t127),
+            T::fused(-t108, t127, t128 * t106),
             -t19,
             -t20,
             -t14,
-            t125 * t118 - t122 * t124,
+            T::fused(-t122, t124, t125 * t118),
             -t126,
             -t27,
             -t28,
@@ -9498,6 +11001,1472 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
             -t10,
             -t88,
             -t71,
+        ];
+    }
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 1899 operations (853 ±, 1041 ×, 5 ÷).
+    fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
+        let k = T::constant;
+        let link_1_e0 = y[3];
+        let link_1_e1 = y[4];
+        let link_1_e2 = y[5];
+        let link_1_e3 = y[6];
+        let link_2_e0 = y[10];
+        let link_2_e1 = y[11];
+        let link_2_e2 = y[12];
+        let link_2_e3 = y[13];
+        let link_3_e0 = y[17];
+        let link_3_e1 = y[18];
+        let link_3_e2 = y[19];
+        let link_3_e3 = y[20];
+        let link_4_e0 = y[24];
+        let link_4_e1 = y[25];
+        let link_4_e2 = y[26];
+        let link_4_e3 = y[27];
+        let link_5_e0 = y[31];
+        let link_5_e1 = y[32];
+        let link_5_e2 = y[33];
+        let link_5_e3 = y[34];
+        let link_6_e0 = y[38];
+        let link_6_e1 = y[39];
+        let link_6_e2 = y[40];
+        let link_6_e3 = y[41];
+        let link_1_wx = y[45];
+        let link_1_wy = y[46];
+        let link_1_wz = y[47];
+        let link_2_wx = y[51];
+        let link_2_wy = y[52];
+        let link_2_wz = y[53];
+        let link_3_wx = y[57];
+        let link_3_wy = y[58];
+        let link_3_wz = y[59];
+        let link_4_wx = y[63];
+        let link_4_wy = y[64];
+        let link_4_wz = y[65];
+        let link_5_wx = y[69];
+        let link_5_wy = y[70];
+        let link_5_wz = y[71];
+        let link_6_wx = y[75];
+        let link_6_wy = y[76];
+        let link_6_wz = y[77];
+        let (
+            t1,
+            t5,
+            t6,
+            t10,
+            t11,
+            t12,
+            t15,
+            t18,
+            t19,
+            t24,
+            t26,
+            t29,
+            t33,
+            t36,
+            t38,
+            t40,
+            t42,
+            t44,
+            t49,
+            t50,
+            t52,
+            t57,
+            t58,
+            t59,
+            t60,
+            t62,
+            t65,
+            t68,
+            t69,
+            t77,
+            t80,
+            t82,
+            t83,
+            t89,
+            t90,
+            t98,
+            t104,
+            t106,
+            t109,
+            t112,
+            t116,
+            t118,
+            t119,
+            t120,
+            t121,
+            t122,
+            t126,
+            t128,
+            t129,
+            t130,
+            t132,
+            t135,
+            t136,
+            t140,
+            t143,
+            t144,
+            t145,
+            t146,
+            t147,
+            t148,
+            t150,
+            t152,
+            t153,
+            t155,
+            t157,
+            t158,
+            t159,
+            t160,
+            t161,
+            t162,
+            t168,
+            t169,
+            t170,
+            t173,
+            t175,
+            t177,
+            t179,
+            t180,
+            t181,
+            t182,
+            t183,
+            t184,
+            t185,
+            t186,
+            t188,
+            t189,
+            t190,
+            t191,
+            t192,
+            t193,
+            t194,
+            t195,
+            t198,
+            t199,
+        ) = {
+            let t0 = link_5_wx - link_6_wx;
+            let t1 = link_6_wz * t0;
+            let t2 = k(0.1) * link_6_wx;
+            let t3 = k(0.1) * link_5_wx;
+            let t4 = link_5_wz * t3;
+            let t5 = T::fused(link_6_wz, t2, t4);
+            let t6 = k(0.0015) * (link_6_wx * link_6_wz);
+            let t7 = t6 + T::fused(-k(0.0066), t1, k(0.05) * t5);
+            let t8 = T::fused(
+                link_5_e2,
+                link_6_e3,
+                T::fused(
+                    -link_5_e3,
+                    link_6_e2,
+                    T::fused(-link_5_e0, link_6_e1, link_5_e1 * link_6_e0),
+                ),
+            );
+            let t9 = k(2.0) * t8;
+            let t10 = T::fused(-t8, t9, k(1.0));
+            let t11 = link_6_wy * t0;
+            let t12 = k(0.0001) * (link_6_wx * link_6_wy);
+            let t13 = T::fused(-k(0.0002), t11, t12);
+            let t14 = T::fused(
+                link_5_e3,
+                link_6_e3,
+                T::fused(
+                    link_5_e2,
+                    link_6_e2,
+                    T::fused(link_5_e1, link_6_e1, link_5_e0 * link_6_e0),
+                ),
+            );
+            let t15 = t14 * t9;
+            let t16 = T::fused(-k(0.05), t1, k(0.5) * t5);
+            let t17 = k(0.1) * t16;
+            let t18 = k(0.0015) * (link_5_wx * link_5_wz);
+            let t19 = t17 + (t18 + (t17 - T::fused(-t10, t7, t15 * t13)));
+            let t20 = T::fused(k(0.05), t10, k(0.05));
+            let t21 = k(0.0066) * t10;
+            let t22 = k(0.0002) * t15;
+            let t23 = k(0.0016)
+                + T::fused(k(0.01), t10, k(0.005) + T::fused(t10, t21, t15 * t22));
+            let t24 = k(1.0) / T::fused(k(0.2), t20, k(0.01) + t23);
+            let t25 = t24 * t19;
+            let t26 = k(0.1) + t20;
+            let t27 = T::fused(
+                -link_4_e1,
+                link_5_e3,
+                T::fused(
+                    -link_4_e0,
+                    link_5_e2,
+                    T::fused(link_4_e3, link_5_e1, link_4_e2 * link_5_e0),
+                ),
+            );
+            let t28 = k(2.0) * t27;
+            let t29 = T::fused(-t27, t28, k(1.0));
+            let t30 = k(0.1) * link_4_wx;
+            let t31 = link_4_wz * t30;
+            let t32 = T::fused(
+                link_4_e3,
+                link_5_e3,
+                T::fused(
+                    link_4_e2,
+                    link_5_e2,
+                    T::fused(link_4_e1, link_5_e1, link_4_e0 * link_5_e0),
+                ),
+            );
+            let t33 = t32 * t28;
+            let t34 = k(0.1) * link_4_wy;
+            let t35 = T::fused(link_4_wy, t34, link_4_wx * t30);
+            let t36 = t4 - T::fused(-t31, t29, t35 * t33);
+            let t37 = t24 * t26;
+            let t38 = t26 * t37;
+            let t39 = link_4_wy - link_5_wy;
+            let t40 = link_5_wx * t39;
+            let t41 = k(0.005) * t15;
+            let t42 = t41 + (t41 - T::fused(-t15, t21, t10 * t22));
+            let t43 = T::fused(-k(0.05), t15, t42 * t37);
+            let t44 = T::fused(t43, t40, -T::fused(-t38, t36, t36))
+                - T::fused(-t26, t25, t16);
+            let t45 = k(0.1) * link_5_wy;
+            let t46 = link_5_wz * t45;
+            let t47 = T::fused(link_5_wy, t45, link_5_wx * t3);
+            let t48 = k(0.1) * link_6_wy;
+            let t49 = T::fused(link_6_wz, t48, T::fused(t46, t10, t47 * t15));
+            let t50 = link_6_wy * link_6_wz;
+            let t51 = T::fused(
+                -k(0.12686567164179105),
+                t49,
+                k(0.010447761194029851) * t50,
+            );
+            let t52 = T::fused(link_6_wy, t48, link_6_wx * t2)
+                + T::fused(-t46, t15, t47 * t10);
+            let t53 = k(0.5) * t52;
+            let t54 = k(0.373134328358209) * t10;
+            let t55 = t15 * t54;
+            let t56 = link_4_wz * t34;
+            let t57 = t56 + t46;
+            let t58 = t47 + T::fused(t31, t33, t35 * t29);
+            let t59 = t15 * (k(0.373134328358209) * t15);
+            let t60 = link_5_wz * t39;
+            let t61 = k(0.2) * t55;
+            let t62 = T::fused(t61, t60, t58 - T::fused(t57, t55, t59 * t58))
+                + T::fused(-t15, t51, t10 * t53);
+            let t63 = T::fused(-t29, t44, t33 * t62);
+            let t64 = k(0.1) * t63;
+            let t65 = k(0.0015) * (link_4_wx * link_4_wz);
+            let t66 = T::fused(t10, t51, t15 * t53);
+            let t67 = k(0.1) * t66;
+            let t68 = k(0.0014) * (link_5_wy * link_5_wz);
+            let t69 = t10 * t54;
+            let t70 = k(0.1) * t69;
+            let t71 = k(0.05) - t70;
+            let t72 = k(0.1) - t70;
+            let t73 = t72 + t71;
+            let t74 = k(0.01) * t69;
+            let t75 = T::fused(-k(0.2), t71, t74)
+                - (k(0.01) + (k(0.0017) + (k(0.005) - t74)));
+            let t76 = T::fused(t75, t60, -T::fused(-t57, t73, t61 * t58))
+                - (t67 - (t68 - t67));
+            let t77 = k(0.0001) * (link_5_wx * link_5_wy);
+            let t78 = T::fused(
+                t42,
+                t24 * t42,
+                -(k(0.0002) + T::fused(t15, k(0.0066) * t15, t10 * (k(0.0002) * t10))),
+            );
+            let t79 = T::fused(t43, t36, t78 * t40)
+                + T::fused(t42, t25, -(t77 + T::fused(t15, t7, t10 * t13)));
+            let t80 = T::fused(t73, t60, -(t57 - T::fused(t57, t69, t55 * t58))) + t66;
+            let t81 = k(0.1) * t80;
+            let t82 = k(0.0014) * (link_4_wy * link_4_wz);
+            let t83 = t81 - (t82 - (t81 - T::fused(t29, t76, t33 * t79)));
+            let t84 = t29 * t75;
+            let t85 = t33 * t78;
+            let t86 = t29 * t73;
+            let t87 = T::fused(-k(0.2), t86, t74)
+                - (k(0.01) - T::fused(t29, t84, t33 * t85));
+            let t88 = t72 + t86;
+            let t89 = k(1.0)
+                / (T::fused(k(0.2), t88, -t74) + (k(0.015) + (k(0.0017) - t87)));
+            let t90 = t89 * t83;
+            let t91 = t33 * t61;
+            let t92 = t29 * t43;
+            let t93 = T::fused(-t29, t91, t33 * t92);
+            let t94 = t33 * t55;
+            let t95 = k(0.01) * t94;
+            let t96 = k(0.1) * t94;
+            let t97 = t96 - t93;
+            let t98 = t95 + T::fused(k(0.1), t97, t95) + T::fused(-k(0.1), t93, t95);
+            let t99 = t29 * t38;
+            let t100 = t33 * t59;
+            let t101 = T::fused(t29, t99, t33 * t100);
+            let t102 = k(0.1) * t101;
+            let t103 = k(0.1) - t102;
+            let t104 = t96 + t97;
+            let t105 = t89 * t104;
+            let t106 = T::fused(t105, t98, -(k(0.15) - t102 + t103));
+            let t107 = k(0.1) * link_3_wx;
+            let t108 = link_3_wz * t107;
+            let t109 = t108 + t31;
+            let t110 = T::fused(
+                link_3_e2,
+                link_4_e3,
+                T::fused(
+                    -link_3_e3,
+                    link_4_e2,
+                    T::fused(-link_3_e0, link_4_e1, link_3_e1 * link_4_e0),
+                ),
+            );
+            let t111 = k(2.0) * t110;
+            let t112 = T::fused(-t110, t111, k(1.0));
+            let t113 = k(0.1) * link_3_wy;
+            let t114 = link_3_wz * t113;
+            let t115 = T::fused(
+                link_3_e3,
+                link_4_e3,
+                T::fused(
+                    link_3_e2,
+                    link_4_e2,
+                    T::fused(link_3_e1, link_4_e1, link_3_e0 * link_4_e0),
+                ),
+            );
+            let t116 = t115 * t111;
+            let t117 = T::fused(link_3_wy, t113, link_3_wx * t107);
+            let t118 = t56 + T::fused(t114, t112, t117 * t116);
+            let t119 = t88 + (k(0.15) - t70);
+            let t120 = t89 * t119;
+            let t121 = T::fused(-k(0.2), t94, t98 * t120);
+            let t122 = t35 + T::fused(-t114, t116, t117 * t112);
+            let t123 = T::fused(-t33, t99, t29 * t100);
+            let t124 = t29 * t61;
+            let t125 = t33 * t43;
+            let t126 = t29 * t55;
+            let t127 = k(0.1) * t126;
+            let t128 = t127 + (t127 + T::fused(t29, t124, t33 * t125));
+            let t129 = t89 * t128;
+            let t130 = T::fused(k(0.2), t123, t98 * t129);
+            let t131 = link_3_wx - link_4_wx;
+            let t132 = link_4_wz * t131;
+            let t133 = k(0.01) * t101;
+            let t134 = t89 * t98;
+            let t135 = T::fused(
+                t98,
+                t134,
+                -(T::fused(k(0.2), t103, -t133)
+                    + (k(0.015) + (k(0.0016) + (k(0.01) - t133)))),
+            );
+            let t136 = link_4_wy * t131;
+            let t137 = T::fused(t33, t91, t29 * t92);
+            let t138 = t33 * t73;
+            let t139 = k(0.1) * t138;
+            let t140 = t139 + (t139 + T::fused(-t33, t84, t29 * t85));
+            let t141 = T::fused(-k(0.2), t137, t140 * t134);
+            let t142 = T::fused(-t135, t132, t141 * t136)
+                + T::fused(t130, t122, -T::fused(-t109, t106, t121 * t118));
+            let t143 = t142 + T::fused(t98, t90, -(t64 + (t65 + t64)));
+            let t144 = k(0.0001) * (link_4_wx * link_4_wy);
+            let t145 = T::fused(t105, t140, -t137);
+            let t146 = T::fused(-t140, t120, t138);
+            let t147 = T::fused(t140, t129, T::fused(-t33, t124, t29 * t125));
+            let t148 = T::fused(
+                t140,
+                t89 * t140,
+                -(k(0.0002) - T::fused(t33, t33 * t75, t29 * (t29 * t78))),
+            );
+            let t149 = T::fused(-t141, t132, t148 * t136)
+                + T::fused(t147, t122, T::fused(t109, t145, t146 * t118));
+            let t150 = t149 + T::fused(t140, t90, t144 - T::fused(-t33, t76, t29 * t79));
+            let t151 = T::fused(t104, t105, t101);
+            let t152 = T::fused(-t105, t119, t94);
+            let t153 = T::fused(t105, t128, t123);
+            let t154 = T::fused(
+                k(1.5),
+                t109,
+                -T::fused(t153, t122, T::fused(t109, t151, t152 * t118)),
+            );
+            let t155 = T::fused(-t106, t132, t145 * t136) - t154
+                + T::fused(t104, t90, -t63);
+            let t156 = k(0.1) * t155;
+            let t157 = k(0.0015) * (link_3_wx * link_3_wz);
+            let t158 = t156 - (t157 - (t156 + T::fused(t112, t143, t116 * t150)));
+            let t159 = t116 * t141;
+            let t160 = T::fused(t112, t135, t159);
+            let t161 = t112 * t141;
+            let t162 = T::fused(t116, t148, t161);
+            let t163 = T::fused(t112, t106, t116 * t145);
+            let t164 = k(0.01) * t151;
+            let t165 = T::fused(k(0.2), t163, t164)
+                - (k(0.015) - T::fused(t112, t160, t116 * t162));
+            let t166 = k(0.1) * t151;
+            let t167 = k(0.15) - t166 - t163;
+            let t168 = k(1.0)
+                / (T::fused(k(0.2), t167, -t164) + (k(0.02) + (k(0.0016) - t165)));
+            let t169 = t168 * t158;
+            let t170 = t167 + (k(0.2) - t166);
+            let t171 = T::fused(
+                -link_2_e1,
+                link_3_e3,
+                T::fused(
+                    -link_2_e0,
+                    link_3_e2,
+                    T::fused(link_2_e3, link_3_e1, link_2_e2 * link_3_e0),
+                ),
+            );
+            let t172 = k(2.0) * t171;
+            let t173 = T::fused(-t171, t172, k(1.0));
+            let t174 = k(0.1) * link_2_wx;
+            let t175 = link_2_wz * t174;
+            let t176 = T::fused(
+                link_2_e3,
+                link_3_e3,
+                T::fused(
+                    link_2_e2,
+                    link_3_e2,
+                    T::fused(link_2_e1, link_3_e1, link_2_e0 * link_3_e0),
+                ),
+            );
+            let t177 = t176 * t172;
+            let t178 = k(0.1) * link_2_wy;
+            let t179 = T::fused(link_2_wy, t178, link_2_wx * t174);
+            let t180 = t108 - T::fused(-t175, t173, t179 * t177);
+            let t181 = t168 * t170;
+            let t182 = T::fused(t170, t181, t151);
+            let t183 = T::fused(t112, t121, t116 * t130);
+            let t184 = T::fused(-t112, t146, t116 * t147);
+            let t185 = T::fused(t112, t183, t116 * t184);
+            let t186 = T::fused(-t112, t152, t116 * t153);
+            let t187 = k(0.1) * t186;
+            let t188 = t187 + t185;
+            let t189 = t187 + t188;
+            let t190 = T::fused(-t189, t181, t186);
+            let t191 = link_2_wz * t178;
+            let t192 = t191 + t114;
+            let t193 = t117 + T::fused(t175, t177, t179 * t173);
+            let t194 = T::fused(-t116, t121, t112 * t130);
+            let t195 = T::fused(t116, t146, t112 * t147);
+            let t196 = T::fused(t116, t152, t112 * t153);
+            let t197 = k(0.1) * t196;
+            let t198 = t197 + (t197 + T::fused(t112, t194, t116 * t195));
+            let t199 = T::fused(-t198, t181, t196);
+            (
+                t1,
+                t5,
+                t6,
+                t10,
+                t11,
+                t12,
+                t15,
+                t18,
+                t19,
+                t24,
+                t26,
+                t29,
+                t33,
+                t36,
+                t38,
+                t40,
+                t42,
+                t44,
+                t49,
+                t50,
+                t52,
+                t57,
+                t58,
+                t59,
+                t60,
+                t62,
+                t65,
+                t68,
+                t69,
+                t77,
+                t80,
+                t82,
+                t83,
+                t89,
+                t90,
+                t98,
+                t104,
+                t106,
+                t109,
+                t112,
+                t116,
+                t118,
+                t119,
+                t120,
+                t121,
+                t122,
+                t126,
+                t128,
+                t129,
+                t130,
+                t132,
+                t135,
+                t136,
+                t140,
+                t143,
+                t144,
+                t145,
+                t146,
+                t147,
+                t148,
+                t150,
+                t152,
+                t153,
+                t155,
+                t157,
+                t158,
+                t159,
+                t160,
+                t161,
+                t162,
+                t168,
+                t169,
+                t170,
+                t173,
+                t175,
+                t177,
+                t179,
+                t180,
+                t181,
+                t182,
+                t183,
+                t184,
+                t185,
+                t186,
+                t188,
+                t189,
+                t190,
+                t191,
+                t192,
+                t193,
+                t194,
+                t195,
+                t198,
+                t199,
+            )
+        };
+        let (
+            t202,
+            t204,
+            t206,
+            t209,
+            t235,
+            t238,
+            t250,
+            t260,
+            t294,
+            t298,
+            t300,
+            t301,
+            t305,
+            t306,
+            t326,
+            t342,
+            t351,
+            t357,
+            t361,
+            t366,
+            t374,
+            t378,
+            t379,
+            t382,
+            t383,
+            t384,
+            t385,
+            t386,
+            t387,
+            t388,
+            t389,
+            t390,
+            t392,
+            t393,
+            t394,
+            t395,
+            t396,
+            t398,
+            t399,
+        ) = {
+            let t200 = T::fused(
+                -k(2.0),
+                t180,
+                T::fused(t199, t193, -T::fused(-t182, t180, t192 * t190)),
+            );
+            let t201 = link_2_wy - link_3_wy;
+            let t202 = link_3_wz * t201;
+            let t203 = k(0.01) * t186;
+            let t204 = t203 + T::fused(k(0.1), t188, t203)
+                + T::fused(k(0.1), t185, t203);
+            let t205 = T::fused(-k(0.2), t186, t204 * t181);
+            let t206 = link_3_wx * t201;
+            let t207 = T::fused(-t116, t106, t112 * t145);
+            let t208 = k(0.1) * t207;
+            let t209 = t208 + (t208 + T::fused(-t116, t160, t112 * t162));
+            let t210 = T::fused(-t209, t181, t207);
+            let t211 = T::fused(t205, t202, t210 * t206) - t200
+                - T::fused(-t170, t169, t155);
+            let t212 = T::fused(t119, t120, t69);
+            let t213 = T::fused(-t128, t120, t126);
+            let t214 = T::fused(
+                -k(1.5),
+                t118,
+                T::fused(t213, t122, T::fused(t109, t152, t212 * t118)),
+            );
+            let t215 = T::fused(t121, t132, t146 * t136) + t214
+                + T::fused(-t119, t90, t80);
+            let t216 = T::fused(t128, t129, T::fused(t33, t33 * t38, t29 * (t29 * t59)));
+            let t217 = T::fused(
+                -k(1.5),
+                t122,
+                T::fused(t216, t122, T::fused(t109, t153, t213 * t118)),
+            );
+            let t218 = T::fused(-t130, t132, t147 * t136) + t217
+                + T::fused(t128, t90, -T::fused(t33, t44, t29 * t62));
+            let t219 = t116 * t213;
+            let t220 = T::fused(-t112, t212, t219);
+            let t221 = t112 * t213;
+            let t222 = T::fused(t116, t216, -t221);
+            let t223 = T::fused(t116, t220, t112 * t222);
+            let t224 = t168 * t189;
+            let t225 = T::fused(t224, t198, t223);
+            let t226 = T::fused(
+                t116,
+                T::fused(t116, t212, t221),
+                t112 * T::fused(t112, t216, t219),
+            );
+            let t227 = t168 * t198;
+            let t228 = T::fused(t198, t227, t226);
+            let t229 = T::fused(
+                -k(2.0),
+                t193,
+                T::fused(t228, t193, -T::fused(-t199, t180, t192 * t225)),
+            );
+            let t230 = T::fused(k(0.2), t223, t204 * t227);
+            let t231 = T::fused(t209, t227, T::fused(-t116, t194, t112 * t195));
+            let t232 = T::fused(-t230, t202, t231 * t206) - t229
+                - T::fused(t198, t169, T::fused(t116, t215, t112 * t218));
+            let t233 = T::fused(t173, t211, t177 * t232);
+            let t234 = k(0.1) * t233;
+            let t235 = k(0.0015) * (link_2_wx * link_2_wz);
+            let t236 = T::fused(-t112, t215, t116 * t218);
+            let t237 = k(0.1) * t236;
+            let t238 = k(0.0014) * (link_3_wy * link_3_wz);
+            let t239 = T::fused(-t112, t220, t116 * t222);
+            let t240 = k(0.1) * t239;
+            let t241 = k(0.15) - t240;
+            let t242 = T::fused(t224, t204, -(k(0.2) - t240 + t241));
+            let t243 = k(0.01) * t239;
+            let t244 = t168 * t204;
+            let t245 = T::fused(
+                t204,
+                t244,
+                -(T::fused(k(0.2), t241, -t243)
+                    + (k(0.02) + (k(0.0017) + (k(0.015) - t243)))),
+            );
+            let t246 = T::fused(-t116, t183, t112 * t184);
+            let t247 = T::fused(k(0.2), t246, t209 * t244);
+            let t248 = T::fused(-t245, t202, t247 * t206)
+                - T::fused(t230, t193, -T::fused(t205, t180, t192 * t242));
+            let t249 = t248 - T::fused(t204, t169, t237 + (t238 + t237));
+            let t250 = k(0.0001) * (link_3_wx * link_3_wy);
+            let t251 = T::fused(t224, t209, t246);
+            let t252 = T::fused(
+                t116,
+                T::fused(-t116, t135, t161),
+                t112 * T::fused(-t112, t148, t159),
+            );
+            let t253 = T::fused(t209, t168 * t209, -(k(0.0002) + t252));
+            let t254 = T::fused(-t247, t202, t253 * t206)
+                - T::fused(t231, t193, -T::fused(-t210, t180, t192 * t251));
+            let t255 = t254
+                - T::fused(t209, t169, t250 + T::fused(-t116, t143, t112 * t150));
+            let t256 = T::fused(t189, t224, t239);
+            let t257 = T::fused(
+                k(2.0),
+                t192,
+                T::fused(t225, t193, -T::fused(-t190, t180, t192 * t256)),
+            );
+            let t258 = T::fused(-t242, t202, t251 * t206) - t257
+                - T::fused(t189, t169, t236);
+            let t259 = k(0.1) * t258;
+            let t260 = k(0.0014) * (link_2_wy * link_2_wz);
+            let t261 = t259 - (t260 - (t259 - T::fused(-t173, t249, t177 * t255)));
+            let t262 = t177 * t247;
+            let t263 = T::fused(-t173, t245, t262);
+            let t264 = t173 * t247;
+            let t265 = T::fused(t177, t253, -t264);
+            let t266 = T::fused(-t173, t242, t177 * t251);
+            let t267 = k(0.01) * t256;
+            let t268 = T::fused(-k(0.2), t266, t267)
+                - (k(0.02) - T::fused(-t173, t263, t177 * t265));
+            let t269 = k(0.1) * t256;
+            let t270 = k(0.2) - t269 + t266;
+            let t271 = k(1.0)
+                / (T::fused(k(0.2), t270, -t267) + (k(0.025) + (k(0.0017) - t268)));
+            let t272 = t271 * t261;
+            let t273 = T::fused(-t173, t205, t177 * t230);
+            let t274 = T::fused(t173, t210, t177 * t231);
+            let t275 = T::fused(-t173, t273, t177 * t274);
+            let t276 = T::fused(t173, t190, t177 * t225);
+            let t277 = k(0.01) * t276;
+            let t278 = k(0.1) * t276;
+            let t279 = t278 - t275;
+            let t280 = t277 + T::fused(k(0.1), t279, t277)
+                + T::fused(-k(0.1), t275, t277);
+            let t281 = T::fused(t173, t182, t177 * t199);
+            let t282 = T::fused(t173, t199, t177 * t228);
+            let t283 = T::fused(t173, t281, t177 * t282);
+            let t284 = k(0.1) * t283;
+            let t285 = k(0.2) - t284;
+            let t286 = t278 + t279;
+            let t287 = t271 * t286;
+            let t288 = T::fused(t287, t280, -(k(0.25) - t284 + t285));
+            let t289 = k(0.1) * link_1_wx;
+            let t290 = link_1_wz * t289;
+            let t291 = t290 + t175;
+            let t292 = T::fused(
+                link_1_e2,
+                link_2_e3,
+                T::fused(
+                    -link_1_e3,
+                    link_2_e2,
+                    T::fused(-link_1_e0, link_2_e1, link_1_e1 * link_2_e0),
+                ),
+            );
+            let t293 = k(2.0) * t292;
+            let t294 = T::fused(-t292, t293, k(1.0));
+            let t295 = k(0.1) * link_1_wy;
+            let t296 = link_1_wz * t295;
+            let t297 = T::fused(
+                link_1_e3,
+                link_2_e3,
+                T::fused(
+                    link_1_e2,
+                    link_2_e2,
+                    T::fused(link_1_e1, link_2_e1, link_1_e0 * link_2_e0),
+                ),
+            );
+            let t298 = t297 * t293;
+            let t299 = T::fused(link_1_wy, t295, link_1_wx * t289);
+            let t300 = t299 * t298;
+            let t301 = t191 + T::fused(t296, t294, t300);
+            let t302 = t270 + (k(0.25) - t269);
+            let t303 = t271 * t302;
+            let t304 = T::fused(-k(0.2), t276, t303 * t280);
+            let t305 = t299 * t294;
+            let t306 = t179 + T::fused(-t296, t298, t305);
+            let t307 = T::fused(-t177, t281, t173 * t282);
+            let t308 = T::fused(t177, t205, t173 * t230);
+            let t309 = T::fused(-t177, t210, t173 * t231);
+            let t310 = k(0.1) * T::fused(-t177, t190, t173 * t225);
+            let t311 = t310 + (t310 - T::fused(-t173, t308, t177 * t309));
+            let t312 = t271 * t311;
+            let t313 = T::fused(k(0.2), t307, t312 * t280);
+            let t314 = link_1_wx - link_2_wx;
+            let t315 = link_2_wz * t314;
+            let t316 = k(0.01) * t283;
+            let t317 = t271 * t280;
+            let t318 = T::fused(
+                t280,
+                t317,
+                -(T::fused(k(0.2), t285, -t316)
+                    + (k(0.025) + (k(0.0016) + (k(0.02) - t316)))),
+            );
+            let t319 = link_2_wy * t314;
+            let t320 = T::fused(t177, t273, t173 * t274);
+            let t321 = T::fused(t177, t242, t173 * t251);
+            let t322 = k(0.1) * t321;
+            let t323 = t322 + (t322 - T::fused(t177, t263, t173 * t265));
+            let t324 = T::fused(k(0.2), t320, t323 * t317);
+            let t325 = T::fused(-t318, t315, t324 * t319)
+                + T::fused(t313, t306, T::fused(t291, t288, t304 * t301));
+            let t326 = k(0.0001) * (link_2_wx * link_2_wy);
+            let t327 = T::fused(t287, t323, t320);
+            let t328 = T::fused(-t323, t303, t321);
+            let t329 = T::fused(t312, t323, T::fused(t177, t308, t173 * t309));
+            let t330 = T::fused(
+                t177,
+                T::fused(t177, t245, t264),
+                t173 * T::fused(t173, t253, t262),
+            );
+            let t331 = T::fused(t323, t271 * t323, -(k(0.0002) - t330));
+            let t332 = T::fused(-t324, t315, t331 * t319)
+                + T::fused(t329, t306, -T::fused(-t291, t327, t328 * t301));
+            let t333 = t332
+                - T::fused(t323, t272, -(t326 - T::fused(t177, t249, t173 * t255)));
+            let t334 = T::fused(
+                t294,
+                t325 - T::fused(t280, t272, t234 + (t235 + t234)),
+                t298 * t333,
+            );
+            let t335 = T::fused(t286, t287, t283);
+            let t336 = T::fused(-t287, t302, t276);
+            let t337 = T::fused(t287, t311, t307);
+            let t338 = T::fused(
+                k(2.5),
+                t291,
+                -T::fused(t337, t306, -T::fused(-t291, t335, t336 * t301)),
+            );
+            let t339 = T::fused(-t288, t315, t327 * t319) - t338
+                - T::fused(t286, t272, t233);
+            let t340 = k(0.1) * t339;
+            let t341 = k(2.0) * link_1_e2;
+            let t342 = link_1_e0 * t341;
+            let t343 = T::fused(k(9.81), t342, t290);
+            let t344 = T::fused(t294, t288, t298 * t327);
+            let t345 = k(0.1) * t335;
+            let t346 = k(0.25) - t345 - t344;
+            let t347 = T::fused(
+                t294,
+                T::fused(-t294, t304, t298 * t313),
+                t298 * T::fused(t294, t328, t298 * t329),
+            );
+            let t348 = T::fused(t294, t336, t298 * t337);
+            let t349 = k(0.1) * t348;
+            let t350 = t349 + t347;
+            let t351 = T::fused(-link_1_e2, t341, k(1.0));
+            let t352 = T::fused(k(9.81), t351, t299);
+            let t353 = T::fused(
+                t294,
+                T::fused(t298, t304, t294 * t313),
+                t298 * T::fused(-t298, t328, t294 * t329),
+            );
+            let t354 = k(0.1) * T::fused(-t298, t336, t294 * t337);
+            let t355 = T::fused(
+                t354 + (t354 + t353),
+                t352,
+                -T::fused(k(0.3) - t345 + t346, t343, t296 * (t349 + t350)),
+            );
+            let t356 = k(0.01) * t348;
+            let t357 = link_1_wy * link_1_wz;
+            let t358 = T::fused(t294, t318, t298 * t324);
+            let t359 = T::fused(t294, t324, t298 * t331);
+            let t360 = k(0.1) * T::fused(-t298, t288, t294 * t327);
+            let t361 = link_1_wx * link_1_wy;
+            let t362 = T::fused(
+                -t357,
+                t356 + T::fused(k(0.1), t350, t356) + T::fused(k(0.1), t347, t356),
+                t361 * (t360 + (t360 + T::fused(-t298, t358, t294 * t359))),
+            );
+            let t363 = t362 + t355
+                + (t340 - T::fused(k(0.0015), link_1_wx * link_1_wz, -(t340 + t334)));
+            let t364 = k(0.01) * t335;
+            let t365 = T::fused(k(0.2), t344, t364)
+                - (k(0.025) - T::fused(t294, t358, t298 * t359));
+            let t366 = t363
+                / (T::fused(k(0.2), t346, -t364) + (k(0.03) + (k(0.0016) - t365)));
+            let t367 = k(0.1) * t366;
+            let t368 = t290 + t367;
+            let t369 = link_1_e0 * link_1_e0;
+            let t370 = k(0.1) * t357;
+            let t371 = t296 + t370;
+            let t372 = link_1_e0 * link_1_e3;
+            let t373 = link_1_e1 * link_1_e2;
+            let t374 = t373 - t372;
+            let t375 = T::fused(
+                -(k(2.0) * (k(0.5) - T::fused(link_1_e1, link_1_e1, t369))),
+                t368,
+                k(2.0) * t374 * t371,
+            );
+            let t376 = link_1_e0 * link_1_e2;
+            let t377 = link_1_e1 * link_1_e3;
+            let t378 = T::fused(k(2.0) * (t377 + t376), t299, -t375);
+            let t379 = k(0.5) - T::fused(link_1_e2, link_1_e2, t369);
+            let t380 = link_1_e0 * link_1_e1;
+            let t381 = link_1_e2 * link_1_e3;
+            let t382 = T::fused(
+                k(2.0) * (t381 - t380),
+                t299,
+                T::fused(-(k(2.0) * (t373 + t372)), t368, k(2.0) * t379 * t371),
+            );
+            let t383 = t381 + t380;
+            let t384 = T::fused(
+                k(2.0) * (k(0.5) - T::fused(link_1_e3, link_1_e3, t369)),
+                t299,
+                T::fused(k(2.0) * (t377 - t376), t368, k(2.0) * t383 * t371),
+            );
+            let t385 = t315 + T::fused(-t294, t366, t361 * t298);
+            let t386 = k(0.1) * t385;
+            let t387 = t386 - (t291 + (t367 + t368));
+            let t388 = link_2_e0 * link_2_e0;
+            let t389 = k(0.5) - T::fused(link_2_e1, link_2_e1, t388);
+            let t390 = t291 + (t367 + (t343 + t367));
+            let t391 = t370 + t371;
+            let t392 = t294 * t391;
+            let t393 = t301 + T::fused(t298, t352, t392);
+            let t394 = t298 * t391;
+            let t395 = t306 + T::fused(t294, t352, -t394);
+            let t396 = t319 + T::fused(t298, t366, t361 * t294);
+            let t397 = T::fused(-t280, t385, t323 * t396)
+                + T::fused(t311, t395, T::fused(t286, t390, t302 * t393));
+            let t398 = t271 * (t261 - t397);
+            let t399 = t357 - (t357 - t398);
+            (
+                t202,
+                t204,
+                t206,
+                t209,
+                t235,
+                t238,
+                t250,
+                t260,
+                t294,
+                t298,
+                t300,
+                t301,
+                t305,
+                t306,
+                t326,
+                t342,
+                t351,
+                t357,
+                t361,
+                t366,
+                t374,
+                t378,
+                t379,
+                t382,
+                t383,
+                t384,
+                t385,
+                t386,
+                t387,
+                t388,
+                t389,
+                t390,
+                t392,
+                t393,
+                t394,
+                t395,
+                t396,
+                t398,
+                t399,
+            )
+        };
+        let (
+            t404,
+            t408,
+            t409,
+            t410,
+            t413,
+            t414,
+            t415,
+            t416,
+            t429,
+            t433,
+            t434,
+            t443,
+            t444,
+            t448,
+            t449,
+            t451,
+            t452,
+            t453,
+            t469,
+            t478,
+            t483,
+            t486,
+            t487,
+            t492,
+            t497,
+            t506,
+            t511,
+            t514,
+            t515,
+            t516,
+            t526,
+            t534,
+            t539,
+            t542,
+            t543,
+            t546,
+            t547,
+            t548,
+            t551,
+            t552,
+            t553,
+            t554,
+            t555,
+            t556,
+            t557,
+            t558,
+            t559,
+            t561,
+            t562,
+            t565,
+            t572,
+            t573,
+            t575,
+            t576,
+            t577,
+            t586,
+            t587,
+            t588,
+            t589,
+            t590,
+            t591,
+            t596,
+            t597,
+            t598,
+            t599,
+        ) = {
+            let t400 = k(0.1) * t399;
+            let t401 = t301 + (t300 + t392) + t400;
+            let t402 = link_2_e0 * link_2_e3;
+            let t403 = link_2_e1 * link_2_e2;
+            let t404 = t403 - t402;
+            let t405 = t306 + (t305 - t394);
+            let t406 = link_2_e0 * link_2_e2;
+            let t407 = link_2_e1 * link_2_e3;
+            let t408 = T::fused(
+                k(2.0) * (t407 + t406),
+                t405,
+                -T::fused(k(2.0) * t389, t387, k(2.0) * t404 * t401),
+            );
+            let t409 = t403 + t402;
+            let t410 = k(0.5) - T::fused(link_2_e2, link_2_e2, t388);
+            let t411 = link_2_e0 * link_2_e1;
+            let t412 = link_2_e2 * link_2_e3;
+            let t413 = T::fused(
+                k(2.0) * (t412 - t411),
+                t405,
+                T::fused(k(2.0) * t409, t387, k(2.0) * t410 * t401),
+            );
+            let t414 = t407 - t406;
+            let t415 = t412 + t411;
+            let t416 = T::fused(
+                k(2.0) * (k(0.5) - T::fused(link_2_e3, link_2_e3, t388)),
+                t405,
+                T::fused(-(k(2.0) * t414), t387, k(2.0) * t415 * t401),
+            );
+            let t417 = t386 + t387;
+            let t418 = t386 - (t390 - t386);
+            let t419 = t180 - T::fused(t173, t418, t177 * t395);
+            let t420 = k(0.1) * t398;
+            let t421 = t192 + (t420 + (t393 + t420));
+            let t422 = t193 + T::fused(-t177, t418, t173 * t395);
+            let t423 = t177 * t396;
+            let t424 = t202 + T::fused(-t173, t398, t423);
+            let t425 = t173 * t396;
+            let t426 = t206 - T::fused(t177, t398, t425);
+            let t427 = T::fused(-t204, t424, t209 * t426)
+                - T::fused(t198, t422, -T::fused(t170, t419, t189 * t421));
+            let t428 = t168 * (t158 - t427);
+            let t429 = t385 - (t385 + t428);
+            let t430 = k(0.1) * t429;
+            let t431 = t430 - (t180 - T::fused(t173, t417, t177 * t405));
+            let t432 = link_3_e0 * link_3_e0;
+            let t433 = k(0.5) - T::fused(link_3_e1, link_3_e1, t432);
+            let t434 = t202 + T::fused(-t173, t399, t423);
+            let t435 = k(0.1) * t434;
+            let t436 = t435 - (t192 + (t400 + t401));
+            let t437 = link_3_e0 * link_3_e3;
+            let t438 = link_3_e1 * link_3_e2;
+            let t439 = t438 - t437;
+            let t440 = t193 + T::fused(-t177, t417, t173 * t405);
+            let t441 = link_3_e0 * link_3_e2;
+            let t442 = link_3_e1 * link_3_e3;
+            let t443 = T::fused(
+                k(2.0) * (t442 + t441),
+                t440,
+                T::fused(-(k(2.0) * t433), t431, k(2.0) * t439 * t436),
+            );
+            let t444 = t438 + t437;
+            let t445 = k(0.5) - T::fused(link_3_e2, link_3_e2, t432);
+            let t446 = link_3_e0 * link_3_e1;
+            let t447 = link_3_e2 * link_3_e3;
+            let t448 = T::fused(
+                k(2.0) * (t447 - t446),
+                t440,
+                -T::fused(-(k(2.0) * t444), t431, k(2.0) * t445 * t436),
+            );
+            let t449 = t442 - t441;
+            let t450 = t447 + t446;
+            let t451 = T::fused(
+                k(2.0) * (k(0.5) - T::fused(link_3_e3, link_3_e3, t432)),
+                t440,
+                -T::fused(k(2.0) * t449, t431, k(2.0) * t450 * t436),
+            );
+            let t452 = t206 - T::fused(t177, t399, t425);
+            let t453 = t132 - T::fused(-t112, t429, t116 * t452);
+            let t454 = k(0.1) * t453;
+            let t455 = t454 - (t109 - (t430 + t431));
+            let t456 = link_4_e0 * link_4_e0;
+            let t457 = k(0.5) - T::fused(link_4_e1, link_4_e1, t456);
+            let t458 = t435 + t436;
+            let t459 = k(0.1) * t428;
+            let t460 = t109 + (t459 + (t419 + t459));
+            let t461 = k(0.1) * t424;
+            let t462 = t461 - (t421 - t461);
+            let t463 = t118 + T::fused(-t112, t462, t116 * t422);
+            let t464 = t122 + T::fused(t116, t462, t112 * t422);
+            let t465 = t132 - T::fused(t112, t428, t116 * t426);
+            let t466 = t136 - T::fused(-t116, t428, t112 * t426);
+            let t467 = T::fused(-t98, t465, t140 * t466)
+                + T::fused(t128, t464, -T::fused(-t104, t460, t119 * t463));
+            let t468 = t89 * (t83 + t467);
+            let t469 = t424 + t468 - t434;
+            let t470 = k(0.1) * t469;
+            let t471 = t470 + (t118 + T::fused(-t112, t458, t116 * t440));
+            let t472 = link_4_e0 * link_4_e3;
+            let t473 = link_4_e1 * link_4_e2;
+            let t474 = t473 - t472;
+            let t475 = t122 + T::fused(t116, t458, t112 * t440);
+            let t476 = link_4_e0 * link_4_e2;
+            let t477 = link_4_e1 * link_4_e3;
+            let t478 = T::fused(
+                k(2.0) * (t477 + t476),
+                t475,
+                -T::fused(k(2.0) * t457, t455, k(2.0) * t474 * t471),
+            );
+            let t479 = t473 + t472;
+            let t480 = k(0.5) - T::fused(link_4_e2, link_4_e2, t456);
+            let t481 = link_4_e0 * link_4_e1;
+            let t482 = link_4_e2 * link_4_e3;
+            let t483 = T::fused(
+                k(2.0) * (t482 - t481),
+                t475,
+                T::fused(k(2.0) * t479, t455, k(2.0) * t480 * t471),
+            );
+            let t484 = t477 - t476;
+            let t485 = t482 + t481;
+            let t486 = T::fused(
+                k(2.0) * (k(0.5) - T::fused(link_4_e3, link_4_e3, t456)),
+                t475,
+                T::fused(-(k(2.0) * t484), t455, k(2.0) * t485 * t471),
+            );
+            let t487 = t136 - T::fused(t116, t429, t112 * t452);
+            let t488 = t454 + t455;
+            let t489 = k(0.1) * t465;
+            let t490 = t489 - (t460 - t489);
+            let t491 = T::fused(
+                t26,
+                t36 - T::fused(t29, t490, t33 * t464),
+                t42 * (t40 - T::fused(t33, t468, t29 * t466)),
+            );
+            let t492 = T::fused(-t24, t19 + t491, t465) - t453;
+            let t493 = k(0.1) * t492;
+            let t494 = t493 + (t36 - T::fused(t29, t488, t33 * t475));
+            let t495 = link_5_e0 * link_5_e0;
+            let t496 = k(0.5) - T::fused(link_5_e1, link_5_e1, t495);
+            let t497 = t60 + T::fused(-t29, t469, t33 * t487);
+            let t498 = k(0.1) * t497;
+            let t499 = t498 - (t57 + (t470 + t471));
+            let t500 = link_5_e0 * link_5_e3;
+            let t501 = link_5_e1 * link_5_e2;
+            let t502 = t501 - t500;
+            let t503 = t58 + T::fused(-t33, t488, t29 * t475);
+            let t504 = link_5_e0 * link_5_e2;
+            let t505 = link_5_e1 * link_5_e3;
+            let t506 = T::fused(
+                k(2.0) * (t505 + t504),
+                t503,
+                T::fused(k(2.0) * t496, t494, k(2.0) * t502 * t499),
+            );
+            let t507 = t501 + t500;
+            let t508 = k(0.5) - T::fused(link_5_e2, link_5_e2, t495);
+            let t509 = link_5_e0 * link_5_e1;
+            let t510 = link_5_e2 * link_5_e3;
+            let t511 = T::fused(
+                k(2.0) * (t510 - t509),
+                t503,
+                -T::fused(k(2.0) * t507, t494, k(2.0) * t508 * t499),
+            );
+            let t512 = t505 - t504;
+            let t513 = t510 + t509;
+            let t514 = T::fused(
+                k(2.0) * (k(0.5) - T::fused(link_5_e3, link_5_e3, t495)),
+                t503,
+                -T::fused(-(k(2.0) * t512), t494, k(2.0) * t513 * t499),
+            );
+            let t515 = t40 - T::fused(t33, t469, t29 * t487);
+            let t516 = t1 - T::fused(t10, t492, t15 * t515);
+            let t517 = T::fused(k(0.1), t516, -(t5 + (t493 + t494)));
+            let t518 = link_6_e0 * link_6_e0;
+            let t519 = k(0.5) - T::fused(link_6_e1, link_6_e1, t518);
+            let t520 = t498 + t499;
+            let t521 = k(0.1) * t468;
+            let t522 = t60 + T::fused(-t29, t468, t33 * t466);
+            let t523 = k(0.1) * t522;
+            let t524 = T::fused(
+                -t10,
+                t523 + (t523 - (t57 + (t521 + (t463 + t521)))),
+                t15 * (t58 + T::fused(-t33, t490, t29 * t464)),
+            );
+            let t525 = k(0.0014) * t50;
+            let t526 = T::fused(
+                -k(149.2537313432836),
+                T::fused(k(0.05), t49 + t524, t525),
+                t522,
+            ) - t497;
+            let t527 = T::fused(k(0.1), t526, t49 + T::fused(-t10, t520, t15 * t503));
+            let t528 = link_6_e0 * link_6_e3;
+            let t529 = link_6_e1 * link_6_e2;
+            let t530 = t529 - t528;
+            let t531 = t52 + T::fused(t15, t520, t10 * t503);
+            let t532 = link_6_e0 * link_6_e2;
+            let t533 = link_6_e1 * link_6_e3;
+            let t534 = T::fused(
+                k(2.0) * (t533 + t532),
+                t531,
+                -T::fused(k(2.0) * t519, t517, k(2.0) * t530 * t527),
+            );
+            let t535 = t529 + t528;
+            let t536 = k(0.5) - T::fused(link_6_e2, link_6_e2, t518);
+            let t537 = link_6_e0 * link_6_e1;
+            let t538 = link_6_e2 * link_6_e3;
+            let t539 = T::fused(
+                k(2.0) * (t538 - t537),
+                t531,
+                T::fused(k(2.0) * t535, t517, k(2.0) * t536 * t527),
+            );
+            let t540 = t533 - t532;
+            let t541 = t538 + t537;
+            let t542 = T::fused(
+                k(2.0) * (k(0.5) - T::fused(link_6_e3, link_6_e3, t518)),
+                t531,
+                T::fused(-(k(2.0) * t540), t517, k(2.0) * t541 * t527),
+            );
+            let t543 = t11 - T::fused(-t15, t492, t10 * t515);
+            let t544 = t506 + t534;
+            let t545 = t478 + t544;
+            let t546 = t443 + t545;
+            let t547 = t408 + t546;
+            let t548 = k(0.5) * (t378 + t547);
+            let t549 = t511 + t539;
+            let t550 = t483 + t549;
+            let t551 = t448 + t550;
+            let t552 = t413 + t551;
+            let t553 = k(0.5) * (t382 + t552);
+            let t554 = T::fused(-k(0.5), t542, k(4.905));
+            let t555 = t554 + T::fused(-k(0.5), t514, k(4.905));
+            let t556 = t555 + T::fused(-k(0.5), t486, k(4.905));
+            let t557 = t556 + T::fused(-k(0.5), t451, k(4.905));
+            let t558 = t557 + T::fused(-k(0.5), t416, k(4.905));
+            let t559 = t558 + T::fused(-k(0.5), t384, k(4.905));
+            let t560 = T::fused(-k(0.0002), t543, t12);
+            let t561 = k(0.5) * t539;
+            let t562 = k(0.5) * t534;
+            let t563 = T::fused(
+                -(k(0.2) * t540),
+                t554,
+                T::fused(-(k(0.2) * t535), t561, k(0.2) * t519 * t562),
+            );
+            let t564 = t563 + T::fused(-k(0.0016), t516, t6);
+            let t565 = T::fused(t10, t560, t15 * t564);
+            let t566 = t565 + T::fused(k(0.0002), t515, t77);
+            let t567 = k(0.2) * t513;
+            let t568 = k(0.2) * t508;
+            let t569 = k(0.2) * t502;
+            let t570 = T::fused(
+                k(0.2) * t541,
+                t554,
+                T::fused(-(k(0.2) * t536), t561, k(0.2) * t530 * t562),
+            );
+            let t571 = t570 - T::fused(k(0.0017), t526, t525)
+                + T::fused(t567, t554, T::fused(-t568, t561, t569 * t562));
+            let t572 = k(0.5) * t549;
+            let t573 = k(0.5) * t544;
+            let t574 = T::fused(t567, t555, T::fused(-t568, t572, t569 * t573))
+                + (t571 - T::fused(-k(0.0017), t497, t68));
+            let t575 = T::fused(-t29, t566, t33 * t574);
+            let t576 = t575 - T::fused(-k(0.0002), t487, t144);
+            let t577 = T::fused(-t15, t560, t10 * t564);
+            let t578 = k(0.2) * t512;
+            let t579 = k(0.2) * t507;
+            let t580 = k(0.2) * t496;
+            let t581 = T::fused(-t578, t554, T::fused(-t579, t561, t580 * t562)) + t577
+                + T::fused(k(0.0016), t492, t18);
+            let t582 = k(0.2) * t484;
+            let t583 = k(0.2) * t479;
+            let t584 = k(0.2) * t457;
+            let t585 = T::fused(-t582, t555, T::fused(-t583, t572, t584 * t573))
+                + (T::fused(-t578, t555, T::fused(-t579, t572, t580 * t573)) + t581);
+            let t586 = k(0.5) * t550;
+            let t587 = k(0.5) * t545;
+            let t588 = T::fused(-t582, t556, T::fused(-t583, t586, t584 * t587))
+                + (t585 + T::fused(-k(0.0016), t453, t65));
+            let t589 = T::fused(-t112, t576, t116 * t588);
+            let t590 = t589 + T::fused(k(0.0002), t452, t250);
+            let t591 = T::fused(t33, t566, t29 * t574);
+            let t592 = k(0.2) * t485;
+            let t593 = k(0.2) * t480;
+            let t594 = k(0.2) * t474;
+            let t595 = T::fused(t592, t555, T::fused(-t593, t572, t594 * t573)) + t591
+                - T::fused(k(0.0017), t469, t82);
+            let t596 = k(0.2) * t450;
+            let t597 = k(0.2) * t445;
+            let t598 = k(0.2) * t439;
+            let t599 = T::fused(t596, t556, T::fused(-t597, t586, t598 * t587))
+                + (T::fused(t592, t556, T::fused(-t593, t586, t594 * t587)) + t595);
+            (
+                t404,
+                t408,
+                t409,
+                t410,
+                t413,
+                t414,
+                t415,
+                t416,
+                t429,
+                t433,
+                t434,
+                t443,
+                t444,
+                t448,
+                t449,
+                t451,
+                t452,
+                t453,
+                t469,
+                t478,
+                t483,
+                t486,
+                t487,
+                t492,
+                t497,
+                t506,
+                t511,
+                t514,
+                t515,
+                t516,
+                t526,
+                t534,
+                t539,
+                t542,
+                t543,
+                t546,
+                t547,
+                t548,
+                t551,
+                t552,
+                t553,
+                t554,
+                t555,
+                t556,
+                t557,
+                t558,
+                t559,
+                t561,
+                t562,
+                t565,
+                t572,
+                t573,
+                t575,
+                t576,
+                t577,
+                t586,
+                t587,
+                t588,
+                t589,
+                t590,
+                t591,
+                t596,
+                t597,
+                t598,
+                t599,
+            )
+        };
+        let (t600, t601, t603, t604, t605, t614, t615, t616, t617, t618, t619, t628) = {
+            let t600 = k(0.5) * t551;
+            let t601 = k(0.5) * t546;
+            let t602 = T::fused(t596, t557, T::fused(-t597, t600, t598 * t601))
+                + (t599 - T::fused(-k(0.0017), t434, t238));
+            let t603 = T::fused(-t173, t590, t177 * t602);
+            let t604 = t603 - T::fused(-k(0.0002), t396, t326);
+            let t605 = T::fused(t116, t576, t112 * t588);
+            let t606 = k(0.2) * t449;
+            let t607 = k(0.2) * t444;
+            let t608 = k(0.2) * t433;
+            let t609 = T::fused(-t606, t556, T::fused(-t607, t586, t608 * t587)) + t605
+                + T::fused(-k(0.0016), t429, t157);
+            let t610 = k(0.2) * t414;
+            let t611 = k(0.2) * t409;
+            let t612 = k(0.2) * t389;
+            let t613 = T::fused(-t610, t557, T::fused(-t611, t600, t612 * t601))
+                + (T::fused(-t606, t557, T::fused(-t607, t600, t608 * t601)) + t609);
+            let t614 = k(0.5) * t552;
+            let t615 = k(0.5) * t547;
+            let t616 = T::fused(-t610, t558, T::fused(-t611, t614, t612 * t615))
+                + (t613 + T::fused(-k(0.0016), t385, t235));
+            let t617 = T::fused(-t294, t604, t298 * t616);
+            let t618 = T::fused(k(0.0001), t361, -t617);
+            let t619 = T::fused(t177, t590, t173 * t602);
+            let t620 = k(0.2) * t415;
+            let t621 = k(0.2) * t410;
+            let t622 = k(0.2) * t404;
+            let t623 = T::fused(t620, t557, T::fused(-t621, t600, t622 * t601)) + t619
+                - T::fused(k(0.0017), t399, t260);
+            let t624 = k(0.2) * t383;
+            let t625 = k(0.2) * t379;
+            let t626 = k(0.2) * t374;
+            let t627 = T::fused(t624, t558, T::fused(-t625, t614, t626 * t615))
+                + (T::fused(t620, t558, T::fused(-t621, t614, t622 * t615)) + t623);
+            let t628 = T::fused(t624, t559, T::fused(-t625, t553, t626 * t548))
+                + T::fused(-k(0.0031), t357, t627);
+            (t600, t601, t603, t604, t605, t614, t615, t616, t617, t618, t619, t628)
+        };
+        *out = [
+            t378,
+            t382,
+            -t384,
+            -t357,
+            t366,
+            t361,
+            t408,
+            t413,
+            -t416,
+            -t399,
+            -t385,
+            t396,
+            t443,
+            t448,
+            -t451,
+            t434,
+            -t429,
+            -t452,
+            t478,
+            t483,
+            -t486,
+            -t469,
+            -t453,
+            t487,
+            t506,
+            t511,
+            -t514,
+            t497,
+            t492,
+            -t515,
+            t534,
+            t539,
+            -t542,
+            -t526,
+            -t516,
+            t543,
+            -t548,
+            -t553,
+            -t559,
+            -T::fused(t342, t618, t351 * t628),
+            T::fused(-t342, t628, t351 * t618),
+            -t615,
+            -t614,
+            -t558,
+            T::fused(t298, t604, t294 * t616),
+            -t617,
+            -t601,
+            -t600,
+            -t557,
+            -t619,
+            t603,
+            -t587,
+            -t586,
+            -t556,
+            t605,
+            -t589,
+            -t573,
+            -t572,
+            -t555,
+            -t591,
+            t575,
+            -t562,
+            -t561,
+            -t554,
+            t577,
+            -t565,
         ];
     }
 }
