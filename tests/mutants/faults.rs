@@ -82,7 +82,7 @@ const FAULTS: &[Fault] = &[
     fault("null_space.rs", "pair", "let moment = «graph.transposed_vec(&self.k, &wanted.t)»;", "graph.mat_vec(&self.k, &wanted.t)"),
     fault("null_space.rs", "pair", "let both_moments = «sum(graph, &moment, &transposed(&moment))»;", "moment"),
     fault("null_space.rs", "pair", "coupling: turned(&«self.coupling», carried, relative)", "self.angular"),
-    fault("null_space.rs", "bob", "let rate = graph.mul(resisting, self.inverse);\n        «graph.neg(rate)»", "rate"),
+    fault("null_space.rs", "bob", "let rate = «graph.neg(resisted)»;", "resisted"),
     fault("null_space.rs", "bob", "let resisting = «graph.add(inertial, load)»;", "load"),
     fault("null_space.rs", "pair", "bias = «bias.plus(graph, &inertial)»;", "bias"),
     fault("null_space.rs", "pair", "«graph.sub(m[row][column], product)»", "m[row][column]"),

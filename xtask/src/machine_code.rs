@@ -94,8 +94,11 @@ type Choice = <Module as Partition>::Independent;
     text
 }
 
-/// Bytes of each function of a compiled library, by its name on the data sheet, with what the compiler has inlined into it; none without
-/// `nm`.
+/// Option of rustc for the library: symbols tell whose part a closure is.
+pub(crate) const SYMBOLS: &str = "-Csymbol-mangling-version=v0";
+
+/// Bytes of each function of a compiled library, by its name on the data sheet, with what the compiler has inlined into it and the parts that
+/// are compiled apart; none without `nm`.
 pub(crate) fn bytes(library: &Path) -> Option<BTreeMap<&'static str, u64>> {
     let symbols = output(Command::new("nm").args(["--print-size", "--demangle"]).arg(library)).ok()?;
     Some(sizes(&symbols))
@@ -111,12 +114,12 @@ fn sizes(symbols: &str) -> BTreeMap<&'static str, u64> {
     sizes
 }
 
-/// Last word of the name of a symbol that is code, and its size.
+/// The function that a symbol is the code, or a part of the code, of, and its size.
 fn size(line: &str) -> Option<(&str, u64)> {
     let [_, size, kind, name] = line.splitn(4, ' ').collect::<Vec<_>>().try_into().ok()?;
-    let is_hash = |word: &str| word.len() == 17 && word.starts_with('h');
-    let mut words = name.rsplit("::");
-    let last = words.next().filter(|word| !is_hash(word)).or_else(|| words.next())?;
+    // What is compiled apart is named by its closure: `gyro_sim::apart::<.., <.. as ..>::accelerations::{closure#0}>`.
+    let function = name.split("::{closure").next()?;
+    let last = function.rsplit("::").next()?;
     let size = u64::from_str_radix(size, 16).ok()?;
     matches!(kind, "t" | "T" | "w" | "W").then_some((last, size))
 }
@@ -130,11 +133,12 @@ mod tests {
         let symbols = "0000000000000000 0000000000000010 T chain::accelerations
 0000000000000000 0000000000000100 t <chain::mechanism::Chain2<T> as gyro_sim::mechanism::Equations>::accelerations
 0000000000000000 0000000000000200 T chain::accelerations_buffer
-0000000000000000 0000000000000020 T chain::independent::h0123456789abcdef
+0000000000000000 0000000000000001 t gyro_sim::apart::apart::<(f64, f64), <chain::mechanism::Chain2<f64> as gyro_sim::mechanism::Equations>::accelerations::{closure#1}>
+0000000000000000 0000000000000020 T chain::independent
 0000000000000000 0000000000000400 R chain::phi
                  U libm::sin
 ";
-        assert_eq!(sizes(symbols), BTreeMap::from([("accelerations", 0x110), ("chart vectors", 0x20)]));
+        assert_eq!(sizes(symbols), BTreeMap::from([("accelerations", 0x111), ("chart vectors", 0x20)]));
     }
 
     #[test]

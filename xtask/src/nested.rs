@@ -38,7 +38,7 @@ pub(crate) fn simulate(scene: &Scene, tell: impl FnMut(Event<'_>)) -> Result<Sum
 /// Compiles the functions of these names for `f64`, optimised; the library, in which each has its symbol.
 pub(crate) fn library(module: &Module, names: &[&str]) -> Result<PathBuf, Failure> {
     let root = machine_code::library(&module.type_name, names);
-    let package = Package::new(module, "lib.rs", root);
+    let package = Package::new(module, ("lib.rs", root), &["--", machine_code::SYMBOLS]);
     build(&package)?;
     Ok(package.built(&format!("lib{}.rlib", package.name.replace('-', "_"))))
 }
@@ -50,18 +50,20 @@ struct Package {
     /// Name and text of the file at its root.
     root: (&'static str, String),
     mechanism: String,
+    /// What rustc is told besides.
+    options: &'static [&'static str],
 }
 
 impl Package {
     fn program(module: &Module, precision: Precision) -> Self {
-        Self::new(module, "main.rs", main(&module.type_name, precision))
+        Self::new(module, ("main.rs", main(&module.type_name, precision)), &[])
     }
 
-    fn new(module: &Module, file: &'static str, root: String) -> Self {
+    fn new(module: &Module, root: (&'static str, String), options: &'static [&'static str]) -> Self {
         let mut hasher = DefaultHasher::new();
-        (&root, &module.code).hash(&mut hasher);
+        (&root.1, &module.code).hash(&mut hasher);
         let name = format!("{}-{:016x}", module.name, hasher.finish());
-        Self { manifest: manifest(&name), name, root: (file, root), mechanism: module.code.clone() }
+        Self { manifest: manifest(&name), name, root, mechanism: module.code.clone(), options }
     }
 
     /// Where Cargo puts what it builds.
@@ -147,7 +149,7 @@ fn build(package: &Package) -> Result<(), Failure> {
     files::write(&folder.join("src").join("mechanism.rs"), &package.mechanism)?;
     copy_lock_file(&folder).map_err(said)?;
     let _spinner = Spinner::new(format!("compiling {}", package.name));
-    compile(&folder, &target())
+    compile(package, &target())
 }
 
 /// The workspace's versions hold here too. Cargo drops from its copy what the package does not need.
@@ -162,11 +164,12 @@ fn copy_lock_file(folder: &Path) -> std::io::Result<()> {
     }
 }
 
-fn compile(folder: &Path, target: &Path) -> Result<(), Failure> {
-    let mut output = cargo(folder, target, &["--offline"])?;
+fn compile(package: &Package, target: &Path) -> Result<(), Failure> {
+    let folder = package.folder();
+    let mut output = cargo(package, target, &["--offline"])?;
     // Cargo says so if something has to be downloaded first.
     if output.as_ref().is_some_and(|words| words.contains("offline")) {
-        output = cargo(folder, target, &[])?;
+        output = cargo(package, target, &[])?;
     }
     match output {
         None => Ok(()),
@@ -178,13 +181,14 @@ fn compile(folder: &Path, target: &Path) -> Result<(), Failure> {
 }
 
 /// What Cargo said if it failed.
-fn cargo(folder: &Path, target: &Path, options: &[&str]) -> Result<Option<String>, Failure> {
+fn cargo(package: &Package, target: &Path, options: &[&str]) -> Result<Option<String>, Failure> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let output = Command::new(cargo)
-        .args(["build", "--quiet", "--release", "--target-dir"])
+        .args(["rustc", "--quiet", "--release", "--target-dir"])
         .arg(target)
         .args(options)
-        .current_dir(folder)
+        .args(package.options)
+        .current_dir(package.folder())
         .env_remove("CARGO_BUILD_TARGET")
         .stdin(Stdio::null())
         .output()

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::files;
-use crate::machine_code;
+use crate::machine_code::{self, SYMBOLS};
 use crate::performance::{cargo, folder, output, said, three};
 use crate::progress::Spinner;
 use std::fmt::Write as _;
@@ -210,6 +210,8 @@ impl Place {
     fn cargo(&self, options: &[&str]) -> Result<String, Failure> {
         let mut command = Command::new(cargo());
         command.args(options).args(["--offline", "--quiet"]).current_dir(&self.folder);
+        let flags = std::env::var("RUSTFLAGS").unwrap_or_default();
+        command.env("RUSTFLAGS", format!("{flags} {SYMBOLS}"));
         command.env("CARGO_TARGET_DIR", self.folder.join("target")).env_remove("CARGO_BUILD_TARGET");
         output(&mut command)
     }
